@@ -1,0 +1,20 @@
+#pragma once
+
+namespace palpate::fem {
+
+inline constexpr double tonne_per_mm3 = 1e-12;  // one kg/m^3
+
+/// An isotropic, linearly elastic material.
+struct Material {
+    double young = 0.1;     // [MPa], > 0
+    double poisson = 0.45;  // [-], (-1, 0.5)
+    double density = 1e-9;  // [tonne/mm^3], >= 0; 1000 kg/m^3 = 1e-9 tonne/mm^3
+
+    double shear_modulus() const { return young / (2 * (1 + poisson)); }                          // mu [MPa]
+    double lame_lambda() const { return young * poisson / ((1 + poisson) * (1 - 2 * poisson)); }  // [MPa]
+
+    /// @throws InvalidInput naming the value and the range.
+    void validate() const;
+};
+
+}  // namespace palpate::fem

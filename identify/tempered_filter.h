@@ -1,0 +1,56 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+#include "identify/identify.h"
+#include "mesh/progress.h"
+
+namespace palpate::identify {
+
+/// N(mean, factor factor^T), where the filter's particles come from.
+struct GaussianProposal {
+    Eigen::VectorXd mean;     // (P)
+    Eigen::MatrixXd factor;   // lower triangular (P x P)
+};
+
+/// Logarithm of the unnormalised posterior density, likelihood times prior; -inf where there is none. Called from
+/// several threads at once.
+using LogDensity = std::function<double(const Eigen::VectorXd& theta)>;
+
+struct TemperedOptions {
+    int particles = 200;              // N, >= 10
+    int moves = 2;                    // per temperature, >= 1
+    double least_effective = 0.5;     // of N, sets the temperatures, (0, 1)
+    int temperatures = 500;           // at most
+    std::uint64_t seed = 1;
+    int threads = 1;
+};
+
+struct TemperedResult {
+    Eigen::MatrixXd particles;        // (N x P)
+    Eigen::VectorXd log_weights;      // (N), normalised
+    Eigen::VectorXd log_density;      // of each particle (N)
+    double log_evidence = 0;          // ln of the integral of the density
+    double acceptance = 0;            // of all moves
+    int evaluations = 0;              // of the density
+    std::vector<FilterStep> history;  // a step per temperature, the proposal's particles first
+};
+
+/// Particles of a posterior pi, tempered from a Gaussian proposal q: their density goes through q^(1-b) pi^b from
+/// b = 0 to 1. [Neal 2001; Del Moral, Doucet, Jasra 2006]
+///
+/// Each temperature: b grows until the effective sample size falls to `least_effective` N (by bisection); low-variance
+/// resampling; moves by preconditioned Crank-Nicolson in q's whitened coordinates z, theta = mean + factor z,
+///   z' = sqrt(1 - s^2) z + s xi,  xi ~ N(0, 1),
+/// which are reversible under q, so that a move is accepted by the tempered correction (pi / q)^b alone and does not
+/// die with the dimension [Cotter, Roberts, Stuart, White 2013]; s keeps 20-40 % of the moves accepted. The last
+/// particles stay weighted.
+///
+/// The numbers depend on the seed, not on the threads.
+/// @throws SolverFailure when no particle has a density, or `temperatures` do not reach the posterior.
+TemperedResult tempered_filter(const LogDensity& log_density, const GaussianProposal& proposal,
+                               const TemperedOptions& options, const Progress& progress = {});
+
+}  // namespace palpate::identify

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <functional>
+#include <string>
+
+namespace palpate::mesh {
+
+struct ChildLimits {
+    double seconds = 60;     // of wall time, and of processor time
+    double mebibytes = 8192; // of memory, on top of what this process holds
+};
+
+/// How a child process ended.
+struct ChildResult {
+    enum class End { Answered, Crashed, OutOfTime, OutOfMemory, Failed };
+    End end = End::Failed;
+    int signal = 0;      // that ended it, when it crashed
+    int code = 0;        // exit code, when it failed
+    std::string answer;  // what `work` returned, when it answered
+};
+
+/// Runs `work` in a child process with limits; its crash, hang or greed does no harm here. The child prints nothing.
+/// It begins as a copy of this thread alone: `work` must not wait for other threads.
+/// @throws SolverFailure when no child can be started.
+ChildResult run_in_child(const std::function<std::string()>& work, const ChildLimits& limits);
+
+}  // namespace palpate::mesh

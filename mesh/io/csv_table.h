@@ -1,0 +1,36 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace palpate::mesh {
+
+/// A tidy CSV file: a header row, then numbers; '#' starts a comment, blank lines are skipped.
+/// An empty cell is NaN. Spaces round a cell and a byte-order mark are ignored; both line ends are read.
+class CsvTable {
+public:
+    /// @throws IoError, InvalidInput: no header, a cell that is no number, too many or few cells in a row, a column
+    /// that is missing (`required`) or that is neither required nor `optional`, a column named twice.
+    CsvTable(const std::filesystem::path& file, const std::vector<std::string>& required,
+             const std::vector<std::string>& optional = {});
+
+    int rows() const { return static_cast<int>(lines_.size()); }
+    bool has(const std::string& column) const;
+    /// NaN where the cell is empty or the (optional) column absent.
+    double at(int row, const std::string& column) const;
+    /// @throws InvalidInput naming file, line and column where the cell is empty or not finite.
+    double number(int row, const std::string& column) const;
+    /// @throws InvalidInput where it is not a whole number that fits.
+    int integer(int row, const std::string& column) const;
+    /// "probes.csv, line 12", to begin a message with.
+    std::string where(int row) const;
+
+private:
+    std::filesystem::path file_;
+    std::vector<std::string> columns_;
+    std::vector<int> lines_;                  // line of the file behind each row
+    std::vector<std::vector<double>> cells_;  // (rows x columns)
+};
+
+}  // namespace palpate::mesh

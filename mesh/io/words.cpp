@@ -1,0 +1,75 @@
+#include "mesh/io/words.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <numeric>
+
+namespace palpate::mesh {
+
+namespace {
+
+template <class Number>
+std::optional<Number> parse(std::string_view text) {
+    const bool plus = text.starts_with('+');
+    if (plus) text.remove_prefix(1);
+    if (plus && text.starts_with('-')) return std::nullopt;
+    Number value{};
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
+    return value;
+}
+
+/// The least number of letters to insert, drop, replace, or swap with their neighbour.
+std::size_t spelling_distance(std::string_view a, std::string_view b) {
+    std::vector<std::size_t> before(b.size() + 1);
+    std::vector<std::size_t> last(b.size() + 1);
+    std::vector<std::size_t> now(b.size() + 1);
+    std::iota(last.begin(), last.end(), 0);
+    for (std::size_t i = 1; i <= a.size(); ++i) {
+        now[0] = i;
+        for (std::size_t j = 1; j <= b.size(); ++j) {
+            now[j] = std::min({last[j] + 1, now[j - 1] + 1, last[j - 1] + (a[i - 1] != b[j - 1])});
+            if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1])
+                now[j] = std::min(now[j], before[j - 2] + 1);
+        }
+        std::swap(before, last);
+        std::swap(last, now);
+    }
+    return last[b.size()];
+}
+
+}  // namespace
+
+std::optional<double> parse_number(std::string_view text) {
+    const auto value = parse<double>(text);
+    return value && std::isfinite(*value) ? value : std::nullopt;
+}
+
+std::optional<int> parse_integer(std::string_view text) { return parse<int>(text); }
+
+std::string cited(std::string_view text) {
+    constexpr std::size_t longest = 60;
+    std::string shown(text.substr(0, longest));
+    for (char& c : shown)
+        if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = '?';
+    return fmt::format("'{}{}'", shown, text.size() > longest ? "..." : "");
+}
+
+std::string suggestion(std::string_view word, const std::vector<std::string>& known) {
+    // A long word is no misspelling, and would take long to compare.
+    if (known.empty() || word.size() > 64) return {};
+    const auto nearest = std::ranges::min_element(known, {}, [&](const auto& w) { return spelling_distance(word, w); });
+    if (spelling_distance(word, *nearest) > 1 + nearest->size() / 4) return {};
+    return fmt::format(" (did you mean '{}'?)", *nearest);
+}
+
+std::string listed(const std::vector<std::string>& words) {
+    std::string text;
+    for (const auto& word : words) text += (text.empty() ? "'" : ", '") + word + "'";
+    return text;
+}
+
+}  // namespace palpate::mesh

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace palpate::mesh {
+
+/// A finite number as C and every spreadsheet write it, whatever the locale; nothing else, "nan" and "inf" neither.
+std::optional<double> parse_number(std::string_view text);
+
+/// The same for a whole number.
+std::optional<int> parse_integer(std::string_view text);
+
+/// Text of a file for use in a message: in quotes, without control characters, cut where it is long.
+std::string cited(std::string_view text);
+
+/// " (did you mean 'noise'?)" when one of the known words is spelled nearly like it, else "".
+std::string suggestion(std::string_view word, const std::vector<std::string>& known);
+
+/// "a, b, c", each in quotes.
+std::string listed(const std::vector<std::string>& words);
+
+}  // namespace palpate::mesh

@@ -1,0 +1,116 @@
+#include "mesh/remesh.h"
+
+#include <CGAL/Polygon_mesh_processing/remesh.h>
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "mesh/cgal_mesh.h"
+#include "mesh/check_surface.h"
+#include "mesh/creases.h"
+#include "mesh/errors.h"
+#include "mesh/repair/steps.h"
+
+namespace palpate::mesh {
+namespace {
+
+namespace pmp = CGAL::Polygon_mesh_processing;
+using cgal::Mesh;
+using Edge = Mesh::Edge_index;
+using Vertex = Mesh::Vertex_index;
+
+constexpr double allowed_volume_change = 0.01;
+constexpr int attempts = 7;
+constexpr double most_triangles = 100'000;  // more would make a body that nobody can compute with
+
+/// What one attempt came to.
+struct Attempt {
+    Surface surface;
+    double volume_change = 1;  // as a share of the volume
+    bool sound = false;        // closed, outward, without crossings, no part or handle more or less
+    bool good() const { return sound && volume_change <= allowed_volume_change; }
+};
+
+/// Number of parts, and Euler's characteristic V - E + F.
+std::pair<int, int> topology(const SurfaceReport& report) {
+    return {report.components, report.vertices - report.triangles / 2};
+}
+
+Attempt attempt(const Surface& surface, const Creases& creases, double length, int iterations) {
+    Mesh mesh = cgal::to_mesh(cgal::to_soup(surface));
+    const auto crease = mesh.add_property_map<Edge, bool>("e:crease", false).first;
+    const auto corner = mesh.add_property_map<Vertex, bool>("v:corner", false).first;
+    for (const auto& [a, b] : creases.edges) {
+        const auto h = mesh.halfedge(Vertex(static_cast<Mesh::size_type>(a)), Vertex(static_cast<Mesh::size_type>(b)));
+        if (h.is_valid()) crease[mesh.edge(h)] = true;
+    }
+    for (const int v : creases.corners) corner[Vertex(static_cast<Mesh::size_type>(v))] = true;
+
+    pmp::isotropic_remeshing(mesh.faces(), length, mesh,
+                             CGAL::parameters::number_of_iterations(static_cast<unsigned>(iterations))
+                                 .edge_is_constrained_map(crease)
+                                 .vertex_is_constrained_map(corner)
+                                 .number_of_relaxation_steps(3));
+    Attempt result{cgal::from_mesh(mesh)};
+    const auto keep_if_sound = [&](const Surface& candidate) {
+        const SurfaceReport report = check_surface(candidate);
+        if (!report.sound() || topology(report) != topology(check_surface(surface))) return;
+        result.surface = candidate;
+        result.sound = true;
+    };
+    keep_if_sound(result.surface);
+    if (!result.sound) keep_if_sound(remove_crossings(result.surface));
+    const double volume = signed_volume(surface);
+    result.volume_change = std::abs(signed_volume(result.surface) - volume) / volume;
+    return result;
+}
+
+std::string reason(const Attempt& tried) {
+    if (!tried.sound) return "the new triangles cross each other";
+    return fmt::format("the volume changes by {:.1f} % (allowed: {:.0f} %)", 100 * tried.volume_change,
+                       100 * allowed_volume_change);
+}
+
+}  // namespace
+
+void RemeshOptions::validate() const {
+    if (!(edge_length >= 0 && std::isfinite(edge_length)))
+        throw InvalidInput(fmt::format("Remeshing: edge_length is {} mm; a positive length is allowed, or 0 for 0.06 of "
+                                       "the longest side.", edge_length));
+    if (!(crease_angle > 0 && crease_angle < 180))
+        throw InvalidInput(fmt::format("Remeshing: crease_angle is {} degrees; more than 0 and less than 180 is allowed.",
+                                       crease_angle));
+    if (iterations < 1 || iterations > 100)
+        throw InvalidInput(fmt::format("Remeshing: iterations is {}; 1 to 100 is allowed.", iterations));
+}
+
+Surface remesh(const Surface& surface, const RemeshOptions& options) {
+    options.validate();
+    if (surface.triangles.rows() == 0 || !cgal::is_mesh(cgal::to_soup(surface)) || !(signed_volume(surface) > 0))
+        throw InvalidInput("Remeshing: the surface is not closed and outward. Repair it first.");
+    const double target =
+        options.edge_length > 0 ? options.edge_length : 0.06 * bounding_box(surface.vertices).longest_side();
+    const Creases creases = find_creases(surface, options.crease_angle);
+
+    // Chords cut volume off in proportion to their length squared: that tells the next length to try.
+    double length = target;
+    std::string last;
+    for (int i = 0; i < attempts; ++i) {
+        if (const double triangles = area(surface) / (std::sqrt(3.0) / 4 * length * length); triangles > most_triangles) {
+            last += fmt::format("{}at {:.4g} mm there would be {:.0f} triangles ({:.0f} are allowed)", last.empty() ? "" : ", and ", length, triangles,
+                                most_triangles);
+            break;
+        }
+        const Attempt tried = attempt(surface, creases, length, options.iterations);
+        if (tried.good()) return tried.surface;
+        last = fmt::format("at {:.4g} mm {}", length, reason(tried));
+        const double wanted = std::sqrt(0.8 * allowed_volume_change / std::max(tried.volume_change, 1e-12));
+        length *= std::clamp(wanted, 0.4, tried.sound ? 0.9 : 0.75);
+    }
+    throw SolverFailure(fmt::format("Remeshing found no sound triangles for an edge length of {:.4g} mm: {}. Thicken or "
+                                    "remove its thinnest places, or give another edge length.", target, last));
+}
+
+}  // namespace palpate::mesh

@@ -1,0 +1,201 @@
+#include "mesh/repair_surface.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "mesh/check_surface.h"
+#include "mesh/errors.h"
+#include "mesh/repair/steps.h"
+#include "mesh/shells.h"
+#include "mesh/surface_tree.h"
+#include "mesh/weld.h"
+
+namespace palpate::mesh {
+namespace {
+
+/// The surface on its way, with what is wrong with it and what was done.
+class Repair {
+public:
+    Repair(const Surface& input, const RepairOptions& options, RepairResult& result)
+        : options_(options), result_(result), input_(input), box_(bounding_box(input.vertices)) {
+        WeldResult welded = weld(input, options.weld * box_.diagonal());
+        if (welded.merged > 0) say(fmt::format("{} corners welded with their neighbours", welded.merged));
+        take(std::move(welded.surface));
+    }
+
+    const Surface& surface() const { return surface_; }
+    const SurfaceReport& report() const { return report_; }
+    bool sound() const { return report_.sound(); }
+
+    void orient_and_stitch_sheets() {
+        const SurfaceReport before = report_;
+        take(orient_and_stitch(surface_));
+        if (before.duplicate_triangles > 0) say(fmt::format("{} twins of triangles dropped", before.duplicate_triangles));
+        if (before.inconsistent_edges > 0)
+            say(fmt::format("triangles turned along {} edges that disagreed", before.inconsistent_edges));
+        if (before.non_manifold_edges > report_.non_manifold_edges)
+            say(fmt::format("sheets taken apart at {} edges with more than two triangles",
+                            before.non_manifold_edges - report_.non_manifold_edges));
+    }
+
+    void fill_small_holes() {
+        if (report_.boundary_edges == 0) return;
+        int filled = 0;
+        take(fill_holes(surface_, options_.largest_hole * box_.diagonal(), filled));
+        if (filled > 0) say(fmt::format("{} holes filled", filled));
+    }
+
+    void unite_overlapping_shells() {
+        if (report_.self_intersections == 0 || report_.components < 2 || !report_.closed) return;
+        try {
+            const int parts = report_.components;
+            take(unite_shells(surface_));
+            united_ = true;
+            say(fmt::format("{} overlapping parts united into {}", parts, report_.components));
+        } catch (const SolverFailure&) {
+            return;  // the next steps see to it
+        }
+    }
+
+    void remove_self_intersections() {
+        if (report_.self_intersections + report_.degenerate_triangles == 0) return;
+        whole_ = surface_;
+        const int crossings = report_.self_intersections, degenerate = report_.degenerate_triangles;
+        take(remove_crossings(surface_));
+        if (report_.self_intersections < crossings)
+            say(fmt::format("{} of {} crossing pairs of triangles removed", crossings - report_.self_intersections, crossings));
+        if (report_.degenerate_triangles < degenerate)
+            say(fmt::format("{} triangles without area removed", degenerate - report_.degenerate_triangles));
+    }
+
+    void turn_shells_outward() {
+        if (!report_.closed || report_.outward || report_.self_intersections > 0) return;
+        take(turn_outward(surface_));
+        say("the surface turned outwards");
+    }
+
+    /// Largest distance of the input's vertices from the surface; without those deep inside where walls inside were
+    /// lost on purpose (wrapping, union).
+    double distance() const {
+        const SurfaceTree tree(surface_);
+        std::vector<char> used(static_cast<std::size_t>(input_.vertices.rows()), 0);
+        for (const int v : input_.triangles.reshaped()) used[static_cast<std::size_t>(v)] = 1;
+        double largest = 0;
+        for (Eigen::Index v = 0; v < input_.vertices.rows(); ++v) {
+            if (!used[static_cast<std::size_t>(v)]) continue;
+            const Vec3 point = input_.vertices.row(v);
+            const double distance = tree.closest(point).distance;
+            const bool lost_wall = (result_.wrapped || united_) && distance > allowed_distance() && tree.inside(point);
+            if (!lost_wall) largest = std::max(largest, distance);
+        }
+        return largest;
+    }
+    double allowed_distance() const { return options_.allowed_distance * box_.diagonal(); }
+
+    /// Round everything, then back onto what was wrapped where that does no harm.
+    void wrap_all() {
+        if (whole_.triangles.rows() > 0) take(whole_);
+        const double alpha = box_.diagonal() / 100, offset = alpha / 20;
+        const SurfaceTree tree(surface_);
+        Surface wrapped = wrap(surface_, alpha, offset);
+        result_.wrapped = true;
+        say(fmt::format("wrapped with alpha = {:.4g} mm: details narrower than that and inner walls are gone", alpha));
+
+        // Both sides of a sheet, at twice the offset: a skin, not a body.
+        const double thickness = 2 * signed_volume(wrapped) / area(wrapped);
+        if (thickness < 8 * offset)
+            throw InvalidInput(fmt::format("Repair: the surface encloses no volume: what can be wrapped round it is a skin "
+                                           "{:.3g} mm thick. It is an open sheet, or has holes larger than {:.0f} % of its "
+                                           "diagonal: close them, or allow larger ones to be filled.",
+                                           thickness, 100 * options_.largest_hole));
+        Surface snapped = wrapped;
+        for (auto vertex : snapped.vertices.rowwise()) {
+            const SurfacePoint near = tree.closest(vertex.transpose());
+            if (near.distance < 2 * offset) vertex = near.position.transpose();
+        }
+        take(std::move(snapped));
+        if (!sound()) take(std::move(wrapped));
+    }
+
+private:
+    void say(std::string step) { result_.steps.push_back(std::move(step)); }
+    void take(Surface surface) {
+        surface_ = std::move(surface);
+        report_ = check_surface(surface_);
+    }
+
+    const RepairOptions& options_;
+    RepairResult& result_;
+    const Surface& input_;
+    Box box_;
+    Surface surface_;
+    Surface whole_;       // before anything was cut away
+    bool united_ = false;
+    SurfaceReport report_;
+};
+
+void require_triangles(const Surface& surface) {
+    if (surface.triangles.rows() == 0)
+        throw InvalidInput("Repair: the surface has no triangles. Give a surface that encloses a volume.");
+    const Eigen::Index n = surface.vertices.rows();
+    if (surface.triangles.minCoeff() < 0 || surface.triangles.maxCoeff() >= n)
+        throw InvalidInput(fmt::format("Repair: a triangle names vertex {}; 0 to {} are allowed.",
+                                       surface.triangles.minCoeff() < 0 ? surface.triangles.minCoeff()
+                                                                        : surface.triangles.maxCoeff(), n - 1));
+    for (Eigen::Index v = 0; v < n; ++v)
+        if (!surface.vertices.row(v).allFinite())
+            throw InvalidInput(fmt::format("Repair: vertex {} is not finite. Remove it from the surface.", v));
+}
+
+/// A doubled sheet is closed and holds nothing.
+void require_volume(const SurfaceReport& report) {
+    if (!report.closed || std::abs(report.volume) > 1e-6 * report.area * report.box.diagonal()) return;
+    throw InvalidInput(fmt::format("Repair: the surface encloses no volume ({:.3g} mm^3 at an area of {:.3g} mm^2): it is flat or "
+                                   "a doubled sheet. Give the boundary of a solid body.", report.volume, report.area));
+}
+
+}  // namespace
+
+void RepairOptions::validate() const {
+    if (!(weld > 0 && weld <= 0.01))
+        throw InvalidInput(fmt::format("Repair: weld is {}; more than 0 and up to 0.01 of the diagonal is allowed.", weld));
+    if (!(largest_hole >= 0 && largest_hole <= 1))
+        throw InvalidInput(fmt::format("Repair: largest_hole is {}; 0 to 1 of the diagonal is allowed.", largest_hole));
+    if (!(allowed_distance > 0 && allowed_distance <= 1))
+        throw InvalidInput(fmt::format("Repair: allowed_distance is {}; more than 0 and up to 1 of the diagonal is allowed.",
+                                       allowed_distance));
+}
+
+RepairResult repair_surface(const Surface& surface, const RepairOptions& options) {
+    options.validate();
+    require_triangles(surface);
+    RepairResult result;
+    Repair repair(surface, options, result);
+    if (!repair.sound()) {
+        repair.orient_and_stitch_sheets();
+        repair.fill_small_holes();
+        require_volume(repair.report());
+        repair.unite_overlapping_shells();
+        repair.remove_self_intersections();
+        repair.fill_small_holes();
+        repair.turn_shells_outward();
+        if (!repair.sound() || repair.distance() > repair.allowed_distance()) repair.wrap_all();
+    }
+    if (!repair.sound())
+        throw InvalidInput(fmt::format("Repair: the surface could not be made sound; left over: {} Mend it in a mesh editor.",
+                                       fmt::join(describe_faults(repair.report()), " ")));
+
+    result.surface = weld(repair.surface(), 0).surface;
+    result.volume = signed_volume(result.surface);
+    result.distance = repair.distance();
+    if (result.distance > repair.allowed_distance())
+        throw InvalidInput(fmt::format("Repair: the mended surface lies {:.3g} mm from the given one; {:.3g} mm ({:.1f} % of the "
+                                       "diagonal) is allowed. After: {}. Mend it in a mesh editor, or allow more.",
+                                       result.distance, repair.allowed_distance(), 100 * options.allowed_distance,
+                                       fmt::join(result.steps, "; ")));
+    return result;
+}
+
+}  // namespace palpate::mesh

@@ -1,0 +1,175 @@
+#include "mesh/surface.h"
+
+#include <Eigen/Geometry>
+
+#include <algorithm>
+#include <array>
+#include <cassert>
+#include <cmath>
+#include <cstdint>
+#include <numbers>
+#include <unordered_map>
+#include <utility>
+#include <vector>
+
+namespace palpate::mesh {
+
+namespace {
+
+Vec3 corner(const Surface& surface, Eigen::Index triangle, int which) {
+    return surface.vertices.row(surface.triangles(triangle, which)).transpose();
+}
+
+Vec3 area_vector(const Surface& surface, Eigen::Index triangle) {
+    const Vec3 a = corner(surface, triangle, 0);
+    return 0.5 * (corner(surface, triangle, 1) - a).cross(corner(surface, triangle, 2) - a);
+}
+
+Points rows(const std::vector<Vec3>& points) {
+    Points result(static_cast<Eigen::Index>(points.size()), 3);
+    for (std::size_t i = 0; i < points.size(); ++i) result.row(static_cast<Eigen::Index>(i)) = points[i].transpose();
+    return result;
+}
+
+Triangles rows(const std::vector<std::array<int, 3>>& triangles) {
+    Triangles result(static_cast<Eigen::Index>(triangles.size()), 3);
+    for (std::size_t i = 0; i < triangles.size(); ++i)
+        result.row(static_cast<Eigen::Index>(i)) << triangles[i][0], triangles[i][1], triangles[i][2];
+    return result;
+}
+
+}  // namespace
+
+Box bounding_box(const Points& points) {
+    assert(points.rows() > 0);
+    return {points.colwise().minCoeff().transpose(), points.colwise().maxCoeff().transpose()};
+}
+
+double signed_volume(const Surface& surface) {
+    if (surface.vertices.rows() == 0) return 0;
+    // About the first vertex and not the origin: a body far away would lose its digits.
+    const Vec3 origin = surface.vertices.row(0).transpose();
+    double volume = 0;
+    for (Eigen::Index t = 0; t < surface.triangles.rows(); ++t)
+        volume += (corner(surface, t, 0) - origin).dot(area_vector(surface, t)) / 3;
+    return volume;
+}
+
+double area(const Surface& surface) {
+    double sum = 0;
+    for (Eigen::Index t = 0; t < surface.triangles.rows(); ++t) sum += area_vector(surface, t).norm();
+    return sum;
+}
+
+Points area_vectors(const Surface& surface) {
+    Points result(surface.triangles.rows(), 3);
+    for (Eigen::Index t = 0; t < surface.triangles.rows(); ++t) result.row(t) = area_vector(surface, t).transpose();
+    return result;
+}
+
+Points vertex_normals(const Surface& surface) {
+    Points normals = Points::Zero(surface.vertices.rows(), 3);
+    for (Eigen::Index t = 0; t < surface.triangles.rows(); ++t) {
+        const Vec3 normal = area_vector(surface, t).normalized();
+        for (int c = 0; c < 3; ++c) {
+            const Vec3 p = corner(surface, t, c);
+            const Vec3 a = corner(surface, t, (c + 1) % 3) - p;
+            const Vec3 b = corner(surface, t, (c + 2) % 3) - p;
+            const double angle = std::atan2(a.cross(b).norm(), a.dot(b));
+            normals.row(surface.triangles(t, c)) += angle * normal.transpose();
+        }
+    }
+    normals.rowwise().normalize();
+    return normals;
+}
+
+Surface make_box(const Vec3& min, const Vec3& max, const Eigen::Vector3i& quads) {
+    assert((quads.array() > 0).all() && (max - min).minCoeff() > 0);
+    const auto on_border = [&](const Eigen::Vector3i& at) {
+        return (at.array() == 0).any() || (at.array() == quads.array()).any();
+    };
+
+    // Vertices: the lattice points on the border, numbered in the order of the lattice.
+    std::vector<Vec3> vertices;
+    const Eigen::Vector3i points = quads.array() + 1;
+    std::vector<int> number(static_cast<std::size_t>(points.prod()), -1);
+    const auto lattice = [&](const Eigen::Vector3i& at) -> int& {
+        return number[static_cast<std::size_t>(at.x() + points.x() * (at.y() + points.y() * at.z()))];
+    };
+    for (Eigen::Vector3i at(0, 0, 0); at.z() <= quads.z(); ++at.z())
+        for (at.y() = 0; at.y() <= quads.y(); ++at.y())
+            for (at.x() = 0; at.x() <= quads.x(); ++at.x()) {
+                if (!on_border(at)) continue;
+                lattice(at) = static_cast<int>(vertices.size());
+                const Eigen::Array3d share = at.cast<double>().array() / quads.cast<double>().array();
+                vertices.emplace_back((1 - share) * min.array() + share * max.array());
+            }
+
+    // Sides: for each axis the low and the high one; u, v, axis are right-handed, so u x v looks up the axis.
+    std::vector<std::array<int, 3>> triangles;
+    for (int axis = 0; axis < 3; ++axis) {
+        const int u = (axis + 1) % 3;
+        const int v = (axis + 2) % 3;
+        for (const bool high : {false, true})
+            for (int i = 0; i < quads[u]; ++i)
+                for (int j = 0; j < quads[v]; ++j) {
+                    Eigen::Vector3i at = Eigen::Vector3i::Zero();
+                    at[axis] = high ? quads[axis] : 0;
+                    const auto vertex = [&](int du, int dv) {
+                        at[u] = i + du;
+                        at[v] = j + dv;
+                        return lattice(at);
+                    };
+                    const int a = vertex(0, 0);
+                    const int b = vertex(1, 0);
+                    const int c = vertex(1, 1);
+                    const int d = vertex(0, 1);
+                    if (high) {
+                        triangles.push_back({a, b, c});
+                        triangles.push_back({a, c, d});
+                    } else {
+                        triangles.push_back({a, c, b});
+                        triangles.push_back({a, d, c});
+                    }
+                }
+    }
+    return {rows(vertices), rows(triangles)};
+}
+
+Surface make_sphere(const Vec3& center, double radius, int levels) {
+    assert(radius > 0 && levels >= 0);
+    // An icosahedron: the corners of three golden rectangles.
+    const double g = std::numbers::phi;
+    std::vector<Vec3> vertices{{-1, g, 0},  {1, g, 0},  {-1, -g, 0}, {1, -g, 0}, {0, -1, g},  {0, 1, g},
+                               {0, -1, -g}, {0, 1, -g}, {g, 0, -1},  {g, 0, 1},  {-g, 0, -1}, {-g, 0, 1}};
+    for (Vec3& v : vertices) v.normalize();
+    std::vector<std::array<int, 3>> triangles{{0, 11, 5}, {0, 5, 1},  {0, 1, 7},   {0, 7, 10}, {0, 10, 11},
+                                              {1, 5, 9},  {5, 11, 4}, {11, 10, 2}, {10, 7, 6}, {7, 1, 8},
+                                              {3, 9, 4},  {3, 4, 2},  {3, 2, 6},   {3, 6, 8},  {3, 8, 9},
+                                              {4, 9, 5},  {2, 4, 11}, {6, 2, 10},  {8, 6, 7},  {9, 8, 1}};
+
+    // Each level cuts every triangle into four, at the midsides pushed out to the sphere.
+    for (int level = 0; level < levels; ++level) {
+        std::unordered_map<std::uint64_t, int> middle_of_edge;
+        const auto middle = [&](int a, int b) {
+            const auto [low, high] = std::minmax(a, b);
+            const std::uint64_t key = (static_cast<std::uint64_t>(low) << 32) | static_cast<std::uint64_t>(high);
+            const auto [entry, is_new] = middle_of_edge.try_emplace(key, static_cast<int>(vertices.size()));
+            if (is_new) vertices.emplace_back((vertices[a] + vertices[b]).normalized());
+            return entry->second;
+        };
+        std::vector<std::array<int, 3>> finer;
+        finer.reserve(4 * triangles.size());
+        for (const auto& [a, b, c] : triangles) {
+            const int ab = middle(a, b);
+            const int bc = middle(b, c);
+            const int ca = middle(c, a);
+            finer.insert(finer.end(), {{a, ab, ca}, {ab, b, bc}, {ca, bc, c}, {ab, bc, ca}});
+        }
+        triangles = std::move(finer);
+    }
+    for (Vec3& v : vertices) v = center + radius * v;
+    return {rows(vertices), rows(triangles)};
+}
+
+}  // namespace palpate::mesh

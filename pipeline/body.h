@@ -1,0 +1,35 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "mesh/progress.h"
+#include "mesh/region.h"
+#include "mesh/surface.h"
+#include "mesh/volume_mesh.h"
+
+namespace palpate::pipeline {
+
+struct BodyOptions {
+    double edge_length = 0;         // of the tetrahedra [mm]; 0: 6 % of the longest side
+    bool linear_elements = false;
+};
+
+/// A body ready for finite elements.
+struct Body {
+    mesh::Surface surface;             // repaired and remeshed, closed
+    mesh::VolumeMesh volume;           // quadratic, unless linear elements were asked for
+    std::vector<std::string> notes;    // what was done to the surface, in words
+};
+
+/// Surface to body: repair, remesh, fill with tetrahedra.
+/// @throws InvalidInput, SolverFailure with what to do.
+Body make_body(const mesh::Surface& surface, const BodyOptions& options, const Progress& progress = {});
+
+/// Share of the longest side that elements are long by default.
+inline constexpr double default_edge_share = 0.06;
+
+/// The clamp of a bare mesh: the 5 % of its length at the low end of its longest axis.
+mesh::BoxRegion default_clamp(const mesh::Box& box);
+
+}  // namespace palpate::pipeline

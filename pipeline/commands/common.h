@@ -1,0 +1,87 @@
+#pragma once
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+
+#include "pipeline/case.h"
+#include "pipeline/console.h"
+
+namespace palpate::pipeline::commands {
+
+enum ExitCode { done = 0, internal_error = 1, wrong_usage = 2, bad_input = 3, numerical_failure = 4, not_met = 5 };
+
+/// What every command understands.
+struct Common {
+    bool json = false;     // the result as one JSON object on standard output, nothing else there
+    bool force = false;    // overwrite what palpate did not make
+    int threads = 1;
+    std::optional<std::uint64_t> seed;  // absent: the case's, or 1
+};
+
+/// What a command comes to: for people, for scripts, and for the shell.
+struct Outcome {
+    std::string text;
+    nlohmann::json json;
+    ExitCode code = done;
+};
+
+/// @throws InvalidInput when `target` exists, palpate did not make it, and `force` is false.
+void refuse_to_overwrite(const std::filesystem::path& target, bool force);
+
+struct RunOptions {
+    std::filesystem::path input, output;
+    CaseOverrides say;
+};
+Outcome run(const RunOptions& options, const Common& common);
+
+struct CheckOptions {
+    std::filesystem::path input;
+    CaseOverrides say;
+};
+Outcome check(const CheckOptions& options, const Common& common);
+
+struct MeshOptions {
+    std::filesystem::path input, output;
+    CaseOverrides say;
+};
+Outcome mesh_body(const MeshOptions& options, const Common& common);
+
+struct SkeletonOptions {
+    std::filesystem::path input, output;
+    CaseOverrides say;
+};
+Outcome skeleton(const SkeletonOptions& options, const Common& common);
+
+struct ProbeCommandOptions {
+    std::filesystem::path input, output;
+    CaseOverrides say;
+};
+Outcome probe(const ProbeCommandOptions& options, const Common& common);
+
+struct IdentifyCommandOptions {
+    std::filesystem::path model, set, output;
+    CaseOverrides say;
+    std::string law = "automatic";
+    std::optional<double> search_low, search_high;
+};
+Outcome identify(const IdentifyCommandOptions& options, const Common& common);
+
+struct CompareOptions {
+    std::filesystem::path model, set, output;
+    std::optional<double> tolerance;  // [mm]
+};
+Outcome compare(const CompareOptions& options, const Common& common);
+
+struct SimulateOptions {
+    std::filesystem::path model, probes, output;
+};
+Outcome simulate(const SimulateOptions& options, const Common& common);
+
+struct ReportOptions {
+    std::filesystem::path run, output;
+};
+Outcome report(const ReportOptions& options, const Common& common);
+
+}  // namespace palpate::pipeline::commands

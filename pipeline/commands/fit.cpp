@@ -1,0 +1,116 @@
+#include <fmt/format.h>
+
+#include "identify/loads.h"
+#include "mesh/errors.h"
+#include "mesh/io/atomic_file.h"
+#include "mesh/io/region_yaml.h"
+#include "mesh/io/vtk_files.h"
+#include "pipeline/commands/common.h"
+#include "pipeline/identification.h"
+#include "pipeline/names.h"
+#include "pipeline/results.h"
+#include "pipeline/series.h"
+#include "skeleton/model_io.h"
+
+// What works on a model and measurements: identify, compare, simulate.
+
+namespace palpate::pipeline::commands {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Where a model and a set give different supports, the set's win.
+void take_supports(skeleton::Model& model, const identify::MeasurementSet& set) {
+    if (mesh::regions_to_yaml(model.supports) == mesh::regions_to_yaml(set.supports)) return;
+    Console::notice("The model and the set give different supports: the set's are taken.");
+    model.supports = set.supports;
+    for (skeleton::Sphere& sphere : model.spheres) sphere.held = mesh::contains(set.supports, sphere.center);
+}
+
+}  // namespace
+
+Outcome identify(const IdentifyCommandOptions& options, const Common& common) {
+    const fs::path output = options.output.empty() ? fs::path("identified") : options.output;
+    refuse_to_overwrite(output, common.force);
+    skeleton::Model model = skeleton::read_model(options.model);
+    const identify::MeasurementSet set = identify::read_measurement_set(options.set);
+    take_supports(model, set);
+
+    identify::IdentifyOptions how;
+    if (!options.say.parameters.empty()) how.scope = parse(scopes, options.say.parameters, "--parameters");
+    if (!options.say.method.empty()) how.method = parse(methods, options.say.method, "--method");
+    how.law = parse(law_choices, options.law, "--law");
+    if (options.say.particles) how.particles = *options.say.particles;
+    if (options.search_low) how.search_low = *options.search_low;
+    if (options.search_high) how.search_high = *options.search_high;
+    how.seed = common.seed.value_or(how.seed);
+    how.threads = common.threads;
+    const identify::IdentifyResult found = identify::identify(model, set, how, Console::progress());
+    write_identification(output, found);
+
+    Outcome outcome;
+    outcome.json = summary_json(found);
+    outcome.json["model"] = (output / "model.json").string();
+    outcome.text = fmt::format("{}: {} parameters, {} of them informed by the measurements.\n", (output / "model.json").string(),
+                               found.posterior.size(), outcome.json["informed"].get<int>());
+    if (found.posterior.size() <= 30) {
+        for (const auto& row : found.posterior) {
+            outcome.text += fmt::format("  {:<20} {:>10.4g} +- {:.2g} {}\n", row.parameter, row.mean, row.sd, row.unit);
+        }
+    }
+    for (const std::string& note : found.notes) outcome.text += "  " + note + "\n";
+    return outcome;
+}
+
+Outcome compare(const CompareOptions& options, const Common& common) {
+    skeleton::Model model = skeleton::read_model(options.model);
+    const identify::MeasurementSet set = identify::read_measurement_set(options.set);
+    take_supports(model, set);
+    const identify::Comparison comparison = identify::compare(model, set, common.threads);
+
+    Outcome outcome;
+    outcome.json = to_json(comparison, set);
+    outcome.text = in_words(comparison) + "\n";
+    if (!options.output.empty()) {
+        refuse_to_overwrite(options.output, common.force);
+        write_marker_series(options.output, "markers", set, comparison);
+        write_skin_series(options.output, "skin", model, set);
+        mesh::write_text(options.output / "compare.json", outcome.json.dump(2) + "\n");
+        outcome.text += fmt::format("Written: {}\n", options.output.string());
+    }
+    if (options.tolerance && comparison.rms > *options.tolerance) {
+        outcome.code = not_met;
+        Console::error(fmt::format("the error of {:.4g} mm rms is above the tolerance of {:g} mm", comparison.rms, *options.tolerance));
+    }
+    return outcome;
+}
+
+Outcome simulate(const SimulateOptions& options, const Common& common) {
+    const fs::path output = options.output.empty() ? fs::path("simulation") : options.output;
+    refuse_to_overwrite(output, common.force);
+    const skeleton::Model model = skeleton::read_model(options.model);
+    const std::vector<identify::LoadState> states = identify::read_probes(options.probes);
+    const identify::ContactLoads to_load(model);
+    skeleton::StaticsSolver solver(model);
+    const Eigen::VectorXd k = skeleton::stiffness_vector(model);
+    std::vector<mesh::SeriesStep> steps;
+    nlohmann::json results = nlohmann::json::array();
+    for (std::size_t s = 0; s < states.size(); ++s) {
+        const skeleton::Equilibrium found = solver.solve(k, to_load(states[s].contacts));
+        const Points u = skin_displacement(model, found);
+        const fs::path file = output / fmt::format("simulation_{:03}.vtp", s);
+        mesh::write_vtp(file, model.surface, {.points = {{"displacement [mm]", u}}});
+        steps.push_back({static_cast<double>(s), file});
+        results.push_back({{"probe", states[s].probe},
+                           {"time", states[s].time},
+                           {"max_displacement_mm", u.rows() ? u.rowwise().norm().maxCoeff() : 0.0},
+                           {"iterations", found.iterations}});
+    }
+    mesh::write_pvd(output / "simulation.pvd", steps);
+    Outcome outcome;
+    outcome.text = fmt::format("{}: {} equilibria.\n", (output / "simulation.pvd").string(), states.size());
+    outcome.json = {{"file", (output / "simulation.pvd").string()}, {"states", results}};
+    return outcome;
+}
+
+}  // namespace palpate::pipeline::commands

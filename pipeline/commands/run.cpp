@@ -1,0 +1,292 @@
+#include <fmt/format.h>
+
+#include "fem/elastic_body.h"
+#include "mesh/io/atomic_file.h"
+#include "mesh/io/region_yaml.h"
+#include "mesh/io/vtk_files.h"
+#include "mesh/read_surface.h"
+#include "pipeline/body.h"
+#include "pipeline/commands/common.h"
+#include "pipeline/expectation.h"
+#include "pipeline/held_out.h"
+#include "pipeline/identification.h"
+#include "pipeline/posterior_file.h"
+#include "pipeline/probing.h"
+#include "pipeline/report/report.h"
+#include "pipeline/report/view_script.h"
+#include "pipeline/results.h"
+#include "pipeline/run_folder.h"
+#include "pipeline/series.h"
+#include "pipeline/subject.h"
+#include "skeleton/model_io.h"
+
+namespace palpate::pipeline::commands {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+/// The stages of a run, one after the other. Each leaves its result as a file and a member; a stage that was finished
+/// before is read back instead.
+class Run {
+public:
+    Run(const RunOptions& options, const Common& common)
+        : common_(common),
+          subject_(read_subject(read_case(options.input, options.say))),
+          folder_(options.output, common.force) {}
+
+    Outcome execute() {
+        for (const std::string& assumption : subject_.assumptions) Console::notice(assumption);
+        mesh::write_text(folder_.path() / "case.yaml", to_yaml(subject_.settings));
+        folder_.note("seed", subject_.settings.identify.seed);
+        folder_.note("assumptions", subject_.assumptions);
+        make_mesh();
+        make_skeleton();
+        make_measurements();
+        calibrate();
+        const json result = compare_all();
+        write_view_script(folder_.path() / "view.py");
+        const fs::path page = folder_.path() / "report.html";
+        write_report(folder_.path(), page);
+        return conclude(result, page);
+    }
+
+private:
+    void make_mesh() {
+        const Case& c = subject_.settings;
+        if (c.model) {  // there is a skeleton already: the surface is for pictures
+            mesh::write_vtp(folder_.path() / "mesh/surface.vtp", subject_.surface);
+            return;
+        }
+        const bool ran = folder_.stage(
+            {"mesh",
+             {{"unit", c.unit}, {"longest", c.longest}, {"edge", c.edge_length}, {"linear", c.linear_elements}},
+             subject_.files,
+             {},
+             {"mesh/body.vtu", "mesh/surface.vtp"}},
+            [&] {
+                const Body body = make_body(subject_.surface, {c.edge_length, c.linear_elements}, Console::progress());
+                for (const std::string& note : body.notes) Console::notice("Repair: " + note);
+                mesh::write_vtu(folder_.path() / "mesh/body.vtu", body.volume);
+                mesh::write_vtp(folder_.path() / "mesh/surface.vtp", body.surface);
+                return json{{"nodes", body.volume.nodes.rows()},
+                            {"tetrahedra", body.volume.tetrahedra.rows()},
+                            {"volume_mm3", mesh::element_volumes(body.volume).sum()},
+                            {"repair", body.notes}};
+            });
+        body_ = mesh::read_vtu(folder_.path() / "mesh/body.vtu");
+        surface_ = mesh::read_surface(folder_.path() / "mesh/surface.vtp");
+        tell("mesh", ran, fmt::format("{} tetrahedra, {} nodes", body_.tetrahedra.rows(), body_.nodes.rows()));
+    }
+
+    void make_skeleton() {
+        const Case& c = subject_.settings;
+        const fs::path file = folder_.path() / "skeleton/model.json";
+        if (c.model) {
+            take_model(*c.model);
+            return;
+        }
+        const bool ran = folder_.stage(
+            {"skeleton",
+             {{"spheres", c.skeleton.spheres},
+              {"coverage", c.skeleton.coverage},
+              {"zones", c.skeleton.zones},
+              {"young", subject_.material.young},
+              {"poisson", subject_.material.poisson},
+              {"density", subject_.material.density},
+              {"supports", mesh::regions_to_yaml(subject_.supports)}},
+             {},
+             {"mesh"},
+             {"skeleton/model.json", "skeleton/skeleton.vtp", "skeleton/medial_axis.vtp"}},
+            [&] {
+                skeleton::BuildReport report;
+                skeleton::Model model = skeleton::build_skeleton(surface_, body_, subject_.material, subject_.supports,
+                                                                 c.skeleton, &report);
+                model.name = c.name;
+                for (const std::string& note : report.notes) Console::notice(note);
+                skeleton::write_model(file, model);
+                skeleton::write_model_vtp(folder_.path() / "skeleton/skeleton.vtp", model);
+                mesh::write_vtp_lines(folder_.path() / "skeleton/medial_axis.vtp", report.medial_centers, {},
+                                      {.points = {{"radius [mm]", report.medial_radii}}});
+                const auto held = std::count_if(model.spheres.begin(), model.spheres.end(), [](auto& s) { return s.held; });
+                return json{{"spheres", model.spheres.size()},
+                            {"held_spheres", held},
+                            {"links", model.links.size()},
+                            {"coverage_mm", report.coverage},
+                            {"notes", report.notes}};
+            });
+        model_ = skeleton::read_model(file);
+        tell("skeleton", ran, fmt::format("{} spheres, {} links", model_.spheres.size(), model_.links.size()));
+    }
+
+    void take_model(const fs::path& given) {
+        folder_.stage({"skeleton", {}, {given}, {}, {"skeleton/model.json", "skeleton/skeleton.vtp"}}, [&] {
+            const skeleton::Model model = skeleton::read_model(given);
+            skeleton::write_model(folder_.path() / "skeleton/model.json", model);
+            skeleton::write_model_vtp(folder_.path() / "skeleton/skeleton.vtp", model);
+            return json{{"spheres", model.spheres.size()}, {"links", model.links.size()}};
+        });
+        model_ = skeleton::read_model(folder_.path() / "skeleton/model.json");
+        Console::notice(fmt::format("skeleton   {} spheres, {} links, as given", model_.spheres.size(), model_.links.size()));
+    }
+
+    void make_measurements() {
+        if (subject_.set) {
+            set_ = *subject_.set;
+            fit_ = set_;
+            return;
+        }
+        const Case& c = subject_.settings;
+        const ProbeOptions& p = c.probing;
+        const bool ran = folder_.stage(
+            {"measurements",
+             {{"probes", p.probes},
+              {"markers", p.markers},
+              {"displacement", p.displacement},
+              {"radius", p.radius},
+              {"noise", p.noise},
+              {"seed", c.identify.seed}},
+             {},
+             {"skeleton"},
+             {"measurements", "reference/reference.pvd"}},
+            [&] {
+                const fem::ElasticBody elastic(body_, subject_.material, mesh::contains(subject_.supports, body_.nodes),
+                                               {.threads = common_.threads});
+                ProbedBody probed =
+                    probe_body(elastic, surface_, subject_.supports, p, c.identify.seed, Console::progress());
+                probed.set.name = c.name;
+                write_probed_body(folder_.path() / "measurements", probed, body_);
+                write_reference_series(probed.set);
+                return json{{"states", probed.set.states.size()},
+                            {"markers", probed.set.markers.size()},
+                            {"factor_seconds", elastic.stats().seconds_factor}};
+            });
+        set_ = identify::read_measurement_set(folder_.path() / "measurements");
+        fit_ = states_of(set_, [&](const identify::LoadState& s) { return !is_held_out(s.probe, p); });
+        held_out_ = states_of(set_, [&](const identify::LoadState& s) { return is_held_out(s.probe, p); });
+        tell("reference", ran, fmt::format("{} states in small strain, {} of them held out", set_.states.size(), held_out_.states.size()));
+    }
+
+    void write_reference_series(const identify::MeasurementSet& set) const {
+        std::vector<mesh::SeriesStep> steps;
+        for (std::size_t s = 0; s < set.states.size(); ++s) {
+            steps.push_back({static_cast<double>(s), folder_.path() / "measurements/field" /
+                                                         fmt::format("{}_{}.vtu", set.states[s].probe, set.states[s].time)});
+        }
+        mesh::write_pvd(folder_.path() / "reference/reference.pvd", steps);
+    }
+
+    void calibrate() {
+        const Case& c = subject_.settings;
+        identify::IdentifyOptions options = c.identify;
+        options.threads = common_.threads;
+        // Our own reference is linear, and says so.
+        if (!subject_.set) options.law = identify::LawChoice::linear;
+        json settings = identify_settings(options);
+        if (!subject_.set) settings["held_out"] = c.probing.held_out;
+        const bool ran = folder_.stage(
+            {"identify",
+             settings,
+             subject_.set ? subject_.files : std::vector<fs::path>{},
+             subject_.set ? std::vector<std::string>{"skeleton"} : std::vector<std::string>{"skeleton", "measurements"},
+             {"identify/model.json", "identify/posterior.csv", "identify/history.pvd"}},
+            [&] {
+                const identify::IdentifyResult found = identify::identify(model_, fit_, options, Console::progress());
+                for (const std::string& note : found.notes) Console::notice(note);
+                write_identification(folder_.path() / "identify", found);
+                return summary_json(found);
+            });
+        model_ = skeleton::read_model(folder_.path() / "identify/model.json");
+        tell("identify", ran,
+             fmt::format("{} parameters, {} of them informed by the measurements",
+                         folder_.record()["stages"]["identify"]["figures"].value("parameters", 0),
+                         folder_.record()["stages"]["identify"]["figures"].value("informed", 0)));
+    }
+
+    json compare_all() {
+        const fs::path folder = folder_.path() / "compare";
+        json result;
+        folder_.stage({"compare", {}, {}, {"identify"}, {"compare"}}, [&] {
+            const identify::Comparison comparison = identify::compare(model_, set_, common_.threads);
+            result = to_json(comparison, set_);
+            if (!held_out_.states.empty()) {
+                result["fitted"] = error_json(fit_);
+                result["held_out"] = error_json(held_out_);
+            }
+            mesh::write_text(folder / "compare.json", result.dump(2) + "\n");
+            write_marker_series(folder, "markers", set_, comparison);
+            write_skin_series(folder, "skin", model_, set_);
+            return json{{"relative", result["error"]["relative"]}};
+        });
+        result = json::parse(mesh::read_text(folder / "compare.json"));
+        return result;
+    }
+
+    json error_json(const identify::MeasurementSet& part) const {
+        return to_json(identify::compare(model_, part, common_.threads), part)["error"];
+    }
+
+    Outcome conclude(json result, const fs::path& page) const {
+        Outcome outcome;
+        outcome.text = summary(result) + fmt::format("\nReport: {}\nParaView: paraview --script={}\n", page.string(),
+                                                     (folder_.path() / "view.py").string());
+        outcome.json = {{"run", folder_.path().string()},
+                        {"report", page.string()},
+                        {"spheres", model_.spheres.size()},
+                        {"links", model_.links.size()},
+                        {"compare", result},
+                        {"stages", folder_.record()["stages"]}};
+        const std::vector<std::string> broken =
+            broken_expectations(subject_.settings.expect, result, read_posterior(folder_.path() / "identify/posterior.csv"),
+                                static_cast<int>(model_.spheres.size()));
+        for (const std::string& line : broken) Console::error("expectation not met: " + line);
+        outcome.json["expectations_not_met"] = broken;
+        outcome.code = broken.empty() ? done : not_met;
+        return outcome;
+    }
+
+    std::string summary(const json& result) const {
+        const auto percent = [](const json& error) { return 100 * error["relative"].get<double>(); };
+        std::string text = fmt::format("{}: {} spheres, {} links.\n", subject_.settings.name, model_.spheres.size(), model_.links.size());
+        const json& error = result["error"];
+        text += fmt::format("Error against the {}: {:.3g} mm rms, {:.3g} mm at most", subject_.set ? "measurements" : "FEM reference",
+                            error["rms_mm"].get<double>(), error["max_mm"].get<double>());
+        if (error["relative"].is_number()) text += fmt::format(", {:.1f} % of the displacement", percent(error));
+        if (result.contains("held_out")) {
+            text += fmt::format(" ({:.1f} % on the probes that were fitted, {:.1f} % on those held out)", percent(result["fitted"]),
+                                percent(result["held_out"]));
+        }
+        text += ".";
+        if (error["noise_mm"].is_number()) {
+            text += fmt::format(" Noise: {:.3g} mm; {}.", error["noise_mm"].get<double>(),
+                                result["adequate"].get<bool>() ? "what is left is noise" : "the model lacks something");
+        }
+        if (result.contains("load_exponent")) {
+            text += fmt::format("\nLoad exponent {:.1f}: {}.", result["load_exponent"]["value"].get<double>(),
+                                result["load_exponent"]["words"].get<std::string>());
+        }
+        return text;
+    }
+
+    void tell(const std::string& stage, bool ran, const std::string& what) const {
+        const json& record = folder_.record()["stages"][stage == "reference" ? "measurements" : stage];
+        Console::notice(fmt::format("{:<10} {} ({})", stage, what,
+                                    ran ? fmt::format("{:.1f} s, {:.0f} MB", record["seconds"].get<double>(),
+                                                      record["peak_memory_mb"].get<double>())
+                                        : "unchanged"));
+    }
+
+    Common common_;
+    Subject subject_;
+    RunFolder folder_;
+    mesh::VolumeMesh body_;
+    mesh::Surface surface_;
+    skeleton::Model model_;
+    identify::MeasurementSet set_, fit_, held_out_;
+};
+
+}  // namespace
+
+Outcome run(const RunOptions& options, const Common& common) { return Run(options, common).execute(); }
+
+}  // namespace palpate::pipeline::commands

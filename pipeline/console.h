@@ -1,0 +1,27 @@
+#pragma once
+
+#include <string>
+
+#include "mesh/progress.h"
+
+namespace palpate::pipeline {
+
+enum class Verbosity { quiet, normal, verbose };
+
+/// What a person reads while a command works: messages and progress, all on standard error. Standard output is for
+/// results. Colours and a progress bar on a terminal only, and not where NO_COLOR is set.
+class Console {
+public:
+    static void set_up(Verbosity verbosity);
+
+    /// An assumption or a decision that the user did not ask for and should know.
+    static void notice(const std::string& text);
+    static void warning(const std::string& text);
+    static void error(const std::string& text);
+    static void detail(const std::string& text);  // with -v only
+
+    /// Progress of a step: a bar with the time left on a terminal, plain lines now and then elsewhere.
+    static Progress progress();
+};
+
+}  // namespace palpate::pipeline

@@ -1,0 +1,16 @@
+#pragma once
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "identify/identify.h"
+
+namespace palpate::pipeline {
+
+/// model.json, model.vtp, posterior.csv, identify.json and the particle history (history.pvd) of an identification.
+void write_identification(const std::filesystem::path& folder, const identify::IdentifyResult& found);
+
+/// What the result of an identification depends on, beside its inputs.
+nlohmann::json identify_settings(const identify::IdentifyOptions& options);
+
+}  // namespace palpate::pipeline

@@ -1,0 +1,61 @@
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <exception>
+#include <new>
+#include <thread>
+
+#include "mesh/errors.h"
+#include "pipeline/command_line.h"
+#include "pipeline/commands/common.h"
+#include "pipeline/version.h"
+
+namespace {
+
+using namespace palpate;
+using namespace palpate::pipeline;
+
+/// Runs a command; what goes wrong becomes one message and an exit code.
+commands::Outcome guarded(const std::function<commands::Outcome()>& command) {
+    const auto failed = [](const std::string& message, commands::ExitCode code) {
+        Console::error(message);
+        return commands::Outcome{.text = {}, .json = {{"error", message}}, .code = code};
+    };
+    try {
+        return command();
+    } catch (const InvalidInput& e) {
+        return failed(e.what(), commands::bad_input);
+    } catch (const IoError& e) {
+        return failed(e.what(), commands::bad_input);
+    } catch (const std::filesystem::filesystem_error& e) {
+        return failed(e.what(), commands::bad_input);
+    } catch (const SolverFailure& e) {
+        return failed(e.what(), commands::numerical_failure);
+    } catch (const std::bad_alloc&) {
+        return failed("the memory is exhausted; choose larger elements (--edge-length) or fewer probes", commands::numerical_failure);
+    } catch (const std::exception& e) {
+        return failed(fmt::format("internal error, please report it: {}", e.what()), commands::internal_error);
+    }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    CommandLine line;
+    CLI::App app(line.description(), "palpate");
+    line.set_up(app);
+    try {
+        app.parse(argc, argv);
+    } catch (const CLI::ParseError& e) {
+        const int code = app.exit(e);
+        return code == 0 ? commands::done : commands::wrong_usage;
+    }
+    Console::set_up(line.verbosity());
+    const commands::Outcome outcome = guarded(line.command());
+    if (line.common().json) {
+        fmt::print("{}\n", outcome.json.dump(2));
+    } else {
+        fmt::print("{}", outcome.text);
+    }
+    return outcome.code;
+}

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <fmt/format.h>
+
+#include <array>
+#include <string>
+#include <utility>
+
+#include "identify/identify.h"
+#include "mesh/errors.h"
+
+namespace palpate::pipeline {
+
+/// Names that users write, and what they stand for.
+template <typename Enum, std::size_t N>
+using Names = std::array<std::pair<const char*, Enum>, N>;
+
+inline constexpr Names<identify::Scope, 3> scopes{{{"uniform", identify::Scope::uniform},
+                                                   {"zones", identify::Scope::zones},
+                                                   {"links", identify::Scope::links}}};
+inline constexpr Names<identify::Method, 2> methods{
+    {{"tempered", identify::Method::tempered}, {"burion2008", identify::Method::burion2008}}};
+inline constexpr Names<identify::LawChoice, 3> law_choices{{{"automatic", identify::LawChoice::automatic},
+                                                            {"linear", identify::LawChoice::linear},
+                                                            {"large-rotation", identify::LawChoice::large_rotation}}};
+
+/// @throws InvalidInput naming where, what was written and what is allowed.
+template <typename Enum, std::size_t N>
+Enum parse(const Names<Enum, N>& names, const std::string& written, const std::string& where) {
+    std::string allowed;
+    for (const auto& [name, value] : names) {
+        if (written == name) return value;
+        allowed += (allowed.empty() ? "" : ", ") + std::string(name);
+    }
+    throw InvalidInput(fmt::format("{}: '{}' is not known, allowed is one of {}", where, written, allowed));
+}
+
+template <typename Enum, std::size_t N>
+std::string name_of(const Names<Enum, N>& names, Enum wanted) {
+    for (const auto& [name, value] : names) {
+        if (value == wanted) return name;
+    }
+    return "?";
+}
+
+}  // namespace palpate::pipeline

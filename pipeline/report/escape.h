@@ -1,0 +1,23 @@
+#pragma once
+
+#include <string>
+
+namespace palpate::pipeline {
+
+/// A text as it may stand in HTML and SVG, attributes included.
+inline std::string escape(const std::string& text) {
+    std::string safe;
+    for (const char c : text) {
+        switch (c) {
+            case '&': safe += "&amp;"; break;
+            case '<': safe += "&lt;"; break;
+            case '>': safe += "&gt;"; break;
+            case '"': safe += "&quot;"; break;
+            case '\'': safe += "&#39;"; break;
+            default: safe += c;
+        }
+    }
+    return safe;
+}
+
+}  // namespace palpate::pipeline

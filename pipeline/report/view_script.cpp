@@ -1,0 +1,130 @@
+#include "pipeline/report/view_script.h"
+
+#include "mesh/io/atomic_file.h"
+
+namespace palpate::pipeline {
+namespace {
+
+constexpr const char* script_text = R"py(# Opens a palpate run in ParaView:  paraview --script=view.py
+# Off screen, to a picture:          pvbatch view.py picture.png
+import os
+import sys
+
+from paraview.simple import *
+
+script = globals().get("__file__") or sys.argv[0]
+run = os.path.dirname(os.path.abspath(script))
+
+
+def path(*names):
+    return os.path.join(run, *names)
+
+
+def colour(view, source, array, component="Magnitude"):
+    display = GetDisplayProperties(source, view)
+    ColorBy(display, ("POINTS", array, component))
+    display.RescaleTransferFunctionToDataRange(True)
+    display.SetScalarBarVisibility(view, True)
+    return display
+
+
+def last_step(view, reader):
+    times = list(reader.TimestepValues) if hasattr(reader.TimestepValues, "__len__") else [reader.TimestepValues]
+    view.ViewTime = times[min(1, len(times) - 1)] if times else 0
+    reader.UpdatePipeline(view.ViewTime)
+
+
+def size_of(source):
+    source.UpdatePipeline()
+    b = source.GetDataInformation().GetBounds()
+    return max(b[1] - b[0], b[3] - b[2], b[5] - b[4])
+
+
+def shape_view(view):
+    """The model's shape, displacements magnified to 10 % of the size."""
+    skin = PVDReader(FileName=path("compare", "skin.pvd"))
+    last_step(view, skin)
+    size = size_of(skin)
+    largest = skin.PointData["displacement [mm]"]
+    reach = max(abs(x) for c in range(3) for x in largest.GetRange(c)) or 1.0
+    warp = WarpByVector(Input=skin)
+    warp.Vectors = ["POINTS", "displacement [mm]"]
+    warp.ScaleFactor = 1.0 if reach > 0.03 * size else 0.1 * size / reach
+    Show(warp, view)
+    colour(view, warp, "displacement [mm]")
+    return "Model, displacements x %.3g" % warp.ScaleFactor
+
+
+def skeleton_view(view):
+    """Spheres and links, coloured by elongation stiffness."""
+    surface = XMLPolyDataReader(FileName=[path("mesh", "surface.vtp")])
+    Show(surface, view).Opacity = 0.15
+    model = XMLPolyDataReader(FileName=[path("identify", "model.vtp")])
+    tubes = Tube(Input=model)
+    tubes.Scalars = [None, ""]
+    tubes.Vectors = [None, ""]
+    tubes.Radius = 0.005 * size_of(surface)
+    Show(tubes, view)
+    display = GetDisplayProperties(tubes, view)
+    ColorBy(display, ("CELLS", "elongation [N/mm]"))
+    display.RescaleTransferFunctionToDataRange(True)
+    display.SetScalarBarVisibility(view, True)
+    balls = Glyph(Input=model, GlyphType="Sphere")
+    balls.ScaleArray = ["POINTS", "radius [mm]"]
+    balls.ScaleFactor = 2.0
+    balls.GlyphMode = "All Points"
+    ball_display = Show(balls, view)
+    ColorBy(ball_display, None)
+    ball_display.Opacity = 0.25
+    return "Skeleton"
+
+
+def error_view(view):
+    """Errors at the markers, from model to measurement."""
+    surface = XMLPolyDataReader(FileName=[path("mesh", "surface.vtp")])
+    Show(surface, view).Opacity = 0.3
+    markers = PVDReader(FileName=path("compare", "markers.pvd"))
+    last_step(view, markers)
+    dots = Glyph(Input=markers, GlyphType="Sphere")
+    dots.ScaleArray = ["POINTS", "No scale array"]
+    dots.ScaleFactor = 0.02 * size_of(surface)
+    dots.GlyphMode = "All Points"
+    Show(dots, view)
+    colour(view, dots, "error [mm]")
+    return "Error at the markers"
+
+
+layout = CreateLayout("palpate")
+views = []
+for number, build in enumerate((shape_view, skeleton_view, error_view)):
+    view = CreateView("RenderView")
+    AssignViewToLayout(view=view, layout=layout, hint=0)
+    view.Background = [1, 1, 1]
+    view.UseColorPaletteForBackground = 0
+    view.OrientationAxesLabelColor = [0, 0, 0]
+    title = Text(Text=build(view))
+    shown = Show(title, view)
+    shown.Color = [0, 0, 0]
+    view.ResetCamera()
+    view.CameraParallelProjection = 1
+    camera = view.GetActiveCamera()
+    camera.Elevation(-60)
+    camera.Azimuth(20)
+    view.ResetCamera()
+    views.append(view)
+    if build is not error_view:
+        layout.SplitHorizontal(layout.GetViewLocation(view), 0.5) if number == 0 else layout.SplitVertical(
+            layout.GetViewLocation(view), 0.5)
+
+for view in views:
+    Render(view)
+if len(sys.argv) > 1 and sys.argv[-1].endswith(".png"):
+    layout.SetSize(1800, 900)
+    SaveScreenshot(sys.argv[-1], layout, ImageResolution=[1800, 900])
+)py";
+
+}  // namespace
+
+void write_view_script(const std::filesystem::path& script) { mesh::write_text(script, script_text); }
+
+}  // namespace palpate::pipeline

@@ -1,0 +1,184 @@
+#include "skeleton/build.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "mesh/errors.h"
+#include "skeleton/placement/cover.h"
+#include "skeleton/placement/masses.h"
+#include "skeleton/placement/sections.h"
+
+namespace palpate::skeleton {
+namespace {
+
+constexpr int fineness = 60;          // tetrahedra a sphere, at least
+
+Body prepare(const mesh::Surface& surface, const mesh::SurfaceTree& tree, const mesh::VolumeMesh& volume,
+             const std::vector<mesh::Region>& supports, int spheres) {
+    Body body;
+    body.graph = make_tet_graph(volume, std::max(6000, fineness * spheres));
+    body.ground = find_ground(body.graph, supports);
+    body.axis = medial_axis(surface, tree, 0.02 * mesh::bounding_box(surface.vertices).diagonal());
+    if (body.axis.radii.size() == 0) throw InvalidInput("no ball fits into the surface: is it closed, and does it look outward?");
+    body.core = find_core(body.graph, body.axis);
+    body.free_volumes = body.graph.volumes;
+    for (int t = 0; t < body.graph.size(); ++t) {
+        if (body.ground.held[t]) body.free_volumes(t) = 0;
+    }
+    body.way = path_lengths(body.graph, body.ground.behind);
+    return body;
+}
+
+// Lloyd's middles may lie outside a bent body or in a support: the nearest place of the cell is taken then.
+void keep_inside(const Body& body, const mesh::SurfaceTree& tree, const std::vector<mesh::Region>& supports,
+                 std::vector<Site>& sites) {
+    for (Site& site : sites) {
+        if (site.held || (tree.inside(site.at) && !mesh::contains(supports, site.at))) continue;
+        site.at = body.graph.centers.row(site.tet);
+    }
+}
+
+std::ptrdiff_t free_sites(const std::vector<Site>& sites) {
+    return std::count_if(sites.begin(), sites.end(), [](const Site& site) { return !site.held; });
+}
+
+// The surface's vertices that no support holds.
+Points free_vertices(const mesh::Surface& surface, const std::vector<mesh::Region>& supports) {
+    const std::vector<char> held = mesh::contains(supports, surface.vertices);
+    Points points(std::count(held.begin(), held.end(), 0), 3);
+    Eigen::Index k = 0;
+    for (Eigen::Index v = 0; v < surface.vertices.rows(); ++v) {
+        if (!held[v]) points.row(k++) = surface.vertices.row(v);
+    }
+    return points;
+}
+
+// The cells. Held sites whose cells touch no free one would hang in the void: their cells go to their neighbours.
+std::vector<int> share_out(const Body& body, std::vector<Site>& sites, std::vector<Sphere>& spheres) {
+    for (;;) {
+        std::vector<int> owner = grow_cells(body.graph, body.core, body.ground.held, sites);
+        std::vector<char> useful;
+        for (const Site& site : sites) useful.push_back(!site.held);
+        for (int t = 0; t < body.graph.size(); ++t) {
+            for (int c = 0; c < 4; ++c) {
+                const int u = body.graph.neighbors(t, c);
+                if (u >= 0 && !sites[owner[u]].held) useful[owner[t]] = 1;
+            }
+        }
+        if (std::find(useful.begin(), useful.end(), 0) == useful.end()) return owner;
+        for (std::size_t i = sites.size(); i-- > 0;) {
+            if (useful[i]) continue;
+            sites.erase(sites.begin() + static_cast<std::ptrdiff_t>(i));
+            spheres.erase(spheres.begin() + static_cast<std::ptrdiff_t>(i));
+        }
+    }
+}
+
+std::vector<Link> make_links(const std::vector<Section>& sections, const fem::Material& material) {
+    std::vector<Link> links;
+    for (const Section& s : sections) links.push_back({s.a, s.b, s.length, start_stiffness(s, material), 0});
+
+    // No link is softer than a thousandth of the median one: slivers must not make the model singular.
+    for (int k = 0; k < 3; ++k) {
+        std::vector<double> values;
+        for (const Link& link : links) values.push_back(link.stiffness(k));
+        std::nth_element(values.begin(), values.begin() + values.size() / 2, values.end());
+        for (Link& link : links) link.stiffness(k) = std::max(link.stiffness(k), 1e-3 * values[values.size() / 2]);
+    }
+    return links;
+}
+
+// Bands of equally many links, by the way from the support to their middle.
+void set_zones(const Body& body, const std::vector<Site>& sites, int zones, std::vector<Link>& links) {
+    std::vector<double> way;
+    for (const Link& link : links) way.push_back(body.way(sites[link.a].tet) + body.way(sites[link.b].tet));
+    std::vector<int> order(links.size());
+    std::iota(order.begin(), order.end(), 0);
+    std::stable_sort(order.begin(), order.end(), [&](int i, int j) { return way[i] < way[j]; });
+    for (std::size_t i = 0; i < order.size(); ++i) {
+        links[order[i]].zone = static_cast<int>(i * static_cast<std::size_t>(zones) / order.size());
+    }
+}
+
+}  // namespace
+
+void BuildOptions::validate() const {
+    if (spheres < 0 || spheres > 20000) {
+        throw InvalidInput(fmt::format("spheres is {}: allowed are 1 to 20000, or 0 to let the body's shape decide", spheres));
+    }
+    if (!(coverage >= 0) || !std::isfinite(coverage)) {
+        throw InvalidInput(fmt::format("coverage is {} mm: allowed are positive lengths, or 0 for 5 % of the body's longest side", coverage));
+    }
+    if (zones < 1 || zones > 1000) throw InvalidInput(fmt::format("zones is {}: allowed are 1 to 1000", zones));
+}
+
+Model build_skeleton(const mesh::Surface& surface, const mesh::VolumeMesh& volume, const fem::Material& material,
+                     const std::vector<mesh::Region>& supports, const BuildOptions& options, BuildReport* report) {
+    options.validate();
+    material.validate();
+    const mesh::SurfaceTree tree(surface);
+    Body body = prepare(surface, tree, volume, supports, options.spheres);
+    const double delta = options.coverage > 0 ? options.coverage : 0.05 * mesh::bounding_box(surface.vertices).longest_side();
+    BuildReport result;
+    result.medial_centers = body.axis.centers;
+    result.medial_radii = body.axis.radii;
+
+    // How many, and how far apart. Many more than a chain can hold fill the body in layers.
+    int count = options.spheres > 0 ? options.spheres
+                                    : default_spheres(body.free_volumes, body.core, body.way.maxCoeff());
+    double spacing = spacing_of_spheres(body.free_volumes, body.core, count);
+    if (spacing < 0.4 * mean_radius(body.free_volumes, body.core)) {
+        body.core = fill_core(body.graph, body.core);
+        spacing = spacing_of_spheres(body.free_volumes, body.core, count);
+    }
+
+    // Where: spread evenly over the core.
+    std::vector<Site> sites = ground_sites(body.core, body.ground, spacing);
+    add_sites(body.graph, body.core, body.ground.held, count, sites);
+    relax_sites(body.graph, body.core, body.ground.held, spacing,
+                sphere_shares(body.free_volumes, body.core, spacing), sites);
+    keep_inside(body, tree, supports, sites);
+
+    // What they leave uncovered gets balls of its own, apart from the others if that will do.
+    const Points vertices = free_vertices(surface, supports);
+    Model model;
+    const auto place_spheres = [&] {
+        model.spheres = make_spheres(body, tree, supports, sites, spacing);
+        swell(vertices, delta, model.spheres);
+        const Eigen::VectorXd distance = outside(model.spheres, vertices);
+        result.coverage = std::max(0., vertices.rows() > 0 ? distance.maxCoeff() : 0);
+    };
+    place_spheres();
+    for (double gap : {0.5, 0.25, 0.}) {
+        if (options.spheres > 0 || result.coverage <= delta) break;
+        const std::vector<Site> added = covering_sites(body, supports, sites, model.spheres, vertices, delta, gap * spacing);
+        sites.insert(sites.end(), added.begin(), added.end());
+        place_spheres();
+    }
+    if (result.coverage > delta) {
+        result.notes.push_back(fmt::format(
+            "{} spheres leave some of the surface {:.3g} mm outside; {:.3g} mm are wanted: more spheres cover it better",
+            free_sites(sites), result.coverage, delta));
+    }
+
+    // Who belongs to whom: cells, masses, links, skin.
+    const std::vector<int> owner = share_out(body, sites, model.spheres);
+    set_masses(body.graph, owner, material.density, model.spheres);
+    model.links = make_links(find_sections(body.graph, body.core, owner, sites), material);
+    set_zones(body, sites, options.zones, model.links);
+    model.surface = surface;
+    model.supports = supports;
+    for (Eigen::Index v = 0; v < surface.vertices.rows(); ++v) {
+        model.skin.push_back(attach(model, Vec3(surface.vertices.row(v))));
+    }
+    model.provenance["skeleton"] = fmt::format("{} free and {} held spheres, {} links, coverage {:.4g} mm",
+                                               free_sites(sites), std::ssize(sites) - free_sites(sites),
+                                               model.links.size(), result.coverage);
+    if (report != nullptr) *report = std::move(result);
+    return model;
+}
+
+}  // namespace palpate::skeleton

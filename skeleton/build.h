@@ -1,0 +1,33 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "fem/material.h"
+#include "mesh/volume_mesh.h"
+#include "skeleton/model.h"
+
+namespace palpate::skeleton {
+
+struct BuildOptions {
+    int spheres = 0;          // free spheres; 0: by the body's shape
+    double coverage = 0;      // [mm] no surface point further outside the spheres' union; 0: 5 % of the longest side
+    int zones = 1;            // links are split in so many zones along the body, from the support outwards
+    void validate() const;
+};
+
+struct BuildReport {
+    Points medial_centers;             // poles of the medial axis (n x 3) [mm]
+    Eigen::VectorXd medial_radii;      // (n) [mm]
+    double coverage = 0;               // largest distance of a surface vertex outside the spheres' union [mm]
+    std::vector<std::string> notes;    // what a user should know, in words
+};
+
+/// Mesh to skeleton: medial axis, filling spheres, links, masses, start stiffness, skin.
+///
+/// `surface`: closed, outward; `body`: its tetrahedra. Held spheres stand in the supports.
+/// @throws InvalidInput when no support holds any of the body, or the spheres asked for cannot be placed.
+Model build_skeleton(const mesh::Surface& surface, const mesh::VolumeMesh& body, const fem::Material& material,
+                     const std::vector<mesh::Region>& supports, const BuildOptions& options, BuildReport* report = nullptr);
+
+}  // namespace palpate::skeleton

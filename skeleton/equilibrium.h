@@ -1,0 +1,79 @@
+#pragma once
+
+#include <Eigen/SparseCore>
+#include <memory>
+#include <vector>
+
+#include "skeleton/load.h"
+
+namespace palpate::skeleton {
+
+struct EquilibriumOptions {
+    double tolerance = 1e-9;  // of the residual, as a share of the largest external force, > 0
+    int iterations = 200;     // Newton steps at one load, >= 1
+    void validate() const;    // @throws InvalidInput naming option, value and bound
+};
+
+struct Equilibrium {
+    State state;  // law linear: rest advanced by the step, for pictures only
+    int iterations = 0;
+    double residual = 0;   // largest force left [N], torques over the mean link length
+    Eigen::VectorXd step;  // from rest (6N); law linear: the answer itself, linear in the load
+};
+
+/// The configuration in which all net forces vanish, by the model's law: one linear step from rest, or Newton on the
+/// potential, globalised so that it ends in a stable equilibrium; load stepping when it fails at once.
+/// `start`: a neighbouring state, rest by default.
+/// @throws SolverFailure with iterations and residual when none was found, or naming the sphere that nothing keeps
+/// from moving; InvalidInput when no sphere is held or some hang on no held one.
+Equilibrium equilibrium(const Model& model, const Load& load, const EquilibriumOptions& options = {},
+                        const State* start = nullptr);
+
+/// Positions of attached points in an equilibrium, by the model's law (m x 3) [mm]: linear in the step for the
+/// linear law, as they are for the other.
+Points observe(const Model& model, const Equilibrium& equilibrium, const std::vector<Attachment>& points);
+
+/// P = d observe / d step in an equilibrium, by the model's law (3m x 6N).
+Eigen::SparseMatrix<double> observation_jacobian(const Model& model, const Equilibrium& equilibrium,
+                                                 const std::vector<Attachment>& points);
+
+/// Force signatures in an equilibrium, by the model's law (6N x 3L): d residual / d stiffness. With P and the
+/// tangent's inverse, d observe / d k = P J^-1 link_forces.
+Eigen::SparseMatrix<double> link_forces(const Model& model, const Equilibrium& equilibrium);
+
+/// Solves for equilibria of one model again and again, with other stiffnesses k (3L, ordered as stiffness_vector) and
+/// loads: keeps ordering, symbolic factorisation and work space. Not for several threads at once: one each.
+class StaticsSolver {
+public:
+    /// Keeps what it needs of the model. @throws InvalidInput when no sphere is held or some hang on no held one.
+    explicit StaticsSolver(const Model& model);
+    ~StaticsSolver();
+    StaticsSolver(StaticsSolver&&) noexcept;
+    StaticsSolver& operator=(StaticsSolver&&) noexcept;
+
+    /// As the free function, which wraps it; leaves the tangent factored, as factor_tangent does. `start` matters to
+    /// the large-rotation law only.
+    Equilibrium solve(const Eigen::VectorXd& k, const Load& load, const EquilibriumOptions& options = {},
+                      const State* start = nullptr);
+    Equilibrium solve(const Eigen::VectorXd& k, const Load& load, const EquilibriumOptions& options,
+                      const Equilibrium* start) {
+        return solve(k, load, options, start ? &start->state : nullptr);
+    }
+
+    /// Linear steps from rest (6N x p) under generalized forces F (6N x p): one factorisation, whatever the law.
+    Eigen::MatrixXd linear_steps(const Eigen::VectorXd& k, const Eigen::MatrixXd& F);
+
+    /// Factors the tangent J in an equilibrium, by the model's law (linear: at rest). @throws SolverFailure when it
+    /// is not positive definite.
+    void factor_tangent(const Eigen::VectorXd& k, const Load& load, const Equilibrium& equilibrium);
+
+    /// J^-1 B (6N x p) with the tangent of the last solve, linear_steps or factor_tangent; rows of held spheres are
+    /// ignored in B and zero in the result.
+    Eigen::MatrixXd solve_tangent(const Eigen::MatrixXd& B) const;
+
+private:
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace palpate::skeleton

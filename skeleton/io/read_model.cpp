@@ -1,0 +1,160 @@
+#include <fmt/format.h>
+
+#include <map>
+#include <nlohmann/json.hpp>
+
+#include "mesh/errors.h"
+#include "mesh/io/atomic_file.h"
+#include "skeleton/io/json_fields.h"
+#include "skeleton/model_io.h"
+
+namespace palpate::skeleton {
+
+namespace {
+
+nlohmann::json parse(const std::filesystem::path& file) {
+    const std::string text = mesh::read_text(file);
+    try {
+        return nlohmann::json::parse(text);
+    } catch (const nlohmann::json::exception& error) {
+        // "[json.exception.parse_error.101] parse error at line 3, column 5: ...": ours begins after the bracket.
+        const std::string what = error.what();
+        const size_t bracket = what.find("] ");
+        throw InvalidInput(fmt::format("{}: is not valid JSON: {}", file.string(),
+                                       bracket == std::string::npos ? what : what.substr(bracket + 2)));
+    }
+}
+
+Mat3 solid_sphere_inertia(double mass, double radius) { return 0.4 * mass * radius * radius * Mat3::Identity(); }
+
+Mat3 read_inertia(const JsonField& field) {
+    const std::vector<JsonField> m = field.list(6);
+    const double xy = m[3].number(), xz = m[4].number(), yz = m[5].number();
+    Mat3 inertia;
+    inertia << m[0].number_at_least(0), xy, xz,  //
+        xy, m[1].number_at_least(0), yz,         //
+        xz, yz, m[2].number_at_least(0);
+    return inertia;
+}
+
+Sphere read_sphere(const JsonField& field, const std::vector<mesh::Region>& supports) {
+    field.allow_only({"center", "radius", "mass", "inertia", "held"});
+    Sphere sphere;
+    sphere.center = field["center"].vector();
+    sphere.radius = field["radius"].positive_number();
+    sphere.mass = field["mass"].number_at_least(0);
+    sphere.inertia =
+        field.has("inertia") ? read_inertia(field["inertia"]) : solid_sphere_inertia(sphere.mass, sphere.radius);
+    sphere.held = field.has("held") ? field["held"].boolean() : mesh::contains(supports, sphere.center);
+    return sphere;
+}
+
+Link read_link(const JsonField& field, const std::vector<Sphere>& spheres) {
+    field.allow_only({"a", "b", "length", "elongation", "flexion", "torsion", "zone"});
+    Link link;
+    link.a = field["a"].index(spheres.size());
+    link.b = field["b"].index(spheres.size());
+    if (link.a == link.b) field.complain(fmt::format("a and b are both {}; a link joins two spheres", link.a));
+    if (link.a > link.b) std::swap(link.a, link.b);
+    const double distance = (spheres[link.b].center - spheres[link.a].center).norm();
+    if (!(distance > 0))
+        field.complain(fmt::format("spheres {} and {} have the same centre; move one of them", link.a, link.b));
+    link.length = field.has("length") ? field["length"].positive_number() : distance;
+    for (int s = 0; s < 3; ++s) link.stiffness[s] = field[stiffness_names[s]].number_at_least(0);
+    if (field.has("zone")) link.zone = field["zone"].index(1'000'000);
+    return link;
+}
+
+std::vector<Link> read_links(const JsonField& field, const std::vector<Sphere>& spheres) {
+    std::vector<Link> links;
+    std::map<std::pair<int, int>, size_t> seen;
+    for (const JsonField& element : field.list()) {
+        const Link link = read_link(element, spheres);
+        const auto [first, fresh] = seen.try_emplace({link.a, link.b}, links.size());
+        if (!fresh)
+            element.complain(fmt::format("joins spheres {} and {}, as links[{}] does already; keep one of them", link.a,
+                                         link.b, first->second));
+        links.push_back(link);
+    }
+    return links;
+}
+
+mesh::Region read_region(const JsonField& field) {
+    const std::vector<std::string> kinds{"box", "sphere", "plane", "points"};
+    field.allow_only(kinds);
+    if (field.keys().size() != 1) field.complain("must have one field, one of 'box', 'sphere', 'plane', 'points'");
+    const JsonField region = field[field.keys().front()];
+    if (field.has("box")) {
+        region.allow_only({"min", "max"});
+        const mesh::BoxRegion box{region["min"].vector(), region["max"].vector()};
+        if ((box.min.array() > box.max.array()).any()) region.complain("max must not lie below min");
+        return box;
+    }
+    if (field.has("sphere")) {
+        region.allow_only({"center", "radius"});
+        return mesh::SphereRegion{region["center"].vector(), region["radius"].number_at_least(0)};
+    }
+    if (field.has("plane")) {
+        region.allow_only({"point", "normal", "within"});
+        const Vec3 normal = region["normal"].vector();
+        if (normal.norm() == 0) region["normal"].fail("longer than 0");
+        return mesh::PlaneRegion{region["point"].vector(), normal, region["within"].number_at_least(0)};
+    }
+    region.allow_only({"at", "within"});
+    const std::vector<JsonField> at = region["at"].list();
+    mesh::PointsRegion points{Points(static_cast<Eigen::Index>(at.size()), 3), region["within"].number_at_least(0)};
+    for (size_t i = 0; i < at.size(); ++i) points.points.row(i) = at[i].vector().transpose();
+    return points;
+}
+
+void read_skin(const JsonField& field, Model& model) {
+    field.allow_only({"vertices", "triangles", "attachments"});
+    const std::vector<JsonField> vertices = field["vertices"].list();
+    model.surface.vertices.resize(static_cast<Eigen::Index>(vertices.size()), 3);
+    for (size_t i = 0; i < vertices.size(); ++i) model.surface.vertices.row(i) = vertices[i].vector().transpose();
+
+    const std::vector<JsonField> triangles = field["triangles"].list();
+    model.surface.triangles.resize(static_cast<Eigen::Index>(triangles.size()), 3);
+    for (size_t i = 0; i < triangles.size(); ++i) {
+        const std::vector<JsonField> corners = triangles[i].list(3);
+        for (int c = 0; c < 3; ++c) model.surface.triangles(i, c) = corners[c].index(vertices.size());
+    }
+
+    if (!field.has("attachments")) {
+        for (size_t i = 0; i < vertices.size(); ++i)
+            model.skin.push_back(attach(model, model.surface.vertices.row(i).transpose()));
+        return;
+    }
+    const std::vector<JsonField> attachments = field["attachments"].list(vertices.size());
+    for (size_t i = 0; i < attachments.size(); ++i) {
+        const std::vector<JsonField> parts = attachments[i].list(3);
+        model.skin.push_back({parts[0].index(model.spheres.size()), parts[1].index(model.spheres.size()),
+                              parts[2].number_between(0, 1), model.surface.vertices.row(i).transpose()});
+    }
+}
+
+}  // namespace
+
+Model read_model(const std::filesystem::path& file) {
+    const nlohmann::json json = parse(file);
+    const JsonField root(json, file.string());
+    root.allow_only({"format", "name", "law", "spheres", "links", "effects", "skin", "supports", "provenance"});
+    root["format"].choice({"palpate-model/1"});
+
+    Model model;
+    if (root.has("name")) model.name = root["name"].text();
+    if (root.has("law")) model.law = static_cast<Law>(root["law"].choice({law_names.begin(), law_names.end()}));
+    if (root.has("supports"))
+        for (const JsonField& region : root["supports"].list()) model.supports.push_back(read_region(region));
+    for (const JsonField& sphere : root["spheres"].list()) model.spheres.push_back(read_sphere(sphere, model.supports));
+    if (model.spheres.empty()) root["spheres"].fail("a list of at least one sphere");
+    model.links = read_links(root["links"], model.spheres);
+    if (root.has("effects") && !root["effects"].list().empty())
+        root["effects"].complain("this version knows no effects; write an empty list, []");
+    if (root.has("skin")) read_skin(root["skin"], model);
+    if (root.has("provenance"))
+        for (const std::string& key : root["provenance"].keys()) model.provenance[key] = root["provenance"][key].text();
+    return model;
+}
+
+}  // namespace palpate::skeleton

@@ -1,0 +1,124 @@
+#include <nlohmann/json.hpp>
+
+#include "mesh/io/atomic_file.h"
+#include "mesh/io/vtk_files.h"
+#include "skeleton/model_io.h"
+
+namespace palpate::skeleton {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json list(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
+
+Json to_json(const Sphere& sphere) {
+    const Mat3& m = sphere.inertia;
+    return {{"center", list(sphere.center)},
+            {"radius", sphere.radius},
+            {"mass", sphere.mass},
+            {"inertia", {m(0, 0), m(1, 1), m(2, 2), m(0, 1), m(0, 2), m(1, 2)}},
+            {"held", sphere.held}};
+}
+
+Json to_json(const Link& link) {
+    Json json{{"a", link.a}, {"b", link.b}, {"length", link.length}};
+    for (int s = 0; s < 3; ++s) json[stiffness_names[s]] = link.stiffness[s];
+    json["zone"] = link.zone;
+    return json;
+}
+
+Json to_json(const Attachment& attachment) { return {attachment.a, attachment.b, attachment.t}; }
+
+template <typename Rows>
+std::vector<Json> rows_of(const Rows& matrix) {
+    std::vector<Json> rows;
+    for (Eigen::Index i = 0; i < matrix.rows(); ++i) rows.push_back({matrix(i, 0), matrix(i, 1), matrix(i, 2)});
+    return rows;
+}
+
+struct RegionToJson {
+    Json operator()(const mesh::BoxRegion& box) const {
+        return {{"box", {{"min", list(box.min)}, {"max", list(box.max)}}}};
+    }
+    Json operator()(const mesh::SphereRegion& sphere) const {
+        return {{"sphere", {{"center", list(sphere.center)}, {"radius", sphere.radius}}}};
+    }
+    Json operator()(const mesh::PlaneRegion& plane) const {
+        return {{"plane", {{"point", list(plane.point)}, {"normal", list(plane.normal)}, {"within", plane.within}}}};
+    }
+    Json operator()(const mesh::PointsRegion& points) const {
+        return {{"points", {{"at", rows_of(points.points)}, {"within", points.within}}}};
+    }
+};
+
+// A list with a line per element, so that a model can be read and edited by hand.
+std::string lines(const std::vector<Json>& elements, const std::string& indent = "    ") {
+    if (elements.empty()) return "[]";
+    std::string text = "[";
+    for (size_t i = 0; i < elements.size(); ++i) text += (i > 0 ? ",\n" : "\n") + indent + elements[i].dump();
+    return text + "\n" + indent.substr(2) + "]";
+}
+
+template <typename Element>
+std::vector<Json> all_to_json(const std::vector<Element>& elements) {
+    std::vector<Json> list;
+    for (const Element& element : elements) list.push_back(to_json(element));
+    return list;
+}
+
+std::string to_text(const Model& model) {
+    std::vector<Json> supports;
+    for (const mesh::Region& region : model.supports) supports.push_back(std::visit(RegionToJson{}, region));
+
+    std::string text = "{\n  \"format\": \"palpate-model/1\",\n";
+    if (!model.name.empty()) text += "  \"name\": " + Json(model.name).dump() + ",\n";
+    text += "  \"law\": " + Json(law_names[static_cast<size_t>(model.law)]).dump() + ",\n";
+    text += "  \"spheres\": " + lines(all_to_json(model.spheres)) + ",\n";
+    text += "  \"links\": " + lines(all_to_json(model.links)) + ",\n";
+    text += "  \"effects\": [],\n";
+    if (model.surface.vertices.rows() > 0) {
+        const std::string deep(6, ' ');
+        text += "  \"skin\": {\n    \"vertices\": " + lines(rows_of(model.surface.vertices), deep);
+        text += ",\n    \"triangles\": " + lines(rows_of(model.surface.triangles), deep);
+        if (!model.skin.empty()) text += ",\n    \"attachments\": " + lines(all_to_json(model.skin), deep);
+        text += "\n  },\n";
+    }
+    text += "  \"supports\": " + lines(supports) + ",\n";
+    text += "  \"provenance\": " + Json(model.provenance).dump() + "\n}\n";
+    return text;
+}
+
+}  // namespace
+
+void write_model(const std::filesystem::path& file, const Model& model) { mesh::write_text(file, to_text(model)); }
+
+void write_model_vtp(const std::filesystem::path& file, const Model& model) {
+    const auto n = static_cast<Eigen::Index>(model.spheres.size()), m = static_cast<Eigen::Index>(model.links.size());
+    Points centers(n, 3);
+    Eigen::VectorXd radius(n), mass(n), held(n);
+    for (Eigen::Index i = 0; i < n; ++i) {
+        const Sphere& sphere = model.spheres[i];
+        centers.row(i) = sphere.center.transpose();
+        radius[i] = sphere.radius;
+        mass[i] = sphere.mass;
+        held[i] = sphere.held;
+    }
+    Eigen::Matrix<int, Eigen::Dynamic, 2> ends(m, 2);
+    Eigen::MatrixXd stiffness(m, 3);
+    Eigen::VectorXd zone(m);
+    for (Eigen::Index l = 0; l < m; ++l) {
+        const Link& link = model.links[l];
+        ends.row(l) << link.a, link.b;
+        stiffness.row(l) = link.stiffness.transpose();
+        zone[l] = link.zone;
+    }
+    mesh::MeshData data;
+    data.points = {{"radius [mm]", radius}, {"mass [tonne]", mass}, {"held", held}};
+    for (int s = 0; s < 3; ++s)
+        data.cells.push_back({std::string(stiffness_names[s]) + " [" + stiffness_units[s] + "]", stiffness.col(s)});
+    data.cells.push_back({"zone", zone});
+    mesh::write_vtp_lines(file, centers, ends, data);
+}
+
+}  // namespace palpate::skeleton

@@ -1,0 +1,114 @@
+#include "skeleton/placement/cover.h"
+
+#include <algorithm>
+#include <limits>
+
+namespace palpate::skeleton {
+namespace {
+
+constexpr double overlap = 0.7;    // largest radius of a sphere in a plate or lump / spacing
+constexpr double swelling = 0.5;   // of the distance that points may lie outside
+
+// Few of the allowed balls that hold the points.
+std::vector<int> cover(const MedialAxis& axis, const std::vector<char>& allowed, const Points& points,
+                       std::vector<int> left, double delta) {
+    const auto holds = [&](Eigen::Index ball, int point) {
+        return (points.row(point) - axis.centers.row(ball)).norm() <= axis.radii(ball) + delta;
+    };
+    std::vector<int> chosen;
+    while (!left.empty()) {
+        int best = -1;
+        std::ptrdiff_t most = 0;
+        for (int b = 0; b < axis.radii.size(); ++b) {
+            if (!allowed[b]) continue;
+            const auto held = std::count_if(left.begin(), left.end(), [&](int p) { return holds(b, p); });
+            if (held < most || held == 0) continue;
+            if (held == most && best >= 0 && axis.radii(b) <= axis.radii(best)) continue;
+            most = held;
+            best = b;
+        }
+        if (best < 0) break;
+        chosen.push_back(best);
+        std::erase_if(left, [&](int p) { return holds(best, p); });
+    }
+    return chosen;
+}
+
+}  // namespace
+
+std::vector<Sphere> make_spheres(const Body& body, const mesh::SurfaceTree& tree,
+                                 const std::vector<mesh::Region>& supports, const std::vector<Site>& sites,
+                                 double spacing) {
+    std::vector<Sphere> spheres;
+    for (const Site& site : sites) {
+        Sphere sphere;
+        sphere.center = site.at;
+        sphere.held = site.held;
+        const mesh::SurfacePoint nearest = tree.closest(site.at);
+        const Neighborhood& around = body.core.of(site.tet);
+        const bool at_support = site.held || mesh::contains(supports, nearest.position);
+        sphere.radius = at_support ? around.radius : nearest.distance;
+        const double largest = (site.held ? 0.5 : overlap) * spacing;
+        if (around.dimensions > 1 && !site.extra) sphere.radius = std::min(sphere.radius, largest);
+        spheres.push_back(sphere);
+    }
+    return spheres;
+}
+
+Eigen::VectorXd outside(const std::vector<Sphere>& spheres, const Points& points) {
+    Eigen::VectorXd distance = Eigen::VectorXd::Constant(points.rows(), std::numeric_limits<double>::infinity());
+    for (const Sphere& sphere : spheres) {
+        const Eigen::RowVector3d center = sphere.center;
+        distance = distance.cwiseMin(((points.rowwise() - center).rowwise().norm().array() - sphere.radius).matrix());
+    }
+    return distance;
+}
+
+void swell(const Points& points, double delta, std::vector<Sphere>& spheres) {
+    const std::vector<Sphere> before = spheres;
+    for (Eigen::Index p = 0; p < points.rows(); ++p) {
+        const Vec3 point = points.row(p);
+        std::size_t nearest = 0;
+        double gap = std::numeric_limits<double>::infinity();
+        for (std::size_t i = 0; i < before.size(); ++i) {
+            const double d = (before[i].center - point).norm() - before[i].radius;
+            if (d >= gap) continue;
+            gap = d;
+            nearest = i;
+        }
+        const double growth = gap - 0.999 * delta;
+        if (growth > swelling * delta) continue;
+        spheres[nearest].radius = std::max(spheres[nearest].radius, before[nearest].radius + growth);
+    }
+}
+
+std::vector<Site> covering_sites(const Body& body, const std::vector<mesh::Region>& supports,
+                                 const std::vector<Site>& sites, const std::vector<Sphere>& spheres,
+                                 const Points& points, double delta, double gap) {
+    std::vector<char> taken(body.ground.held), allowed;
+    for (const Site& site : sites) taken[site.tet] = 1;
+    for (Eigen::Index ball = 0; ball < body.axis.radii.size(); ++ball) {
+        const Vec3 center = body.axis.centers.row(ball);
+        const bool apart = std::none_of(sites.begin(), sites.end(),
+                                        [&](const Site& site) { return (site.at - center).norm() < gap; });
+        allowed.push_back(apart && !mesh::contains(supports, center));
+    }
+    const Eigen::VectorXd distance = outside(spheres, points);
+    std::vector<int> uncovered;
+    for (int p = 0; p < points.rows(); ++p) {
+        if (distance(p) > delta) uncovered.push_back(p);
+    }
+
+    std::vector<Site> added;
+    for (int ball : cover(body.axis, allowed, points, uncovered, (1 + 0.9 * swelling) * delta)) {
+        const Eigen::RowVector3d center = body.axis.centers.row(ball);
+        Eigen::Index tet = 0;
+        (body.graph.centers.rowwise() - center).rowwise().squaredNorm().minCoeff(&tet);
+        if (taken[tet]) continue;
+        taken[tet] = 1;
+        added.push_back({center, static_cast<int>(tet), false, true});
+    }
+    return added;
+}
+
+}  // namespace palpate::skeleton

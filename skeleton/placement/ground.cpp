@@ -1,0 +1,181 @@
+#include "skeleton/placement/ground.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <set>
+#include <string>
+
+#include "mesh/errors.h"
+
+namespace palpate::skeleton {
+namespace {
+
+std::string words(const Vec3& p) { return fmt::format("({:.4g}, {:.4g}, {:.4g})", p.x(), p.y(), p.z()); }
+
+std::string words(const mesh::Region& region) {
+    struct Words {
+        std::string operator()(const mesh::BoxRegion& r) const {
+            return fmt::format("a box from {} to {} mm", words(r.min), words(r.max));
+        }
+        std::string operator()(const mesh::SphereRegion& r) const {
+            return fmt::format("a sphere of radius {:.4g} mm round {} mm", r.radius, words(r.center));
+        }
+        std::string operator()(const mesh::PlaneRegion& r) const {
+            return fmt::format("all within {:.4g} mm of a plane through {} mm, normal {}", r.within, words(r.point),
+                               words(r.normal));
+        }
+        std::string operator()(const mesh::PointsRegion& r) const {
+            if (r.points.rows() == 0) return "a list of no points";
+            const mesh::Box box = mesh::bounding_box(r.points);
+            return fmt::format("all within {:.4g} mm of {} points from {} to {} mm", r.within, r.points.rows(),
+                               words(box.min), words(box.max));
+        }
+    };
+    return std::visit(Words{}, region);
+}
+
+std::string where(const TetGraph& graph, const std::vector<mesh::Region>& supports) {
+    const mesh::Box box = mesh::bounding_box(graph.nodes);
+    std::string text = fmt::format("the body reaches from {} to {} mm", words(box.min), words(box.max));
+    for (std::size_t i = 0; i < supports.size(); ++i) text += fmt::format("; support {}: {}", i + 1, words(supports[i]));
+    return text;
+}
+
+void add(Ground& ground, const Vec3& point, int tet, double area) {
+    const Eigen::Index k = ground.patch.rows();
+    ground.patch.conservativeResize(k + 1, 3);
+    ground.weight.conservativeResize(k + 1);
+    ground.patch.row(k) = point;
+    ground.weight(k) = area;
+    ground.behind.push_back(tet);
+}
+
+void add_faces(const TetGraph& graph, Ground& ground) {
+    for (int t = 0; t < graph.size(); ++t) {
+        if (ground.held[t]) continue;
+        for (int c = 0; c < 4; ++c) {
+            const auto nodes = graph.face_nodes(t, c);
+            const int u = graph.neighbors(t, c);
+            const auto holds = [&](int node) { return ground.held_node[node] != 0; };
+            if (u >= 0 ? !ground.held[u] : !std::all_of(nodes.begin(), nodes.end(), holds)) continue;
+            const Vec3 middle = (graph.nodes.row(nodes[0]) + graph.nodes.row(nodes[1]) + graph.nodes.row(nodes[2])) / 3;
+            add(ground, middle, u >= 0 ? u : t, graph.face_area(t, c).norm());
+        }
+    }
+}
+
+// Where only single nodes or edges are held.
+void add_nodes(const TetGraph& graph, Ground& ground) {
+    std::set<int> done;
+    for (int t = 0; t < graph.size(); ++t) {
+        for (int c = 0; c < 4; ++c) {
+            const int node = graph.corners(t, c);
+            if (ground.held_node[node] && done.insert(node).second) add(ground, graph.nodes.row(node), t, 1.);
+        }
+    }
+}
+
+// The nearest row, and how far it is.
+std::pair<int, double> nearest_row(const Points& centers, const Eigen::RowVector3d& point) {
+    Eigen::Index row = 0;
+    const double squared = (centers.rowwise() - point).rowwise().squaredNorm().minCoeff(&row);
+    return {static_cast<int>(row), std::sqrt(squared)};
+}
+
+// Centres among weighted points, so many that none of the points is much further than half a diagonal of the spacing
+// from all; each new one starts at the furthest point, then all go to the middles of what is nearest to them.
+Points spread(const Points& points, const Eigen::VectorXd& weights, double spacing) {
+    Points centers = (weights.transpose() * points) / weights.sum();
+    while (centers.rows() < points.rows()) {
+        Eigen::Index furthest = 0;
+        double distance = 0;
+        for (Eigen::Index i = 0; i < points.rows(); ++i) {
+            const double d = nearest_row(centers, points.row(i)).second;
+            if (d <= distance) continue;
+            distance = d;
+            furthest = i;
+        }
+        if (distance < 0.85 * spacing) break;
+        centers.conservativeResize(centers.rows() + 1, 3);
+        centers.bottomRows(1) = points.row(furthest);
+        for (int round = 0; round < 10; ++round) {
+            Points sum = Points::Zero(centers.rows(), 3);
+            Eigen::VectorXd weight = Eigen::VectorXd::Zero(centers.rows());
+            for (Eigen::Index i = 0; i < points.rows(); ++i) {
+                const int k = nearest_row(centers, points.row(i)).first;
+                sum.row(k) += weights(i) * points.row(i);
+                weight(k) += weights(i);
+            }
+            for (Eigen::Index k = 0; k < centers.rows(); ++k) {
+                if (weight(k) > 0) centers.row(k) = sum.row(k) / weight(k);
+            }
+        }
+    }
+    return centers;
+}
+
+}  // namespace
+
+Ground find_ground(const TetGraph& graph, const std::vector<mesh::Region>& supports) {
+    Ground ground;
+    ground.patch.resize(0, 3);
+    ground.held_node = mesh::contains(supports, graph.nodes);
+    const auto count = std::count(ground.held_node.begin(), ground.held_node.end(), 1);
+    if (count == 0) {
+        throw InvalidInput(fmt::format("the supports hold nothing of the body: {}. Move or enlarge a support",
+                                       supports.empty() ? "none is given" : where(graph, supports)));
+    }
+    ground.held.resize(graph.size());
+    for (int t = 0; t < graph.size(); ++t) {
+        const auto nodes = graph.corners.row(t);
+        ground.held[t] = std::all_of(nodes.begin(), nodes.end(), [&](int n) { return ground.held_node[n] != 0; });
+    }
+    if (std::all_of(ground.held.begin(), ground.held.end(), [](char h) { return h != 0; })) {
+        throw InvalidInput(fmt::format("the supports hold the whole body, nothing is left to move: {}. Make the "
+                                       "supports smaller", where(graph, supports)));
+    }
+    add_faces(graph, ground);
+    if (ground.patch.rows() == 0) add_nodes(graph, ground);
+    return ground;
+}
+
+std::vector<Site> ground_sites(const Core& core, const Ground& ground, double spacing) {
+    const Eigen::Index n = ground.patch.rows();
+    Points at(n, 3);    // on the core
+    for (Eigen::Index i = 0; i < n; ++i) at.row(i) = core.of(ground.behind[i]).collapse(ground.patch.row(i));
+    const Points centers = spread(at, ground.weight, spacing);
+
+    // Each stands in the middle of its part of the patch, and grows from a tetrahedron of its own there.
+    std::vector<int> part(n);
+    for (Eigen::Index i = 0; i < n; ++i) part[i] = nearest_row(centers, at.row(i)).first;
+    std::vector<Site> sites;
+    std::set<int> taken;
+    for (int k = 0; k < centers.rows(); ++k) {
+        Vec3 middle = Vec3::Zero();
+        double weight = 0;
+        for (Eigen::Index i = 0; i < n; ++i) {
+            if (part[i] != k) continue;
+            middle += ground.weight(i) * ground.patch.row(i).transpose();
+            weight += ground.weight(i);
+        }
+        if (!(weight > 0)) continue;
+        middle /= weight;
+        int best = -1;
+        double least = std::numeric_limits<double>::infinity();
+        for (Eigen::Index i = 0; i < n; ++i) {
+            const double d = (ground.patch.row(i).transpose() - middle).squaredNorm();
+            if (part[i] != k || d >= least || taken.count(ground.behind[i]) != 0) continue;
+            least = d;
+            best = ground.behind[i];
+        }
+        if (best < 0) continue;
+        taken.insert(best);
+        sites.push_back({middle, best, true, false});
+    }
+    return sites;
+}
+
+}  // namespace palpate::skeleton

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <vector>
+
+#include "fem/material.h"
+#include "skeleton/placement/cells.h"
+
+namespace palpate::skeleton {
+
+/// Where two cells meet: the section of the body that a link stands for.
+struct Section {
+    int a = 0, b = 0;                   // sites, a < b
+    double length = 0;                  // between them [mm]
+    double area = 0;                    // seen along the link [mm^2]
+    double moment_1 = 0, moment_2 = 0;  // second moments about its centroid, larger and smaller [mm^4]
+    double dimensions = 3;              // of the body there: 1 limb, 2 plate, 3 lump
+};
+
+/// The sections between all pairs of cells that meet, but for slivers that no connection depends on, and for pairs of
+/// held sites.
+std::vector<Section> find_sections(const TetGraph& graph, const Core& core, const std::vector<int>& owner,
+                                   const std::vector<Site>& sites);
+
+/// Stiffness (kE, kF, kT) of a link from its section, before anything is measured.
+Vec3 start_stiffness(const Section& section, const fem::Material& material);
+
+}  // namespace palpate::skeleton

@@ -1,0 +1,160 @@
+#include "skeleton/solve/block_cholesky.h"
+
+#include <Eigen/OrderingMethods>
+#include <Eigen/SparseCore>
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+
+namespace palpate::skeleton {
+
+namespace {
+
+// Pivots below this share of the matrix's own diagonal entry are rounding.
+constexpr double singular = 1e-13;
+
+// Cholesky factor of a block in its lower half; the entry of the first pivot not above `least`, or 6.
+int factor_block(BlockCholesky::Block& A, const BlockCholesky::Vec6& least) {
+    for (int j = 0; j < 6; ++j) {
+        if (!(A(j, j) > least[j])) return j;
+        A(j, j) = std::sqrt(A(j, j));
+        for (int i = j + 1; i < 6; ++i) A(i, j) /= A(j, j);
+        for (int k = j + 1; k < 6; ++k)
+            for (int i = k; i < 6; ++i) A(i, k) -= A(i, j) * A(k, j);
+    }
+    return 6;
+}
+
+}  // namespace
+
+BlockCholesky::BlockCholesky(int n, const std::vector<std::array<int, 2>>& couplings) : n_(n) {
+    // Order by minimum degree on the graph of the blocks.
+    std::vector<Eigen::Triplet<double>> entries;
+    for (int i = 0; i < n; ++i) entries.emplace_back(i, i, 1.0);
+    for (const auto& [i, j] : couplings) {
+        entries.emplace_back(i, j, 1.0);
+        entries.emplace_back(j, i, 1.0);
+    }
+    Eigen::SparseMatrix<double> graph(n, n);
+    graph.setFromTriplets(entries.begin(), entries.end());
+    Eigen::PermutationMatrix<Eigen::Dynamic, Eigen::Dynamic, int> order;
+    if (n > 0) Eigen::AMDOrdering<int>()(graph, order);
+    block_at_.assign(order.indices().data(), order.indices().data() + n);
+    position_.resize(n);
+    for (int p = 0; p < n; ++p) position_[block_at_[p]] = p;
+
+    factor_symbolically(couplings);
+
+    // Places of the matrix's own blocks.
+    for (int i = 0; i < n; ++i) slot_of_diagonal_.push_back(columns_[position_[i]].first);
+    for (const auto& [i, j] : couplings) {
+        const int p = position_[i], q = position_[j];
+        slot_of_coupling_.push_back(slot(std::max(p, q), std::min(p, q)));
+        transposed_.push_back(p < q);
+    }
+    set_zero();
+}
+
+void BlockCholesky::factor_symbolically(const std::vector<std::array<int, 2>>& couplings) {
+    columns_.resize(n_);
+    touching_.resize(n_);
+    for (const auto& [i, j] : couplings)
+        columns_[std::min(position_[i], position_[j])].rows.push_back(std::max(position_[i], position_[j]));
+
+    // A column passes its rows on to its parent, the first of them.
+    int blocks = 0;
+    for (int j = 0; j < n_; ++j) {
+        std::vector<int>& rows = columns_[j].rows;
+        std::sort(rows.begin(), rows.end());
+        rows.erase(std::unique(rows.begin(), rows.end()), rows.end());
+        columns_[j].first = blocks;
+        blocks += 1 + static_cast<int>(rows.size());
+        for (const int i : rows) touching_[i].push_back(j);
+        if (!rows.empty()) {
+            std::vector<int>& parent = columns_[rows.front()].rows;
+            parent.insert(parent.end(), rows.begin() + 1, rows.end());
+        }
+    }
+    matrix_.resize(blocks);
+    factor_.resize(blocks);
+}
+
+int BlockCholesky::slot(int row, int column) const {
+    const std::vector<int>& rows = columns_[column].rows;
+    const auto found = std::lower_bound(rows.begin(), rows.end(), row);
+    assert(found != rows.end() && *found == row);
+    return columns_[column].first + 1 + static_cast<int>(found - rows.begin());
+}
+
+void BlockCholesky::set_zero() {
+    for (Block& block : matrix_) block.setZero();
+}
+
+void BlockCholesky::add_coupling(int c, const Block& A) {
+    if (transposed_[c])
+        matrix_[slot_of_coupling_[c]] += A.transpose();
+    else
+        matrix_[slot_of_coupling_[c]] += A;
+}
+
+std::optional<BlockCholesky::BadPivot> BlockCholesky::factor(double shift, const Vec6& scale) {
+    std::vector<Block*> place(n_);  // of each row's block in the column at hand
+    for (int j = 0; j < n_; ++j) {
+        const Column& column = columns_[j];
+        const int size = 1 + static_cast<int>(column.rows.size());
+        Block* const values = factor_.data() + column.first;
+        std::copy_n(matrix_.data() + column.first, size, values);
+        values[0].diagonal() += shift * scale;
+        const Vec6 entries = values[0].diagonal();
+        place[j] = values;
+        for (int i = 1; i < size; ++i) place[column.rows[i - 1]] = values + i;
+
+        // Left-looking: subtract what the columns before contribute, L_ik L_jk^T.
+        for (const int k : touching_[j]) {
+            const Column& before = columns_[k];
+            const auto start = std::lower_bound(before.rows.begin(), before.rows.end(), j) - before.rows.begin();
+            const Block* L = factor_.data() + before.first + 1 + start;
+            const Block L_jk_transposed = L->transpose();
+            for (size_t i = static_cast<size_t>(start); i < before.rows.size(); ++i, ++L)
+                place[before.rows[i]]->noalias() -= *L * L_jk_transposed;
+        }
+
+        const int entry = factor_block(values[0], singular * entries.cwiseAbs());
+        if (entry < 6) {
+            const double pivot = values[0](entry, entry);
+            return BadPivot{block_at_[j], entry, pivot >= -singular * std::abs(entries[entry])};
+        }
+        for (int i = 1; i < size; ++i)
+            values[0].triangularView<Eigen::Lower>().transpose().solveInPlace<Eigen::OnTheRight>(values[i]);
+    }
+    return std::nullopt;
+}
+
+void BlockCholesky::solve(Eigen::MatrixXd& B) const {
+    assert(B.rows() == 6 * n_);
+    // The columns are taken in strips, each in elimination order with its six rows of a block side by side.
+    constexpr Eigen::Index width = 8;
+    using Strip = Eigen::Matrix<double, 6, Eigen::Dynamic, Eigen::ColMajor, 6, width>;
+    std::vector<Strip> strips(n_);
+    for (Eigen::Index begin = 0; begin < B.cols(); begin += width) {
+        const Eigen::Index count = std::min(width, B.cols() - begin);
+        for (int p = 0; p < n_; ++p) strips[p] = B.block(6 * block_at_[p], begin, 6, count);
+
+        // L z = b
+        for (int j = 0; j < n_; ++j) {
+            const Block* L = factor_.data() + columns_[j].first;
+            L->triangularView<Eigen::Lower>().solveInPlace(strips[j]);
+            for (const int i : columns_[j].rows) strips[i] -= (++L)->lazyProduct(strips[j]);
+        }
+        // L^T x = z
+        for (int j = n_ - 1; j >= 0; --j) {
+            const Block* L = factor_.data() + columns_[j].first;
+            const Block* below = L;
+            for (const int i : columns_[j].rows) strips[j] -= (++below)->transpose().lazyProduct(strips[i]);
+            L->transpose().triangularView<Eigen::Upper>().solveInPlace(strips[j]);
+        }
+        for (int p = 0; p < n_; ++p) B.block(6 * block_at_[p], begin, 6, count) = strips[p];
+    }
+}
+
+}  // namespace palpate::skeleton

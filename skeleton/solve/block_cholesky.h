@@ -1,0 +1,59 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <optional>
+#include <vector>
+
+namespace palpate::skeleton {
+
+/// Sparse Cholesky factorisation of a symmetric matrix of 6 x 6 blocks: a block a rigid node, a coupling a link.
+///
+/// Ordering (minimum degree on the graph of the blocks) and symbolic factorisation are made once; values, shift and
+/// factor may change again and again.
+class BlockCholesky {
+public:
+    using Block = Eigen::Matrix<double, 6, 6>;
+    using Vec6 = Eigen::Matrix<double, 6, 1>;
+
+    /// The matrix has n x n blocks, of which the diagonal and the couplings (i, j), i != j, may be other than zero; a
+    /// pair may be named several times.
+    BlockCholesky(int n, const std::vector<std::array<int, 2>>& couplings);
+
+    void set_zero();
+    void add_diagonal(int i, const Block& A) { matrix_[slot_of_diagonal_[i]] += A; }
+    /// Adds A at block (i, j) of coupling c, and its transpose at (j, i).
+    void add_coupling(int c, const Block& A);
+
+    /// A scalar pivot that is not positive.
+    struct BadPivot {
+        int block, entry;  // of the matrix, entry in 0..5
+        bool zero;         // not negative but lost in rounding: the matrix is singular
+    };
+    /// Factors matrix + shift diag(scale, scale, ...). Nothing when it is positive definite.
+    std::optional<BadPivot> factor(double shift, const Vec6& scale);
+
+    /// Solves in place for the columns of B (6n x p). @pre the last `factor` succeeded.
+    void solve(Eigen::MatrixXd& B) const;
+
+private:
+    struct Column {
+        std::vector<int> rows;  // of the blocks below the diagonal, ascending
+        int first;              // place of the diagonal block among the blocks; those of `rows` follow
+    };
+
+    void factor_symbolically(const std::vector<std::array<int, 2>>& couplings);
+    int slot(int row, int column) const;
+
+    int n_;
+    std::vector<int> position_;               // in the elimination order, of each block
+    std::vector<int> block_at_;               // its inverse
+    std::vector<Column> columns_;             // in the elimination order
+    std::vector<std::vector<int>> touching_;  // columns k < j with a block at row j, of each j
+    std::vector<int> slot_of_diagonal_;
+    std::vector<int> slot_of_coupling_;
+    std::vector<char> transposed_;        // couplings that lie above the diagonal in the elimination order
+    std::vector<Block> matrix_, factor_;  // as the columns tell (fill-in included)
+};
+
+}  // namespace palpate::skeleton

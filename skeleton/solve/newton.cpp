@@ -1,0 +1,97 @@
+#include "skeleton/solve/newton.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace palpate::skeleton {
+
+namespace {
+
+// What is sought, all together.
+struct Problem {
+    SkeletonSystem& system;
+    const Eigen::VectorXd& k;
+    const Load& load;
+
+    Balance balance(const State& state) const { return system.balance(k, state, load); }
+};
+
+// Factors the tangent with the least shift tried, from `shift` upwards, that makes it positive definite; 0 is tried
+// as such. False when none does.
+bool factor_shifted(const Problem& problem, double& shift) {
+    const double stiffest = problem.system.stiffest(problem.k);
+    while (problem.system.factor(shift)) {
+        shift = std::max(10 * shift, 1e-4 * stiffest);
+        if (!(shift < 1e8 * stiffest)) return false;
+    }
+    return true;
+}
+
+// Moves along `step` so far that the potential falls as it should [Armijo], or only rounding is left of it.
+bool descend(const Problem& problem, const Eigen::VectorXd& step, State& state, Balance& here) {
+    const double slope = here.net.dot(step);
+    for (double share = problem.system.step_limit(step); share > 1e-8; share /= 2) {
+        const State trial = advance(state, share * step);
+        const Balance there = problem.balance(trial);
+        if (there.potential <= here.potential - 1e-4 * share * slope + here.rounding) {
+            state = trial;
+            here = there;
+            return true;
+        }
+    }
+    return false;
+}
+
+// From an equilibrium that is not stable a little way along its softest direction, found by inverse iteration with the
+// shifted tangent, to where the potential is lower.
+bool leave_saddle(const Problem& problem, State& state, Balance& here) {
+    Eigen::VectorXd way(here.net.size());
+    for (Eigen::Index i = 0; i < way.size(); ++i) way[i] = std::sin(1.0 + static_cast<double>(i));
+    for (int iteration = 0; iteration < 10; ++iteration)
+        way = problem.system.solve(problem.system.metric_times(way)).normalized();
+    way *= 1e3 * problem.system.length();  // beyond the limit
+    way *= problem.system.step_limit(way);
+    for (double share = 0.2; share > 1e-6; share /= 2)
+        for (const double sign : {1.0, -1.0}) {
+            const State trial = advance(state, sign * share * way);
+            const Balance there = problem.balance(trial);
+            if (there.potential < here.potential - here.rounding) {
+                state = trial;
+                here = there;
+                return true;
+            }
+        }
+    return false;
+}
+
+}  // namespace
+
+bool newton(SkeletonSystem& system, const Eigen::VectorXd& k, const Load& load, const EquilibriumOptions& options,
+            Equilibrium& at) {
+    const Problem problem{system, k, load};
+    const double tolerance =
+        std::max(options.tolerance * system.largest_force(external_force(system.body(), at.state, load)),
+                 system.force_rounding(k));
+    double shift = 0;
+    Balance here = problem.balance(at.state);
+    for (int iteration = 0;; ++iteration, ++at.iterations) {
+        at.residual = here.largest;
+        system.assemble(k, at.state, &load);
+
+        // An equilibrium counts where the tangent needs no shift.
+        const bool balanced = here.largest <= tolerance;
+        if (balanced) {
+            const auto pivot = system.factor(0);
+            if (!pivot) return true;
+            if (pivot->zero) system.fail_at(*pivot, k);
+        }
+        if (iteration == options.iterations || !factor_shifted(problem, shift)) return false;
+
+        const bool moved =
+            balanced ? leave_saddle(problem, at.state, here) : descend(problem, system.solve(here.net), at.state, here);
+        if (!moved) return false;
+        shift = shift > 1e-3 * system.stiffest(k) ? shift / 10 : 0;
+    }
+}
+
+}  // namespace palpate::skeleton

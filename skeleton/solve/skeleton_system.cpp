@@ -1,0 +1,190 @@
+#include "skeleton/solve/skeleton_system.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+
+#include "mesh/errors.h"
+#include "skeleton/link_energy.h"
+#include "skeleton/statics.h"
+
+namespace palpate::skeleton {
+
+namespace {
+
+// Links reach from a held sphere to every other one, or there is no equilibrium.
+void require_held(const Model& model) {
+    const int n = static_cast<int>(model.spheres.size());
+    std::vector<std::vector<int>> neighbours(n);
+    for (const Link& link : model.links) {
+        neighbours[link.a].push_back(link.b);
+        neighbours[link.b].push_back(link.a);
+    }
+    std::vector<char> seen(n, 0);
+    std::vector<int> reached;
+    const auto reach = [&](int i) {
+        if (!seen[i]) reached.push_back(i);
+        seen[i] = 1;
+    };
+    for (int i = 0; i < n; ++i)
+        if (model.spheres[i].held) reach(i);
+    if (reached.empty())
+        throw InvalidInput(
+            fmt::format("none of the model's {} spheres is held, so nothing stops it from moving away: "
+                        "let a support hold one, or set its 'held' to true",
+                        n));
+    for (size_t next = 0; next < reached.size(); ++next)
+        for (const int j : neighbours[reached[next]]) reach(j);
+
+    const auto loose = std::find(seen.begin(), seen.end(), 0) - seen.begin();
+    if (loose == n) return;
+    const Vec3& c = model.spheres[loose].center;
+    throw InvalidInput(
+        fmt::format("sphere {} at ({:.6g}, {:.6g}, {:.6g}) hangs on no held sphere, and {} of {} do not: "
+                    "link it to the others or hold it",
+                    loose, c.x(), c.y(), c.z(), n - static_cast<int>(reached.size()), n));
+}
+
+}  // namespace
+
+SkeletonSystem::SkeletonSystem(const Model& model) : matrix_(0, {}) {
+    require_held(model);
+    body_.law = model.law;
+    body_.spheres = model.spheres;
+    body_.links = model.links;
+
+    for (const Sphere& sphere : body_.spheres) {
+        reach_ = std::max(reach_, sphere.center.cwiseAbs().maxCoeff());
+        block_of_.push_back(sphere.held ? -1 : static_cast<int>(free_.size()));
+        if (!sphere.held) free_.push_back(static_cast<int>(block_of_.size()) - 1);
+    }
+    std::vector<std::array<int, 2>> couplings;
+    double sum = 0;
+    for (const Link& link : body_.links) {
+        directions_.push_back(rest_direction(body_, link));
+        sum += link.length;
+        const int i = block_of_[link.a], j = block_of_[link.b];
+        const bool couples = i >= 0 && j >= 0;
+        coupling_of_.push_back(couples ? static_cast<int>(couplings.size()) : -1);
+        if (couples) couplings.push_back({i, j});
+    }
+    if (!body_.links.empty()) length_ = sum / static_cast<double>(body_.links.size());
+    metric_ << 1, 1, 1, length_ * length_, length_ * length_, length_ * length_;
+    matrix_ = BlockCholesky(static_cast<int>(free_.size()), couplings);
+}
+
+Balance SkeletonSystem::balance(const Eigen::VectorXd& k, const State& state, const Load& load) const {
+    assert(k.size() == 3 * static_cast<Eigen::Index>(body_.links.size()));
+    double elastic = 0;
+    Eigen::VectorXd net = external_force(body_, state, load);
+    for (size_t l = 0; l < body_.links.size(); ++l) {
+        const Link& link = body_.links[l];
+        const LinkTerms terms = link_terms(link.length, directions_[l], state.x.row(link.a).transpose(),
+                                           state.R[link.a], state.x.row(link.b).transpose(), state.R[link.b], false);
+        elastic += terms.energy.dot(k.segment<3>(3 * l));
+        const Vec12 gradient = terms.gradient * k.segment<3>(3 * l);
+        net.segment<6>(6 * link.a) -= gradient.head<6>();
+        net.segment<6>(6 * link.b) -= gradient.tail<6>();
+    }
+    for (size_t i = 0; i < body_.spheres.size(); ++i)
+        if (body_.spheres[i].held) net.segment<6>(6 * i).setZero();
+
+    const double work = external_work(body_, state, load);
+    return {elastic - work, 1e-14 * (elastic + std::abs(work)), net, largest_force(net)};
+}
+
+double SkeletonSystem::largest_force(const Eigen::VectorXd& f) const {
+    double most = 0;
+    for (const int i : free_)
+        most = std::max({most, f.segment<3>(6 * i).norm(), f.segment<3>(6 * i + 3).norm() / length_});
+    return most;
+}
+
+double SkeletonSystem::stiffest(const Eigen::VectorXd& k) const {
+    double most = 0;
+    for (size_t l = 0; l < body_.links.size(); ++l)
+        most = std::max({most, k[3 * l], k[3 * l + 1] / (length_ * length_), k[3 * l + 2] / (length_ * length_)});
+    return most;
+}
+
+double SkeletonSystem::force_rounding(const Eigen::VectorXd& k) const {
+    // Positions are known to 1e-16 of the largest coordinate, angles to 1e-16; some tens of them add up.
+    return 1e-14 * stiffest(k) * (reach_ + 10 * length_);
+}
+
+double SkeletonSystem::step_limit(const Eigen::VectorXd& step) const {
+    double times_too_long = 1;
+    for (const int i : free_) times_too_long = std::max(times_too_long, step.segment<3>(6 * i + 3).norm() / 0.5);
+    for (const Link& link : body_.links) {
+        const double apart = (step.segment<3>(6 * link.b) - step.segment<3>(6 * link.a)).norm();
+        times_too_long = std::max(times_too_long, apart / (0.5 * link.length));
+    }
+    return 1 / times_too_long;
+}
+
+void SkeletonSystem::assemble(const Eigen::VectorXd& k, const State& state, const Load* load) {
+    assert(k.size() == 3 * static_cast<Eigen::Index>(body_.links.size()));
+    matrix_.set_zero();
+    for (size_t l = 0; l < body_.links.size(); ++l) {
+        const Link& link = body_.links[l];
+        const Mat12 H = link_hessian(k.segment<3>(3 * l), link.length, directions_[l], state.x.row(link.a).transpose(),
+                                     state.R[link.a], state.x.row(link.b).transpose(), state.R[link.b]);
+        const int i = block_of_[link.a], j = block_of_[link.b];
+        if (i >= 0) matrix_.add_diagonal(i, H.topLeftCorner<6, 6>());
+        if (j >= 0) matrix_.add_diagonal(j, H.bottomRightCorner<6, 6>());
+        if (coupling_of_[l] >= 0) matrix_.add_coupling(coupling_of_[l], H.topRightCorner<6, 6>());
+    }
+    if (!load || load->forces.empty()) return;
+    const std::vector<Mat3> curvature = external_curvature(body_, state, *load);
+    BlockCholesky::Block A = BlockCholesky::Block::Zero();
+    for (size_t i = 0; i < free_.size(); ++i) {
+        A.bottomRightCorner<3, 3>() = -curvature[free_[i]];
+        matrix_.add_diagonal(static_cast<int>(i), A);
+    }
+}
+
+std::optional<BlockCholesky::BadPivot> SkeletonSystem::factor(double shift) { return matrix_.factor(shift, metric_); }
+
+void SkeletonSystem::factor_stable(const Eigen::VectorXd& k) {
+    if (const auto pivot = factor(0)) fail_at(*pivot, k);
+}
+
+void SkeletonSystem::fail_at(const BlockCholesky::BadPivot& pivot, const Eigen::VectorXd& k) const {
+    const int sphere = free_[pivot.block];
+    const std::string way =
+        fmt::format("{} {}", pivot.entry < 3 ? "move along" : "turn about", std::array{"x", "y", "z"}[pivot.entry % 3]);
+    if (!pivot.zero)
+        throw SolverFailure(
+            fmt::format("the model is not stable: sphere {} would {} by itself. Links that rest at "
+                        "another length than their spheres' distance, or loads beyond buckling, do that",
+                        sphere, way));
+    std::string slack;
+    for (size_t l = 0; l < body_.links.size(); ++l)
+        for (int s = 0; s < 3; ++s) {
+            const Link& link = body_.links[l];
+            if ((link.a == sphere || link.b == sphere) && k[3 * l + s] == 0)
+                slack += fmt::format("{}{} of links[{}] (spheres {} and {})", slack.empty() ? "" : ", ",
+                                     stiffness_names[s], l, link.a, link.b);
+        }
+    throw SolverFailure(fmt::format("nothing keeps sphere {} from its freedom to {}: {}", sphere, way,
+                                    slack.empty() ? "its links are too slack; raise their stiffness"
+                                                  : "zero are " + slack + "; raise one of them"));
+}
+
+Eigen::MatrixXd SkeletonSystem::solve(const Eigen::MatrixXd& B) const {
+    assert(B.rows() == body_.dofs());
+    Eigen::MatrixXd packed(6 * free_.size(), B.cols());
+    for (size_t i = 0; i < free_.size(); ++i) packed.middleRows<6>(6 * i) = B.middleRows<6>(6 * free_[i]);
+    matrix_.solve(packed);
+    Eigen::MatrixXd X = Eigen::MatrixXd::Zero(B.rows(), B.cols());
+    for (size_t i = 0; i < free_.size(); ++i) X.middleRows<6>(6 * free_[i]) = packed.middleRows<6>(6 * i);
+    return X;
+}
+
+Eigen::VectorXd SkeletonSystem::metric_times(const Eigen::VectorXd& step) const {
+    return step.cwiseProduct(metric_.replicate(static_cast<Eigen::Index>(body_.spheres.size()), 1));
+}
+
+}  // namespace palpate::skeleton

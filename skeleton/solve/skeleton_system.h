@@ -1,0 +1,63 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "skeleton/load.h"
+#include "skeleton/solve/block_cholesky.h"
+
+namespace palpate::skeleton {
+
+/// The net forces in a state, and the potential that they come from.
+struct Balance {
+    double potential = 0;  // [N mm]
+    double rounding = 0;   // how well it is known [N mm]
+    Eigen::VectorXd net;   // (6N), zero at held spheres [N, N mm]
+    double largest = 0;    // of them [N], torques over the mean link length
+};
+
+/// A model's equations of equilibrium with held spheres eliminated, ready to be evaluated and factored for many
+/// stiffnesses k (3L, ordered as stiffness_vector), states and loads.
+class SkeletonSystem {
+public:
+    /// Keeps what it needs of the model. @throws InvalidInput when no sphere is held or some hang on no held one.
+    explicit SkeletonSystem(const Model& model);
+
+    const Model& body() const { return body_; }  // spheres, links and law
+    double length() const { return length_; }    // mean of the links [mm]
+
+    Balance balance(const Eigen::VectorXd& k, const State& state, const Load& load) const;
+    /// Largest force on a free sphere, torques over the mean link length [N].
+    double largest_force(const Eigen::VectorXd& f) const;
+    /// What rounding of positions and angles leaves of forces that cancel [N].
+    double force_rounding(const Eigen::VectorXd& k) const;
+    /// Largest stiffness, those of angles over the mean link length squared [N/mm].
+    double stiffest(const Eigen::VectorXd& k) const;
+    /// How much of a step can be made at once, (0, 1]: no sphere turns by more than half a radian, no link's ends part
+    /// by more than half its length.
+    double step_limit(const Eigen::VectorXd& step) const;
+
+    /// Assembles the tangent; without a load the links' alone.
+    void assemble(const Eigen::VectorXd& k, const State& state, const Load* load = nullptr);
+    /// Factors tangent + shift [N/mm] * metric, which makes turning and moving comparable.
+    std::optional<BlockCholesky::BadPivot> factor(double shift);
+    /// Factors the tangent. @throws SolverFailure naming the sphere that it does not keep in place.
+    void factor_stable(const Eigen::VectorXd& k);
+    [[noreturn]] void fail_at(const BlockCholesky::BadPivot& pivot, const Eigen::VectorXd& k) const;
+
+    /// Solves with the last factor (6N x p); rows of held spheres are ignored, and zero in the result.
+    Eigen::MatrixXd solve(const Eigen::MatrixXd& B) const;
+    Eigen::VectorXd metric_times(const Eigen::VectorXd& step) const;
+
+private:
+    Model body_;
+    std::vector<Vec3> directions_;   // of the links at rest
+    std::vector<int> free_;          // spheres
+    std::vector<int> block_of_;      // place in `free_` of each sphere, -1: held
+    std::vector<int> coupling_of_;   // of each link, -1: an end is held
+    double length_ = 1, reach_ = 0;  // largest coordinate [mm]
+    BlockCholesky::Vec6 metric_;
+    BlockCholesky matrix_;
+};
+
+}  // namespace palpate::skeleton

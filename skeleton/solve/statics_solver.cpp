@@ -1,0 +1,123 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <optional>
+#include <string>
+
+#include "mesh/errors.h"
+#include "skeleton/solve/newton.h"
+#include "skeleton/solve/skeleton_system.h"
+#include "skeleton/statics.h"
+
+namespace palpate::skeleton {
+
+namespace {
+
+Load scaled(Load load, double share) {
+    load.gravity *= share;
+    for (PointForce& force : load.forces) force.force *= share;
+    return load;
+}
+
+Equilibrium solve_linear(SkeletonSystem& system, const Eigen::VectorXd& k, const Load& load) {
+    const State rest = rest_state(system.body());
+    system.assemble(k, rest);
+    system.factor_stable(k);
+    Equilibrium result;
+    result.step = system.solve(system.balance(k, rest, load).net);
+    result.state = advance(rest, result.step);
+    result.iterations = 1;
+    result.residual =
+        system.largest_force(external_force(system.body(), rest, load) + link_forces(system.body(), result) * k);
+    return result;
+}
+
+// Newton's way to an equilibrium, or why it led to none: "" when it did not come to an end. A link that collapses on
+// the way is such a reason, for smaller steps of the load may lead round it.
+std::optional<std::string> failure_of_newton(SkeletonSystem& system, const Eigen::VectorXd& k, const Load& load,
+                                             const EquilibriumOptions& options, Equilibrium& result) {
+    try {
+        if (newton(system, k, load, options, result)) return std::nullopt;
+        return "";
+    } catch (const SolverFailure& failure) {
+        return failure.what();
+    }
+}
+
+// From rest, a quarter of the load at a time, less where that fails. `result` comes from a try with the whole load.
+void step_load(SkeletonSystem& system, const Eigen::VectorXd& k, const Load& load, const EquilibriumOptions& options,
+               Equilibrium& result) {
+    const double left = result.residual;
+    Equilibrium reached = result;
+    reached.state = rest_state(system.body());
+    for (double share = 0, more = 0.25; share < 1;) {
+        result = reached;
+        const auto failure = failure_of_newton(system, k, scaled(load, share + more), options, result);
+        if (!failure) {
+            reached = result;
+            share += more;
+            more = std::min(2 * more, 1 - share);
+            continue;
+        }
+        reached.iterations = result.iterations;
+        more /= 2;
+        if (more >= 1.0 / 128) continue;
+        if (!failure->empty()) throw SolverFailure(*failure);
+        throw SolverFailure(fmt::format(
+            "no equilibrium found in {} Newton steps: at the whole load {:.3g} N were left, {:.0f} % of it were "
+            "reached by load stepping; lower the forces or raise the stiffness",
+            reached.iterations, left, 100 * share));
+    }
+}
+
+// From rest to a state (6N).
+Eigen::VectorXd step_to(const Model& model, const State& state) {
+    Eigen::VectorXd step(model.dofs());
+    for (size_t i = 0; i < model.spheres.size(); ++i) {
+        step.segment<3>(6 * i) = state.x.row(i).transpose() - model.spheres[i].center;
+        step.segment<3>(6 * i + 3) = rotation_vector(state.R[i]);
+    }
+    return step;
+}
+
+}  // namespace
+
+struct StaticsSolver::Impl {
+    SkeletonSystem system;
+};
+
+StaticsSolver::StaticsSolver(const Model& model) : impl_(new Impl{SkeletonSystem(model)}) {}
+StaticsSolver::~StaticsSolver() = default;
+StaticsSolver::StaticsSolver(StaticsSolver&&) noexcept = default;
+StaticsSolver& StaticsSolver::operator=(StaticsSolver&&) noexcept = default;
+
+Equilibrium StaticsSolver::solve(const Eigen::VectorXd& k, const Load& load, const EquilibriumOptions& options,
+                                 const State* start) {
+    options.validate();
+    SkeletonSystem& system = impl_->system;
+    if (system.body().law == Law::linear) return solve_linear(system, k, load);
+
+    Equilibrium result;
+    result.state = start ? *start : rest_state(system.body());
+    if (failure_of_newton(system, k, load, options, result)) step_load(system, k, load, options, result);
+    result.step = step_to(system.body(), result.state);
+    return result;
+}
+
+Eigen::MatrixXd StaticsSolver::linear_steps(const Eigen::VectorXd& k, const Eigen::MatrixXd& F) {
+    impl_->system.assemble(k, rest_state(impl_->system.body()));
+    impl_->system.factor_stable(k);
+    return impl_->system.solve(F);
+}
+
+void StaticsSolver::factor_tangent(const Eigen::VectorXd& k, const Load& load, const Equilibrium& equilibrium) {
+    if (impl_->system.body().law == Law::linear)
+        impl_->system.assemble(k, rest_state(impl_->system.body()));
+    else
+        impl_->system.assemble(k, equilibrium.state, &load);
+    impl_->system.factor_stable(k);
+}
+
+Eigen::MatrixXd StaticsSolver::solve_tangent(const Eigen::MatrixXd& B) const { return impl_->system.solve(B); }
+
+}  // namespace palpate::skeleton

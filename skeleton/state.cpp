@@ -1,0 +1,88 @@
+#include "skeleton/state.h"
+
+#include <Eigen/Geometry>
+#include <cassert>
+#include <cmath>
+
+namespace palpate::skeleton {
+
+State rest_state(const Model& model) {
+    State state;
+    state.x.resize(static_cast<Eigen::Index>(model.spheres.size()), 3);
+    for (size_t i = 0; i < model.spheres.size(); ++i) state.x.row(i) = model.spheres[i].center.transpose();
+    state.R.assign(model.spheres.size(), Mat3::Identity());
+    return state;
+}
+
+State advance(const State& state, const Eigen::VectorXd& step) {
+    assert(step.size() == 6 * state.x.rows());
+    State next = state;
+    for (Eigen::Index i = 0; i < state.x.rows(); ++i) {
+        next.x.row(i) += step.segment<3>(6 * i).transpose();
+        next.R[i] = rotation(step.segment<3>(6 * i + 3)) * state.R[i];
+    }
+    return next;
+}
+
+Mat3 skew(const Vec3& w) {
+    Mat3 W;
+    W << 0, -w.z(), w.y(),  //
+        w.z(), 0, -w.x(),   //
+        -w.y(), w.x(), 0;
+    return W;
+}
+
+Mat3 rotation(const Vec3& w) {
+    // exp(i w/2) as a unit quaternion: (cos |w|/2, sin(|w|/2) w/|w|), whose norm is 1 however small w is.
+    const double half = 0.5 * w.norm();
+    const double sinc = half > 1e-9 ? std::sin(half) / half : 1.0;
+    const Vec3 v = 0.5 * sinc * w;
+    return Eigen::Quaterniond(std::cos(half), v.x(), v.y(), v.z()).toRotationMatrix();
+}
+
+Vec3 rotation_vector(const Mat3& R) {
+    Eigen::Quaterniond q(R);
+    if (q.w() < 0) q.coeffs() = -q.coeffs();
+    const double sine = q.vec().norm();
+    const double scale = sine > 1e-12 ? 2 * std::atan2(sine, q.w()) / sine : 2.0;
+    return scale * q.vec();
+}
+
+Points observe(const Model& model, const State& state, const std::vector<Attachment>& points) {
+    Points positions(static_cast<Eigen::Index>(points.size()), 3);
+    for (size_t i = 0; i < points.size(); ++i) {
+        const Attachment& p = points[i];
+        const auto carried = [&](int sphere) -> Vec3 {
+            return state.x.row(sphere).transpose() + state.R[sphere] * (p.rest - model.spheres[sphere].center);
+        };
+        positions.row(i) = ((1 - p.t) * carried(p.a) + p.t * carried(p.b)).transpose();
+    }
+    return positions;
+}
+
+Eigen::SparseMatrix<double> observation_jacobian(const Model& model, const State& state,
+                                                 const std::vector<Attachment>& points) {
+    std::vector<Eigen::Triplet<double>> entries;
+    entries.reserve(18 * points.size());
+    for (size_t i = 0; i < points.size(); ++i) {
+        const int row = 3 * static_cast<int>(i);
+        // The carried point x + r, r = R (rest - X), moves by dx + w x r.
+        const auto add = [&](int sphere, double weight) {
+            if (weight == 0) return;
+            const Vec3 r = state.R[sphere] * (points[i].rest - model.spheres[sphere].center);
+            const Mat3 turn = -weight * skew(r);
+            for (int c = 0; c < 3; ++c) {
+                entries.emplace_back(row + c, 6 * sphere + c, weight);
+                for (int d = 0; d < 3; ++d)
+                    if (d != c) entries.emplace_back(row + c, 6 * sphere + 3 + d, turn(c, d));
+            }
+        };
+        add(points[i].a, 1 - points[i].t);
+        add(points[i].b, points[i].t);
+    }
+    Eigen::SparseMatrix<double> P(3 * static_cast<Eigen::Index>(points.size()), model.dofs());
+    P.setFromTriplets(entries.begin(), entries.end());
+    return P;
+}
+
+}  // namespace palpate::skeleton

@@ -1,0 +1,100 @@
+#include "skeleton/statics.h"
+
+#include <fmt/format.h>
+
+#include <cassert>
+
+#include "mesh/errors.h"
+#include "skeleton/link_energy.h"
+
+namespace palpate::skeleton {
+
+namespace {
+
+using Triplets = std::vector<Eigen::Triplet<double>>;
+
+LinkTerms terms_of(const Model& model, const State& state, const Link& link) {
+    return link_terms(link.length, rest_direction(model, link), state.x.row(link.a).transpose(), state.R[link.a],
+                      state.x.row(link.b).transpose(), state.R[link.b], false);
+}
+
+// Row of entry i of a link's twelve.
+int row_of(const Link& link, int i) { return i < 6 ? 6 * link.a + i : 6 * link.b + i - 6; }
+
+}  // namespace
+
+Vec3 rest_direction(const Model& model, const Link& link) {
+    const Vec3 dx = model.spheres[link.b].center - model.spheres[link.a].center;
+    const double distance = dx.norm();
+    if (!(distance > 0))
+        throw InvalidInput(
+            fmt::format("spheres {} and {} are linked but have the same centre ({}, {}, {}): "
+                        "move one of them or take the link away",
+                        link.a, link.b, model.spheres[link.a].center.x(), model.spheres[link.a].center.y(),
+                        model.spheres[link.a].center.z()));
+    return dx / distance;
+}
+
+Eigen::SparseMatrix<double> link_forces(const Model& model, const State& state) {
+    Triplets entries;
+    entries.reserve(36 * model.links.size());
+    for (size_t l = 0; l < model.links.size(); ++l) {
+        const Link& link = model.links[l];
+        const LinkTerms terms = terms_of(model, state, link);
+        for (int s = 0; s < 3; ++s)
+            for (int i = 0; i < 12; ++i)
+                entries.emplace_back(row_of(link, i), 3 * static_cast<int>(l) + s, -terms.gradient(i, s));
+    }
+    Eigen::SparseMatrix<double> G(model.dofs(), 3 * static_cast<Eigen::Index>(model.links.size()));
+    G.setFromTriplets(entries.begin(), entries.end());
+    return G;
+}
+
+Eigen::VectorXd stiffness_vector(const Model& model) {
+    Eigen::VectorXd k(3 * static_cast<Eigen::Index>(model.links.size()));
+    for (size_t l = 0; l < model.links.size(); ++l) k.segment<3>(3 * l) = model.links[l].stiffness;
+    return k;
+}
+
+void set_stiffness(Model& model, const Eigen::VectorXd& k) {
+    assert(k.size() == 3 * static_cast<Eigen::Index>(model.links.size()));
+    for (size_t l = 0; l < model.links.size(); ++l) model.links[l].stiffness = k.segment<3>(3 * l);
+}
+
+double potential(const Model& model, const State& state, const Load& load) {
+    double energy = -external_work(model, state, load);
+    for (const Link& link : model.links) energy += link.stiffness.dot(terms_of(model, state, link).energy);
+    return energy;
+}
+
+Eigen::VectorXd residual(const Model& model, const State& state, const Load& load) {
+    Eigen::VectorXd r = external_force(model, state, load);
+    for (const Link& link : model.links) {
+        const Vec12 g = terms_of(model, state, link).gradient * link.stiffness;
+        r.segment<6>(6 * link.a) -= g.head<6>();
+        r.segment<6>(6 * link.b) -= g.tail<6>();
+    }
+    return r;
+}
+
+Eigen::SparseMatrix<double> tangent(const Model& model, const State& state, const Load& load) {
+    Triplets entries;
+    entries.reserve(144 * model.links.size() + 9 * model.spheres.size());
+    for (const Link& link : model.links) {
+        const Mat12 H =
+            link_hessian(link.stiffness, link.length, rest_direction(model, link), state.x.row(link.a).transpose(),
+                         state.R[link.a], state.x.row(link.b).transpose(), state.R[link.b]);
+        for (int j = 0; j < 12; ++j)
+            for (int i = 0; i < 12; ++i) entries.emplace_back(row_of(link, i), row_of(link, j), H(i, j));
+    }
+    const std::vector<Mat3> curvature = external_curvature(model, state, load);
+    for (int sphere = 0; sphere < static_cast<int>(curvature.size()); ++sphere)
+        for (int j = 0; j < 3; ++j)
+            for (int i = 0; i < 3; ++i)
+                entries.emplace_back(6 * sphere + 3 + i, 6 * sphere + 3 + j, -curvature[sphere](i, j));
+    Eigen::SparseMatrix<double> J(model.dofs(), model.dofs());
+    J.setFromTriplets(entries.begin(), entries.end());
+    return J;
+}
+
+}  // namespace palpate::skeleton

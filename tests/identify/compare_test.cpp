@@ -1,0 +1,148 @@
+#include "identify/compare.h"
+
+#include <gtest/gtest.h>
+
+#include "identify/load_exponent.h"
+#include "lattice.h"
+#include "mesh/errors.h"
+
+namespace palpate::identify {
+namespace {
+
+MeasurementSet noisy_twin(const skeleton::Model& model, double noise, int rounds = 5) {
+    std::vector<LoadState> states;
+    for (int i = 0; i < rounds; ++i) {
+        for (LoadState state : push_spheres(model, six_forces(6, 6))) {
+            state.probe += 6 * i;
+            states.push_back(std::move(state));
+        }
+    }
+    return simulate_measurements(model, states, markers_on_spheres(model), noise, 11);
+}
+
+TEST(Compare, TheTruthLeavesNoiseOnly) {
+    const skeleton::Model model = make_lattice({3, 3, 2});
+    const Comparison comparison = compare(model, noisy_twin(model, 0.1));
+    const double n = 30 * 48 * 3;
+    EXPECT_NEAR(comparison.rms, 0.1, 0.1 * 4 / std::sqrt(2 * n));  // four sigma
+    EXPECT_DOUBLE_EQ(comparison.noise, 0.1);
+    EXPECT_TRUE(comparison.adequate);
+    EXPECT_GT(comparison.p_value, 1e-4);
+    EXPECT_LT(comparison.p_value, 1 - 1e-4);
+    EXPECT_EQ(comparison.probes.size(), 30U);
+    EXPECT_EQ(comparison.worst.size(), 10U);
+    EXPECT_EQ(comparison.max, comparison.worst[0].error);
+}
+
+TEST(Compare, AWrongStiffnessIsNotAdequateAndGrowsWithTheLoad) {
+    skeleton::Model model = make_lattice({3, 3, 2});
+    model.law = skeleton::Law::linear;
+    std::vector<LoadState> states = push_spheres(model, {{0, 0, -1}, {0, 0, -2}, {0, 0, -4}});
+    for (LoadState& state : states) state.contacts[0].point = model.spheres.back().center;
+    states.emplace_back();  // unloaded
+    const MeasurementSet set = simulate_measurements(with_truth(model, {1.5}, {500}), states, markers_on_spheres(model), 0.001);
+    const Comparison comparison = compare(model, set);
+    EXPECT_FALSE(comparison.adequate);
+    EXPECT_LT(comparison.p_value, 1e-9);
+    ASSERT_TRUE(comparison.load_exponent.has_value());
+    EXPECT_NEAR(comparison.load_exponent->value, 1, 0.02);  // noise is a thousandth of the error
+    EXPECT_NE(comparison.load_exponent->words.find("in proportion"), std::string::npos);
+    // softer by a quarter and a third: between a fifth and a third of the displacement is missed
+    EXPECT_GT(comparison.relative, 0.2);
+    EXPECT_LT(comparison.relative, 0.34);
+}
+
+TEST(Compare, WorstReadingPointsFromTheModelToTheMeasurement) {
+    const skeleton::Model model = make_lattice({3, 1, 1});
+    MeasurementSet set = simulate_measurements(model, push_spheres(model, {{0, 0, 1}}), markers_on_spheres(model));
+    set.markers[5].id = 77;
+    set.states[0].readings[5].position.y() += 2;
+    const Comparison comparison = compare(model, set);
+    EXPECT_EQ(comparison.worst[0].marker, 77);
+    EXPECT_EQ(comparison.worst[0].probe, 1);
+    EXPECT_NEAR(comparison.worst[0].error, 2, 1e-9);
+    EXPECT_LT((comparison.worst[0].towards - Vec3::UnitY()).norm(), 1e-9);
+    EXPECT_EQ(comparison.worst[0].at, set.states[0].readings[5].position);
+    EXPECT_NEAR(comparison.rms, 2 / std::sqrt(24), 1e-9);  // eight markers, three coordinates each
+}
+
+TEST(Compare, UnlabelledAndMissingReadingsAreLeftOut) {
+    const skeleton::Model model = make_lattice({3, 1, 1});
+    MeasurementSet set = simulate_measurements(model, push_spheres(model, {{0, 0, 1}}), markers_on_spheres(model));
+    auto& readings = set.states[0].readings;
+    readings[0].marker = -1;
+    readings[0].position.setConstant(1e3);
+    readings[1].position.x() = missing;
+    const Comparison comparison = compare(model, set);
+    EXPECT_NEAR(comparison.rms, 0, 1e-9);
+    ASSERT_EQ(comparison.predicted.size(), 1U);
+    ASSERT_EQ(comparison.predicted[0].rows(), 8);
+    EXPECT_TRUE(std::isnan(comparison.predicted[0](0, 0)));
+    EXPECT_LT((comparison.predicted[0].row(2).transpose() - readings[2].position).norm(), 1e-9);
+}
+
+TEST(Compare, WithoutNoiseItDoesNotJudge) {
+    const skeleton::Model model = make_lattice({3, 1, 1});
+    MeasurementSet set = simulate_measurements(model, push_spheres(model, {{0, 0, 1}}), markers_on_spheres(model));
+    const Comparison comparison = compare(model, set);
+    EXPECT_TRUE(std::isnan(comparison.noise));
+    EXPECT_TRUE(std::isnan(comparison.p_value));
+    EXPECT_FALSE(comparison.adequate);
+    EXPECT_FALSE(comparison.load_exponent.has_value());
+}
+
+TEST(Compare, ThreadsDoNotChangeANumber) {
+    const skeleton::Model model = make_lattice({3, 3, 1});
+    const MeasurementSet set = noisy_twin(model, 0.1, 1);
+    const Comparison one = compare(model, set, 1), three = compare(model, set, 3);
+    EXPECT_EQ(one.rms, three.rms);
+    EXPECT_EQ(one.predicted, three.predicted);
+}
+
+TEST(Compare, ASetWithoutReadingsIsToldToTheUser) {
+    const skeleton::Model model = make_lattice({3, 1, 1});
+    MeasurementSet set;
+    set.name = "empty";
+    set.states.emplace_back();
+    try {
+        compare(model, set);
+        FAIL() << "no exception";
+    } catch (const InvalidInput& error) {
+        EXPECT_NE(std::string(error.what()).find("'empty' has no labelled reading"), std::string::npos);
+    }
+}
+
+/// States whose error is a + b load^p, with a little noise taken off.
+std::vector<ErrorUnderLoad> errors(double p, bool unloaded) {
+    std::vector<ErrorUnderLoad> states;
+    for (const double load : {1.0, 2.0, 3.0, 1.1, 2.2, 2.9}) {
+        states.push_back({load, std::hypot(0.5 * std::pow(load, p), 0.01), 0.01});
+    }
+    if (unloaded) states.push_back({0, std::hypot(p == 0 ? 0.5 : 0.0, 0.01), 0.01});
+    return states;
+}
+
+TEST(LoadExponent, FindsThePower) {
+    for (const bool unloaded : {false, true}) {
+        for (const double p : {0.0, 1.0, 2.0}) {
+            const auto exponent = load_exponent(errors(p, unloaded));
+            ASSERT_TRUE(exponent.has_value());
+            EXPECT_NEAR(exponent->value, p, 1e-6);  // the noise is taken off exactly
+        }
+        EXPECT_NE(load_exponent(errors(0, unloaded))->words.find("without any load"), std::string::npos);
+        EXPECT_NE(load_exponent(errors(2, unloaded))->words.find("nonlinearity"), std::string::npos);
+    }
+}
+
+TEST(LoadExponent, AnErrorThatIsThereWithoutLoadSaysZero) {
+    std::vector<ErrorUnderLoad> states;
+    for (int i = 0; i < 6; ++i) states.push_back({5, 0.5 + 0.01 * i, 0.01});
+    EXPECT_FALSE(load_exponent(states).has_value());  // one load level
+    states.push_back({0, 0.52, 0.01});
+    const auto exponent = load_exponent(states);
+    ASSERT_TRUE(exponent.has_value());
+    EXPECT_NEAR(exponent->value, 0, 0.05);  // scatter of a few per cent over a wide range of loads
+}
+
+}  // namespace
+}  // namespace palpate::identify

@@ -1,0 +1,79 @@
+#include "mesh/check_surface.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/mesh/faulty_surfaces.h"
+#include "tests/temporary_folder.h"
+
+namespace palpate::mesh {
+namespace {
+
+TEST(CheckSurface, SoundBodiesHaveNoFaults) {
+    for (const Surface& surface : {cube(), unwelded(cube()), hollow_ball(), make_sphere({5, 5, 5}, 1, 2)}) {
+        const SurfaceReport report = check_surface(surface);
+        EXPECT_TRUE(report.sound());
+        EXPECT_TRUE(describe_faults(report).empty());
+    }
+    const SurfaceReport report = check_surface(unwelded(cube()));
+    EXPECT_EQ(report.duplicate_vertices, 3 * 192 - 98);  // 192 triangles, 98 corners
+    EXPECT_DOUBLE_EQ(report.volume, 1000);
+    EXPECT_DOUBLE_EQ(report.area, 600);
+}
+
+TEST(CheckSurface, CountsAHole) {
+    const SurfaceReport report = check_surface(without_triangle(cube(), 7));
+    EXPECT_EQ(report.boundary_edges, 3);
+    EXPECT_EQ(report.holes, 1);
+    EXPECT_FALSE(report.closed);
+    EXPECT_FALSE(report.sound());
+    EXPECT_EQ(check_surface(open_sheet()).holes, 1);
+}
+
+TEST(CheckSurface, CountsTwinsSliversAndFlippedTriangles) {
+    EXPECT_EQ(check_surface(with_twin(cube())).duplicate_triangles, 1);
+    EXPECT_FALSE(check_surface(with_twin(cube())).sound());
+    EXPECT_EQ(check_surface(with_triangle(cube(), 0, 1, 1)).degenerate_triangles, 1);
+    EXPECT_FALSE(check_surface(with_triangle(cube(), 0, 1, 1)).sound());
+    EXPECT_EQ(check_surface(with_flipped_triangle(cube())).inconsistent_edges, 3);
+    EXPECT_FALSE(check_surface(with_flipped_triangle(cube())).sound());
+}
+
+TEST(CheckSurface, CountsWhatIsNoManifold) {
+    EXPECT_EQ(check_surface(with_fin(cube())).non_manifold_edges, 1);
+    EXPECT_FALSE(check_surface(with_fin(cube())).sound());
+    EXPECT_EQ(check_surface(bow_tie()).non_manifold_vertices, 1);
+    EXPECT_FALSE(check_surface(bow_tie()).sound());
+}
+
+TEST(CheckSurface, CountsCrossings) {
+    EXPECT_GT(check_surface(with_spike(cube())).self_intersections, 0);
+    EXPECT_GT(check_surface(join(cube(), make_sphere({10, 5, 5}, 3, 2))).self_intersections, 0);
+    EXPECT_EQ(check_surface(join(cube(), make_sphere({20, 5, 5}, 3, 2))).self_intersections, 0);
+    EXPECT_EQ(check_surface(join(cube(), make_sphere({20, 5, 5}, 3, 2))).components, 2);
+}
+
+TEST(CheckSurface, BodiesLookOutAndCavitiesIn) {
+    EXPECT_FALSE(check_surface(inside_out(cube())).outward);
+    EXPECT_FALSE(check_surface(join(make_sphere({0, 0, 0}, 10, 2), make_sphere({0, 0, 0}, 5, 2))).sound());
+    EXPECT_TRUE(check_surface(hollow_ball()).sound());
+}
+
+TEST(CheckSurface, SaysEachFaultInWords) {
+    const auto faults = [](const Surface& surface) {
+        std::string all;
+        for (const std::string& fault : describe_faults(check_surface(surface))) all += fault + "\n";
+        return all;
+    };
+    EXPECT_TRUE(says(faults(without_triangle(cube(), 7)), {"1 hole", "3 open edges", "fills"}));
+    EXPECT_TRUE(says(faults(with_twin(cube())), {"1 triangle", "twice"}));
+    EXPECT_TRUE(says(faults(with_triangle(cube(), 0, 1, 1)), {"1 triangle", "without area"}));
+    EXPECT_TRUE(says(faults(with_flipped_triangle(cube())), {"3 edge", "outside"}));
+    EXPECT_TRUE(says(faults(with_fin(cube())), {"1 edge", "more than two triangles"}));
+    EXPECT_TRUE(says(faults(bow_tie()), {"1 vertex", "touch"}));
+    EXPECT_TRUE(says(faults(with_spike(cube())), {"cross"}));
+    EXPECT_TRUE(says(faults(inside_out(cube())), {"inside out", "-1000"}));
+    EXPECT_TRUE(says(faults(Surface{Points(0, 3), Triangles(0, 3)}), {"No triangles"}));
+}
+
+}  // namespace
+}  // namespace palpate::mesh

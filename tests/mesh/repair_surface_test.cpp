@@ -1,0 +1,113 @@
+#include "mesh/repair_surface.h"
+
+#include <gtest/gtest.h>
+
+#include "mesh/check_surface.h"
+#include "mesh/errors.h"
+#include "tests/mesh/faulty_surfaces.h"
+#include "tests/temporary_folder.h"
+
+namespace palpate::mesh {
+namespace {
+
+/// Sound, and as large as it should be.
+void expect_mended(const Surface& faulty, double volume, double tolerance) {
+    const RepairResult mended = repair_surface(faulty);
+    EXPECT_TRUE(check_surface(mended.surface).sound());
+    EXPECT_FALSE(mended.steps.empty());
+    EXPECT_NEAR(mended.volume, volume, tolerance * volume);
+    EXPECT_DOUBLE_EQ(mended.volume, signed_volume(mended.surface));
+}
+
+TEST(RepairSurface, ASoundSurfaceComesBackUnchanged) {
+    const RepairResult same = repair_surface(hollow_ball());
+    EXPECT_TRUE(same.steps.empty());
+    EXPECT_EQ(same.distance, 0);
+    EXPECT_EQ(same.surface.triangles.rows(), hollow_ball().triangles.rows());
+    EXPECT_DOUBLE_EQ(same.volume, signed_volume(hollow_ball()));
+}
+
+TEST(RepairSurface, WeldingIsSaid) {
+    const RepairResult welded = repair_surface(unwelded(cube()));
+    EXPECT_EQ(welded.surface.vertices.rows(), cube().vertices.rows());
+    ASSERT_EQ(welded.steps.size(), 1u);
+    EXPECT_TRUE(says(welded.steps[0], {"478 corners", "welded"}));  // 3 x 192 - 98
+}
+
+TEST(RepairSurface, MendsEachFault) {
+    // These leave the shape as it was: round-off only.
+    expect_mended(without_triangle(cube(), 7), 1000, 1e-12);
+    expect_mended(with_twin(cube()), 1000, 1e-12);
+    expect_mended(with_triangle(cube(), 0, 1, 1), 1000, 1e-12);
+    expect_mended(with_flipped_triangle(cube()), 1000, 1e-12);
+    expect_mended(inside_out(cube()), 1000, 1e-12);
+    expect_mended(join(make_sphere({0, 0, 0}, 10, 3), make_sphere({0, 0, 0}, 5, 2)), signed_volume(hollow_ball()), 1e-12);
+}
+
+TEST(RepairSurface, WrapsWhatIsNoManifold) {
+    // A fin without thickness becomes a thin wedge: wrapping leaves an offset of 0.05 % of the diagonal on it.
+    expect_mended(with_fin(cube()), 1000, 0.02);
+}
+
+TEST(RepairSurface, OverlappingPartsAreUnited) {
+    const Surface other = make_box({5, 2, 2}, {15, 8, 8}, {2, 2, 2});
+    const RepairResult united = repair_surface(join(cube(), other));
+    EXPECT_FALSE(united.wrapped);
+    EXPECT_NEAR(united.volume, 1000 + 5 * 36, 1e-9);  // round-off of constructed corners
+}
+
+TEST(RepairSurface, PartsThatStandApartAreKept) {
+    const RepairResult kept = repair_surface(unwelded(join(cube(), make_sphere({20, 5, 5}, 3, 2))));
+    EXPECT_EQ(check_surface(kept.surface).components, 2);
+}
+
+TEST(RepairSurface, ASpikeThroughTheBodyIsCutOut) {
+    RepairOptions options;
+    options.allowed_distance = 1;  // the spike's tip is lost
+    const RepairResult mended = repair_surface(with_spike(cube()), options);
+    EXPECT_TRUE(check_surface(mended.surface).sound());
+    EXPECT_GT(mended.volume, 500);
+}
+
+TEST(RepairSurface, RefusesWhatEnclosesNothing) {
+    EXPECT_TRUE(says(message_of<InvalidInput>([] { repair_surface(open_sheet()); }), {"encloses no volume"}));
+    EXPECT_TRUE(says(message_of<InvalidInput>([] { repair_surface(join(open_sheet(), inside_out(open_sheet()))); }),
+                     {"encloses no volume"}));
+    EXPECT_TRUE(says(message_of<InvalidInput>([] { repair_surface(Surface{Points(0, 3), Triangles(0, 3)}); }), {"no triangles"}));
+}
+
+TEST(RepairSurface, RefusesAHoleThatIsTooLarge) {
+    // The cube without one side: a hole of 14 mm where the diagonal is 17 mm.
+    const Surface whole = cube();
+    Surface cup{whole.vertices, Triangles(0, 3)};
+    for (const auto& t : whole.triangles.rowwise())
+        if (whole.vertices(t[0], 2) + whole.vertices(t[1], 2) + whole.vertices(t[2], 2) < 30)
+            cup = with_triangle(cup, t[0], t[1], t[2]);
+    EXPECT_TRUE(says(message_of<InvalidInput>([&] { repair_surface(cup); }), {"encloses no volume", "25 %", "close them"}));
+    RepairOptions options;
+    options.largest_hole = 1;
+    EXPECT_NEAR(repair_surface(cup, options).volume, 1000, 1e-9);  // the lid is flat
+}
+
+TEST(RepairSurface, RefusesAResultThatStrays) {
+    RepairOptions options;
+    options.allowed_distance = 1e-9;
+    EXPECT_TRUE(says(message_of<InvalidInput>([&] { repair_surface(with_spike(cube()), options); }), {"lies", "allowed", "After:"}));
+}
+
+TEST(RepairSurface, RefusesWhatIsNoNumberOrNoVertex) {
+    Surface surface = cube();
+    surface.vertices(5, 1) = std::numeric_limits<double>::infinity();
+    EXPECT_TRUE(says(message_of<InvalidInput>([&] { repair_surface(surface); }), {"vertex 5", "not finite"}));
+    EXPECT_TRUE(says(message_of<InvalidInput>([] { repair_surface(with_triangle(cube(), 0, 1, 98)); }), {"vertex 98", "0 to 97"}));
+}
+
+TEST(RepairSurface, OptionsNameTheirBounds) {
+    const auto refusal = [](const RepairOptions& options) { return message_of<InvalidInput>([&] { options.validate(); }); };
+    EXPECT_TRUE(says(refusal({.weld = 0}), {"weld", "0.01"}));
+    EXPECT_TRUE(says(refusal({.largest_hole = 2}), {"largest_hole", "2"}));
+    EXPECT_TRUE(says(refusal({.allowed_distance = 0}), {"allowed_distance", "0"}));
+}
+
+}  // namespace
+}  // namespace palpate::mesh

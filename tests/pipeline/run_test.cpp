@@ -1,0 +1,105 @@
+// The main job on a small beam: what it leaves behind, and what it does not do twice.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "mesh/io/atomic_file.h"
+#include "mesh/read_surface.h"
+#include "pipeline/commands/common.h"
+#include "tests/pipeline/scratch.h"
+
+namespace palpate::pipeline {
+namespace {
+
+using nlohmann::json;
+using testing::Scratch;
+
+commands::RunOptions small_run(const Scratch& scratch) {
+    mesh::write_surface(scratch / "beam.stl", mesh::make_box({0, 0, 0}, {100, 20, 20}, {10, 2, 2}));
+    commands::RunOptions options{.input = scratch / "beam.stl", .output = scratch / "run", .say = {}};
+    options.say.edge_length = 12;
+    options.say.spheres = 8;
+    options.say.probes = 10;
+    options.say.particles = 40;
+    options.say.parameters = "uniform";
+    return options;
+}
+
+json record(const Scratch& scratch) { return json::parse(mesh::read_text(scratch / "run/run.json"))["stages"]; }
+
+TEST(Run, LeavesTheFilesThatItPromises) {
+    const Scratch scratch;
+    const commands::Outcome outcome = commands::run(small_run(scratch), {});
+    EXPECT_EQ(outcome.code, commands::done);
+    for (const char* file : {"case.yaml", "run.json", "mesh/body.vtu", "skeleton/model.json", "skeleton/skeleton.vtp",
+                             "skeleton/medial_axis.vtp", "reference/reference.pvd", "measurements/set.yaml", "identify/model.json",
+                             "identify/posterior.csv", "identify/history.pvd", "compare/compare.json", "compare/markers.pvd",
+                             "compare/skin.pvd", "report.html", "view.py"}) {
+        EXPECT_TRUE(std::filesystem::exists(scratch / "run" / file)) << file;
+    }
+    // Eight spheres in a slender beam follow finite elements to far better than half: what is left is their coarseness.
+    EXPECT_LT(outcome.json["compare"]["error"]["relative"].get<double>(), 0.5);
+    EXPECT_TRUE(outcome.json["compare"].contains("held_out"));
+}
+
+TEST(Run, RepeatsNothingWhoseInputsAreUnchanged) {
+    const Scratch scratch;
+    commands::RunOptions options = small_run(scratch);
+    commands::run(options, {});
+    const json before = record(scratch);
+    commands::run(options, {});
+    EXPECT_EQ(before, record(scratch));
+
+    // Other particles: identification and what follows from it are done again, and nothing else.
+    options.say.particles = 50;
+    commands::run(options, {});
+    const json after = record(scratch);
+    for (const char* same : {"mesh", "skeleton", "measurements"}) EXPECT_EQ(before[same], after[same]) << same;
+    for (const char* other : {"identify", "compare"}) EXPECT_NE(before[other]["key"], after[other]["key"]) << other;
+}
+
+TEST(Run, SettingsReadBackGiveTheSameRun) {
+    const Scratch scratch;
+    commands::run(small_run(scratch), {});
+    const json before = record(scratch);
+    std::filesystem::copy(scratch / "run/case.yaml", scratch / "again.yaml");
+    commands::run({.input = scratch / "again.yaml", .output = scratch / "run", .say = {}}, {});
+    EXPECT_EQ(before, record(scratch));
+}
+
+TEST(Run, ThreadCountChangesNoNumber) {
+    const Scratch scratch;
+    commands::RunOptions options = small_run(scratch);
+    commands::run(options, {.json = false, .force = false, .threads = 1, .seed = {}});
+    const std::string one = mesh::read_text(scratch / "run/identify/posterior.csv");
+    options.output = scratch / "other";
+    commands::run(options, {.json = false, .force = false, .threads = 3, .seed = {}});
+    EXPECT_EQ(one, mesh::read_text(scratch / "other/identify/posterior.csv"));
+}
+
+TEST(Run, TellsExpectationsThatAreNotMet) {
+    const Scratch scratch;
+    small_run(scratch);
+    const auto file = scratch.write("case.yaml",
+                                    "format: palpate-case/1\nmesh: beam.stl\nvolume: {edge_length: 12}\nskeleton: {spheres: 8}\n"
+                                    "probing: {probes: 5, held_out: 1}\nidentify: {parameters: uniform, particles: 40}\n"
+                                    "expect: {relative_at_most: 0.000001}\n");
+    const commands::Outcome outcome = commands::run({.input = file, .output = scratch / "run", .say = {}}, {});
+    EXPECT_EQ(outcome.code, commands::not_met);
+    EXPECT_EQ(outcome.json["expectations_not_met"].size(), 1U);
+}
+
+TEST(Run, ReportNeedsNoNetwork) {
+    const Scratch scratch;
+    commands::run(small_run(scratch), {});
+    const std::string page = mesh::read_text(scratch / "run/report.html");
+    EXPECT_EQ(page.find("http"), std::string::npos);
+    EXPECT_EQ(page.find("src="), std::string::npos);
+    EXPECT_NE(page.find("<svg"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace palpate::pipeline

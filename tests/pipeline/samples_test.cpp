@@ -1,0 +1,52 @@
+// Every sample keeps what it promises, and is what our own code makes.
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+#include "mesh/io/atomic_file.h"
+#include "mesh/read_surface.h"
+#include "pipeline/commands/common.h"
+#include "samples/organ/organ.h"
+#include "tests/pipeline/scratch.h"
+
+namespace palpate::pipeline {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::Scratch;
+
+std::vector<std::string> sample_names() {
+    std::vector<std::string> names;
+    for (const auto& entry : fs::directory_iterator(PALPATE_SAMPLES)) {
+        if (fs::exists(entry.path() / "case.yaml")) names.push_back(entry.path().filename().string());
+    }
+    std::sort(names.begin(), names.end());
+    return names;
+}
+
+class Sample : public ::testing::TestWithParam<std::string> {};
+
+TEST_P(Sample, KeepsWhatItPromises) {
+    const Scratch scratch;
+    const commands::Outcome outcome =
+        commands::run({.input = fs::path(PALPATE_SAMPLES) / GetParam() / "case.yaml", .output = scratch / "run", .say = {}},
+                      {.json = false, .force = false, .threads = 2, .seed = {}});
+    EXPECT_EQ(outcome.code, commands::done) << outcome.json["expectations_not_met"];
+}
+
+INSTANTIATE_TEST_SUITE_P(All, Sample, ::testing::ValuesIn(sample_names()), [](const auto& info) {
+    std::string name = info.param;
+    std::replace(name.begin(), name.end(), '-', '_');
+    return name;
+});
+
+/// The committed organ is the one that the code makes, to the single precision that STL holds.
+TEST(Organ, IsWhatItsCodeMakes) {
+    const Scratch scratch;
+    mesh::write_surface(scratch / "organ.stl", samples::make_organ());
+    EXPECT_EQ(mesh::read_text(scratch / "organ.stl"), mesh::read_text(fs::path(PALPATE_SAMPLES) / "organ/organ.stl"));
+}
+
+}  // namespace
+}  // namespace palpate::pipeline
