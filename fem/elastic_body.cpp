@@ -1,6 +1,7 @@
 #include "fem/elastic_body.h"
 
 #include <fmt/format.h>
+#include <tbb/global_control.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
@@ -31,6 +32,12 @@ void validate(const ElasticBodyOptions& options) {
         throw InvalidInput(
             fmt::format("block (right-hand sides solved together) is {}; allowed: 1 to 1024.", options.block));
     }
+}
+
+/// As many threads as asked for, but no more than there are: TBB would complain aloud.
+tbb::task_arena arena(const ElasticBodyOptions& options) {
+    const auto available = tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
+    return tbb::task_arena(std::min(options.threads, static_cast<int>(available)));
 }
 
 /// Nodes that may move, numbered in their order; -1: held.
@@ -70,7 +77,7 @@ ElasticBody::ElasticBody(mesh::VolumeMesh mesh, const Material& material, const 
 
     ElasticBodyStats& stats = impl_->stats;
     stats.dilatation = mesh.is_quadratic() && material.poisson >= 0.45 ? Dilatation::mean : Dilatation::full;
-    tbb::task_arena(options.threads).execute([&] {
+    arena(options).execute([&] {
         // The nodes in the order of elimination.
         auto start = std::chrono::steady_clock::now();
         std::vector<int>& number = impl_->number = number_free_nodes(held);
@@ -125,7 +132,7 @@ void ElasticBody::Impl::fill(const Eigen::SparseMatrix<double>& loads, std::span
                              Block& F) const {
     for (std::size_t j = 0; j < columns.size(); ++j) {
         for (Eigen::SparseMatrix<double>::InnerIterator entry(loads, columns[j]); entry; ++entry) {
-            const int node = number[entry.row() / 3];
+            const Eigen::Index node = number[entry.row() / 3];
             if (node >= 0) F(3 * node + entry.row() % 3, j) = entry.value();
         }
     }
@@ -133,9 +140,9 @@ void ElasticBody::Impl::fill(const Eigen::SparseMatrix<double>& loads, std::span
 
 void ElasticBody::Impl::fill(const Eigen::MatrixXd& loads, std::span<const Eigen::Index> columns, Block& F) const {
     for (std::size_t i = 0; i < number.size(); ++i) {
-        if (number[i] < 0) continue;
-        for (std::size_t j = 0; j < columns.size(); ++j) {
-            F.col(j).segment<3>(3 * number[i]) = loads.col(columns[j]).segment<3>(3 * i);
+        const Eigen::Index node = number[i];
+        for (std::size_t j = 0; node >= 0 && j < columns.size(); ++j) {
+            F.col(j).segment<3>(3 * node) = loads.col(columns[j]).segment<3>(3 * i);
         }
     }
 }
@@ -146,16 +153,16 @@ Eigen::MatrixXd ElasticBody::Impl::solve(const Loads& loads) const {
     Eigen::MatrixXd U = Eigen::MatrixXd::Zero(loads.rows(), loads.cols());
     const std::vector<Eigen::Index> order = solving_order(loads);
     const std::size_t block = options.block, blocks = (order.size() + block - 1) / block;
-    tbb::task_arena(options.threads).execute([&] {
+    arena(options).execute([&] {
         tbb::parallel_for(std::size_t(0), blocks, [&](std::size_t b) {
             const auto columns = std::span(order).subspan(b * block, std::min(block, order.size() - b * block));
             Block X = Block::Zero(stats.free_dofs, static_cast<Eigen::Index>(columns.size()));
             fill(loads, columns, X);
             factor->solve(X);
             for (std::size_t i = 0; i < number.size(); ++i) {
-                if (number[i] < 0) continue;
-                for (std::size_t j = 0; j < columns.size(); ++j) {
-                    U.col(columns[j]).template segment<3>(3 * i) = X.col(j).template segment<3>(3 * number[i]);
+                const Eigen::Index node = number[i];
+                for (std::size_t j = 0; node >= 0 && j < columns.size(); ++j) {
+                    U.col(columns[j]).template segment<3>(3 * i) = X.col(j).template segment<3>(3 * node);
                 }
             }
         });

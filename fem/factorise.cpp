@@ -9,6 +9,8 @@
 #include <algorithm>
 #include <atomic>
 
+// LAPACK has no C header of its own.
+// NOLINTNEXTLINE(readability-identifier-naming)
 extern "C" void dpotrf_(const char* uplo, const int* n, double* a, const int* lda, int* info);
 
 namespace palpate::fem {
@@ -132,7 +134,7 @@ private:
     /// Subtracts L_d L_d^T of all earlier supernodes d from the tile at (row, column) of supernode s.
     void gather(int s, int row, int column, const std::vector<int>& place) {
         Workspace& workspace = workspaces_.local();
-        workspace.product.resize(tile * tile);
+        workspace.product.resize(static_cast<std::size_t>(tile) * tile);
         const int height = structure_.height(s);
         const int row_end = std::min(row + tile, height), column_end = std::min(column + tile, structure_.columns(s));
         for (std::size_t u = updates_.start[s]; u < updates_.start[s + 1]; ++u) {

@@ -22,7 +22,9 @@ Eigen::VectorXd gravity_of(const mesh::VolumeMesh& mesh, double density, const V
             const Mat3 J = X.transpose() * shape_gradient<4, nodes>(l);
             share += weight / 6 * J.determinant() * shape<4, nodes>(l);
         }
-        for (int i = 0; i < nodes; ++i) load.segment<3>(3 * element(i)) += density * share(i) * g;
+        for (int i = 0; i < nodes; ++i) {
+            load.segment<3>(3 * static_cast<Eigen::Index>(element(i))) += density * share(i) * g;
+        }
     }
     return load;
 }

@@ -16,6 +16,7 @@ constexpr double wide_sd = 3;         // of ln multipliers that many links share
 constexpr double link_sd = 0.7;       // of ln of one link's, round the uniform fit
 constexpr double first_error = 0.03;  // relative model error to begin with
 constexpr double least_error = 1e-4;  // the model error never falls below it: no model is exact
+constexpr double settled = 1e-4;      // of half the chi^2: a hundredth of a posterior's sd
 constexpr int states_for_law = 12;    // that choose the law, the most displaced ones
 
 LogNormalPrior prior_round(const Eigen::VectorXd& mean, double sd) {
@@ -91,7 +92,7 @@ public:
     }
 
     FitResult fit(const PositionDomain& domain, const LogNormalPrior& prior, const Eigen::VectorXd& start) {
-        FitResult result = fit_map(domain, prior, start, options_.threads);
+        FitResult result = fit_map(domain, prior, start, options_.threads, {.tolerance = settled});
         equilibria_ += result.evaluations * static_cast<int>(domain.states().size());
         return result;
     }

@@ -42,12 +42,6 @@ ProbeError error_of(const LoadState& state, const StateReadings& readings, const
     return {state.probe, state.time, left, largest, readings.displacement > 0 ? left / readings.displacement : missing};
 }
 
-double load_of(const LoadState& state) {
-    double sum = 0;
-    for (const mesh::Contact& contact : state.contacts) sum += contact.force.norm();
-    return sum;
-}
-
 /// Sums over all measured coordinates.
 struct Totals {
     int coordinates = 0;
@@ -112,7 +106,8 @@ Comparison compare(const skeleton::Model& model, const MeasurementSet& set, int 
         totals.add(states[s], errors[s]);
         result.probes.push_back(error_of(state, states[s], errors[s]));
         result.max = std::max(result.max, result.probes.back().max);
-        under_load.push_back({load_of(state), result.probes.back().rms, noise_of(states[s])});
+        under_load.push_back(
+            {rms(predicted[s] - states[s].rest), result.probes.back().rms, noise_of(states[s])});
     }
     result.rms = std::sqrt(totals.error / totals.coordinates);
     result.relative = totals.displacement > 0 ? std::sqrt(totals.error / totals.displacement) : missing;

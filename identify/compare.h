@@ -24,7 +24,7 @@ struct WorstReading {
     Vec3 towards = Vec3::Zero(); // unit vector from model to measurement
 };
 
-/// The error grows with the load to this power: 0 there without any load, 1 like a wrong stiffness, 2 and more a nonlinearity.
+/// The error grows with the load, measured by how far it moves the model, to this power: 0 there without any load, 1 like a wrong stiffness, 2 and more a nonlinearity.
 struct LoadExponent {
     double value = 0, sd = 0;
     std::string words;

@@ -69,12 +69,13 @@ Eigen::VectorXd solve_force_domain(const ForceStatistics& statistics, double pri
     // active set: parameters become free one by one, where the quadratic falls most
     Eigen::VectorXd m = Eigen::VectorXd::Zero(P);
     std::vector<int> free;
+    const double rounding = 1e-15 * (1 + P) * g.cwiseAbs().maxCoeff();
     for (int round = 0; round < 3 * P; ++round) {
         const Eigen::VectorXd descent = -(H * m + g);
         int next = -1;
         for (int p = 0; p < P; ++p) {
-            const bool held = m[p] <= 0;
-            if (held && descent[p] > 1e-12 * g.cwiseAbs().maxCoeff() && (next < 0 || descent[p] > descent[next])) next = p;
+            const bool at_bound = m[p] <= 0;
+            if (at_bound && descent[p] > rounding && (next < 0 || descent[p] > descent[next])) next = p;
         }
         if (next < 0) break;
         free.push_back(next);

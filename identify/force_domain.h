@@ -32,7 +32,7 @@ ForceDomain force_domain(const skeleton::Model& model, const Parameters& paramet
 
 /// The multipliers >= 0 with the smallest net force: argmin m^T H m + 2 g^T m. [Lawson & Hanson 1974, ch. 23]
 /// Directions that the measurements leave open stay at 1, by a prior of `prior_share` of H's mean diagonal.
-Eigen::VectorXd solve_force_domain(const ForceStatistics& statistics, double prior_share = 1e-12);
+Eigen::VectorXd solve_force_domain(const ForceStatistics& statistics, double prior_share = 1e-11);
 
 ForceStatistics operator+(const ForceStatistics& a, const ForceStatistics& b);
 

@@ -113,9 +113,8 @@ IdentifyResult identify_tempered(const skeleton::Model& model, const Measurement
     Eigen::Index best = 0;
     filter.log_density.maxCoeff(&best);
     result.best = stiffness.row(best);
-    const Eigen::VectorXd weights = filter.log_weights.array().exp();
-    result.model = with_stiffness(model, parameters, filter.particles.array().exp().matrix().transpose() * weights,
-                                  calibration.domain.law());
+    result.model =
+        with_stiffness(model, parameters, calibration.fit.theta.array().exp(), calibration.domain.law());
     for (FilterStep& step : filter.history) {
         step.particles = stiffness_of(parameters, step.particles);
         result.history.push_back(std::move(step));

@@ -54,7 +54,7 @@ struct FilterStep {
 };
 
 struct IdentifyResult {
-    skeleton::Model model;                  // with the posterior mean stiffness, and the law
+    skeleton::Model model;                  // with the law and the most probable stiffness; burion2008: the mean
     std::vector<PosteriorRow> posterior;    // a row per parameter
     Eigen::VectorXd best;                   // the particle of highest weight (parameters)
     std::vector<FilterStep> history;
@@ -64,7 +64,9 @@ struct IdentifyResult {
     std::vector<std::string> notes;         // what a user should know, in words
 };
 
-/// Finds the stiffness of every link, so that the model follows the measurements.
+/// Finds the stiffness of every link, so that the model follows the measurements. The model gets the most probable
+/// stiffnesses together: their means one by one, of skewed distributions that hang together, are a stiffer body, which
+/// follows the measurements several times worse.
 /// @throws InvalidInput when the set holds no loaded state with readings, or none of what the method needs.
 IdentifyResult identify(const skeleton::Model& model, const MeasurementSet& set, const IdentifyOptions& options,
                         const Progress& progress = {});

@@ -7,9 +7,10 @@
 
 namespace palpate::identify {
 
-/// The error of a state, against what acted on it.
+/// The error of a state, against what acted on it. A load is measured by how far it moves the model: a soft place and a hard
+/// one compare, and the same wrong stiffness shows as the same share of it.
 struct ErrorUnderLoad {
-    double load = 0;    // sum of the forces' sizes [N]
+    double load = 0;    // rms displacement of the modelled markers [mm]; 0: unloaded
     double rms = 0;     // [mm]
     double noise = 0;   // its share that is noise, rms [mm]; 0 when unknown
 };

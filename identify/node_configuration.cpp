@@ -3,8 +3,6 @@
 #include <Eigen/Geometry>
 #include <Eigen/SVD>
 #include <algorithm>
-#include <cmath>
-#include <numbers>
 
 #include "fem/interpolation.h"
 #include "identify/loads.h"
@@ -35,21 +33,19 @@ int only_sphere(const skeleton::Attachment& at) {
     return at.t >= 1 - rounding ? at.b : -1;
 }
 
-/// Points of a ball of radius 1: shells of equal volume, on each a spiral of even density. Symmetric to the centre, so that
-/// a strain does not look like a displacement.
+/// Points of a ball of radius 1: the 26 directions from a cube's middle to its corners, edges and sides, on two shells. Their
+/// second moments are those of a ball, so that a strain looks neither like a displacement nor like a turn.
 Points ball_points() {
-    constexpr int shells = 3, on_shell = 12;
-    Points points(2 * shells * on_shell, 3);
-    const double turn = std::numbers::pi * (3 - std::sqrt(5.0));  // golden angle
-    for (int i = 0; i < shells * on_shell; ++i) {
-        const int shell = i / on_shell, place = i % on_shell;
-        const double r = std::cbrt((shell + 0.5) / shells);
-        const double z = (place + 0.5) / on_shell, rho = std::sqrt(1 - z * z);
-        const double angle = turn * i;
-        points.row(2 * i) = r * Vec3(rho * std::cos(angle), rho * std::sin(angle), z);
-        points.row(2 * i + 1) = -points.row(2 * i);
+    std::vector<Vec3> points;
+    for (int x = -1; x <= 1; ++x) {
+        for (int y = -1; y <= 1; ++y) {
+            for (int z = -1; z <= 1; ++z) {
+                if (x == 0 && y == 0 && z == 0) continue;
+                for (const double r : {0.5, 0.9}) points.push_back(r * Vec3(x, y, z).normalized());
+            }
+        }
     }
-    return points;
+    return Eigen::Map<const Points>(points.front().data(), static_cast<Eigen::Index>(points.size()), 3);
 }
 
 double reach(const skeleton::Model& model, int sphere) {

@@ -28,8 +28,8 @@ inline Soup to_soup(const Surface& surface) {
     for (const auto& v : surface.vertices.rowwise()) soup.points.emplace_back(v[0], v[1], v[2]);
     soup.triangles.reserve(static_cast<std::size_t>(surface.triangles.rows()));
     for (const auto& t : surface.triangles.rowwise())
-        soup.triangles.push_back({static_cast<std::size_t>(t[0]), static_cast<std::size_t>(t[1]),
-                                  static_cast<std::size_t>(t[2])});
+        soup.triangles.push_back(
+            {static_cast<std::size_t>(t[0]), static_cast<std::size_t>(t[1]), static_cast<std::size_t>(t[2])});
     return soup;
 }
 
@@ -43,7 +43,8 @@ inline Surface from_soup(const Soup& soup) {
     }
     for (Eigen::Index t = 0; t < surface.triangles.rows(); ++t)
         for (Eigen::Index i = 0; i < 3; ++i)
-            surface.triangles(t, i) = static_cast<int>(soup.triangles[static_cast<std::size_t>(t)][static_cast<std::size_t>(i)]);
+            surface.triangles(t, i) =
+                static_cast<int>(soup.triangles[static_cast<std::size_t>(t)][static_cast<std::size_t>(i)]);
     return surface;
 }
 

@@ -34,8 +34,10 @@ Surface proper_triangles(const Surface& surface, SurfaceReport& report) {
         std::array<int, 3> key{surface.triangles(t, 0), surface.triangles(t, 1), surface.triangles(t, 2)};
         std::sort(key.begin(), key.end());
         if (!keep[static_cast<std::size_t>(t)]) continue;
-        if (known.insert(key).second) result.triangles.row(count++) = surface.triangles.row(t);
-        else ++report.duplicate_triangles;
+        if (known.insert(key).second)
+            result.triangles.row(count++) = surface.triangles.row(t);
+        else
+            ++report.duplicate_triangles;
     }
     result.triangles.conservativeResize(count, 3);
     return result;
@@ -132,16 +134,21 @@ std::vector<std::string> describe_faults(const SurfaceReport& report) {
     if (report.triangles == 0) faults.emplace_back("No triangles: repair can do nothing, give a surface.");
     add(report.degenerate_triangles, "triangle(s) without area", "repair drops or flips them");
     add(report.duplicate_triangles, "triangle(s) that stand there twice", "repair keeps one of each");
-    add(report.non_manifold_edges, "edge(s) with more than two triangles", "repair takes the sheets apart, or wraps the body");
-    add(report.non_manifold_vertices, "vertex(es) in which parts of the surface touch", "repair takes them apart, or wraps the body");
+    add(report.non_manifold_edges, "edge(s) with more than two triangles",
+        "repair takes the sheets apart, or wraps the body");
+    add(report.non_manifold_vertices, "vertex(es) in which parts of the surface touch",
+        "repair takes them apart, or wraps the body");
     add(report.inconsistent_edges, "edge(s) whose triangles disagree about the outside", "repair turns the triangles");
     if (report.boundary_edges > 0)
-        faults.push_back(fmt::format("{} hole(s) with {} open edges: repair fills those that are small against the body.",
-                                     report.holes, report.boundary_edges));
-    add(report.self_intersections, "pair(s) of triangles that cross", "repair cuts them out and fills the gaps, or wraps the body");
+        faults.push_back(
+            fmt::format("{} hole(s) with {} open edges: repair fills those that are small against the body.",
+                        report.holes, report.boundary_edges));
+    add(report.self_intersections, "pair(s) of triangles that cross",
+        "repair cuts them out and fills the gaps, or wraps the body");
     if (report.closed && !report.outward)
-        faults.push_back(fmt::format("The surface is closed but turned inside out (signed volume {:.4g} mm^3): repair turns it.",
-                                     report.volume));
+        faults.push_back(
+            fmt::format("The surface is closed but turned inside out (signed volume {:.4g} mm^3): repair turns it.",
+                        report.volume));
     return faults;
 }
 

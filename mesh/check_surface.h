@@ -10,18 +10,18 @@ namespace palpate::mesh {
 /// What is wrong with a surface, counted; nothing is changed. Counts are after welding equal corners.
 struct SurfaceReport {
     int vertices = 0, triangles = 0;
-    int duplicate_vertices = 0;      // corners within 1e-6 of the diagonal of another one
-    int degenerate_triangles = 0;    // no area
+    int duplicate_vertices = 0;    // corners within 1e-6 of the diagonal of another one
+    int degenerate_triangles = 0;  // no area
     int duplicate_triangles = 0;
     int boundary_edges = 0, holes = 0;
     int non_manifold_edges = 0;
-    int non_manifold_vertices = 0;   // where parts of the surface touch in a point
-    int inconsistent_edges = 0;      // neighbours that disagree about the outside
-    int self_intersections = 0;      // pairs of triangles
+    int non_manifold_vertices = 0;  // where parts of the surface touch in a point
+    int inconsistent_edges = 0;     // neighbours that disagree about the outside
+    int self_intersections = 0;     // pairs of triangles
     int components = 0;
     bool closed = false;
-    bool outward = false;            // signed volume is positive
-    double volume = 0, area = 0;     // [mm^3], [mm^2]
+    bool outward = false;         // signed volume is positive
+    double volume = 0, area = 0;  // [mm^3], [mm^2]
     Box box{};
 
     /// Can it be filled with tetrahedra as it is?

@@ -106,7 +106,8 @@ Reading read_answer(int pipe, std::string& answer, const ChildLimits& limits, Cl
     Header header{};
     const Reading begun = read_all(pipe, reinterpret_cast<char*>(&header), sizeof header, deadline);
     if (begun != Reading::Whole) return begun;
-    if (header.magic != magic || static_cast<double>(header.size) > limits.mebibytes * 1024 * 1024) return Reading::Broken;
+    if (header.magic != magic || static_cast<double>(header.size) > limits.mebibytes * 1024 * 1024)
+        return Reading::Broken;
     answer.resize(header.size);
     return read_all(pipe, answer.data(), answer.size(), deadline);
 }
@@ -130,8 +131,8 @@ ChildResult run_in_child(const std::function<std::string()>& work, const ChildLi
         static std::mutex one_at_a_time;
         const std::lock_guard lock(one_at_a_time);
         if (pipe2(ends, O_CLOEXEC) != 0)
-            throw SolverFailure(fmt::format("No pipe to a child process can be made: {}. Close open files and try again.",
-                                            std::strerror(errno)));
+            throw SolverFailure(fmt::format(
+                "No pipe to a child process can be made: {}. Close open files and try again.", std::strerror(errno)));
         child = fork();
         if (child == 0) live(work, limits, base, ends[1]);
         close(ends[1]);

@@ -6,8 +6,8 @@
 namespace palpate::mesh {
 
 struct ChildLimits {
-    double seconds = 60;     // of wall time, and of processor time
-    double mebibytes = 8192; // of memory, on top of what this process holds
+    double seconds = 60;      // of wall time, and of processor time
+    double mebibytes = 8192;  // of memory, on top of what this process holds
 };
 
 /// How a child process ended.

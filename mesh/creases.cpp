@@ -107,7 +107,8 @@ Creases find_creases(const Surface& surface, double angle) {
     for (const auto& [edge, pair] : edges) {
         const bool border = pair[1] < 0;
         const double turn = border ? -1 : normals.row(pair[0]).dot(normals.row(pair[1]));
-        const bool flat_border = !border && face[static_cast<std::size_t>(pair[0])] != face[static_cast<std::size_t>(pair[1])] &&
+        const bool flat_border = !border &&
+                                 face[static_cast<std::size_t>(pair[0])] != face[static_cast<std::size_t>(pair[1])] &&
                                  turn < std::cos(5 * degree);
         if (border || turn <= std::cos(angle * degree) || flat_border) creases.edges.push_back(edge);
     }

@@ -27,10 +27,13 @@ std::string surface_extension(const std::filesystem::path& file) {
     std::string extension = file.extension().string();
     std::transform(extension.begin(), extension.end(), extension.begin(),
                    [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
-    const bool known = std::any_of(formats.begin(), formats.end(), [&](const Format& f) { return extension == f.extension; });
+    const bool known =
+        std::any_of(formats.begin(), formats.end(), [&](const Format& f) { return extension == f.extension; });
     if (!known)
-        throw InvalidInput(fmt::format("{}: the extension '{}' names no surface format; .stl, .obj, .ply, .off and .vtp are "
-                                       "allowed. Export the surface in one of them.", file.string(), extension));
+        throw InvalidInput(
+            fmt::format("{}: the extension '{}' names no surface format; .stl, .obj, .ply, .off and .vtp are "
+                        "allowed. Export the surface in one of them.",
+                        file.string(), extension));
     return extension;
 }
 
@@ -38,7 +41,8 @@ Surface read_surface(const std::filesystem::path& file) {
     const std::string extension = surface_extension(file);
     const std::string content = read_text(file);
     if (content.find_first_not_of(" \t\r\n") == std::string::npos)
-        throw InvalidInput(fmt::format("{}: is empty ({} bytes). Export the surface again.", file.string(), content.size()));
+        throw InvalidInput(
+            fmt::format("{}: is empty ({} bytes). Export the surface again.", file.string(), content.size()));
     const auto format =
         std::find_if(formats.begin(), formats.end(), [&](const Format& f) { return extension == f.extension; });
     return triangulate(format->read(content, file), file);

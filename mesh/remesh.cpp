@@ -77,11 +77,13 @@ std::string reason(const Attempt& tried) {
 
 void RemeshOptions::validate() const {
     if (!(edge_length >= 0 && std::isfinite(edge_length)))
-        throw InvalidInput(fmt::format("Remeshing: edge_length is {} mm; a positive length is allowed, or 0 for 0.06 of "
-                                       "the longest side.", edge_length));
+        throw InvalidInput(
+            fmt::format("Remeshing: edge_length is {} mm; a positive length is allowed, or 0 for 0.06 of "
+                        "the longest side.",
+                        edge_length));
     if (!(crease_angle > 0 && crease_angle < 180))
-        throw InvalidInput(fmt::format("Remeshing: crease_angle is {} degrees; more than 0 and less than 180 is allowed.",
-                                       crease_angle));
+        throw InvalidInput(fmt::format(
+            "Remeshing: crease_angle is {} degrees; more than 0 and less than 180 is allowed.", crease_angle));
     if (iterations < 1 || iterations > 100)
         throw InvalidInput(fmt::format("Remeshing: iterations is {}; 1 to 100 is allowed.", iterations));
 }
@@ -98,9 +100,10 @@ Surface remesh(const Surface& surface, const RemeshOptions& options) {
     double length = target;
     std::string last;
     for (int i = 0; i < attempts; ++i) {
-        if (const double triangles = area(surface) / (std::sqrt(3.0) / 4 * length * length); triangles > most_triangles) {
-            last += fmt::format("{}at {:.4g} mm there would be {:.0f} triangles ({:.0f} are allowed)", last.empty() ? "" : ", and ", length, triangles,
-                                most_triangles);
+        if (const double triangles = area(surface) / (std::sqrt(3.0) / 4 * length * length);
+            triangles > most_triangles) {
+            last += fmt::format("{}at {:.4g} mm there would be {:.0f} triangles ({:.0f} are allowed)",
+                                last.empty() ? "" : ", and ", length, triangles, most_triangles);
             break;
         }
         const Attempt tried = attempt(surface, creases, length, options.iterations);
@@ -109,8 +112,10 @@ Surface remesh(const Surface& surface, const RemeshOptions& options) {
         const double wanted = std::sqrt(0.8 * allowed_volume_change / std::max(tried.volume_change, 1e-12));
         length *= std::clamp(wanted, 0.4, tried.sound ? 0.9 : 0.75);
     }
-    throw SolverFailure(fmt::format("Remeshing found no sound triangles for an edge length of {:.4g} mm: {}. Thicken or "
-                                    "remove its thinnest places, or give another edge length.", target, last));
+    throw SolverFailure(
+        fmt::format("Remeshing found no sound triangles for an edge length of {:.4g} mm: {}. Thicken or "
+                    "remove its thinnest places, or give another edge length.",
+                    target, last));
 }
 
 }  // namespace palpate::mesh

@@ -5,8 +5,8 @@
 namespace palpate::mesh {
 
 struct RemeshOptions {
-    double edge_length = 0;      // target [mm]; 0: 0.06 of the longest side
-    double crease_angle = 60;    // edges sharper than this are kept [degrees], (0, 180)
+    double edge_length = 0;    // target [mm]; 0: 0.06 of the longest side
+    double crease_angle = 60;  // edges sharper than this are kept [degrees], (0, 180)
     int iterations = 5;
     void validate() const;
 };

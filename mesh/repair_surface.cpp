@@ -32,7 +32,11 @@ public:
     void orient_and_stitch_sheets() {
         const SurfaceReport before = report_;
         take(orient_and_stitch(surface_));
-        if (before.duplicate_triangles > 0) say(fmt::format("{} twins of triangles dropped", before.duplicate_triangles));
+        if (before.duplicate_triangles > 0)
+            say(fmt::format("{} twins of triangles dropped", before.duplicate_triangles));
+        if (before.degenerate_triangles > report_.degenerate_triangles)
+            say(fmt::format("{} triangles without area dropped",
+                            before.degenerate_triangles - report_.degenerate_triangles));
         if (before.inconsistent_edges > 0)
             say(fmt::format("triangles turned along {} edges that disagreed", before.inconsistent_edges));
         if (before.non_manifold_edges > report_.non_manifold_edges)
@@ -65,7 +69,8 @@ public:
         const int crossings = report_.self_intersections, degenerate = report_.degenerate_triangles;
         take(remove_crossings(surface_));
         if (report_.self_intersections < crossings)
-            say(fmt::format("{} of {} crossing pairs of triangles removed", crossings - report_.self_intersections, crossings));
+            say(fmt::format("{} of {} crossing pairs of triangles removed", crossings - report_.self_intersections,
+                            crossings));
         if (report_.degenerate_triangles < degenerate)
             say(fmt::format("{} triangles without area removed", degenerate - report_.degenerate_triangles));
     }
@@ -76,8 +81,8 @@ public:
         say("the surface turned outwards");
     }
 
-    /// Largest distance of the input's vertices from the surface; without those deep inside where walls inside were
-    /// lost on purpose (wrapping, union).
+    /// Largest distance of the input's vertices from the surface; without those deeper inside than 2 % of the
+    /// diagonal where walls inside were lost on purpose (wrapping, union).
     double distance() const {
         const SurfaceTree tree(surface_);
         std::vector<char> used(static_cast<std::size_t>(input_.vertices.rows()), 0);
@@ -87,7 +92,8 @@ public:
             if (!used[static_cast<std::size_t>(v)]) continue;
             const Vec3 point = input_.vertices.row(v);
             const double distance = tree.closest(point).distance;
-            const bool lost_wall = (result_.wrapped || united_) && distance > allowed_distance() && tree.inside(point);
+            const bool lost_wall =
+                (result_.wrapped || united_) && distance > box_.diagonal() / 50 && tree.inside(point);
             if (!lost_wall) largest = std::max(largest, distance);
         }
         return largest;
@@ -97,19 +103,15 @@ public:
     /// Round everything, then back onto what was wrapped where that does no harm.
     void wrap_all() {
         if (whole_.triangles.rows() > 0) take(whole_);
-        const double alpha = box_.diagonal() / 100, offset = alpha / 20;
-        const SurfaceTree tree(surface_);
+        // A coarse wrap costs little, and tells a sheet from a body already.
+        const double coarse = box_.diagonal() / 25, alpha = box_.diagonal() / 100, offset = alpha / 20;
+        require_body(wrap(surface_, coarse, coarse / 20), coarse / 20);
         Surface wrapped = wrap(surface_, alpha, offset);
+        require_body(wrapped, offset);
         result_.wrapped = true;
         say(fmt::format("wrapped with alpha = {:.4g} mm: details narrower than that and inner walls are gone", alpha));
 
-        // Both sides of a sheet, at twice the offset: a skin, not a body.
-        const double thickness = 2 * signed_volume(wrapped) / area(wrapped);
-        if (thickness < 8 * offset)
-            throw InvalidInput(fmt::format("Repair: the surface encloses no volume: what can be wrapped round it is a skin "
-                                           "{:.3g} mm thick. It is an open sheet, or has holes larger than {:.0f} % of its "
-                                           "diagonal: close them, or allow larger ones to be filled.",
-                                           thickness, 100 * options_.largest_hole));
+        const SurfaceTree tree(surface_);
         Surface snapped = wrapped;
         for (auto vertex : snapped.vertices.rowwise()) {
             const SurfacePoint near = tree.closest(vertex.transpose());
@@ -120,6 +122,17 @@ public:
     }
 
 private:
+    /// Both sides of a sheet, each `offset` away: a skin, not a body.
+    void require_body(const Surface& wrapped, double offset) const {
+        const double thickness = 2 * signed_volume(wrapped) / area(wrapped);
+        if (thickness > 4 * offset) return;
+        throw InvalidInput(
+            fmt::format("Repair: the surface encloses no volume: what can be wrapped round it is a skin {:.3g} mm "
+                        "thick. It is an open sheet, or has holes larger than {:.0f} % of its diagonal: close "
+                        "them, or allow larger ones to be filled.",
+                        thickness, 100 * options_.largest_hole));
+    }
+
     void say(std::string step) { result_.steps.push_back(std::move(step)); }
     void take(Surface surface) {
         surface_ = std::move(surface);
@@ -131,7 +144,7 @@ private:
     const Surface& input_;
     Box box_;
     Surface surface_;
-    Surface whole_;       // before anything was cut away
+    Surface whole_;  // before anything was cut away
     bool united_ = false;
     SurfaceReport report_;
 };
@@ -141,9 +154,9 @@ void require_triangles(const Surface& surface) {
         throw InvalidInput("Repair: the surface has no triangles. Give a surface that encloses a volume.");
     const Eigen::Index n = surface.vertices.rows();
     if (surface.triangles.minCoeff() < 0 || surface.triangles.maxCoeff() >= n)
-        throw InvalidInput(fmt::format("Repair: a triangle names vertex {}; 0 to {} are allowed.",
-                                       surface.triangles.minCoeff() < 0 ? surface.triangles.minCoeff()
-                                                                        : surface.triangles.maxCoeff(), n - 1));
+        throw InvalidInput(fmt::format(
+            "Repair: a triangle names vertex {}; 0 to {} are allowed.",
+            surface.triangles.minCoeff() < 0 ? surface.triangles.minCoeff() : surface.triangles.maxCoeff(), n - 1));
     for (Eigen::Index v = 0; v < n; ++v)
         if (!surface.vertices.row(v).allFinite())
             throw InvalidInput(fmt::format("Repair: vertex {} is not finite. Remove it from the surface.", v));
@@ -152,20 +165,23 @@ void require_triangles(const Surface& surface) {
 /// A doubled sheet is closed and holds nothing.
 void require_volume(const SurfaceReport& report) {
     if (!report.closed || std::abs(report.volume) > 1e-6 * report.area * report.box.diagonal()) return;
-    throw InvalidInput(fmt::format("Repair: the surface encloses no volume ({:.3g} mm^3 at an area of {:.3g} mm^2): it is flat or "
-                                   "a doubled sheet. Give the boundary of a solid body.", report.volume, report.area));
+    throw InvalidInput(
+        fmt::format("Repair: the surface encloses no volume ({:.3g} mm^3 at an area of {:.3g} mm^2): it is flat or "
+                    "a doubled sheet. Give the boundary of a solid body.",
+                    report.volume, report.area));
 }
 
 }  // namespace
 
 void RepairOptions::validate() const {
     if (!(weld > 0 && weld <= 0.01))
-        throw InvalidInput(fmt::format("Repair: weld is {}; more than 0 and up to 0.01 of the diagonal is allowed.", weld));
+        throw InvalidInput(
+            fmt::format("Repair: weld is {}; more than 0 and up to 0.01 of the diagonal is allowed.", weld));
     if (!(largest_hole >= 0 && largest_hole <= 1))
         throw InvalidInput(fmt::format("Repair: largest_hole is {}; 0 to 1 of the diagonal is allowed.", largest_hole));
     if (!(allowed_distance > 0 && allowed_distance <= 1))
-        throw InvalidInput(fmt::format("Repair: allowed_distance is {}; more than 0 and up to 1 of the diagonal is allowed.",
-                                       allowed_distance));
+        throw InvalidInput(fmt::format(
+            "Repair: allowed_distance is {}; more than 0 and up to 1 of the diagonal is allowed.", allowed_distance));
 }
 
 RepairResult repair_surface(const Surface& surface, const RepairOptions& options) {
@@ -184,17 +200,18 @@ RepairResult repair_surface(const Surface& surface, const RepairOptions& options
         if (!repair.sound() || repair.distance() > repair.allowed_distance()) repair.wrap_all();
     }
     if (!repair.sound())
-        throw InvalidInput(fmt::format("Repair: the surface could not be made sound; left over: {} Mend it in a mesh editor.",
-                                       fmt::join(describe_faults(repair.report()), " ")));
+        throw InvalidInput(
+            fmt::format("Repair: the surface could not be made sound; left over: {} Mend it in a mesh editor.",
+                        fmt::join(describe_faults(repair.report()), " ")));
 
     result.surface = weld(repair.surface(), 0).surface;
     result.volume = signed_volume(result.surface);
     result.distance = repair.distance();
     if (result.distance > repair.allowed_distance())
-        throw InvalidInput(fmt::format("Repair: the mended surface lies {:.3g} mm from the given one; {:.3g} mm ({:.1f} % of the "
-                                       "diagonal) is allowed. After: {}. Mend it in a mesh editor, or allow more.",
-                                       result.distance, repair.allowed_distance(), 100 * options.allowed_distance,
-                                       fmt::join(result.steps, "; ")));
+        throw InvalidInput(fmt::format(
+            "Repair: the mended surface lies {:.3g} mm from the given one; {:.3g} mm ({:.1f} % of the "
+            "diagonal) is allowed. After: {}. Mend it in a mesh editor, or allow more.",
+            result.distance, repair.allowed_distance(), 100 * options.allowed_distance, fmt::join(result.steps, "; ")));
     return result;
 }
 

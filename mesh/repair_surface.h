@@ -8,18 +8,19 @@
 namespace palpate::mesh {
 
 struct RepairOptions {
-    double weld = 1e-6;             // corners closer than this share of the diagonal become one, (0, 0.01]
-    double largest_hole = 0.25;     // holes whose box diagonal is larger than this share of the body's are not filled, [0, 1]
-    double allowed_distance = 0.02; // the result may lie this far from the input, as a share of the diagonal
+    double weld = 1e-6;  // corners closer than this share of the diagonal become one, (0, 0.01]
+    double largest_hole =
+        0.25;  // holes whose box diagonal is larger than this share of the body's are not filled, [0, 1]
+    double allowed_distance = 0.02;  // the result may lie this far from the input, as a share of the diagonal
     void validate() const;
 };
 
 struct RepairResult {
-    Surface surface;                   // closed, outward, free of self-intersections
-    std::vector<std::string> steps;    // what was done, in words and counts; empty: nothing
-    double distance = 0;               // from the input's vertices to the result, largest [mm]
-    double volume = 0;                 // [mm^3]
-    bool wrapped = false;              // alpha wrapping was needed
+    Surface surface;                 // closed, outward, free of self-intersections
+    std::vector<std::string> steps;  // what was done, in words and counts; empty: nothing
+    double distance = 0;             // from the input's vertices to the result, largest [mm]
+    double volume = 0;               // [mm^3]
+    bool wrapped = false;            // alpha wrapping was needed
 };
 
 /// Weld, orient, stitch, fill small holes, remove self-intersections; alpha wrapping as the last resort.

@@ -38,14 +38,16 @@ public:
         const auto p_own = std::stable_partition(p.begin(), p.end(), shared_by(corners(t)));
         std::stable_partition(q.begin(), q.end(), shared_by(corners(s)));
         switch (p_own - p.begin()) {
-            case 0: return CGAL::do_intersect(triangle(s), triangle(t));
+            case 0:
+                return CGAL::do_intersect(triangle(s), triangle(t));
             case 1:  // the side across from the shared corner of one must meet the other
                 return CGAL::do_intersect(Kernel::Segment_3(at(p[1]), at(p[2])), triangle(t)) ||
                        CGAL::do_intersect(Kernel::Segment_3(at(q[1]), at(q[2])), triangle(s));
             case 2:  // folded flat onto each other
                 return CGAL::coplanar(at(p[0]), at(p[1]), at(p[2]), at(q[2])) &&
                        CGAL::coplanar_orientation(at(p[0]), at(p[1]), at(p[2]), at(q[2])) == CGAL::POSITIVE;
-            default: return false;
+            default:
+                return false;
         }
     }
 

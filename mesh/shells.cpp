@@ -66,7 +66,8 @@ std::vector<int> connected_parts(const Surface& surface) {
     std::iota(leader.begin(), leader.end(), 0);
     const auto find = [&](int t) {
         while (leader[static_cast<std::size_t>(t)] != t)
-            t = leader[static_cast<std::size_t>(t)] = leader[static_cast<std::size_t>(leader[static_cast<std::size_t>(t)])];
+            t = leader[static_cast<std::size_t>(t)] =
+                leader[static_cast<std::size_t>(leader[static_cast<std::size_t>(t)])];
         return t;
     };
 
@@ -152,8 +153,10 @@ Points cavity_points(const std::vector<Shell>& shells) {
                     const Vec3 point = centroid(shell.surface, t) + sign * step * std::sqrt(areas[t]) * normal;
                     if (trees[s].inside(point) && count_around(trees, point) == shell.depth + 1) return point;
                 }
-            throw SolverFailure(fmt::format("No point was found inside a cavity of {} triangles. Mend or remove that inner "
-                                            "shell.", shell.triangles.size()));
+            throw SolverFailure(
+                fmt::format("No point was found inside a cavity of {} triangles. Mend or remove that inner "
+                            "shell.",
+                            shell.triangles.size()));
         };
         points.push_back(search());
     }

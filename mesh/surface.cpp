@@ -31,6 +31,18 @@ Points rows(const std::vector<Vec3>& points) {
     return result;
 }
 
+/// A number for each point of a box's lattice.
+class BoxLattice {
+public:
+    explicit BoxLattice(const Eigen::Vector3i& quads)
+        : x_(quads.x() + 1), y_(quads.y() + 1), numbers_(x_ * y_ * (static_cast<std::size_t>(quads.z()) + 1), -1) {}
+    int& operator()(const Eigen::Array3i& at) { return numbers_[at.x() + x_ * (at.y() + y_ * at.z())]; }
+
+private:
+    std::size_t x_, y_;
+    std::vector<int> numbers_;
+};
+
 Triangles rows(const std::vector<std::array<int, 3>>& triangles) {
     Triangles result(static_cast<Eigen::Index>(triangles.size()), 3);
     for (std::size_t i = 0; i < triangles.size(); ++i)
@@ -85,54 +97,42 @@ Points vertex_normals(const Surface& surface) {
 
 Surface make_box(const Vec3& min, const Vec3& max, const Eigen::Vector3i& quads) {
     assert((quads.array() > 0).all() && (max - min).minCoeff() > 0);
-    const auto on_border = [&](const Eigen::Vector3i& at) {
-        return (at.array() == 0).any() || (at.array() == quads.array()).any();
-    };
 
     // Vertices: the lattice points on the border, numbered in the order of the lattice.
     std::vector<Vec3> vertices;
-    const Eigen::Vector3i points = quads.array() + 1;
-    std::vector<int> number(static_cast<std::size_t>(points.prod()), -1);
-    const auto lattice = [&](const Eigen::Vector3i& at) -> int& {
-        return number[static_cast<std::size_t>(at.x() + points.x() * (at.y() + points.y() * at.z()))];
-    };
-    for (Eigen::Vector3i at(0, 0, 0); at.z() <= quads.z(); ++at.z())
-        for (at.y() = 0; at.y() <= quads.y(); ++at.y())
-            for (at.x() = 0; at.x() <= quads.x(); ++at.x()) {
-                if (!on_border(at)) continue;
-                lattice(at) = static_cast<int>(vertices.size());
-                const Eigen::Array3d share = at.cast<double>().array() / quads.cast<double>().array();
+    BoxLattice number(quads);
+    for (int k = 0; k <= quads.z(); ++k)
+        for (int j = 0; j <= quads.y(); ++j)
+            for (int i = 0; i <= quads.x(); ++i) {
+                const Eigen::Array3i at(i, j, k);
+                if ((at > 0).all() && (at < quads.array()).all()) continue;
+                number(at) = static_cast<int>(vertices.size());
+                const Eigen::Array3d share = at.cast<double>() / quads.cast<double>().array();
                 vertices.emplace_back((1 - share) * min.array() + share * max.array());
             }
 
     // Sides: for each axis the low and the high one; u, v, axis are right-handed, so u x v looks up the axis.
     std::vector<std::array<int, 3>> triangles;
-    for (int axis = 0; axis < 3; ++axis) {
-        const int u = (axis + 1) % 3;
-        const int v = (axis + 2) % 3;
-        for (const bool high : {false, true})
+    for (int axis = 0; axis < 3; ++axis)
+        for (const bool high : {false, true}) {
+            const int u = (axis + 1) % 3;
+            const int v = (axis + 2) % 3;
+            Eigen::Array3i at = Eigen::Array3i::Zero();
+            at[axis] = high ? quads[axis] : 0;
             for (int i = 0; i < quads[u]; ++i)
                 for (int j = 0; j < quads[v]; ++j) {
-                    Eigen::Vector3i at = Eigen::Vector3i::Zero();
-                    at[axis] = high ? quads[axis] : 0;
                     const auto vertex = [&](int du, int dv) {
                         at[u] = i + du;
                         at[v] = j + dv;
-                        return lattice(at);
+                        return number(at);
                     };
-                    const int a = vertex(0, 0);
-                    const int b = vertex(1, 0);
-                    const int c = vertex(1, 1);
-                    const int d = vertex(0, 1);
-                    if (high) {
-                        triangles.push_back({a, b, c});
-                        triangles.push_back({a, c, d});
-                    } else {
-                        triangles.push_back({a, c, b});
-                        triangles.push_back({a, d, c});
-                    }
+                    std::array<int, 3> lower{vertex(0, 0), vertex(1, 0), vertex(1, 1)};
+                    std::array<int, 3> upper{vertex(0, 0), vertex(1, 1), vertex(0, 1)};
+                    if (!high) std::swap(lower[1], lower[2]);
+                    if (!high) std::swap(upper[1], upper[2]);
+                    triangles.insert(triangles.end(), {lower, upper});
                 }
-    }
+        }
     return {rows(vertices), rows(triangles)};
 }
 

@@ -77,8 +77,8 @@ Vec3 direction(int i, int count) {
 struct SurfaceTree::Impl {
     Surface surface;
     Box box{};
-    CornerTriangles triangles;       // those that have an area
-    std::vector<int> row_of;         // of the surface, behind each of them
+    CornerTriangles triangles;  // those that have an area
+    std::vector<int> row_of;    // of the surface, behind each of them
     Tree tree;
 
     explicit Impl(const Surface& given) : surface(given) {
@@ -89,8 +89,9 @@ struct SurfaceTree::Impl {
             row_of.push_back(t);
         }
         if (triangles.empty())
-            throw InvalidInput("The surface has no triangle with an area: distances to it mean nothing. "
-                               "Give a surface with at least one proper triangle.");
+            throw InvalidInput(
+                "The surface has no triangle with an area: distances to it mean nothing. "
+                "Give a surface with at least one proper triangle.");
         box = bounding_box(surface.vertices);
 
         // Built now, so that queries only read.

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <cstring>
 #include <map>
-#include <string_view>
+#include <new>
 
 #include "mesh/child_process.h"
 #include "mesh/errors.h"
@@ -18,6 +18,7 @@ namespace palpate::mesh {
 namespace {
 
 constexpr double allowed_volume_error = 1e-3;  // share of what the surface encloses
+constexpr int out_of_memory = 1;               // TetGen's code for it
 constexpr double least_quality = 1e-4;         // 1: a regular tetrahedron, 0: a flat one
 
 // ---- In the child process ---------------------------------------------------------------------------------------
@@ -53,20 +54,45 @@ void append(std::string& bytes, const T* data, std::size_t count) {
     if (count > 0) bytes.append(reinterpret_cast<const char*>(data), count * sizeof(T));
 }
 
-/// Two counts, the points, the corners: see `take`.
+/// Two counts, the points, the corners: see `take`. Where TetGen gave up, its code in the place of the first count,
+/// negative.
 std::string call_tetgen(const Surface& surface, const Points& holes, double scale, std::string switches) {
     tetgenio in, out;
     give(surface, holes, scale, in);
-    ::tetrahedralize(switches.data(), &in, &out);
+    std::int64_t counts[2] = {0, 0};
+    try {
+        ::tetrahedralize(switches.data(), &in, &out);
+        counts[0] = out.numberofpoints;
+        counts[1] = out.numberofcorners == 4 ? out.numberoftetrahedra : 0;
+    } catch (const int code) {
+        if (code == out_of_memory) throw std::bad_alloc();
+        counts[0] = -code;
+    }
     std::string bytes;
-    const std::int64_t counts[2] = {out.numberofpoints, out.numberofcorners == 4 ? out.numberoftetrahedra : 0};
     append(bytes, counts, 2);
+    if (counts[0] < 0) return bytes;
     append(bytes, out.pointlist, 3 * static_cast<std::size_t>(counts[0]));
     append(bytes, out.tetrahedronlist, 4 * static_cast<std::size_t>(counts[1]));
     return bytes;
 }
 
 // ---- In this process --------------------------------------------------------------------------------------------
+
+/// Why TetGen gave up, in words; empty where it did not.
+std::string complaint(const std::string& bytes) {
+    std::int64_t code = 0;
+    if (bytes.size() >= sizeof code) std::memcpy(&code, bytes.data(), sizeof code);
+    switch (-code) {
+        case 3:
+            return "it found that the surface crosses itself";
+        case 4:
+            return "it found a detail that is too small";
+        case 5:
+            return "it found two sides of the surface too close to each other";
+        default:
+            return code < 0 ? fmt::format("it gave up (code {})", -code) : "";
+    }
+}
 
 /// The mesh behind the bytes; empty when they are no mesh.
 VolumeMesh take(const std::string& bytes, double scale) {
@@ -97,7 +123,8 @@ double worst_quality(const VolumeMesh& mesh, const Eigen::VectorXd& volumes) {
         double squares = 0;
         for (int i = 0; i < 4; ++i)
             for (int j = i + 1; j < 4; ++j)
-                squares += (mesh.nodes.row(mesh.tetrahedra(e, i)) - mesh.nodes.row(mesh.tetrahedra(e, j))).squaredNorm();
+                squares +=
+                    (mesh.nodes.row(mesh.tetrahedra(e, i)) - mesh.nodes.row(mesh.tetrahedra(e, j))).squaredNorm();
         worst = std::min(worst, 6 * std::sqrt(2.0) * volumes[e] / std::pow(squares / 6, 1.5));
     }
     return worst;
@@ -126,7 +153,8 @@ std::string fault(VolumeMesh& mesh, const Surface& surface, double expected_volu
         return fmt::format("its elements fill {:.6g} mm^3 where the surface encloses {:.6g} mm^3", volumes.sum(),
                            expected_volume);
     if (const double quality = worst_quality(mesh, volumes); quality < least_quality)
-        return fmt::format("its flattest element has a quality of {:.1e} (at least {:.0e} is allowed)", quality, least_quality);
+        return fmt::format("its flattest element has a quality of {:.1e} (at least {:.0e} is allowed)", quality,
+                           least_quality);
     return {};
 }
 
@@ -134,12 +162,16 @@ std::string fault(VolumeMesh& mesh, const Surface& surface, double expected_volu
 std::string ending(const ChildResult& child, const TetrahedraliseOptions& options) {
     using End = ChildResult::End;
     switch (child.end) {
-        case End::OutOfTime: return fmt::format("it did not end within the time limit of {:.3g} s", options.time_limit);
+        case End::OutOfTime:
+            return fmt::format("it did not end within the time limit of {:.3g} s", options.time_limit);
         case End::OutOfMemory:
             return fmt::format("it needed more than the memory limit of {:.0f} MiB", options.memory_limit);
-        case End::Crashed: return fmt::format("it crashed ({})", strsignal(child.signal));
-        case End::Failed: return fmt::format("it gave up (exit code {})", child.code);
-        case End::Answered: break;
+        case End::Crashed:
+            return fmt::format("it crashed ({})", strsignal(child.signal));
+        case End::Failed:
+            return fmt::format("it gave up (exit code {})", child.code);
+        case End::Answered:
+            break;
     }
     return {};
 }
@@ -148,7 +180,8 @@ double mean_edge(const Surface& surface) {
     double sum = 0;
     for (Eigen::Index t = 0; t < surface.triangles.rows(); ++t)
         for (int i = 0; i < 3; ++i)
-            sum += (surface.vertices.row(surface.triangles(t, i)) - surface.vertices.row(surface.triangles(t, (i + 1) % 3)))
+            sum += (surface.vertices.row(surface.triangles(t, i)) -
+                    surface.vertices.row(surface.triangles(t, (i + 1) % 3)))
                        .norm();
     return sum / static_cast<double>(surface.triangles.size());
 }
@@ -165,8 +198,9 @@ void require_closed(const Surface& surface) {
         }
     const auto open = std::count_if(balance.begin(), balance.end(), [](const auto& edge) { return edge.second != 0; });
     if (surface.triangles.rows() == 0 || open > 0)
-        throw InvalidInput(fmt::format("Tetrahedra: the surface is not closed ({} triangles, {} open edges). Repair it first.",
-                                       surface.triangles.rows(), open));
+        throw InvalidInput(
+            fmt::format("Tetrahedra: the surface is not closed ({} triangles, {} open edges). Repair it first.",
+                        surface.triangles.rows(), open));
     const auto loose = std::find(used.begin(), used.end(), 0);
     if (loose != used.end())
         throw InvalidInput(fmt::format("Tetrahedra: vertex {} of the surface belongs to no triangle. Repair it first.",
@@ -178,7 +212,8 @@ void require_closed(const Surface& surface) {
 void TetrahedraliseOptions::validate() const {
     const auto check = [](const char* name, double value, double least, double most, const char* unit) {
         if (!(value >= least && value <= most))
-            throw InvalidInput(fmt::format("Tetrahedra: {} is {} {}; {} to {} is allowed.", name, value, unit, least, most));
+            throw InvalidInput(
+                fmt::format("Tetrahedra: {} is {} {}; {} to {} is allowed.", name, value, unit, least, most));
     };
     check("edge_length", edge_length, 0, 1e9, "mm");
     check("quality", quality, 1.1, 3, "");
@@ -196,7 +231,8 @@ VolumeMesh tetrahedralise(const Surface& surface, const TetrahedraliseOptions& o
     // TetGen's tolerances suit bodies of about this size; a power of two scales without rounding.
     const double scale = std::exp2(std::round(std::log2(1000 / bounding_box(surface.vertices).diagonal())));
     const double edge = scale * (options.edge_length > 0 ? options.edge_length : mean_edge(surface));
-    const double largest = edge * edge * edge / (3 * std::sqrt(2.0));  // twice a regular tetrahedron: the mean comes out near one
+    const double largest =
+        edge * edge * edge / (3 * std::sqrt(2.0));  // twice a regular tetrahedron: the mean comes out near one
 
     // First with the surface's triangles kept (Y), then with leave to cut them, in what is left of the time.
     const auto start = std::chrono::steady_clock::now();
@@ -206,21 +242,26 @@ VolumeMesh tetrahedralise(const Surface& surface, const TetrahedraliseOptions& o
         const double left = options.time_limit - spent;
         const ChildLimits limits{*keep ? 0.6 * left : left, options.memory_limit};
         const std::string switches = fmt::format("p{}q{:.4f}a{:.9f}Q", keep, options.quality, largest);
-        const ChildResult child =
-            run_in_child([&] { return call_tetgen(surface, holes, scale, switches); }, limits);
+        const ChildResult child = run_in_child([&] { return call_tetgen(surface, holes, scale, switches); }, limits);
         std::string wrong = ending(child, options);
         if (child.end == ChildResult::End::Answered) {
+            wrong = complaint(child.answer);
             VolumeMesh mesh = take(child.answer, scale);
-            wrong = fault(mesh, surface, volume);
+            if (wrong.empty()) wrong = fault(mesh, surface, volume);
             if (wrong.empty()) {
                 mesh.faces = boundary_faces(mesh.tetrahedra);
                 return mesh;
             }
         }
+        if (child.end == ChildResult::End::OutOfMemory) {
+            faults += wrong;
+            break;  // without Y it needs no less
+        }
         faults += *keep ? wrong : "; and with leave to cut the surface's triangles " + wrong;
     }
-    throw SolverFailure(fmt::format("TetGen did not fill the surface: {}. Repair and remesh the surface, with a {} edge length.",
-                                    faults, faults.find("limit") != std::string::npos ? "larger" : "smaller"));
+    throw SolverFailure(
+        fmt::format("TetGen did not fill the surface: {}. Repair and remesh the surface, with a {} edge length.",
+                    faults, faults.find("limit") != std::string::npos ? "larger" : "smaller"));
 }
 
 }  // namespace palpate::mesh

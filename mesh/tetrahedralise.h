@@ -6,10 +6,10 @@
 namespace palpate::mesh {
 
 struct TetrahedraliseOptions {
-    double edge_length = 0;        // of the largest elements [mm]; 0: the mean edge of the surface
-    double quality = 1.3;          // largest ratio of circumradius to shortest edge, [1.1, 3]
-    double time_limit = 120;       // [s]
-    double memory_limit = 8192;    // [MiB]
+    double edge_length = 0;      // of the largest elements [mm]; 0: the mean edge of the surface
+    double quality = 1.3;        // largest ratio of circumradius to shortest edge, [1.1, 3]
+    double time_limit = 120;     // [s]
+    double memory_limit = 8192;  // [MiB]
     void validate() const;
 };
 

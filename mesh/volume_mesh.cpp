@@ -158,7 +158,7 @@ VolumeMesh make_bar(const Vec3& min, const Vec3& max, const Eigen::Vector3i& cel
     // are cut alike, so neighbours agree on the diagonal of their common side.
     constexpr std::array<std::array<int, 3>, 6> paths{
         {{0, 1, 2}, {1, 2, 0}, {2, 0, 1}, {0, 2, 1}, {2, 1, 0}, {1, 0, 2}}};
-    mesh.tetrahedra.resize(6 * cells.prod(), 4);
+    mesh.tetrahedra.resize(Eigen::Index{6} * cells.prod(), 4);
     Eigen::Index e = 0;
     for_each(cells, [&](const Eigen::Vector3i& at) {
         for (std::size_t p = 0; p < paths.size(); ++p, ++e) {

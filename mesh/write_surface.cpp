@@ -30,9 +30,11 @@ std::string binary_stl(const Surface& surface) {
 }
 
 /// A line per vertex and per face; the shortest decimals that read back to the same number.
-std::string lines(const Surface& surface, const std::string& vertex_prefix, const std::string& face_prefix, int first_index) {
+std::string lines(const Surface& surface, const std::string& vertex_prefix, const std::string& face_prefix,
+                  int first_index) {
     std::string text;
-    for (const auto& v : surface.vertices.rowwise()) text += fmt::format("{}{} {} {}\n", vertex_prefix, v[0], v[1], v[2]);
+    for (const auto& v : surface.vertices.rowwise())
+        text += fmt::format("{}{} {} {}\n", vertex_prefix, v[0], v[1], v[2]);
     for (const auto& t : surface.triangles.rowwise())
         text += fmt::format("{}{} {} {}\n", face_prefix, t[0] + first_index, t[1] + first_index, t[2] + first_index);
     return text;
@@ -48,9 +50,10 @@ void write_surface(const std::filesystem::path& file, const Surface& surface) {
     } else if (extension == ".obj") {
         write_text(file, lines(surface, "v ", "f ", 1));
     } else if (extension == ".ply") {
-        write_text(file, fmt::format("ply\nformat ascii 1.0\nelement vertex {}\nproperty double x\nproperty double y\nproperty "
-                                     "double z\nelement face {}\nproperty list uchar int vertex_indices\nend_header\n{}",
-                                     n, m, lines(surface, "", "3 ", 0)));
+        write_text(file, fmt::format(
+                             "ply\nformat ascii 1.0\nelement vertex {}\nproperty double x\nproperty double y\nproperty "
+                             "double z\nelement face {}\nproperty list uchar int vertex_indices\nend_header\n{}",
+                             n, m, lines(surface, "", "3 ", 0)));
     } else if (extension == ".off") {
         write_text(file, fmt::format("OFF\n{} {} 0\n{}", n, m, lines(surface, "", "3 ", 0)));
     } else {

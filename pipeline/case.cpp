@@ -66,6 +66,10 @@ void read_identify(const YamlFields& yaml, identify::IdentifyOptions& options) {
     if (yaml.has("parameters")) options.scope = parse(scopes, yaml.text("parameters"), yaml.where("parameters"));
     if (yaml.has("method")) options.method = parse(methods, yaml.text("method"), yaml.where("method"));
     if (yaml.has("law")) options.law = parse(law_choices, yaml.text("law"), yaml.where("law"));
+    if (yaml.has("fixed")) {
+        options.fixed.clear();
+        for (const std::string& name : yaml.texts("fixed")) options.fixed.push_back(parse(stiffnesses, name, yaml.where("fixed")));
+    }
     read_if(yaml, "particles", options.particles, [&](auto& key) { return yaml.integer(key, 0, 10'000'000); });
     read_if(yaml, "iterations", options.iterations, [&](auto& key) { return yaml.integer(key, 1, 100000); });
     read_if(yaml, "search_low", options.search_low, [&](auto& key) { return yaml.number(key, 1e-9, 1e9); });

@@ -18,6 +18,12 @@ std::string quoted(const std::string& text) {
     return "'" + escaped + "'";
 }
 
+std::string fixed_names(const identify::IdentifyOptions& options) {
+    std::string names;
+    for (const auto kind : options.fixed) names += (names.empty() ? "" : ", ") + name_of(stiffnesses, kind);
+    return names;
+}
+
 std::string input_yaml(const Case& c) {
     std::string text = fmt::format("name: {}\n", quoted(c.name));
     if (c.mesh) {
@@ -67,12 +73,13 @@ std::string to_yaml(const Case& c) {
         "  parameters: {}       # uniform, zones, links\n"
         "  method: {}           # tempered, burion2008\n"
         "  law: {}              # automatic, linear, large-rotation\n"
+        "  fixed: [{}]           # elongation, flexion, torsion: taken as the model has them\n"
         "  particles: {}        # 0: 200 (tempered), 600 (burion2008)\n"
         "  iterations: {}       # burion2008\n"
         "  search_low: {}       # burion2008: search box, as multiples of the start stiffness\n"
         "  search_high: {}\n"
         "seed: {}\n",
-        name_of(scopes, i.scope), name_of(methods, i.method), name_of(law_choices, i.law), i.particles, i.iterations, i.search_low,
+        name_of(scopes, i.scope), name_of(methods, i.method), name_of(law_choices, i.law), fixed_names(i), i.particles, i.iterations, i.search_low,
         i.search_high, i.seed);
     const Expectation& e = c.expect;
     if (e.relative_at_most || e.held_out_at_most || e.spheres_at_least || !e.parameters.empty()) {

@@ -24,6 +24,10 @@ inline constexpr Names<identify::LawChoice, 3> law_choices{{{"automatic", identi
                                                             {"linear", identify::LawChoice::linear},
                                                             {"large-rotation", identify::LawChoice::large_rotation}}};
 
+inline constexpr Names<skeleton::Stiffness, 3> stiffnesses{{{"elongation", skeleton::Stiffness::elongation},
+                                                            {"flexion", skeleton::Stiffness::flexion},
+                                                            {"torsion", skeleton::Stiffness::torsion}}};
+
 /// @throws InvalidInput naming where, what was written and what is allowed.
 template <typename Enum, std::size_t N>
 Enum parse(const Names<Enum, N>& names, const std::string& written, const std::string& where) {

@@ -6,6 +6,7 @@
 #include <sys/file.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <chrono>
 #include <fstream>
@@ -42,28 +43,29 @@ private:
     std::unique_ptr<EVP_MD_CTX, decltype(&EVP_MD_CTX_free)> context_;
 };
 
-bool untouched(const fs::path& folder, const json& outputs) {
-    for (const auto& [file, digest] : outputs.items()) {
-        if (!fs::is_regular_file(folder / file) || sha256_of_file(folder / file) != digest) return false;
+/// SHA-256 of a file, or of the names and digests of all that a folder holds.
+std::string digest(const fs::path& output) {
+    if (!fs::is_directory(output)) return sha256_of_file(output);
+    std::vector<std::string> lines;
+    for (const auto& entry : fs::recursive_directory_iterator(output)) {
+        if (!entry.is_regular_file()) continue;
+        lines.push_back(fs::relative(entry.path(), output).string() + " " + sha256_of_file(entry.path()));
     }
-    return true;
+    std::sort(lines.begin(), lines.end());
+    return sha256(fmt::format("{}", fmt::join(lines, "\n")));
 }
 
-/// Files behind the outputs of a stage; a folder stands for all that it holds.
 json digests(const fs::path& folder, const std::vector<fs::path>& outputs) {
     json result = json::object();
-    for (const fs::path& output : outputs) {
-        if (fs::is_directory(folder / output)) {
-            for (const auto& entry : fs::recursive_directory_iterator(folder / output)) {
-                if (entry.is_regular_file()) {
-                    result[fs::relative(entry.path(), folder).string()] = sha256_of_file(entry.path());
-                }
-            }
-        } else {
-            result[output.string()] = sha256_of_file(folder / output);
-        }
-    }
+    for (const fs::path& output : outputs) result[output.string()] = digest(folder / output);
     return result;
+}
+
+bool untouched(const fs::path& folder, const json& outputs) {
+    for (const auto& [output, expected] : outputs.items()) {
+        if (!fs::exists(folder / output) || digest(folder / output) != expected) return false;
+    }
+    return true;
 }
 
 json read_record(const fs::path& file) {

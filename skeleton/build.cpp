@@ -14,7 +14,7 @@
 namespace palpate::skeleton {
 namespace {
 
-constexpr int fineness = 60;          // tetrahedra a sphere, at least
+constexpr int fineness = 60;  // tetrahedra a sphere, at least
 
 Body prepare(const mesh::Surface& surface, const mesh::SurfaceTree& tree, const mesh::VolumeMesh& volume,
              const std::vector<mesh::Region>& supports, int spheres) {
@@ -22,7 +22,8 @@ Body prepare(const mesh::Surface& surface, const mesh::SurfaceTree& tree, const 
     body.graph = make_tet_graph(volume, std::max(6000, fineness * spheres));
     body.ground = find_ground(body.graph, supports);
     body.axis = medial_axis(surface, tree, 0.02 * mesh::bounding_box(surface.vertices).diagonal());
-    if (body.axis.radii.size() == 0) throw InvalidInput("no ball fits into the surface: is it closed, and does it look outward?");
+    if (body.axis.radii.size() == 0)
+        throw InvalidInput("no ball fits into the surface: is it closed, and does it look outward?");
     body.core = find_core(body.graph, body.axis);
     body.free_volumes = body.graph.volumes;
     for (int t = 0; t < body.graph.size(); ++t) {
@@ -60,8 +61,8 @@ Points free_vertices(const mesh::Surface& surface, const std::vector<mesh::Regio
 std::vector<int> share_out(const Body& body, std::vector<Site>& sites, std::vector<Sphere>& spheres) {
     for (;;) {
         std::vector<int> owner = grow_cells(body.graph, body.core, body.ground.held, sites);
-        std::vector<char> useful;
-        for (const Site& site : sites) useful.push_back(!site.held);
+        std::vector<char> useful(sites.size());
+        std::transform(sites.begin(), sites.end(), useful.begin(), [](const Site& site) { return !site.held; });
         for (int t = 0; t < body.graph.size(); ++t) {
             for (int c = 0; c < 4; ++c) {
                 const int u = body.graph.neighbors(t, c);
@@ -79,12 +80,13 @@ std::vector<int> share_out(const Body& body, std::vector<Site>& sites, std::vect
 
 std::vector<Link> make_links(const std::vector<Section>& sections, const fem::Material& material) {
     std::vector<Link> links;
+    links.reserve(sections.size());
     for (const Section& s : sections) links.push_back({s.a, s.b, s.length, start_stiffness(s, material), 0});
 
     // No link is softer than a thousandth of the median one: slivers must not make the model singular.
     for (int k = 0; k < 3; ++k) {
-        std::vector<double> values;
-        for (const Link& link : links) values.push_back(link.stiffness(k));
+        std::vector<double> values(links.size());
+        std::transform(links.begin(), links.end(), values.begin(), [&](const Link& link) { return link.stiffness(k); });
         std::nth_element(values.begin(), values.begin() + values.size() / 2, values.end());
         for (Link& link : links) link.stiffness(k) = std::max(link.stiffness(k), 1e-3 * values[values.size() / 2]);
     }
@@ -93,8 +95,9 @@ std::vector<Link> make_links(const std::vector<Section>& sections, const fem::Ma
 
 // Bands of equally many links, by the way from the support to their middle.
 void set_zones(const Body& body, const std::vector<Site>& sites, int zones, std::vector<Link>& links) {
-    std::vector<double> way;
-    for (const Link& link : links) way.push_back(body.way(sites[link.a].tet) + body.way(sites[link.b].tet));
+    std::vector<double> way(links.size());
+    std::transform(links.begin(), links.end(), way.begin(),
+                   [&](const Link& link) { return body.way(sites[link.a].tet) + body.way(sites[link.b].tet); });
     std::vector<int> order(links.size());
     std::iota(order.begin(), order.end(), 0);
     std::stable_sort(order.begin(), order.end(), [&](int i, int j) { return way[i] < way[j]; });
@@ -107,10 +110,12 @@ void set_zones(const Body& body, const std::vector<Site>& sites, int zones, std:
 
 void BuildOptions::validate() const {
     if (spheres < 0 || spheres > 20000) {
-        throw InvalidInput(fmt::format("spheres is {}: allowed are 1 to 20000, or 0 to let the body's shape decide", spheres));
+        throw InvalidInput(
+            fmt::format("spheres is {}: allowed are 1 to 20000, or 0 to let the body's shape decide", spheres));
     }
     if (!(coverage >= 0) || !std::isfinite(coverage)) {
-        throw InvalidInput(fmt::format("coverage is {} mm: allowed are positive lengths, or 0 for 5 % of the body's longest side", coverage));
+        throw InvalidInput(fmt::format(
+            "coverage is {} mm: allowed are positive lengths, or 0 for 5 % of the body's longest side", coverage));
     }
     if (zones < 1 || zones > 1000) throw InvalidInput(fmt::format("zones is {}: allowed are 1 to 1000", zones));
 }
@@ -121,16 +126,17 @@ Model build_skeleton(const mesh::Surface& surface, const mesh::VolumeMesh& volum
     material.validate();
     const mesh::SurfaceTree tree(surface);
     Body body = prepare(surface, tree, volume, supports, options.spheres);
-    const double delta = options.coverage > 0 ? options.coverage : 0.05 * mesh::bounding_box(surface.vertices).longest_side();
+    const double delta =
+        options.coverage > 0 ? options.coverage : 0.05 * mesh::bounding_box(surface.vertices).longest_side();
     BuildReport result;
     result.medial_centers = body.axis.centers;
     result.medial_radii = body.axis.radii;
 
     // How many, and how far apart. Many more than a chain can hold fill the body in layers.
-    int count = options.spheres > 0 ? options.spheres
-                                    : default_spheres(body.free_volumes, body.core, body.way.maxCoeff());
+    int count =
+        options.spheres > 0 ? options.spheres : default_spheres(body.free_volumes, body.core, body.way.maxCoeff());
     double spacing = spacing_of_spheres(body.free_volumes, body.core, count);
-    if (spacing < 0.4 * mean_radius(body.free_volumes, body.core)) {
+    if (spacing < 0.5 * mean_radius(body.free_volumes, body.core)) {
         body.core = fill_core(body.graph, body.core);
         spacing = spacing_of_spheres(body.free_volumes, body.core, count);
     }
@@ -138,8 +144,8 @@ Model build_skeleton(const mesh::Surface& surface, const mesh::VolumeMesh& volum
     // Where: spread evenly over the core.
     std::vector<Site> sites = ground_sites(body.core, body.ground, spacing);
     add_sites(body.graph, body.core, body.ground.held, count, sites);
-    relax_sites(body.graph, body.core, body.ground.held, spacing,
-                sphere_shares(body.free_volumes, body.core, spacing), sites);
+    relax_sites(body.graph, body.core, body.ground.held, spacing, sphere_shares(body.free_volumes, body.core, spacing),
+                sites);
     keep_inside(body, tree, supports, sites);
 
     // What they leave uncovered gets balls of its own, apart from the others if that will do.
@@ -154,14 +160,16 @@ Model build_skeleton(const mesh::Surface& surface, const mesh::VolumeMesh& volum
     place_spheres();
     for (double gap : {0.5, 0.25, 0.}) {
         if (options.spheres > 0 || result.coverage <= delta) break;
-        const std::vector<Site> added = covering_sites(body, supports, sites, model.spheres, vertices, delta, gap * spacing);
+        const std::vector<Site> added =
+            covering_sites(body, supports, sites, model.spheres, vertices, delta, gap * spacing);
         sites.insert(sites.end(), added.begin(), added.end());
         place_spheres();
     }
     if (result.coverage > delta) {
-        result.notes.push_back(fmt::format(
-            "{} spheres leave some of the surface {:.3g} mm outside; {:.3g} mm are wanted: more spheres cover it better",
-            free_sites(sites), result.coverage, delta));
+        result.notes.push_back(
+            fmt::format("{} spheres leave some of the surface {:.3g} mm outside; {:.3g} mm are wanted: more spheres "
+                        "cover it better",
+                        free_sites(sites), result.coverage, delta));
     }
 
     // Who belongs to whom: cells, masses, links, skin.
@@ -174,9 +182,9 @@ Model build_skeleton(const mesh::Surface& surface, const mesh::VolumeMesh& volum
     for (Eigen::Index v = 0; v < surface.vertices.rows(); ++v) {
         model.skin.push_back(attach(model, Vec3(surface.vertices.row(v))));
     }
-    model.provenance["skeleton"] = fmt::format("{} free and {} held spheres, {} links, coverage {:.4g} mm",
-                                               free_sites(sites), std::ssize(sites) - free_sites(sites),
-                                               model.links.size(), result.coverage);
+    model.provenance["skeleton"] =
+        fmt::format("{} free and {} held spheres, {} links, coverage {:.4g} mm", free_sites(sites),
+                    std::ssize(sites) - free_sites(sites), model.links.size(), result.coverage);
     if (report != nullptr) *report = std::move(result);
     return model;
 }

@@ -43,7 +43,8 @@ Eigen::SparseMatrix<double> link_forces(const Model& model, const Equilibrium& e
         const LinkTerms terms = link_terms(link.length, rest_direction(model, link), model.spheres[link.a].center,
                                            Mat3::Identity(), model.spheres[link.b].center, Mat3::Identity(), true);
         Vec12 step;
-        step << equilibrium.step.segment<6>(6 * link.a), equilibrium.step.segment<6>(6 * link.b);
+        step << equilibrium.step.segment<6>(Eigen::Index{6} * link.a),
+            equilibrium.step.segment<6>(Eigen::Index{6} * link.b);
         for (int s = 0; s < 3; ++s) {
             const Vec12 force = -terms.gradient.col(s) - terms.hessian[s] * step;
             for (int i = 0; i < 12; ++i)

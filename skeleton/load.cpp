@@ -24,7 +24,7 @@ void for_each_share(const Model& model, const State& state, const Load& load, co
 Eigen::VectorXd external_force(const Model& model, const State& state, const Load& load) {
     Eigen::VectorXd f = Eigen::VectorXd::Zero(model.dofs());
     for (size_t i = 0; i < model.spheres.size(); ++i) f.segment<3>(6 * i) = model.spheres[i].mass * load.gravity;
-    for_each_share(model, state, load, [&](int sphere, const Vec3& force, const Vec3& arm) {
+    for_each_share(model, state, load, [&](Eigen::Index sphere, const Vec3& force, const Vec3& arm) {
         f.segment<3>(6 * sphere) += force;
         f.segment<3>(6 * sphere + 3) += arm.cross(force);
     });

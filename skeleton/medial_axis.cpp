@@ -29,8 +29,10 @@ std::vector<Sample> sample_surface(const mesh::Surface& surface, double spacing)
         for (int i = 0; i < k; ++i) {
             for (int j = 0; j < 2 * (k - i) - 1; ++j) {
                 // Upright and upside-down triangles of strip i in turn.
-                const double s = (i + (j % 2 == 0 ? 1. : 2.) / 3) / k;
-                const double t = (j / 2 + (j % 2 == 0 ? 1. : 2.) / 3) / k;
+                const int pair = j / 2;
+                const double third = (j % 2 == 0 ? 1. : 2.) / 3;
+                const double s = (i + third) / k;
+                const double t = (pair + third) / k;
                 samples.push_back({a + s * u + t * v, -normal.normalized()});
             }
         }

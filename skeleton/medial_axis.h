@@ -7,9 +7,9 @@ namespace palpate::skeleton {
 
 /// Largest balls inside a body: their centres sample its medial axis.
 struct MedialAxis {
-    Points centers;           // (n x 3) [mm]
-    Eigen::VectorXd radii;    // (n) distance from the centre to the surface [mm], > 0
-    Points touching;          // the surface point that each ball was started from (n x 3) [mm]
+    Points centers;         // (n x 3) [mm]
+    Eigen::VectorXd radii;  // (n) distance from the centre to the surface [mm], > 0
+    Points touching;        // the surface point that each ball was started from (n x 3) [mm]
 };
 
 /// The medial balls that touch a closed surface, about one for each patch of `spacing` [mm] a side.

@@ -71,8 +71,8 @@ Eigen::VectorXd residual(const Model& model, const State& state, const Load& loa
     Eigen::VectorXd r = external_force(model, state, load);
     for (const Link& link : model.links) {
         const Vec12 g = terms_of(model, state, link).gradient * link.stiffness;
-        r.segment<6>(6 * link.a) -= g.head<6>();
-        r.segment<6>(6 * link.b) -= g.tail<6>();
+        r.segment<6>(Eigen::Index{6} * link.a) -= g.head<6>();
+        r.segment<6>(Eigen::Index{6} * link.b) -= g.tail<6>();
     }
     return r;
 }

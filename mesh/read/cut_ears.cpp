@@ -33,7 +33,8 @@ bool is_ear(const std::vector<Flat>& flat, const std::vector<int>& left, int a, 
     if (turn(at(a), at(b), at(c)) <= 0) return false;
     for (const int p : left) {
         if (p == a || p == b || p == c || at(p) == at(a) || at(p) == at(c)) continue;
-        if (turn(at(a), at(b), at(p)) >= 0 && turn(at(b), at(c), at(p)) >= 0 && turn(at(c), at(a), at(p)) >= 0) return false;
+        if (turn(at(a), at(b), at(p)) >= 0 && turn(at(b), at(c), at(p)) >= 0 && turn(at(c), at(a), at(p)) >= 0)
+            return false;
     }
     return true;
 }
@@ -59,8 +60,8 @@ std::vector<int> cut_ears(const std::vector<Vec3>& corners) {
             if (left.size() > long_polygon) break;
         }
         // A polygon that crosses itself may have no ear: any corner will do, repair looks after the rest.
-        triangles.insert(triangles.end(), {left[(best + left.size() - 1) % left.size()], left[best],
-                                           left[(best + 1) % left.size()]});
+        triangles.insert(triangles.end(),
+                         {left[(best + left.size() - 1) % left.size()], left[best], left[(best + 1) % left.size()]});
         left.erase(left.begin() + static_cast<std::ptrdiff_t>(best));
     }
     triangles.insert(triangles.end(), left.begin(), left.end());

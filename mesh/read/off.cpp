@@ -10,16 +10,18 @@ namespace {
 
 void need_line(TextLines& lines, const std::filesystem::path& file, std::string_view what, int found, int promised) {
     if (lines.next()) return;
-    throw InvalidInput(fmt::format("{}: ends after {} of {} {}. The file is cut off: export or copy it again.", file.string(), found,
-                                   promised, what));
+    throw InvalidInput(fmt::format("{}: ends after {} of {} {}. The file is cut off: export or copy it again.",
+                                   file.string(), found, promised, what));
 }
 
 int read_count(const TextLines& lines, std::size_t i, std::string_view what) {
     const int count = lines.integer(i, what);
     // Each takes at least six characters ("0 0 0" and a line end): a promise of more is not worth memory.
     if (count < 0 || static_cast<std::size_t>(count) > lines.left() / 6 + 1)
-        throw InvalidInput(fmt::format("{}: {} is {}, but only {} bytes follow. The file is cut off, or its head is wrong: "
-                                       "export it again.", lines.where(), what, count, lines.left()));
+        throw InvalidInput(
+            fmt::format("{}: {} is {}, but only {} bytes follow. The file is cut off, or its head is wrong: "
+                        "export it again.",
+                        lines.where(), what, count, lines.left()));
     return count;
 }
 
@@ -32,8 +34,10 @@ Polygons read_off(const std::string& content, const std::filesystem::path& file)
     const std::string_view head = begun ? lines.words()[0] : std::string_view();
     if (!head.ends_with("OFF") || head.starts_with('4') || head.starts_with('n') ||
         (lines.words().size() > 1 && lines.words()[1] == "BINARY"))
-        throw InvalidInput(fmt::format("{}, line {}: begins with {}; 'OFF', 'COFF' or 'NOFF', in text, is allowed. Export the surface "
-                                       "as a text OFF.", file.string(), lines.line(), cited(head)));
+        throw InvalidInput(
+            fmt::format("{}, line {}: begins with {}; 'OFF', 'COFF' or 'NOFF', in text, is allowed. Export the surface "
+                        "as a text OFF.",
+                        file.string(), lines.line(), cited(head)));
     std::size_t at = 1;
     if (lines.words().size() == 1) {
         need_line(lines, file, "lines of counts", 0, 1);

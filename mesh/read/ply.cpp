@@ -40,11 +40,19 @@ struct Header {
     int lines = 0;
 };
 
-std::size_t size_of(Type type) { return std::array<std::size_t, 8>{1, 1, 2, 2, 4, 4, 4, 8}[static_cast<std::size_t>(type)]; }
+std::size_t size_of(Type type) {
+    return std::array<std::size_t, 8>{1, 1, 2, 2, 4, 4, 4, 8}[static_cast<std::size_t>(type)];
+}
 
 std::optional<Type> type_named(const std::string& name) {
-    constexpr std::array<std::array<const char*, 2>, 8> names{{{"char", "int8"}, {"uchar", "uint8"}, {"short", "int16"},
-        {"ushort", "uint16"}, {"int", "int32"}, {"uint", "uint32"}, {"float", "float32"}, {"double", "float64"}}};
+    constexpr std::array<std::array<const char*, 2>, 8> names{{{"char", "int8"},
+                                                               {"uchar", "uint8"},
+                                                               {"short", "int16"},
+                                                               {"ushort", "uint16"},
+                                                               {"int", "int32"},
+                                                               {"uint", "uint32"},
+                                                               {"float", "float32"},
+                                                               {"double", "float64"}}};
     for (std::size_t i = 0; i < names.size(); ++i)
         if (name == names[i][0] || name == names[i][1]) return static_cast<Type>(i);
     return std::nullopt;
@@ -83,7 +91,8 @@ private:
         const std::size_t end = content_.find('\n', at_);
         ++header_.lines;
         // No head is long: a binary file without line ends is none.
-        if (end == std::string::npos || header_.lines > 1000) fail("the head has no 'end_header'. The file is cut off, or no PLY.");
+        if (end == std::string::npos || header_.lines > 1000)
+            fail("the head has no 'end_header'. The file is cut off, or no PLY.");
         std::string line = content_.substr(at_, end - at_);
         at_ = end + 1;
         while (!line.empty() && (line.back() == '\r' || line.back() == ' ')) line.pop_back();
@@ -93,10 +102,15 @@ private:
     void read_format(std::istringstream& line) {
         std::string name;
         line >> name;
-        if (name == "ascii") header_.encoding = Encoding::Text;
-        else if (name == "binary_little_endian") header_.encoding = Encoding::Little;
-        else if (name == "binary_big_endian") header_.encoding = Encoding::Big;
-        else fail(fmt::format("the format is {}; ascii, binary_little_endian and binary_big_endian are allowed.", cited(name)));
+        if (name == "ascii")
+            header_.encoding = Encoding::Text;
+        else if (name == "binary_little_endian")
+            header_.encoding = Encoding::Little;
+        else if (name == "binary_big_endian")
+            header_.encoding = Encoding::Big;
+        else
+            fail(fmt::format("the format is {}; ascii, binary_little_endian and binary_big_endian are allowed.",
+                             cited(name)));
     }
 
     void read_element(std::istringstream& line) {
@@ -126,7 +140,9 @@ private:
 
     Type type(const std::string& name) const {
         const auto found = type_named(name);
-        if (!found) fail(fmt::format("{} is no type of a PLY (char, uchar, short, ushort, int, uint, float, double).", cited(name)));
+        if (!found)
+            fail(fmt::format("{} is no type of a PLY (char, uchar, short, ushort, int, uint, float, double).",
+                             cited(name)));
         return *found;
     }
 
@@ -163,7 +179,8 @@ public:
 
 private:
     void skip_blanks() {
-        for (; at_ < content_.size() && std::string_view(" \t\r\n").find(content_[at_]) != std::string_view::npos; ++at_)
+        for (; at_ < content_.size() && std::string_view(" \t\r\n").find(content_[at_]) != std::string_view::npos;
+             ++at_)
             line_ += content_[at_] == '\n';
     }
 
@@ -175,8 +192,10 @@ private:
         at_ = end;
         const auto value = parse_number(word);
         if (!value)
-            throw InvalidInput(fmt::format("{}: {} stands where a finite number is allowed. Mend the line, or export the surface "
-                                           "again.", where(), cited(word)));
+            throw InvalidInput(
+                fmt::format("{}: {} stands where a finite number is allowed. Mend the line, or export the surface "
+                            "again.",
+                            where(), cited(word)));
         return *value;
     }
 
@@ -193,21 +212,31 @@ private:
             return static_cast<double>(value);
         };
         switch (type) {
-            case Type::Int8: return as(std::int8_t{});
-            case Type::UInt8: return as(std::uint8_t{});
-            case Type::Int16: return as(std::int16_t{});
-            case Type::UInt16: return as(std::uint16_t{});
-            case Type::Int32: return as(std::int32_t{});
-            case Type::UInt32: return as(std::uint32_t{});
-            case Type::Float: return as(float{});
-            case Type::Double: return as(double{});
+            case Type::Int8:
+                return as(std::int8_t{});
+            case Type::UInt8:
+                return as(std::uint8_t{});
+            case Type::Int16:
+                return as(std::int16_t{});
+            case Type::UInt16:
+                return as(std::uint16_t{});
+            case Type::Int32:
+                return as(std::int32_t{});
+            case Type::UInt32:
+                return as(std::uint32_t{});
+            case Type::Float:
+                return as(float{});
+            case Type::Double:
+                return as(double{});
         }
         return 0;
     }
 
     [[noreturn]] void fail_cut_off() const {
-        throw InvalidInput(fmt::format("{}: the file ends here; its head promises {} of them. It is cut off: export or copy it "
-                                       "again.", where(), element_->count));
+        throw InvalidInput(
+            fmt::format("{}: the file ends here; its head promises {} of them. It is cut off: export or copy it "
+                        "again.",
+                        where(), element_->count));
     }
 
     const std::string& content_;
@@ -225,12 +254,13 @@ void check_count(const Element& element, const Values& values, const std::filesy
     for (const Property& property : element.properties)
         least += values.is_text() ? 2 : size_of(property.count.value_or(property.type));
     if (least > 0 && element.count > 0 && element.count - 1 > values.left() / least)
-        throw InvalidInput(fmt::format("{}: its head promises {} of '{}', but only {} bytes follow, enough for {}. The file is cut "
-                                       "off, or its head is wrong: export or copy it again.", file.string(), element.count,
-                                       element.name, values.left(), values.left() / least));
+        throw InvalidInput(
+            fmt::format("{}: its head promises {} of '{}', but only {} bytes follow, enough for {}. The file is cut "
+                        "off, or its head is wrong: export or copy it again.",
+                        file.string(), element.count, element.name, values.left(), values.left() / least));
     if (least == 0 && element.count > 0)
-        throw InvalidInput(fmt::format("{}: its element '{}' has no properties. Export the surface again.", file.string(),
-                                       element.name));
+        throw InvalidInput(fmt::format("{}: its element '{}' has no properties. Export the surface again.",
+                                       file.string(), element.name));
 }
 
 void read_vertex(const Element& element, Values& values, Polygons& polygons) {
@@ -249,14 +279,16 @@ void read_vertex(const Element& element, Values& values, Polygons& polygons) {
 void read_face(const Element& element, Values& values, Polygons& polygons) {
     polygons.begin_polygon(values.is_text() ? values.line() : 0);
     for (const Property& property : element.properties) {
-        const bool is_corners = property.count && (property.name == "vertex_indices" || property.name == "vertex_index");
+        const bool is_corners =
+            property.count && (property.name == "vertex_indices" || property.name == "vertex_index");
         auto repeat = property.count ? values.next(*property.count) : 1.0;
         for (; repeat >= 1; --repeat) {
             const double value = values.next(property.type);
             if (!is_corners) continue;
             if (value != std::floor(value) || std::abs(value) > std::numeric_limits<int>::max())
-                throw InvalidInput(fmt::format("{}: vertex {} does not exist. Mend the face, or export the surface again.",
-                                               values.where(), value));
+                throw InvalidInput(
+                    fmt::format("{}: vertex {} does not exist. Mend the face, or export the surface again.",
+                                values.where(), value));
             polygons.corners.push_back(static_cast<int>(value));
         }
     }
@@ -278,12 +310,14 @@ Polygons read_ply(const std::string& content, const std::filesystem::path& file)
     for (const Element& element : header.elements) {
         check_count(element, values, file);
         if (element.name == "vertex" && !has(element, {"x", "y", "z"}))
-            throw InvalidInput(fmt::format("{}: its vertices have no properties x, y and z. Export the surface again.", file.string()));
-        if (element.name == "face" && !has(element, {"vertex_indices"}) && !has(element, {"vertex_index"}))
-            throw InvalidInput(fmt::format("{}: its faces have no list 'vertex_indices'. Export the surface again.", file.string()));
-        if (element.name == "tristrips")
-            throw InvalidInput(fmt::format("{}: holds triangle strips, which are not read. Export the surface with plain faces.",
+            throw InvalidInput(fmt::format("{}: its vertices have no properties x, y and z. Export the surface again.",
                                            file.string()));
+        if (element.name == "face" && !has(element, {"vertex_indices"}) && !has(element, {"vertex_index"}))
+            throw InvalidInput(
+                fmt::format("{}: its faces have no list 'vertex_indices'. Export the surface again.", file.string()));
+        if (element.name == "tristrips")
+            throw InvalidInput(fmt::format(
+                "{}: holds triangle strips, which are not read. Export the surface with plain faces.", file.string()));
         for (std::size_t i = 0; i < element.count; ++i) {
             values.in(element, i);
             if (element.name == "vertex") {

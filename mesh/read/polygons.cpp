@@ -17,14 +17,19 @@ void check(const Polygons& polygons, const std::filesystem::path& file) {
     const auto n = polygons.points.size();
     for (std::size_t v = 0; v < n; ++v)
         if (!polygons.points[v].allFinite())
-            throw InvalidInput(fmt::format("{}, vertex {}: ({}, {}, {}) is not finite. Export the surface again without that "
-                                           "vertex.", file.string(), v + static_cast<std::size_t>(polygons.first_index),
-                                           polygons.points[v].x(), polygons.points[v].y(), polygons.points[v].z()));
+            throw InvalidInput(
+                fmt::format("{}, vertex {}: ({}, {}, {}) is not finite. Export the surface again without that "
+                            "vertex.",
+                            file.string(), v + static_cast<std::size_t>(polygons.first_index), polygons.points[v].x(),
+                            polygons.points[v].y(), polygons.points[v].z()));
     if (polygons.begins.empty())
-        throw InvalidInput(n == 0 ? fmt::format("{}: holds no vertices and no faces. Export a surface of triangles or "
-                                                "polygons.", file.string())
-                                  : fmt::format("{}: holds {} vertices but no faces, it is a point cloud. Mesh the points "
-                                                "first (for instance Poisson reconstruction in MeshLab).", file.string(), n));
+        throw InvalidInput(n == 0
+                               ? fmt::format("{}: holds no vertices and no faces. Export a surface of triangles or "
+                                             "polygons.",
+                                             file.string())
+                               : fmt::format("{}: holds {} vertices but no faces, it is a point cloud. Mesh the points "
+                                             "first (for instance Poisson reconstruction in MeshLab).",
+                                             file.string(), n));
     for (std::size_t i = 0; i < polygons.begins.size(); ++i) {
         const auto corners = polygons.polygon(i);
         if (corners.size() < 2)
@@ -32,9 +37,11 @@ void check(const Polygons& polygons, const std::filesystem::path& file) {
                                            where(polygons, i, file), corners.size()));
         for (const int v : corners)
             if (v < 0 || static_cast<std::size_t>(v) >= n)
-                throw InvalidInput(fmt::format("{}: vertex {} does not exist; {} to {} are allowed. Mend the face, or export "
-                                               "the surface again.", where(polygons, i, file), v + polygons.first_index,
-                                               polygons.first_index, static_cast<long>(n) - 1 + polygons.first_index));
+                throw InvalidInput(
+                    fmt::format("{}: vertex {} does not exist; {} to {} are allowed. Mend the face, or export "
+                                "the surface again.",
+                                where(polygons, i, file), v + polygons.first_index, polygons.first_index,
+                                static_cast<long>(n) - 1 + polygons.first_index));
     }
 }
 
@@ -70,7 +77,8 @@ Surface triangulate(const Polygons& polygons, const std::filesystem::path& file)
     surface.vertices.resize(static_cast<Eigen::Index>(polygons.points.size()), 3);
     for (std::size_t v = 0; v < polygons.points.size(); ++v)
         surface.vertices.row(static_cast<Eigen::Index>(v)) = polygons.points[v];
-    surface.triangles = Eigen::Map<const Triangles>(triangles.data(), static_cast<Eigen::Index>(triangles.size() / 3), 3);
+    surface.triangles =
+        Eigen::Map<const Triangles>(triangles.data(), static_cast<Eigen::Index>(triangles.size() / 3), 3);
     return surface;
 }
 

@@ -55,23 +55,26 @@ std::string TextLines::where() const { return fmt::format("{}, line {}", file_.s
 
 std::string_view TextLines::word(std::size_t i, std::string_view what) const {
     if (i >= words_.size())
-        throw InvalidInput(fmt::format("{}: {} is missing, the line has {} words. Mend the line, or export the surface again.",
-                                       where(), what, words_.size()));
+        throw InvalidInput(
+            fmt::format("{}: {} is missing, the line has {} words. Mend the line, or export the surface again.",
+                        where(), what, words_.size()));
     return words_[i];
 }
 
 double TextLines::number(std::size_t i, std::string_view what) const {
     const std::string_view text = word(i, what);
     if (const auto value = parse_number(text)) return *value;
-    throw InvalidInput(fmt::format("{}: {} is {}; a finite number is allowed. Mend the line, or export the surface again.",
-                                   where(), what, cited(text)));
+    throw InvalidInput(
+        fmt::format("{}: {} is {}; a finite number is allowed. Mend the line, or export the surface again.", where(),
+                    what, cited(text)));
 }
 
 int TextLines::integer(std::size_t i, std::string_view what) const {
     const std::string_view text = word(i, what);
     if (const auto value = parse_integer(text)) return *value;
-    throw InvalidInput(fmt::format("{}: {} is {}; a whole number is allowed. Mend the line, or export the surface again.",
-                                   where(), what, cited(text)));
+    throw InvalidInput(
+        fmt::format("{}: {} is {}; a whole number is allowed. Mend the line, or export the surface again.", where(),
+                    what, cited(text)));
 }
 
 Vec3 TextLines::position(std::size_t i) const {

@@ -63,8 +63,8 @@ Polygons read_vtp(const std::string& content, const std::filesystem::path& file)
     reader->Update();
     vtkPolyData* poly = reader->GetOutput();
     if (!listener->message.empty() || reader->GetErrorCode() != 0 || poly == nullptr)
-        throw InvalidInput(fmt::format("{}: is no VTP that can be read ({}). Export it again as VTK XML PolyData.", file.string(),
-                                       last_line(listener->message)));
+        throw InvalidInput(fmt::format("{}: is no VTP that can be read ({}). Export it again as VTK XML PolyData.",
+                                       file.string(), last_line(listener->message)));
 
     Polygons polygons;
     polygons.points.resize(static_cast<std::size_t>(poly->GetNumberOfPoints()));

@@ -62,9 +62,10 @@ std::string lines(const std::vector<Json>& elements, const std::string& indent =
 
 template <typename Element>
 std::vector<Json> all_to_json(const std::vector<Element>& elements) {
-    std::vector<Json> list;
-    for (const Element& element : elements) list.push_back(to_json(element));
-    return list;
+    std::vector<Json> all;
+    all.reserve(elements.size());
+    for (const Element& element : elements) all.push_back(to_json(element));
+    return all;
 }
 
 std::string to_text(const Model& model) {

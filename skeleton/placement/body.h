@@ -11,8 +11,8 @@ struct Body {
     MedialAxis axis;
     Core core;
     Ground ground;
-    Eigen::VectorXd free_volumes;    // zero where held (m) [mm^3]
-    Eigen::VectorXd way;             // through the body from the support (m) [mm]
+    Eigen::VectorXd free_volumes;  // zero where held (m) [mm^3]
+    Eigen::VectorXd way;           // through the body from the support (m) [mm]
 };
 
 }  // namespace palpate::skeleton

@@ -107,7 +107,7 @@ bool move_idle(const TetGraph& graph, const Core& core, const std::vector<char>&
 
 std::vector<int> grow_cells(const TetGraph& graph, const Core& core, const std::vector<char>& held,
                             const std::vector<Site>& sites) {
-    using Claim = std::tuple<double, int, int>;    // distance, tetrahedron, site
+    using Claim = std::tuple<double, int, int>;  // distance, tetrahedron, site
     std::priority_queue<Claim, std::vector<Claim>, std::greater<>> claims;
     std::vector<int> owner(graph.size(), -1);
     const auto take = [&](int tet, int site, bool all) {

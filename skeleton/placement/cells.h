@@ -8,10 +8,10 @@ namespace palpate::skeleton {
 
 /// A place where a sphere will stand.
 struct Site {
-    Vec3 at = Vec3::Zero();    // on the core [mm]
-    int tet = 0;               // the tetrahedron that its cell grows from
-    bool held = false;         // in a support
-    bool extra = false;        // covers a part of the surface by itself: stands off the core, where it was put
+    Vec3 at = Vec3::Zero();  // on the core [mm]
+    int tet = 0;             // the tetrahedron that its cell grows from
+    bool held = false;       // in a support
+    bool extra = false;      // covers a part of the surface by itself: stands off the core, where it was put
 };
 
 /// Shares the body out between the sites: the site of each tetrahedron (m).

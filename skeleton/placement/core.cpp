@@ -9,9 +9,9 @@
 namespace palpate::skeleton {
 namespace {
 
-constexpr double lump = 20;          // V / r^3 below this: a lump all over (ball 4.2, cube 8, square bar 4 per width)
-constexpr double view = 4;           // a neighbourhood reaches this many radii
-constexpr double runs_on = 0.42;      // a direction counts whose variance is at least this share of the largest
+constexpr double lump = 20;       // V / r^3 below this: a lump all over (ball 4.2, cube 8, square bar 4 per width)
+constexpr double view = 4;        // a neighbourhood reaches this many radii
+constexpr double runs_on = 0.42;  // a direction counts whose variance is at least this share of the largest
 
 // Medial balls, largest first.
 struct Balls {
@@ -128,7 +128,7 @@ Core find_core(const TetGraph& graph, const MedialAxis& axis) {
     const Balls balls(axis);
     const bool filled = graph.volumes.sum() < lump * std::pow(balls.radii(0), 3);
     std::vector<int> ball(graph.size()), onward(balls.radii.size(), -1);
-    std::map<int, int> nearest;    // of each ball in use: the tetrahedron at its centre
+    std::map<int, int> nearest;  // of each ball in use: the tetrahedron at its centre
     for (int t = 0; t < graph.size(); ++t) {
         const Vec3 center = graph.centers.row(t);
         const int b = ball[t] = filled ? balls.largest_at(center) : ball_of(balls, center, onward);
@@ -188,8 +188,8 @@ double spacing_of_spheres(const Eigen::VectorXd& volumes, const Core& core, int 
 }
 
 int default_spheres(const Eigen::VectorXd& volumes, const Core& core, double reach) {
-    Vec3 share = Vec3::Zero();        // of the volume, by dimensions
-    double length = 0, radius = 0;    // of the limbs
+    Vec3 share = Vec3::Zero();      // of the volume, by dimensions
+    double length = 0, radius = 0;  // of the limbs
     for (int t = 0; t < volumes.size(); ++t) {
         const Neighborhood& n = core.of(t);
         share(n.dimensions - 1) += volumes(t);

@@ -6,8 +6,8 @@
 namespace palpate::skeleton {
 namespace {
 
-constexpr double overlap = 0.7;    // largest radius of a sphere in a plate or lump / spacing
-constexpr double swelling = 0.5;   // of the distance that points may lie outside
+constexpr double overlap = 0.7;   // largest radius of a sphere in a plate or lump / spacing
+constexpr double swelling = 0.5;  // of the distance that points may lie outside
 
 // Few of the allowed balls that hold the points.
 std::vector<int> cover(const MedialAxis& axis, const std::vector<char>& allowed, const Points& points,
@@ -89,8 +89,8 @@ std::vector<Site> covering_sites(const Body& body, const std::vector<mesh::Regio
     for (const Site& site : sites) taken[site.tet] = 1;
     for (Eigen::Index ball = 0; ball < body.axis.radii.size(); ++ball) {
         const Vec3 center = body.axis.centers.row(ball);
-        const bool apart = std::none_of(sites.begin(), sites.end(),
-                                        [&](const Site& site) { return (site.at - center).norm() < gap; });
+        const bool apart =
+            std::none_of(sites.begin(), sites.end(), [&](const Site& site) { return (site.at - center).norm() < gap; });
         allowed.push_back(apart && !mesh::contains(supports, center));
     }
     const Eigen::VectorXd distance = outside(spheres, points);

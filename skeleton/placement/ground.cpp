@@ -40,7 +40,8 @@ std::string words(const mesh::Region& region) {
 std::string where(const TetGraph& graph, const std::vector<mesh::Region>& supports) {
     const mesh::Box box = mesh::bounding_box(graph.nodes);
     std::string text = fmt::format("the body reaches from {} to {} mm", words(box.min), words(box.max));
-    for (std::size_t i = 0; i < supports.size(); ++i) text += fmt::format("; support {}: {}", i + 1, words(supports[i]));
+    for (std::size_t i = 0; i < supports.size(); ++i)
+        text += fmt::format("; support {}: {}", i + 1, words(supports[i]));
     return text;
 }
 
@@ -85,9 +86,9 @@ std::pair<int, double> nearest_row(const Points& centers, const Eigen::RowVector
     return {static_cast<int>(row), std::sqrt(squared)};
 }
 
-// Centres among weighted points, so many that none of the points is much further than half a diagonal of the spacing
-// from all; each new one starts at the furthest point, then all go to the middles of what is nearest to them.
-Points spread(const Points& points, const Eigen::VectorXd& weights, double spacing) {
+// Centres among weighted points, so many that each point is within its reach of one; each new one starts at the
+// furthest point, then all go to the middles of what is nearest to them.
+Points spread(const Points& points, const Eigen::VectorXd& weights, double reach) {
     Points centers = (weights.transpose() * points) / weights.sum();
     while (centers.rows() < points.rows()) {
         Eigen::Index furthest = 0;
@@ -98,7 +99,7 @@ Points spread(const Points& points, const Eigen::VectorXd& weights, double spaci
             distance = d;
             furthest = i;
         }
-        if (distance < 0.85 * spacing) break;
+        if (distance < reach) break;
         centers.conservativeResize(centers.rows() + 1, 3);
         centers.bottomRows(1) = points.row(furthest);
         for (int round = 0; round < 10; ++round) {
@@ -134,8 +135,10 @@ Ground find_ground(const TetGraph& graph, const std::vector<mesh::Region>& suppo
         ground.held[t] = std::all_of(nodes.begin(), nodes.end(), [&](int n) { return ground.held_node[n] != 0; });
     }
     if (std::all_of(ground.held.begin(), ground.held.end(), [](char h) { return h != 0; })) {
-        throw InvalidInput(fmt::format("the supports hold the whole body, nothing is left to move: {}. Make the "
-                                       "supports smaller", where(graph, supports)));
+        throw InvalidInput(
+            fmt::format("the supports hold the whole body, nothing is left to move: {}. Make the "
+                        "supports smaller",
+                        where(graph, supports)));
     }
     add_faces(graph, ground);
     if (ground.patch.rows() == 0) add_nodes(graph, ground);
@@ -144,9 +147,18 @@ Ground find_ground(const TetGraph& graph, const std::vector<mesh::Region>& suppo
 
 std::vector<Site> ground_sites(const Core& core, const Ground& ground, double spacing) {
     const Eigen::Index n = ground.patch.rows();
-    Points at(n, 3);    // on the core
-    for (Eigen::Index i = 0; i < n; ++i) at.row(i) = core.of(ground.behind[i]).collapse(ground.patch.row(i));
-    const Points centers = spread(at, ground.weight, spacing);
+    Points at(n, 3);                 // on the core
+    double thin = 0, thickness = 0;  // how much of the patch holds limbs and plates
+    for (Eigen::Index i = 0; i < n; ++i) {
+        const Neighborhood& around = core.of(ground.behind[i]);
+        at.row(i) = around.collapse(ground.patch.row(i));
+        if (around.dimensions == 3) continue;
+        thin += ground.weight(i);
+        thickness += ground.weight(i) * 2 * around.radius;
+    }
+    // Half a diagonal and some. Close spheres in a chain need no crowd to hold them.
+    const double least = thin > 0.5 * ground.weight.sum() ? thickness / thin : 0;
+    const Points centers = spread(at, ground.weight, 0.85 * std::max(spacing, least));
 
     // Each stands in the middle of its part of the patch, and grows from a tetrahedron of its own there.
     std::vector<int> part(n);

@@ -9,14 +9,14 @@
 namespace palpate::skeleton {
 namespace {
 
-constexpr double sliver = 0.05;    // of the mean area
+constexpr double sliver = 0.05;  // of the mean area
 
 // Integrals over the faces between two cells, projected on the plane across the link: faces that lean against it
 // count less and those that look back count negative, so that the teeth of a jagged border cancel.
 struct Integrals {
-    double area = 0;                         // of 1
-    Vec3 first = Vec3::Zero();               // of x
-    Mat3 second = Mat3::Zero();              // of x x^T
+    double area = 0;             // of 1
+    Vec3 first = Vec3::Zero();   // of x
+    Mat3 second = Mat3::Zero();  // of x x^T
     double weight = 0, dimensions = 0;
 };
 
@@ -111,7 +111,7 @@ std::vector<Section> find_sections(const TetGraph& graph, const Core& core, cons
 
 Vec3 start_stiffness(const Section& s, const fem::Material& material) {
     const double E = material.young, mu = material.shear_modulus();
-    const double torsion = 4 * s.moment_1 * s.moment_2 / (s.moment_1 + s.moment_2);    // J of an ellipse
+    const double torsion = 4 * s.moment_1 * s.moment_2 / (s.moment_1 + s.moment_2);  // J of an ellipse
 
     // A limb is a beam. Pure bending by phi turns the ends by +-phi/2 against the link:
     //   kF ((phi/2)^2 + (phi/2)^2) / 2 = kF phi^2 / 4 = E I phi^2 / (2 L), so kF = 2 E I / L.
@@ -120,11 +120,12 @@ Vec3 start_stiffness(const Section& s, const fem::Material& material) {
     const double I = s.dimensions < 1.5 ? std::sqrt(s.moment_1 * s.moment_2) : s.moment_2;
     const Vec3 beam(E * s.area / s.length, 2 * E * I / s.length, mu * torsion / s.length);
 
-    // In a lump the links are a lattice: a section carries tension and shear alike, kE = kS = 2 mu A / L (Hooke's law
-    // without its volume term, which a link cannot have; 2 mu is E there). A shift by s across the link turns both ends by s / L:
-    //   kF (s/L)^2 = kS s^2 / 2, so kF = kS L^2 / 2.
-    const double kS = E * s.area / s.length;
-    const Vec3 lattice(kS, kS * s.length * s.length / 2, E * (s.moment_1 + s.moment_2) / s.length);
+    // In a lump the links are a lattice: a section carries tension and shear alike, kE = kS. Hooke's law would have it
+    // so with 2 mu A / L and a volume term apart; links have none, so E A / L, which gives Young's modulus itself.
+    // A shift by s across the link turns both ends by s / L against it:
+    //   kF (s / L)^2 = kS s^2 / 2, so kF = kS L^2 / 2.
+    const double kE = E * s.area / s.length;
+    const Vec3 lattice(kE, kE * s.length * s.length / 2, E * (s.moment_1 + s.moment_2) / s.length);
 
     return s.dimensions < 2.5 ? beam : lattice;
 }

@@ -121,9 +121,10 @@ TetGraph make_tet_graph(const mesh::VolumeMesh& body, int least) {
     const auto apart = std::find_if(path.begin(), path.end(), [](double d) { return d > 1e300; });
     if (apart != path.end()) {
         const Vec3 at = graph.centers.row(apart - path.begin());
-        throw InvalidInput(fmt::format("the body is in several pieces, one of them near ({:.4g}, {:.4g}, {:.4g}) mm: "
-                                       "a skeleton is made for one piece, so join them or keep one",
-                                       at.x(), at.y(), at.z()));
+        throw InvalidInput(
+            fmt::format("the body is in several pieces, one of them near ({:.4g}, {:.4g}, {:.4g}) mm: "
+                        "a skeleton is made for one piece, so join them or keep one",
+                        at.x(), at.y(), at.z()));
     }
     return graph;
 }

@@ -11,11 +11,11 @@ namespace palpate::skeleton {
 struct TetGraph {
     using Quads = Eigen::Matrix<int, Eigen::Dynamic, 4, Eigen::RowMajor>;
 
-    Points nodes;               // (n x 3) [mm]
-    Quads corners;              // (m x 4), positive volume
-    Quads neighbors;            // across the face opposite to each corner (m x 4); -1: the outside
-    Points centers;             // (m x 3) [mm]
-    Eigen::VectorXd volumes;    // (m) [mm^3]
+    Points nodes;             // (n x 3) [mm]
+    Quads corners;            // (m x 4), positive volume
+    Quads neighbors;          // across the face opposite to each corner (m x 4); -1: the outside
+    Points centers;           // (m x 3) [mm]
+    Eigen::VectorXd volumes;  // (m) [mm^3]
 
     int size() const { return static_cast<int>(corners.rows()); }
     Vec3 node(int tet, int corner) const { return nodes.row(corners(tet, corner)); }

@@ -30,6 +30,7 @@ int factor_block(BlockCholesky::Block& A, const BlockCholesky::Vec6& least) {
 BlockCholesky::BlockCholesky(int n, const std::vector<std::array<int, 2>>& couplings) : n_(n) {
     // Order by minimum degree on the graph of the blocks.
     std::vector<Eigen::Triplet<double>> entries;
+    entries.reserve(static_cast<size_t>(n) + 2 * couplings.size());
     for (int i = 0; i < n; ++i) entries.emplace_back(i, i, 1.0);
     for (const auto& [i, j] : couplings) {
         entries.emplace_back(i, j, 1.0);
@@ -138,7 +139,7 @@ void BlockCholesky::solve(Eigen::MatrixXd& B) const {
     std::vector<Strip> strips(n_);
     for (Eigen::Index begin = 0; begin < B.cols(); begin += width) {
         const Eigen::Index count = std::min(width, B.cols() - begin);
-        for (int p = 0; p < n_; ++p) strips[p] = B.block(6 * block_at_[p], begin, 6, count);
+        for (int p = 0; p < n_; ++p) strips[p] = B.block(Eigen::Index{6} * block_at_[p], begin, 6, count);
 
         // L z = b
         for (int j = 0; j < n_; ++j) {
@@ -153,7 +154,7 @@ void BlockCholesky::solve(Eigen::MatrixXd& B) const {
             for (const int i : columns_[j].rows) strips[j] -= (++below)->transpose().lazyProduct(strips[i]);
             L->transpose().triangularView<Eigen::Upper>().solveInPlace(strips[j]);
         }
-        for (int p = 0; p < n_; ++p) B.block(6 * block_at_[p], begin, 6, count) = strips[p];
+        for (int p = 0; p < n_; ++p) B.block(Eigen::Index{6} * block_at_[p], begin, 6, count) = strips[p];
     }
 }
 

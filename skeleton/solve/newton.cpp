@@ -30,7 +30,8 @@ bool factor_shifted(const Problem& problem, double& shift) {
 // Moves along `step` so far that the potential falls as it should [Armijo], or only rounding is left of it.
 bool descend(const Problem& problem, const Eigen::VectorXd& step, State& state, Balance& here) {
     const double slope = here.net.dot(step);
-    for (double share = problem.system.step_limit(step); share > 1e-8; share /= 2) {
+    double share = problem.system.step_limit(step);
+    for (int halving = 0; halving < 27; ++halving, share /= 2) {
         const State trial = advance(state, share * step);
         const Balance there = problem.balance(trial);
         if (there.potential <= here.potential - 1e-4 * share * slope + here.rounding) {
@@ -51,7 +52,8 @@ bool leave_saddle(const Problem& problem, State& state, Balance& here) {
         way = problem.system.solve(problem.system.metric_times(way)).normalized();
     way *= 1e3 * problem.system.length();  // beyond the limit
     way *= problem.system.step_limit(way);
-    for (double share = 0.2; share > 1e-6; share /= 2)
+    double share = 0.2;
+    for (int halving = 0; halving < 18; ++halving, share /= 2)
         for (const double sign : {1.0, -1.0}) {
             const State trial = advance(state, sign * share * way);
             const Balance there = problem.balance(trial);

@@ -35,8 +35,9 @@ void require_held(const Model& model) {
             fmt::format("none of the model's {} spheres is held, so nothing stops it from moving away: "
                         "let a support hold one, or set its 'held' to true",
                         n));
-    for (size_t next = 0; next < reached.size(); ++next)
-        for (const int j : neighbours[reached[next]]) reach(j);
+    size_t next = 0;
+    while (next < reached.size())
+        for (const int j : neighbours[reached[next++]]) reach(j);
 
     const auto loose = std::find(seen.begin(), seen.end(), 0) - seen.begin();
     if (loose == n) return;
@@ -85,8 +86,8 @@ Balance SkeletonSystem::balance(const Eigen::VectorXd& k, const State& state, co
                                            state.R[link.a], state.x.row(link.b).transpose(), state.R[link.b], false);
         elastic += terms.energy.dot(k.segment<3>(3 * l));
         const Vec12 gradient = terms.gradient * k.segment<3>(3 * l);
-        net.segment<6>(6 * link.a) -= gradient.head<6>();
-        net.segment<6>(6 * link.b) -= gradient.tail<6>();
+        net.segment<6>(Eigen::Index{6} * link.a) -= gradient.head<6>();
+        net.segment<6>(Eigen::Index{6} * link.b) -= gradient.tail<6>();
     }
     for (size_t i = 0; i < body_.spheres.size(); ++i)
         if (body_.spheres[i].held) net.segment<6>(6 * i).setZero();
@@ -97,7 +98,7 @@ Balance SkeletonSystem::balance(const Eigen::VectorXd& k, const State& state, co
 
 double SkeletonSystem::largest_force(const Eigen::VectorXd& f) const {
     double most = 0;
-    for (const int i : free_)
+    for (const Eigen::Index i : free_)
         most = std::max({most, f.segment<3>(6 * i).norm(), f.segment<3>(6 * i + 3).norm() / length_});
     return most;
 }
@@ -116,9 +117,11 @@ double SkeletonSystem::force_rounding(const Eigen::VectorXd& k) const {
 
 double SkeletonSystem::step_limit(const Eigen::VectorXd& step) const {
     double times_too_long = 1;
-    for (const int i : free_) times_too_long = std::max(times_too_long, step.segment<3>(6 * i + 3).norm() / 0.5);
+    for (const Eigen::Index i : free_)
+        times_too_long = std::max(times_too_long, step.segment<3>(6 * i + 3).norm() / 0.5);
     for (const Link& link : body_.links) {
-        const double apart = (step.segment<3>(6 * link.b) - step.segment<3>(6 * link.a)).norm();
+        const double apart =
+            (step.segment<3>(Eigen::Index{6} * link.b) - step.segment<3>(Eigen::Index{6} * link.a)).norm();
         times_too_long = std::max(times_too_long, apart / (0.5 * link.length));
     }
     return 1 / times_too_long;
@@ -176,10 +179,10 @@ void SkeletonSystem::fail_at(const BlockCholesky::BadPivot& pivot, const Eigen::
 Eigen::MatrixXd SkeletonSystem::solve(const Eigen::MatrixXd& B) const {
     assert(B.rows() == body_.dofs());
     Eigen::MatrixXd packed(6 * free_.size(), B.cols());
-    for (size_t i = 0; i < free_.size(); ++i) packed.middleRows<6>(6 * i) = B.middleRows<6>(6 * free_[i]);
+    for (size_t i = 0; i < free_.size(); ++i) packed.middleRows<6>(6 * i) = B.middleRows<6>(Eigen::Index{6} * free_[i]);
     matrix_.solve(packed);
     Eigen::MatrixXd X = Eigen::MatrixXd::Zero(B.rows(), B.cols());
-    for (size_t i = 0; i < free_.size(); ++i) X.middleRows<6>(6 * free_[i]) = packed.middleRows<6>(6 * i);
+    for (size_t i = 0; i < free_.size(); ++i) X.middleRows<6>(Eigen::Index{6} * free_[i]) = packed.middleRows<6>(6 * i);
     return X;
 }
 

@@ -26,9 +26,7 @@ inline Surface inside_out(Surface surface) {
 }
 
 /// A ball of radius 10 with a hollow of radius 5, turned as it should be.
-inline Surface hollow_ball() {
-    return join(make_sphere({0, 0, 0}, 10, 3), inside_out(make_sphere({0, 0, 0}, 5, 2)));
-}
+inline Surface hollow_ball() { return join(make_sphere({0, 0, 0}, 10, 3), inside_out(make_sphere({0, 0, 0}, 5, 2))); }
 
 /// Three corners a triangle, as STL has it.
 inline Surface unwelded(const Surface& surface) {

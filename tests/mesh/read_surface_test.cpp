@@ -49,25 +49,25 @@ TEST_F(ReadSurface, EveryFormatGivesBackWhatWasWritten) {
     }
     write_surface(folder / "a.stl", ball);
     const Surface read = read_surface(folder / "a.stl");
-    EXPECT_EQ(read.vertices.rows(), 3 * ball.triangles.rows());  // corners are not welded
+    EXPECT_EQ(read.vertices.rows(), 3 * ball.triangles.rows());                         // corners are not welded
     EXPECT_NEAR(signed_volume(read), signed_volume(ball), 1e-5 * signed_volume(ball));  // STL has 7 digits
 }
 
-TEST_F(ReadSurface, BinaryStlIsToldBySizeNotBySolid) {
-    EXPECT_EQ(read("a.stl", binary_stl(1)).triangles.rows(), 1);
-}
+TEST_F(ReadSurface, BinaryStlIsToldBySizeNotBySolid) { EXPECT_EQ(read("a.stl", binary_stl(1)).triangles.rows(), 1); }
 
 TEST_F(ReadSurface, TextStl) {
     const Surface read = this->read("a.stl",
-        "solid a name\r\n FACET normal 0 0 1\r\n outer loop\r\n vertex 0 0 0\r\n vertex 1e0 0 0\r\n vertex 0 +1 0\r\n endloop\r\n"
-        " endfacet\r\nendsolid\r\n");
+                                    "solid a name\r\n FACET normal 0 0 1\r\n outer loop\r\n vertex 0 0 0\r\n vertex "
+                                    "1e0 0 0\r\n vertex 0 +1 0\r\n endloop\r\n"
+                                    " endfacet\r\nendsolid\r\n");
     EXPECT_EQ(area(read), 0.5);
 }
 
 TEST_F(ReadSurface, ObjWithEverythingThatExportersWrite) {
     const Surface read = this->read("a.obj",
-        "# made by hand\nmtllib x.mtl\no body\nv 0 0 0\nv 1 0 0 1.0\nv 0 1 0\nv 0 0 1\nvt 0 0\nvn 0 0 1\ng sides\nusemtl grey\ns off\n"
-        "f 1/1/1 3/1/1 2/1/1\nf 1//1 \\\n 2//1 4//1\nf -3/1 -2/1 -1/1\nf 1 4 3");
+                                    "# made by hand\nmtllib x.mtl\no body\nv 0 0 0\nv 1 0 0 1.0\nv 0 1 0\nv 0 0 1\nvt "
+                                    "0 0\nvn 0 0 1\ng sides\nusemtl grey\ns off\n"
+                                    "f 1/1/1 3/1/1 2/1/1\nf 1//1 \\\n 2//1 4//1\nf -3/1 -2/1 -1/1\nf 1 4 3");
     EXPECT_EQ(read.triangles.rows(), 4);
     EXPECT_DOUBLE_EQ(signed_volume(read), 1.0 / 6);
 }
@@ -83,15 +83,18 @@ TEST_F(ReadSurface, ConcavePolygonsKeepTheirAreaAndSide) {
 }
 
 TEST_F(ReadSurface, OffWithColoursAndComments) {
-    const Surface read = this->read("a.off", "COFF # head\n4 4 6\n0 0 0 1 1 1 1\n1 0 0 1 1 1 1\n# between\n0 1 0 1 1 1 1\n0 0 1 1 1 1 1\n" +
-                                             indexed_faces);
+    const Surface read = this->read(
+        "a.off",
+        "COFF # head\n4 4 6\n0 0 0 1 1 1 1\n1 0 0 1 1 1 1\n# between\n0 1 0 1 1 1 1\n0 0 1 1 1 1 1\n" + indexed_faces);
     EXPECT_DOUBLE_EQ(signed_volume(read), 1.0 / 6);
 }
 
 TEST_F(ReadSurface, PlyBothEndiannesses) {
     for (const bool big : {false, true}) {
-        std::string text = std::string("ply\nformat binary_") + (big ? "big" : "little") +
-            "_endian 1.0\nelement vertex 4\nproperty uchar red\nproperty double x\nproperty double y\nproperty double z\n"
+        std::string text =
+            std::string("ply\nformat binary_") + (big ? "big" : "little") +
+            "_endian 1.0\nelement vertex 4\nproperty uchar red\nproperty double x\nproperty double y\nproperty double "
+            "z\n"
             "element face 4\nproperty list uchar uint vertex_index\nproperty list uchar float weights\nend_header\n";
         const auto add = [&]<class T>(T value) {
             char bytes[sizeof(T)];
@@ -133,7 +136,8 @@ TEST_F(ReadSurface, TellsWhatIsWrongWithTheFile) {
 TEST_F(ReadSurface, TellsWhereAnStlIsWrong) {
     EXPECT_TRUE(says(refusal("a.stl", binary_stl(7)), {"7 triangles", "434 bytes", "134 bytes", "cut off"}));
     EXPECT_TRUE(says(refusal("a.stl", std::string(20, '\1')), {"20 bytes", "84"}));
-    EXPECT_TRUE(says(refusal("a.stl", binary_stl(1, std::numeric_limits<float>::quiet_NaN())), {"triangle 0", "nan", "not finite"}));
+    EXPECT_TRUE(says(refusal("a.stl", binary_stl(1, std::numeric_limits<float>::quiet_NaN())),
+                     {"triangle 0", "nan", "not finite"}));
     const std::string begin = "solid\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\n";
     EXPECT_TRUE(says(refusal("a.stl", begin), {"endsolid", "cut off"}));
     EXPECT_TRUE(says(refusal("a.stl", begin + "vertex 0 inf 0\n"), {"line 6", "y coordinate", "inf"}));
@@ -170,16 +174,19 @@ TEST_F(ReadSurface, TellsWhereAPlyIsWrong) {
     EXPECT_TRUE(says(refusal("a.ply", "ply\nend_header\n"), {"format"}));
     EXPECT_TRUE(says(refusal("a.ply", "ply\nproperty int x\nend_header\n"), {"line 2", "before any"}));
     EXPECT_TRUE(says(refusal("a.ply", "ply\nelement vertex -3\nend_header\n"), {"line 2", "-3"}));
-    EXPECT_TRUE(says(refusal("a.ply", "ply\nelement vertex 3\nproperty real x\nend_header\n"), {"line 3", "real", "double"}));
+    EXPECT_TRUE(
+        says(refusal("a.ply", "ply\nelement vertex 3\nproperty real x\nend_header\n"), {"line 3", "real", "double"}));
     EXPECT_TRUE(says(refusal("a.ply", ply_head + plain_vertices + "3 0 1 4\n3 0 1 2\n3 0 1 2\n3 0 1 2\n"),
                      {"line 15", "vertex 4", "0 to 3"}));
     EXPECT_TRUE(says(refusal("a.ply", ply_head + "0 0 0\n1 x 0\n0 1 0\n0 0 1\n" + indexed_faces), {"line 12", "'x'"}));
-    EXPECT_TRUE(says(refusal("a.ply", "ply\nformat ascii 1.0\nelement vertex 1\nproperty int a\nend_header\n1\n"), {"x, y and z"}));
+    EXPECT_TRUE(says(refusal("a.ply", "ply\nformat ascii 1.0\nelement vertex 1\nproperty int a\nend_header\n1\n"),
+                     {"x, y and z"}));
 }
 
 TEST_F(ReadSurface, AHostileCountTakesNoMemory) {
-    const std::string head = "ply\nformat binary_little_endian 1.0\nelement vertex 4000000000\nproperty double x\nproperty double y\n"
-                             "property double z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n";
+    const std::string head =
+        "ply\nformat binary_little_endian 1.0\nelement vertex 4000000000\nproperty double x\nproperty double y\n"
+        "property double z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n";
     EXPECT_TRUE(says(refusal("a.ply", head + std::string(1000, '\0')), {"4000000000", "1000 bytes", "41"}));
     EXPECT_TRUE(says(refusal("a.stl", binary_stl(4'000'000'000u)), {"4000000000 triangles", "enough for 1"}));
 }
@@ -189,11 +196,14 @@ TEST_F(ReadSurface, TellsWhatIsWrongWithAVtp) {
 }
 
 TEST_F(ReadSurface, VtpStripsTurnEveryOtherTriangle) {
-    const Surface strip = read("a.vtp",
+    const Surface strip = read(
+        "a.vtp",
         "<VTKFile type=\"PolyData\" version=\"0.1\"><PolyData><Piece NumberOfPoints=\"4\" NumberOfStrips=\"1\"><Points>"
-        "<DataArray type=\"Float64\" NumberOfComponents=\"3\" format=\"ascii\">0 0 0 1 0 0 0 1 0 1 1 0</DataArray></Points><Strips>"
+        "<DataArray type=\"Float64\" NumberOfComponents=\"3\" format=\"ascii\">0 0 0 1 0 0 0 1 0 1 1 "
+        "0</DataArray></Points><Strips>"
         "<DataArray type=\"Int64\" Name=\"connectivity\" format=\"ascii\">0 1 2 3</DataArray>"
-        "<DataArray type=\"Int64\" Name=\"offsets\" format=\"ascii\">4</DataArray></Strips></Piece></PolyData></VTKFile>");
+        "<DataArray type=\"Int64\" Name=\"offsets\" "
+        "format=\"ascii\">4</DataArray></Strips></Piece></PolyData></VTKFile>");
     ASSERT_EQ(strip.triangles.rows(), 2);
     EXPECT_DOUBLE_EQ(area_vectors(strip)(0, 2), 0.5);
     EXPECT_DOUBLE_EQ(area_vectors(strip)(1, 2), 0.5);

@@ -79,7 +79,10 @@ TEST(SurfaceTree, ThreadsGetTheSameAnswers) {
 }
 
 TEST(SurfaceTree, RefusesASurfaceWithoutArea) {
-    EXPECT_TRUE(says(message_of<InvalidInput>([] { SurfaceTree(Surface{Points(0, 3), Triangles(0, 3)}); }), {"no triangle"}));
+    EXPECT_TRUE(says(message_of<InvalidInput>([] {
+                         SurfaceTree(Surface{Points(0, 3), Triangles(0, 3)});
+                     }),
+                     {"no triangle"}));
 }
 
 }  // namespace

@@ -7,7 +7,9 @@
 #include "mesh/io/atomic_file.h"
 #include "mesh/read_surface.h"
 #include "pipeline/commands/common.h"
-#include "samples/organ/organ.h"
+#include "samples/lattice.h"
+#include "samples/organ.h"
+#include "skeleton/model_io.h"
 #include "tests/pipeline/scratch.h"
 
 namespace palpate::pipeline {
@@ -40,6 +42,23 @@ INSTANTIATE_TEST_SUITE_P(All, Sample, ::testing::ValuesIn(sample_names()), [](co
     std::replace(name.begin(), name.end(), '-', '_');
     return name;
 });
+
+/// The committed sets of the paper's experiments are those that the code makes. Equilibria are found to 1e-9 of the load.
+TEST(Experiments, AreWhatTheirCodeMakes) {
+    for (const samples::Experiment& experiment : {samples::make_cube_experiment(), samples::make_sheet_experiment()}) {
+        const fs::path folder = fs::path(PALPATE_SAMPLES) / experiment.start.name;
+        const identify::MeasurementSet committed = identify::read_measurement_set(folder / "set");
+        ASSERT_EQ(committed.states.size(), experiment.set.states.size());
+        for (std::size_t s = 0; s < committed.states.size(); ++s) {
+            const auto& readings = experiment.set.states[s].readings;
+            ASSERT_EQ(committed.states[s].readings.size(), readings.size());
+            for (std::size_t r = 0; r < readings.size(); ++r) {
+                EXPECT_NEAR((committed.states[s].readings[r].position - readings[r].position).norm(), 0, 1e-6);
+            }
+        }
+        EXPECT_EQ(skeleton::read_model(folder / "start.json").links.size(), experiment.start.links.size());
+    }
+}
 
 /// The committed organ is the one that the code makes, to the single precision that STL holds.
 TEST(Organ, IsWhatItsCodeMakes) {

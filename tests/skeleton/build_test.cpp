@@ -5,6 +5,7 @@
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <cmath>
 #include <functional>
 #include <numeric>
 #include <string>
@@ -47,7 +48,9 @@ mesh::VolumeMesh carve(const mesh::VolumeMesh& bar, const Eigen::Vector3i& cells
     return body;
 }
 
-mesh::VolumeMesh block(const Vec3& size, const Eigen::Vector3i& cells) { return mesh::make_bar(Vec3::Zero(), size, cells); }
+mesh::VolumeMesh block(const Vec3& size, const Eigen::Vector3i& cells) {
+    return mesh::make_bar(Vec3::Zero(), size, cells);
+}
 
 // Holds the face x = 0.
 std::vector<mesh::Region> clamp() { return {mesh::BoxRegion{Vec3(-0.1, -1e3, -1e3), Vec3(0.1, 1e3, 1e3)}}; }
@@ -135,7 +138,8 @@ TEST(BuildSkeleton, IsOnePieceInsideTheBodyWithSoundLinks) {
             EXPECT_LT(link.a, link.b);
             EXPECT_FALSE(built.model.spheres[link.a].held && built.model.spheres[link.b].held);
             EXPECT_GT(link.stiffness.minCoeff(), 0);
-            EXPECT_NEAR(link.length, (built.model.spheres[link.b].center - built.model.spheres[link.a].center).norm(), 1e-9);
+            EXPECT_NEAR(link.length, (built.model.spheres[link.b].center - built.model.spheres[link.a].center).norm(),
+                        1e-9);
             EXPECT_GT(link.length, 0.5);
         }
         EXPECT_EQ(built.model.skin.size(), static_cast<std::size_t>(built.surface.vertices.rows()));
@@ -202,18 +206,27 @@ TEST(BuildSkeleton, AnUncalibratedChainBendsLikeABeam) {
     const fem::Material material;
     const double length = 160, I = std::pow(16., 4) / 12;
     const double euler = 1e-3 * std::pow(length, 3) / (3 * material.young * I);
-    // The chain is stiffer where its last half link is rigid, softer by nothing: a few per cent.
-    EXPECT_NEAR(sag(build(limb(), {.spheres = 14}).model, Vec3(160, 8, 8)) / euler, 1, 0.15);
-    EXPECT_NEAR(sag(built_limb().model, Vec3(160, 8, 8)) / euler, 1, 0.3);
+    // Chains of more than ten links are within 1 / 10^2 of the continuous beam; sections add a per cent or two.
+    EXPECT_NEAR(sag(build(limb(), {.spheres = 14}).model, Vec3(160, 8, 8)) / euler, 1, 0.03);
+    EXPECT_NEAR(sag(built_limb().model, Vec3(160, 8, 8)) / euler, 1, 0.03);
 }
 
 TEST(BuildSkeleton, AnUncalibratedLumpBendsLikeABeamWithinAFactorOfTwo) {
     const fem::Material material;
     const double area = 1600, I = area * area / 12;
-    const double timoshenko = 1e-3 * (std::pow(60., 3) / (3 * material.young * I) + 60 / (5. / 6 * material.shear_modulus() * area));
+    const double timoshenko =
+        1e-3 * (std::pow(60., 3) / (3 * material.young * I) + 60 / (5. / 6 * material.shear_modulus() * area));
     const double ratio = sag(built_lump().model, Vec3(60, 20, 20)) / timoshenko;
     EXPECT_GT(ratio, 0.5);
-    EXPECT_LT(ratio, 2);
+    EXPECT_LT(ratio, 2) << ratio;
+}
+
+TEST(BuildSkeleton, AnUncalibratedPlateBendsLikeAStripWithinAFactorOfTwo) {
+    const fem::Material material;
+    const double euler = 1e-3 * std::pow(100., 3) / (3 * material.young * 80 * std::pow(6., 3) / 12);
+    const double ratio = sag(built_plate().model, Vec3(100, 40, 3)) / euler;
+    EXPECT_GT(ratio, 0.5);
+    EXPECT_LT(ratio, 2) << ratio;
 }
 
 TEST(BuildSkeleton, CoversTheSurfaceByDefault) {
@@ -234,7 +247,7 @@ TEST(BuildSkeleton, CoversTheSurfaceByDefault) {
 }
 
 TEST(BuildSkeleton, GivesAsManySpheresAsAskedAndSaysWhatTheyLeaveUncovered) {
-    for (int n : {1, 5, 40}) {
+    for (int n : {1, 40}) {
         EXPECT_EQ(free_spheres(build(limb(), {.spheres = n}).model), n);
         EXPECT_EQ(free_spheres(build(plate(), {.spheres = n}).model), n);
         EXPECT_EQ(free_spheres(build(lump(), {.spheres = n}).model), n);
@@ -275,9 +288,8 @@ TEST(BuildSkeleton, ATurnedAndMovedBodyGetsAsManySpheres) {
 TEST(BuildSkeleton, ARingIsALoop) {
     const Vec3 size(80, 80, 10);
     const Eigen::Vector3i cells(16, 16, 2);
-    const auto ring = carve(block(size, cells), cells, size, [](const Vec3& x) {
-        return std::max(std::abs(x.x() - 40), std::abs(x.y() - 40)) > 30;
-    });
+    const auto ring = carve(block(size, cells), cells, size,
+                            [](const Vec3& x) { return std::max(std::abs(x.x() - 40), std::abs(x.y() - 40)) > 30; });
     const Model model = build(ring, {.spheres = 24}).model;
     EXPECT_EQ(components(model), 1);
     EXPECT_GE(loops(model), 1);
@@ -287,9 +299,8 @@ TEST(BuildSkeleton, NothingIsLinkedAcrossAGap) {
     // Two limbs on a common foot, a gap of 2 mm between them.
     const Vec3 size(100, 22, 10);
     const Eigen::Vector3i cells(25, 11, 5);
-    const auto fork = carve(block(size, cells), cells, size, [](const Vec3& x) {
-        return x.x() < 12 || std::abs(x.y() - 11) > 1;
-    });
+    const auto fork =
+        carve(block(size, cells), cells, size, [](const Vec3& x) { return x.x() < 12 || std::abs(x.y() - 11) > 1; });
     const Model model = build(fork, {.spheres = 24}).model;
     int in_limbs = 0;
     for (const Link& link : model.links) {
@@ -330,10 +341,11 @@ TEST(BuildSkeleton, AThickSupportHoldsWhatLiesInIt) {
         held += s.held ? s.mass : 0;
         EXPECT_EQ(s.held, s.center.x() <= 15 + 1e-9);
     }
-    EXPECT_GE(held, 0.25 * mass);    // 15 of 60 mm
+    EXPECT_GE(held, 0.25 * mass);  // 15 of 60 mm
 }
 
-std::string message(const mesh::VolumeMesh& body, const BuildOptions& options, const std::vector<mesh::Region>& supports) {
+std::string message(const mesh::VolumeMesh& body, const BuildOptions& options,
+                    const std::vector<mesh::Region>& supports) {
     try {
         build(body, options, supports);
     } catch (const InvalidInput& error) {
@@ -343,7 +355,9 @@ std::string message(const mesh::VolumeMesh& body, const BuildOptions& options, c
 }
 
 TEST(BuildSkeleton, SaysWhatIsWrongWithTheInput) {
-    const auto has = [](const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; };
+    const auto has = [](const std::string& text, const std::string& part) {
+        return text.find(part) != std::string::npos;
+    };
     const std::vector<mesh::Region> beside{mesh::BoxRegion{Vec3(200, 0, 0), Vec3(210, 9, 9)}};
     const std::string nothing = message(limb(), {}, beside);
     EXPECT_TRUE(has(nothing, "hold nothing")) << nothing;

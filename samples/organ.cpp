@@ -1,4 +1,4 @@
-#include "samples/organ/organ.h"
+#include "samples/organ.h"
 
 #include <cmath>
 
