@@ -23,15 +23,19 @@ LogNormalPrior prior_round(const Eigen::VectorXd& mean, double sd) {
     return {mean, Eigen::VectorXd::Constant(mean.size(), sd)};
 }
 
-/// Parameters that the measurements, rather than the prior, decide: tr(H (H + precision)^-1). [MacKay 1992]
-double effective_parameters(const FitResult& fit) {
-    return fit.hessian.llt().solve(fit.informed).trace();
+/// Parameters that the measurements, rather than the prior, decide: tr(H (H + 1 / sd^2)^-1). [MacKay 1992]
+double effective_parameters(const FitResult& fit, const LogNormalPrior& prior) {
+    // = P - sum (1 / sd^2) (H + 1 / sd^2)^-1_ii, and the inverse's diagonal is that of L^-T L^-1
+    const auto P = fit.theta.size();
+    const Eigen::LLT<Eigen::MatrixXd> llt(fit.hessian);
+    const Eigen::MatrixXd inverse_L = llt.matrixL().solve(Eigen::MatrixXd::Identity(P, P));
+    return static_cast<double>(P) - inverse_L.colwise().squaredNorm().dot(prior.sd.cwiseAbs2().cwiseInverse());
 }
 
 /// Relative model error that a fit leaves, as an unfitted reading would see it.
-double model_error_after(const PositionDomain& domain, const FitResult& fit) {
+double model_error_after(const PositionDomain& domain, const FitResult& fit, const LogNormalPrior& prior) {
     const double readings = domain.effective_coordinates();
-    const double fitted = std::min(effective_parameters(fit), 0.75 * readings);
+    const double fitted = std::min(effective_parameters(fit, prior), 0.75 * readings);
     return std::max(least_error, domain.estimate_model_error(fit.prediction) * std::sqrt(readings / (readings - fitted)));
 }
 
@@ -129,7 +133,7 @@ Calibration calibrate(const skeleton::Model& model, const std::vector<StateReadi
     const PositionDomain uniform(model, law, group_stiffness(model, Scope::uniform, options.fixed), readings,
                                  options.threads);
     Calibrator::Stage stage = calibrator.fit_uniform(uniform, first_error);
-    stage = calibrator.fit_uniform(uniform, model_error_after(uniform, stage.fit));
+    stage = calibrator.fit_uniform(uniform, model_error_after(uniform, stage.fit, stage.prior));
     double model_error = stage.model_error;
 
     PositionDomain domain = uniform;
@@ -146,7 +150,7 @@ Calibration calibrate(const skeleton::Model& model, const std::vector<StateReadi
         domain.set_model_error(model_error);
         report(progress, "first fit", 0.2);
         fit = calibrator.fit(domain, prior, start);
-        model_error = std::min(model_error, model_error_after(domain, fit));
+        model_error = std::min(model_error, model_error_after(domain, fit, prior));
         report(progress, "second fit", 0.6);
         domain.set_model_error(model_error);
         fit = calibrator.fit(domain, prior, fit.theta);

@@ -61,7 +61,6 @@ FitResult fit_map(const PositionDomain& domain, const LogNormalPrior& prior, con
         if (moved) {
             equations = domain.normal_equations(fit.theta, fit.prediction);
             gradient = equations.g + precision.cwiseProduct(fit.theta - prior.mean);
-            fit.informed = equations.H;
             fit.hessian = equations.H + Eigen::MatrixXd(precision.asDiagonal());
         }
         ++fit.iterations;
@@ -101,7 +100,6 @@ FitResult fit_map(const PositionDomain& domain, const LogNormalPrior& prior, con
     }
     if (moved && !fit.converged) {
         equations = domain.normal_equations(fit.theta, fit.prediction);
-        fit.informed = equations.H;
         fit.hessian = equations.H + Eigen::MatrixXd(precision.asDiagonal());
     }
     return fit;

@@ -22,8 +22,7 @@ struct FitResult {
     Eigen::VectorXd theta;
     Prediction prediction;      // there
     double chi_squared = 0;     // of the errors there
-    Eigen::MatrixXd hessian;    // Gauss-Newton's, with the prior's share (P x P)
-    Eigen::MatrixXd informed;   // without it (P x P)
+    Eigen::MatrixXd hessian;    // Gauss-Newton's, of half the chi^2 and the prior (P x P)
     int iterations = 0;
     int evaluations = 0;        // of all equilibria
     bool converged = false;

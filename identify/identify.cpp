@@ -23,20 +23,18 @@ constexpr int default_particles = 200, default_burion_particles = 600;
 constexpr double calibration_share = 0.4;  // of the progress
 
 /// Beyond so many sphere equilibria for one look at all particles, large rotations are stood in for.
-constexpr double dear_evaluations = 1e5;
+constexpr double dear_evaluations = 3e4;
 
-/// N(MAP, H^-1), somewhat wider, by less the more parameters there are: sd x sqrt(1 + 1 / sqrt(P)) costs the same
-/// effective sample size whatever P.
+/// N(MAP, (1 + 1 / P) H^-1): somewhat wider than Laplace's approximation, by less the more parameters there are, so that
+/// the effective sample size stands it.
 GaussianProposal laplace_proposal(const FitResult& fit) {
-    const auto P = static_cast<double>(fit.theta.size());
     const Eigen::LLT<Eigen::MatrixXd> hessian(fit.hessian);
-    const Eigen::MatrixXd covariance = hessian.solve(Eigen::MatrixXd::Identity(fit.theta.size(), fit.theta.size()));
-    const Eigen::LLT<Eigen::MatrixXd> factor((1 + 1 / std::sqrt(P)) * covariance);
-    if (hessian.info() != Eigen::Success || factor.info() != Eigen::Success) {
-        throw SolverFailure("the posterior's covariance at the fit is not positive definite; take fewer parameters "
+    if (hessian.info() != Eigen::Success) {
+        throw SolverFailure("the posterior's precision at the fit is not positive definite; take fewer parameters "
                             "(zones or uniform)");
     }
-    return {fit.theta, factor.matrixL()};
+    const double wider = 1 + 1 / static_cast<double>(fit.theta.size());
+    return {fit.theta, hessian.matrixL().toDenseMatrix() / std::sqrt(wider)};
 }
 
 /// The model with multipliers on its stiffness.
@@ -108,6 +106,10 @@ IdentifyResult identify_tempered(const skeleton::Model& model, const Measurement
                                                        calibration_share + (1 - calibration_share) * fraction);
                                             });
 
+    if (!filter.weighed) {
+        result.notes.emplace_back("particles: too many parameters to weigh them; they are drawn from the fit's own "
+                                  "covariance and moved towards the posterior, and the evidence is Laplace's");
+    }
     const Eigen::MatrixXd stiffness = stiffness_of(parameters, filter.particles);
     result.posterior = posterior_rows(parameters, stiffness, filter.log_weights, stiffness_prior(parameters, prior));
     Eigen::Index best = 0;

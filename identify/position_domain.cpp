@@ -139,25 +139,43 @@ double PositionDomain::chi_squared(const Prediction& prediction) const {
     return sum;
 }
 
-NormalEquations PositionDomain::normal_equations_of(int s, const Eigen::SparseMatrix<double>& G_theta,
-                                                    const Prediction& prediction,
-                                                    const skeleton::StaticsSolver& solver) const {
-    const Eigen::SparseMatrix<double> P =
-        law() == skeleton::Law::linear ? P_[s]
-                                       : observation_jacobian(*model_, prediction.equilibria[s], states_[s].points);
-    const Eigen::VectorXd& w = weights_[s];
-    const Eigen::VectorXd error = errors_of(states_[s], prediction.markers[s]);
+Eigen::SparseMatrix<double> PositionDomain::observation(int s, const Prediction& prediction) const {
+    if (law() == skeleton::Law::linear) return P_[s];
+    return observation_jacobian(*model_, prediction.equilibria[s], states_[s].points);
+}
 
-    if (G_theta.cols() <= P.rows()) {
-        // from the right: d markers / d theta = P (T^-1 G_theta)
-        const Eigen::MatrixXd J = P * solver.solve_tangent(Eigen::MatrixXd(G_theta));
-        return {J.transpose() * w.asDiagonal() * J, -J.transpose() * w.cwiseProduct(error)};
-    }
-    // from the left, X = T^-1 P^T: J^T W J = G_theta^T (X W X^T) G_theta
-    const Eigen::MatrixXd X = solver.solve_tangent(Eigen::MatrixXd(P.transpose()));
-    const Eigen::MatrixXd XWX = X * w.asDiagonal() * X.transpose();
-    const Eigen::MatrixXd right = XWX * G_theta;
-    return {G_theta.transpose() * right, -G_theta.transpose() * (X * w.cwiseProduct(error))};
+NormalEquations PositionDomain::from_the_right(int s, const Eigen::SparseMatrix<double>& G_theta,
+                                               const Prediction& prediction,
+                                               const skeleton::StaticsSolver& solver) const {
+    // J = P (T^-1 G_theta)
+    const Eigen::MatrixXd J = observation(s, prediction) * solver.solve_tangent(Eigen::MatrixXd(G_theta));
+    const Eigen::VectorXd error = errors_of(states_[s], prediction.markers[s]);
+    return {J.transpose() * weights_[s].asDiagonal() * J, -J.transpose() * weights_[s].cwiseProduct(error)};
+}
+
+PositionDomain::PullBack PositionDomain::pull_back(int s, const Prediction& prediction,
+                                                   const skeleton::StaticsSolver& solver) const {
+    PullBack result{s, solver.solve_tangent(Eigen::MatrixXd(observation(s, prediction).transpose())), {}};
+    result.XWX.noalias() = result.X * (weights_[s].asDiagonal() * result.X.transpose());
+    return result;
+}
+
+NormalEquations PositionDomain::from_the_left(int s, const Eigen::SparseMatrix<double>& G_theta,
+                                              const Prediction& prediction, const PullBack& pull_back,
+                                              double ratio) const {
+    // J^T W J = G_theta^T (X W X^T) G_theta
+    const Eigen::VectorXd error = errors_of(states_[s], prediction.markers[s]);
+    const Eigen::MatrixXd right = ratio * pull_back.XWX * G_theta;
+    return {G_theta.transpose() * right, -G_theta.transpose() * (pull_back.X * weights_[s].cwiseProduct(error))};
+}
+
+/// By the linear law states with the same markers share a pull-back but for one factor, where their weights do.
+std::optional<double> PositionDomain::weight_ratio(int s, int other) const {
+    if (s == other) return 1;
+    if (law() != skeleton::Law::linear || states_[s].markers != states_[other].markers) return std::nullopt;
+    const double ratio = weights_[s].sum() / weights_[other].sum();
+    if (!weights_[s].isApprox(ratio * weights_[other], 1e-12)) return std::nullopt;
+    return ratio;
 }
 
 NormalEquations PositionDomain::normal_equations(const Eigen::VectorXd& theta, const Prediction& prediction) const {
@@ -171,18 +189,25 @@ NormalEquations PositionDomain::normal_equations(const Eigen::VectorXd& theta, c
     const bool linear = law() == skeleton::Law::linear;
     if (linear) shared->factor_tangent(k, states_[0].load, prediction.equilibria[0]);
 
+    // and states that read the same markers share the way back
+    std::optional<PullBack> common;
+    if (linear && P > 3 * states_[0].rest.rows()) common = pull_back(0, prediction, *shared);
+
     for (int first = 0; first < states; first += batch) {
         std::vector<NormalEquations> parts(std::min(batch, states - first));
         for_each_in_parallel(static_cast<int>(parts.size()), threads_, [&](int i) {
             const int s = first + i;
             const Eigen::SparseMatrix<double> G_theta = skeleton::link_forces(*model_, prediction.equilibria[s]) * dk;
-            if (linear) {
-                parts[i] = normal_equations_of(s, G_theta, prediction, *shared);
-                return;
+            const SolverPool::Loan own(*solvers_);
+            if (!linear) own->factor_tangent(k, states_[s].load, prediction.equilibria[s]);
+            const skeleton::StaticsSolver& solver = linear ? *shared : *own;
+            if (P <= 3 * states_[s].rest.rows()) {
+                parts[i] = from_the_right(s, G_theta, prediction, solver);
+            } else if (const auto ratio = common ? weight_ratio(s, common->state) : std::nullopt) {
+                parts[i] = from_the_left(s, G_theta, prediction, *common, *ratio);
+            } else {
+                parts[i] = from_the_left(s, G_theta, prediction, pull_back(s, prediction, solver), 1);
             }
-            const SolverPool::Loan solver(*solvers_);
-            solver->factor_tangent(k, states_[s].load, prediction.equilibria[s]);
-            parts[i] = normal_equations_of(s, G_theta, prediction, *solver);
         });
         for (const NormalEquations& part : parts) {
             sum.H += part.H;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "identify/parameters.h"
@@ -68,8 +69,18 @@ public:
 
 private:
     Prediction predict_linear(const Eigen::VectorXd& k) const;
-    NormalEquations normal_equations_of(int s, const Eigen::SparseMatrix<double>& G_theta,
-                                        const Prediction& prediction, const skeleton::StaticsSolver& solver) const;
+    /// A state's readings pulled back to the forces: X = T^-1 P^T (6N x 3m), and X W X^T (6N x 6N).
+    struct PullBack {
+        int state = -1;
+        Eigen::MatrixXd X, XWX;
+    };
+    PullBack pull_back(int s, const Prediction& prediction, const skeleton::StaticsSolver& solver) const;
+    std::optional<double> weight_ratio(int s, int other) const;
+    NormalEquations from_the_left(int s, const Eigen::SparseMatrix<double>& G_theta, const Prediction& prediction,
+                                  const PullBack& pull_back, double ratio) const;
+    NormalEquations from_the_right(int s, const Eigen::SparseMatrix<double>& G_theta, const Prediction& prediction,
+                                   const skeleton::StaticsSolver& solver) const;
+    Eigen::SparseMatrix<double> observation(int s, const Prediction& prediction) const;
 
     std::shared_ptr<const skeleton::Model> model_;
     std::shared_ptr<SolverPool> solvers_;

@@ -56,6 +56,7 @@ std::vector<StateReadings> collect_readings(const skeleton::Model& model, const 
         readings.noise.resize(m);
         for (Eigen::Index i = 0; i < m; ++i) {
             const Reading& reading = state.readings[readings.rows[i]];
+            readings.markers.push_back(reading.marker);
             readings.points.push_back(markers[reading.marker]);
             readings.rest.row(i) = set.markers[reading.marker].rest;
             readings.measured.row(i) = reading.position;

@@ -11,8 +11,9 @@ namespace palpate::identify {
 struct StateReadings {
     int state = 0;                                // in the set
     std::vector<int> rows;                        // of the state's readings (m)
+    std::vector<int> markers;                     // of the set (m)
     skeleton::Load load;
-    std::vector<skeleton::Attachment> points;     // the markers (m)
+    std::vector<skeleton::Attachment> points;     // where the markers hang (m)
     Points rest, measured;                        // (m x 3) [mm]; a missing coordinate is NaN
     Eigen::VectorXd noise;                        // 1 sigma of each (m) [mm], NaN when unknown
     int coordinates = 0;                          // that were measured

@@ -15,6 +15,10 @@
 namespace palpate::identify {
 namespace {
 
+/// With more particles than this for each parameter, copies that do not part are told apart by the rest: they may sit in
+/// modes of their own.
+constexpr double particles_per_parameter = 4;
+
 /// The cloud in whitened coordinates, a column per particle.
 struct Cloud {
     Eigen::MatrixXd z;          // (P x N)
@@ -28,12 +32,12 @@ public:
     Filter(const LogDensity& log_density, const GaussianProposal& proposal, const TemperedOptions& options)
         : log_density_(log_density), proposal_(proposal), options_(options) {
         constexpr double log_root_two_pi = 0.5 * std::numbers::ln2 + 0.57236494292470008707;  // + ln sqrt(pi)
-        log_peak_ = -proposal.factor.diagonal().array().log().sum() -
+        log_peak_ = proposal.L.diagonal().array().log().sum() -
                     log_root_two_pi * static_cast<double>(proposal.mean.size());
     }
 
     Eigen::VectorXd parameters(const Eigen::VectorXd& z) const {
-        return proposal_.mean + proposal_.factor.triangularView<Eigen::Lower>() * z;
+        return proposal_.mean + proposal_.L.transpose().triangularView<Eigen::Upper>().solve(z);
     }
 
     double log_proposal(const Eigen::VectorXd& z) const { return log_peak_ - z.squaredNorm() / 2; }
@@ -52,10 +56,15 @@ public:
         return cloud;
     }
 
-    /// One Crank-Nicolson move of every particle at temperature b; returns the share that was accepted.
-    double move(Cloud& cloud, double b, double step, std::uint64_t round) const {
+    struct Moved {
+        double accepted;   // share of the particles
+        double distance;   // mean square of the way that they went, in z
+    };
+
+    /// One Crank-Nicolson move of every particle at temperature b.
+    Moved move(Cloud& cloud, double b, double step, std::uint64_t round) const {
         const double keep = std::sqrt(1 - step * step);
-        std::vector<char> accepted(cloud.size(), 0);
+        Eigen::VectorXd distance = Eigen::VectorXd::Zero(cloud.size());
         for_each_in_parallel(cloud.size(), options_.threads, [&](int i) {
             RandomStream random(options_.seed, round, i);
             const double log_u = std::log(1 - random.uniform());
@@ -63,12 +72,12 @@ public:
                 keep * cloud.z.col(i) + step * random.normals(static_cast<int>(cloud.z.rows()));
             const double ratio = log_ratio(z);
             if (log_u < b * (ratio - cloud.log_ratio[i])) {
+                distance[i] = (z - cloud.z.col(i)).squaredNorm();
                 cloud.z.col(i) = z;
                 cloud.log_ratio[i] = ratio;
-                accepted[i] = 1;
             }
         });
-        return static_cast<double>(std::ranges::count(accepted, 1)) / cloud.size();
+        return {static_cast<double>((distance.array() > 0).count()) / cloud.size(), distance.mean()};
     }
 
     FilterStep record(const Cloud& cloud, double b, const Eigen::VectorXd& log_weights) const {
@@ -116,22 +125,54 @@ void resample(Cloud& cloud, Eigen::VectorXd& log_weights, double u) {
     log_weights.setConstant(-std::log(cloud.size()));
 }
 
-}  // namespace
+/// Moves with a step that adapts: longer when too many are accepted, shorter when too few.
+class Mover {
+public:
+    Mover(const Filter& filter, int moves) : filter_(filter), moves_(moves) {}
 
-TemperedResult tempered_filter(const LogDensity& log_density, const GaussianProposal& proposal,
-                               const TemperedOptions& options, const Progress& progress) {
-    const Filter filter(log_density, proposal, options);
-    TemperedResult result;
+    /// One move of all particles; returns the mean square of the way that they went.
+    double once(Cloud& cloud, double b) {
+        const Filter::Moved moved = filter_.move(cloud, b, step_, ++round_);
+        accepted_ += moved.accepted;
+        ++made_;
+        if (moved.accepted < 0.2) step_ *= 0.6;
+        if (moved.accepted > 0.4) step_ = std::min(1.0, step_ * 1.5);
+        return moved.distance;
+    }
 
-    // particles of the proposal, b = 0
-    report(progress, "particles", 0);
-    Cloud cloud = filter.draw();
-    result.evaluations = options.particles;
-    Eigen::VectorXd log_weights = Eigen::VectorXd::Constant(options.particles, -std::log(options.particles));
-    result.history.push_back(filter.record(cloud, 0, log_weights));
+    /// Moves until copies have parted: until the squares of their ways add up to half of that between two
+    /// particles, each of which lies `spread` from the middle in mean square. False when they did not.
+    bool part(Cloud& cloud, double b, double spread) {
+        double way = 0;
+        for (int i = 0; i < moves_ && way < spread; ++i) way += once(cloud, b);
+        return way >= spread;
+    }
 
-    double b = 0, step = 0.5, accepted = 0;
-    std::uint64_t round = 0;
+    std::uint64_t next_round() { return ++round_; }
+    double acceptance() const { return made_ > 0 ? accepted_ / made_ : 0; }
+    int made() const { return made_; }
+
+private:
+    const Filter& filter_;
+    int moves_;
+    double step_ = 0.5, accepted_ = 0;
+    int made_ = 0;
+    std::uint64_t round_ = 0;
+};
+
+/// Mean square distance of weighted particles from their mean, in z.
+double spread_of(const Cloud& cloud, const Eigen::VectorXd& log_weights) {
+    const Eigen::VectorXd weights = log_weights.array().exp();
+    const Eigen::VectorXd mean = cloud.z * weights;
+    return (cloud.z.colwise() - mean).colwise().squaredNorm() * weights;
+}
+
+Eigen::VectorXd equal_weights(int n) { return Eigen::VectorXd::Constant(n, -std::log(n)); }
+
+/// The weighed particles, from b = 0 to 1; false when copies do not part.
+bool temper(const Filter& filter, const TemperedOptions& options, Mover& mover, Cloud& cloud, TemperedResult& result,
+            const Progress& progress) {
+    double b = 0;
     while (b < 1) {
         if (static_cast<int>(result.history.size()) > options.temperatures) {
             throw SolverFailure(fmt::format("the particle filter stands at temperature {:.3g} of 1 after {} steps: the "
@@ -139,30 +180,57 @@ TemperedResult tempered_filter(const LogDensity& log_density, const GaussianProp
                                             b, options.temperatures));
         }
         // next temperature, weights, and the evidence that they add up to
-        const double db = temperature_step(log_weights, cloud.log_ratio, b, options.least_effective * cloud.size());
+        const double db =
+            temperature_step(result.log_weights, cloud.log_ratio, b, options.least_effective * cloud.size());
         b = std::min(1.0, b + db);
-        log_weights = reweighted(log_weights, cloud.log_ratio, db);
-        result.log_evidence += normalise(log_weights);
-        result.history.push_back(filter.record(cloud, b, log_weights));
+        result.log_weights = reweighted(result.log_weights, cloud.log_ratio, db);
+        result.log_evidence += normalise(result.log_weights);
+        result.history.push_back(filter.record(cloud, b, result.log_weights));
+        const double spread = spread_of(cloud, result.log_weights);
 
         // equal weights again, but at the end, where nothing is gained by it
-        if (b < 1) resample(cloud, log_weights, RandomStream(options.seed, ++round, cloud.size()).uniform());
-
-        // moves; a longer step when too many of them are accepted, a shorter one when too few
-        for (int i = 0; i < options.moves; ++i) {
-            const double rate = filter.move(cloud, b, step, ++round);
-            accepted += rate;
-            result.evaluations += cloud.size();
-            if (rate < 0.2) step *= 0.6;
-            if (rate > 0.4) step = std::min(1.0, step * 1.5);
+        if (b < 1) {
+            resample(cloud, result.log_weights, RandomStream(options.seed, mover.next_round(), cloud.size()).uniform());
         }
+        const bool parted = mover.part(cloud, b, spread);
+        if (!parted && particles_per_parameter * static_cast<double>(cloud.z.rows()) > cloud.size()) return false;
         report(progress, "particles", b);
     }
+    return true;
+}
 
-    result.acceptance = accepted / (options.moves * static_cast<double>(result.history.size() - 1));
-    result.history.push_back(filter.record(cloud, 1, log_weights));
+}  // namespace
+
+TemperedResult tempered_filter(const LogDensity& log_density, const GaussianProposal& proposal,
+                               const TemperedOptions& options, const Progress& progress) {
+    const Filter filter(log_density, proposal, options);
+    Mover mover(filter, options.moves);
+
+    // particles of the proposal, b = 0
+    report(progress, "particles", 0);
+    const Cloud drawn = filter.draw();
+    Cloud cloud = drawn;
+    TemperedResult result;
+    result.log_weights = equal_weights(options.particles);
+    result.history.push_back(filter.record(cloud, 0, result.log_weights));
+
+    result.weighed = temper(filter, options, mover, cloud, result, progress);
+    if (!result.weighed) {
+        // all of them again, unweighed, by the posterior's own moves; those without density wait for their first one
+        cloud = drawn;
+        result.history.resize(1);
+        result.log_weights = equal_weights(options.particles);
+        for (int i = 0; i < 2 * options.moves; ++i) {
+            mover.once(cloud, 1);
+            report(progress, "particles", static_cast<double>(i) / (2 * options.moves));
+        }
+        result.log_evidence = filter.log_ratio(Eigen::VectorXd::Zero(proposal.mean.size()));
+    }
+
+    result.history.push_back(filter.record(cloud, 1, result.log_weights));
     result.particles = result.history.back().particles;
-    result.log_weights = log_weights;
+    result.acceptance = mover.acceptance();
+    result.evaluations = (1 + mover.made()) * options.particles;
     result.log_density.resize(cloud.size());
     for (int i = 0; i < cloud.size(); ++i) {
         result.log_density[i] = cloud.log_ratio[i] + filter.log_proposal(cloud.z.col(i));

@@ -9,10 +9,10 @@
 
 namespace palpate::identify {
 
-/// N(mean, factor factor^T), where the filter's particles come from.
+/// N(mean, (L L^T)^-1), where the filter's particles come from.
 struct GaussianProposal {
-    Eigen::VectorXd mean;     // (P)
-    Eigen::MatrixXd factor;   // lower triangular (P x P)
+    Eigen::VectorXd mean;   // (P)
+    Eigen::MatrixXd L;      // Cholesky factor of the precision, lower triangular (P x P)
 };
 
 /// Logarithm of the unnormalised posterior density, likelihood times prior; -inf where there is none. Called from
@@ -21,7 +21,7 @@ using LogDensity = std::function<double(const Eigen::VectorXd& theta)>;
 
 struct TemperedOptions {
     int particles = 200;              // N, >= 10
-    int moves = 2;                    // per temperature, >= 1
+    int moves = 10;                   // per temperature at most, >= 1
     double least_effective = 0.5;     // of N, sets the temperatures, (0, 1)
     int temperatures = 500;           // at most
     std::uint64_t seed = 1;
@@ -33,6 +33,7 @@ struct TemperedResult {
     Eigen::VectorXd log_weights;      // (N), normalised
     Eigen::VectorXd log_density;      // of each particle (N)
     double log_evidence = 0;          // ln of the integral of the density
+    bool weighed = true;              // false: too many parameters for that, see below
     double acceptance = 0;            // of all moves
     int evaluations = 0;              // of the density
     std::vector<FilterStep> history;  // a step per temperature, the proposal's particles first
@@ -42,11 +43,18 @@ struct TemperedResult {
 /// b = 0 to 1. [Neal 2001; Del Moral, Doucet, Jasra 2006]
 ///
 /// Each temperature: b grows until the effective sample size falls to `least_effective` N (by bisection); low-variance
-/// resampling; moves by preconditioned Crank-Nicolson in q's whitened coordinates z, theta = mean + factor z,
+/// resampling; moves by preconditioned Crank-Nicolson in q's whitened coordinates z, theta = mean + L^-T z,
 ///   z' = sqrt(1 - s^2) z + s xi,  xi ~ N(0, 1),
 /// which are reversible under q, so that a move is accepted by the tempered correction (pi / q)^b alone and does not
-/// die with the dimension [Cotter, Roberts, Stuart, White 2013]; s keeps 20-40 % of the moves accepted. The last
-/// particles stay weighted.
+/// die with the dimension [Cotter, Roberts, Stuart, White 2013]; s keeps 20-40 % of the moves accepted. They go on until
+/// copies have parted: until the squares of their ways add up to half of that between two particles. The last particles
+/// stay weighted.
+///
+/// Where `moves` of them do not part the copies and there are fewer than four particles a parameter (thousands of
+/// parameters, a posterior unlike q in many of them), resampling
+/// would leave a handful of particles in many copies, and intervals far too narrow. Then nothing is weighed: all
+/// particles of q are moved by the posterior's own rule, twice `moves`, and stay equal; the evidence is then
+/// Laplace's, pi / q at the mean.
 ///
 /// The numbers depend on the seed, not on the threads.
 /// @throws SolverFailure when no particle has a density, or `temperatures` do not reach the posterior.

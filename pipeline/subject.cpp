@@ -82,7 +82,7 @@ Subject read_subject(Case settings) {
         read_set(subject);
     }
     choose_supports(subject);
-    choose_material(subject);
+    if (!subject.settings.model) choose_material(subject);
     return subject;
 }
 

@@ -162,6 +162,11 @@ private:
                             {"factor_seconds", elastic.stats().seconds_factor}};
             });
         set_ = identify::read_measurement_set(folder_.path() / "measurements");
+        json held_out = json::array();
+        for (int probe = 1; probe <= p.probes; ++probe) {
+            if (is_held_out(probe, p)) held_out.push_back(probe);
+        }
+        folder_.note("held_out_probes", held_out);
         fit_ = states_of(set_, [&](const identify::LoadState& s) { return !is_held_out(s.probe, p); });
         held_out_ = states_of(set_, [&](const identify::LoadState& s) { return is_held_out(s.probe, p); });
         tell("reference", ran, fmt::format("{} states in small strain, {} of them held out", set_.states.size(), held_out_.states.size()));

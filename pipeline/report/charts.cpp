@@ -10,7 +10,7 @@
 namespace palpate::pipeline {
 namespace {
 
-constexpr double width = 640, left = 56, right = 12;  // [px]
+constexpr double width = 460, left = 56, right = 12;  // [px]
 
 /// A step of 1, 2 or 5 times a power of ten that cuts the range in about four.
 double nice_step(double range) {
@@ -42,7 +42,7 @@ std::string bar_chart(const std::vector<Bar>& bars, const std::string& title, co
     if (bars.empty() || highest <= 0) return {};
     const double step = nice_step(highest);
     const double scale = (bottom - top) / (std::ceil(highest / step) * step);
-    std::string svg = open(height, title) + text(0, 14, title + " [" + unit + "]");
+    std::string svg = open(height, title) + text(0, 16, title + " [" + unit + "]");
     for (double tick = 0; tick <= highest + step; tick += step) {
         const double y = bottom - scale * tick;
         if (y < top - 1) break;
@@ -74,7 +74,7 @@ std::string interval_chart(const std::vector<Interval>& intervals, const std::st
         const double share = std::log(std::clamp(value, low, high) / low) / std::log(high / low);
         return label_width + share * (width - label_width - right);
     };
-    std::string svg = open(bottom + 20, title) + text(0, 14, title + " [" + unit + "]");
+    std::string svg = open(bottom + 20, title) + text(0, 16, title + " [" + unit + "]");
     for (double tick = low; tick <= high * 1.001; tick *= 10) {
         svg += line(x(tick), top, x(tick), bottom, R"(stroke="#d8dee5")") + text(x(tick), bottom + 14, fmt::format("{:g}", tick), "middle");
     }

@@ -131,7 +131,9 @@ std::string stage_table(const RunFiles& files) {
         const json& s = files.record["stages"][stage];
         std::string figures;
         for (const auto& [key, value] : s["figures"].items()) {
-            if (value.is_number() || value.is_string()) figures += (figures.empty() ? "" : ", ") + key + " " + value.dump();
+            if (!value.is_number() && !value.is_string()) continue;
+            figures += figures.empty() ? "" : ", ";
+            figures += key + " " + (value.is_number() ? fmt::format("{:.4g}", value.get<double>()) : value.get<std::string>());
         }
         rows += fmt::format("<tr><td>{}</td><td>{:.1f}</td><td>{:.0f}</td><td style=\"text-align:left\">{}</td></tr>", stage,
                             s["seconds"].get<double>(), s["peak_memory_mb"].get<double>(), escape(figures));

@@ -20,12 +20,24 @@ def path(*names):
     return os.path.join(run, *names)
 
 
-def colour(view, source, array, component="Magnitude"):
+def colour(view, source, association, array, logarithmic=False):
     display = GetDisplayProperties(source, view)
-    ColorBy(display, ("POINTS", array, component))
+    ColorBy(display, (association, array))
     display.RescaleTransferFunctionToDataRange(True)
     display.SetScalarBarVisibility(view, True)
+    table = GetColorTransferFunction(array)
+    table.ApplyPreset("Viridis (matplotlib)", True)
+    if logarithmic:
+        table.MapControlPointsToLogSpace()
+        table.UseLogScale = 1
+    bar = GetScalarBar(table, view)
+    bar.Title, bar.ComponentTitle = array, ""
+    bar.TitleColor = bar.LabelColor = [0, 0, 0]
     return display
+
+
+def has_array(source, array):
+    return source.PointData.GetArray(array) is not None
 
 
 def last_step(view, reader):
@@ -51,8 +63,16 @@ def shape_view(view):
     warp.Vectors = ["POINTS", "displacement [mm]"]
     warp.ScaleFactor = 1.0 if reach > 0.03 * size else 0.1 * size / reach
     Show(warp, view)
-    colour(view, warp, "displacement [mm]")
-    return "Model, displacements x %.3g" % warp.ScaleFactor
+    colour(view, warp, "POINTS", "displacement [mm]")
+    if not has_array(skin, "measured [mm]"):
+        return "Model, displacements x %.3g" % warp.ScaleFactor
+    reference = WarpByVector(Input=skin)
+    reference.Vectors = ["POINTS", "measured [mm]"]
+    reference.ScaleFactor = warp.ScaleFactor
+    lines = Show(reference, view, Representation="Wireframe")
+    ColorBy(lines, ("POINTS", ""))
+    lines.AmbientColor = lines.DiffuseColor = [0.8, 0.3, 0.1]
+    return "Model, and reference as lines, displacements x %.3g" % warp.ScaleFactor
 
 
 def skeleton_view(view):
@@ -65,16 +85,14 @@ def skeleton_view(view):
     tubes.Vectors = [None, ""]
     tubes.Radius = 0.005 * size_of(surface)
     Show(tubes, view)
-    display = GetDisplayProperties(tubes, view)
-    ColorBy(display, ("CELLS", "elongation [N/mm]"))
-    display.RescaleTransferFunctionToDataRange(True)
-    display.SetScalarBarVisibility(view, True)
+    colour(view, tubes, "CELLS", "elongation [N/mm]", logarithmic=True)
     balls = Glyph(Input=model, GlyphType="Sphere")
     balls.ScaleArray = ["POINTS", "radius [mm]"]
     balls.ScaleFactor = 2.0
     balls.GlyphMode = "All Points"
     ball_display = Show(balls, view)
-    ColorBy(ball_display, None)
+    ball_display.ColorArrayName = ["POINTS", ""]
+    ball_display.DiffuseColor = [0.16, 0.44, 0.59]
     ball_display.Opacity = 0.25
     return "Skeleton"
 
@@ -90,7 +108,7 @@ def error_view(view):
     dots.ScaleFactor = 0.02 * size_of(surface)
     dots.GlyphMode = "All Points"
     Show(dots, view)
-    colour(view, dots, "error [mm]")
+    colour(view, dots, "POINTS", "error [mm]")
     return "Error at the markers"
 
 
@@ -110,16 +128,16 @@ for number, build in enumerate((shape_view, skeleton_view, error_view)):
     camera = view.GetActiveCamera()
     camera.Elevation(-60)
     camera.Azimuth(20)
-    view.ResetCamera()
     views.append(view)
     if build is not error_view:
         layout.SplitHorizontal(layout.GetViewLocation(view), 0.5) if number == 0 else layout.SplitVertical(
             layout.GetViewLocation(view), 0.5)
 
+layout.SetSize(1800, 900)
 for view in views:
+    view.ResetCamera(True)
     Render(view)
 if len(sys.argv) > 1 and sys.argv[-1].endswith(".png"):
-    layout.SetSize(1800, 900)
     SaveScreenshot(sys.argv[-1], layout, ImageResolution=[1800, 900])
 )py";
 

@@ -148,7 +148,7 @@ Ground find_ground(const TetGraph& graph, const std::vector<mesh::Region>& suppo
 std::vector<Site> ground_sites(const Core& core, const Ground& ground, double spacing) {
     const Eigen::Index n = ground.patch.rows();
     Points at(n, 3);                 // on the core
-    double thin = 0, thickness = 0;  // how much of the patch holds limbs and plates
+    double thin = 0, thickness = 0;  // of the patch: what holds limbs and plates
     for (Eigen::Index i = 0; i < n; ++i) {
         const Neighborhood& around = core.of(ground.behind[i]);
         at.row(i) = around.collapse(ground.patch.row(i));
@@ -157,8 +157,8 @@ std::vector<Site> ground_sites(const Core& core, const Ground& ground, double sp
         thickness += ground.weight(i) * 2 * around.radius;
     }
     // Half a diagonal and some. Close spheres in a chain need no crowd to hold them.
-    const double least = thin > 0.5 * ground.weight.sum() ? thickness / thin : 0;
-    const Points centers = spread(at, ground.weight, 0.85 * std::max(spacing, least));
+    const double width = thin > 0.5 * ground.weight.sum() ? thickness / thin : 0;
+    const Points centers = spread(at, ground.weight, 0.85 * std::max(spacing, width));
 
     // Each stands in the middle of its part of the patch, and grows from a tetrahedron of its own there.
     std::vector<int> part(n);

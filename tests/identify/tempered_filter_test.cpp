@@ -7,13 +7,14 @@
 #include <numbers>
 
 #include "identify/random.h"
+#include "identify/resampling.h"
 #include "mesh/errors.h"
 
 namespace palpate::identify {
 namespace {
 
 GaussianProposal round(const Eigen::VectorXd& mean, double sd) {
-    return {mean, sd * Eigen::MatrixXd::Identity(mean.size(), mean.size())};
+    return {mean, 1 / sd * Eigen::MatrixXd::Identity(mean.size(), mean.size())};
 }
 
 double log_normal_density(double x, double mean, double sd) {
@@ -52,7 +53,7 @@ struct LinearGaussian {
 
 TEST(TemperedFilter, PosteriorOfALinearGaussianProblemIsExact) {
     const LinearGaussian problem(3, 8);
-    TemperedOptions options{.particles = 4000, .moves = 4, .seed = 3};
+    TemperedOptions options{.particles = 4000, .seed = 3};
     const TemperedResult result =
         tempered_filter([&](const auto& theta) { return problem.log_density(theta); },
                         round(Eigen::VectorXd::Zero(3), 1.2), options);
@@ -86,7 +87,7 @@ TEST(TemperedFilter, MovesDoNotDieWithTheDimension) {
         for (const double t : theta) sum += log_normal_density(t, 0, 1);
         return sum;
     };
-    const TemperedResult result = tempered_filter(density, round(Eigen::VectorXd::Zero(P), 1), {.particles = 400, .moves = 5});
+    const TemperedResult result = tempered_filter(density, round(Eigen::VectorXd::Zero(P), 1), {.particles = 400});
     EXPECT_GT(result.acceptance, 0.2);
     const Eigen::VectorXd weights = result.log_weights.array().exp();
     // posterior N(0.8, 0.2); five sigma of 400 draws of which a fifth counts
@@ -100,7 +101,7 @@ TEST(TemperedFilter, EqualModesKeepEqualWeights) {
         return log_normal_density(theta[0] * theta[0], 1, 0.1) + log_normal_density(theta[0], 0, 2);
     };
     const TemperedResult result =
-        tempered_filter(density, round(Eigen::VectorXd::Zero(1), 2), {.particles = 2000, .moves = 3, .seed = 5});
+        tempered_filter(density, round(Eigen::VectorXd::Zero(1), 2), {.particles = 2000, .seed = 5});
     double right = 0;
     for (int i = 0; i < 2000; ++i) {
         EXPECT_NEAR(std::abs(result.particles(i, 0)), 1, 0.4);  // eight sigma of 0.05
@@ -129,6 +130,21 @@ TEST(TemperedFilter, ParticlesWithoutDensityAreLeftBehind) {
         EXPECT_TRUE(result.particles(i, 0) > 0 || std::exp(result.log_weights[i]) == 0);
     }
     EXPECT_NEAR(result.log_evidence, std::log(0.5), 5 / std::sqrt(1000));  // five sigma: half the draws count
+}
+
+TEST(TemperedFilter, WhatCannotBeWeighedKeepsItsSpread) {
+    // 400 coordinates, each a posterior half as wide as the proposal: resampled particles would be copies
+    constexpr int P = 400;
+    const LogDensity density = [](const Eigen::VectorXd& theta) {
+        return -0.5 * theta.squaredNorm() / 0.25 - P * std::log(0.5 * std::sqrt(2 * std::numbers::pi));
+    };
+    const TemperedResult result = tempered_filter(density, round(Eigen::VectorXd::Zero(P), 1), {.particles = 50});
+    EXPECT_FALSE(result.weighed);
+    const double spread = result.particles.squaredNorm() / static_cast<double>(result.particles.size());
+    EXPECT_GT(spread, 0.25);  // not narrower than the posterior
+    EXPECT_LT(spread, 0.95);  // on its way from the proposal
+    EXPECT_NEAR(result.log_evidence, P * std::log(2), 1e-9);  // Laplace's at the mean: 1 / 0.5 each
+    EXPECT_NEAR(effective_samples(result.log_weights), 50, 1e-9);
 }
 
 TEST(TemperedFilter, NoDensityAnywhereIsAFailure) {
