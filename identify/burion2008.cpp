@@ -9,7 +9,7 @@
 namespace palpate::identify {
 namespace {
 
-constexpr double effective_share = 0.2;    // of the particles, when the sigmas are found
+constexpr double effective_share = 0.2;  // of the particles, when the sigmas are found
 constexpr double mutation_of_spread = 1.0 / 3;
 
 /// Squared errors of all particles, summed over the measurements: sum_j e(Y_j, X_m)^2 (M).

@@ -10,22 +10,22 @@
 namespace palpate::identify {
 
 struct BurionOptions {
-    int particles = 600;        // M
-    int iterations = 20;        // K
-    double search_low = 0.1;    // V: each multiplier lies in [low, high] at first
+    int particles = 600;      // M
+    int iterations = 20;      // K
+    double search_low = 0.1;  // V: each multiplier lies in [low, high] at first
     double search_high = 10;
-    double sigma_force = 0;     // sigma_F [N^2]; 0: see below
-    double sigma_torque = 0;    // sigma_T [N^2], torques over the mean link length; 0: see below
-    double mutation = 0;        // sigma_r, as a share of V's sides; 0: see below
+    double sigma_force = 0;   // sigma_F [N^2]; 0: see below
+    double sigma_torque = 0;  // sigma_T [N^2], torques over the mean link length; 0: see below
+    double mutation = 0;      // sigma_r, as a share of V's sides; 0: see below
     std::uint64_t seed = 1;
 };
 
 struct BurionResult {
-    Eigen::MatrixXd particles;         // multipliers (M x P)
-    Eigen::VectorXd log_weights;       // (M), normalised
-    Eigen::VectorXd best;              // the particle of highest weight of all iterations (P)
-    Eigen::VectorXd mean, sd;          // of the particles (P)
-    std::vector<FilterStep> history;   // (K), particles as multipliers
+    Eigen::MatrixXd particles;        // multipliers (M x P)
+    Eigen::VectorXd log_weights;      // (M), normalised
+    Eigen::VectorXd best;             // the particle of highest weight of all iterations (P)
+    Eigen::VectorXd mean, sd;         // of the particles (P)
+    std::vector<FilterStep> history;  // (K), particles as multipliers
 };
 
 /// Algorithm 1 of [Burion, Conti, Petrovskaya, Baur, Khatib: Identifying physical properties of deformable objects by

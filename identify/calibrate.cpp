@@ -36,7 +36,8 @@ double effective_parameters(const FitResult& fit, const LogNormalPrior& prior) {
 double model_error_after(const PositionDomain& domain, const FitResult& fit, const LogNormalPrior& prior) {
     const double readings = domain.effective_coordinates();
     const double fitted = std::min(effective_parameters(fit, prior), 0.75 * readings);
-    return std::max(least_error, domain.estimate_model_error(fit.prediction) * std::sqrt(readings / (readings - fitted)));
+    return std::max(least_error,
+                    domain.estimate_model_error(fit.prediction) * std::sqrt(readings / (readings - fitted)));
 }
 
 /// The states that moved most, in their order.
@@ -141,8 +142,8 @@ Calibration calibrate(const skeleton::Model& model, const std::vector<StateReadi
     FitResult fit = std::move(stage.fit);
     if (options.scope != Scope::uniform) {
         // finer, from the uniform fit; again twice
-        domain = PositionDomain(model, law, group_stiffness(model, options.scope, options.fixed), readings,
-                                options.threads);
+        domain =
+            PositionDomain(model, law, group_stiffness(model, options.scope, options.fixed), readings, options.threads);
         const Eigen::VectorXd start = spread_kinds(domain.parameters(), uniform.parameters(), fit.theta);
         prior = options.scope == Scope::links
                     ? prior_round(start, link_sd)
@@ -157,10 +158,11 @@ Calibration calibrate(const skeleton::Model& model, const std::vector<StateReadi
     } else {
         domain.set_model_error(model_error);
     }
-    calibrator.note(fmt::format("relative model error: {:.2g} % of the displacement, beyond the noise", 100 * model_error));
+    calibrator.note(
+        fmt::format("relative model error: {:.2g} % of the displacement, beyond the noise", 100 * model_error));
     if (!fit.converged) calibrator.note("the fit stopped before it settled: take the posterior with care");
-    return {std::move(domain), std::move(prior), std::move(fit), model_error, calibrator.equilibria_,
-            std::move(calibrator.notes_)};
+    return {std::move(domain), std::move(prior),       std::move(fit),
+            model_error,       calibrator.equilibria_, std::move(calibrator.notes_)};
 }
 
 }  // namespace palpate::identify

@@ -14,7 +14,7 @@
 namespace palpate::identify {
 namespace {
 
-constexpr double adequate_rms = 1.1;        // in sigmas: with thousands of readings no p-value forgives rounding
+constexpr double adequate_rms = 1.1;  // in sigmas: with thousands of readings no p-value forgives rounding
 constexpr double adequate_p_value = 0.01;
 constexpr int worst_readings = 10;
 
@@ -67,8 +67,8 @@ double noise_of(const StateReadings& readings) {
     return std::isnan(value) ? 0 : value;
 }
 
-void find_worst(const MeasurementSet& set, const std::vector<StateReadings>& states,
-                const std::vector<Points>& errors, Comparison& result) {
+void find_worst(const MeasurementSet& set, const std::vector<StateReadings>& states, const std::vector<Points>& errors,
+                Comparison& result) {
     for (std::size_t s = 0; s < states.size(); ++s) {
         const LoadState& state = set.states[states[s].state];
         for (Eigen::Index i = 0; i < errors[s].rows(); ++i) {
@@ -87,7 +87,8 @@ void find_worst(const MeasurementSet& set, const std::vector<StateReadings>& sta
 Comparison compare(const skeleton::Model& model, const MeasurementSet& set, int threads) {
     const std::vector<StateReadings> states = collect_readings(model, set);
     if (states.empty()) {
-        throw InvalidInput("measurement set '" + set.name + "' has no labelled reading to compare with; positions.csv "
+        throw InvalidInput("measurement set '" + set.name +
+                           "' has no labelled reading to compare with; positions.csv "
                            "needs rows that name a marker");
     }
     const std::vector<Points> predicted = predict(model, states, threads);
@@ -106,8 +107,7 @@ Comparison compare(const skeleton::Model& model, const MeasurementSet& set, int 
         totals.add(states[s], errors[s]);
         result.probes.push_back(error_of(state, states[s], errors[s]));
         result.max = std::max(result.max, result.probes.back().max);
-        under_load.push_back(
-            {rms(predicted[s] - states[s].rest), result.probes.back().rms, noise_of(states[s])});
+        under_load.push_back({rms(predicted[s] - states[s].rest), result.probes.back().rms, noise_of(states[s])});
     }
     result.rms = std::sqrt(totals.error / totals.coordinates);
     result.relative = totals.displacement > 0 ? std::sqrt(totals.error / totals.displacement) : missing;
@@ -118,8 +118,8 @@ Comparison compare(const skeleton::Model& model, const MeasurementSet& set, int 
     if (!std::isnan(totals.noise) && totals.noise > 0) {
         result.noise = std::sqrt(totals.noise / totals.coordinates);
         result.p_value = boost::math::gamma_q(totals.coordinates / 2.0, totals.chi_squared / 2);
-        result.adequate = std::sqrt(totals.chi_squared / totals.coordinates) <= adequate_rms ||
-                          result.p_value >= adequate_p_value;
+        result.adequate =
+            std::sqrt(totals.chi_squared / totals.coordinates) <= adequate_rms || result.p_value >= adequate_p_value;
     }
     return result;
 }

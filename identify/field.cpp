@@ -15,9 +15,10 @@ Field read_field(const std::filesystem::path& file) {
     Field field{mesh::read_vtu(file, &data), {}};
     const auto found = std::ranges::find(data.points, "displacement", &mesh::DataArray::name);
     if (found == data.points.end() || found->values.cols() != 3) {
-        throw InvalidInput(fmt::format("{}: no point array 'displacement' of three components [mm]; write one row "
-                                       "for each node of the mesh at rest",
-                                       file.string()));
+        throw InvalidInput(
+            fmt::format("{}: no point array 'displacement' of three components [mm]; write one row "
+                        "for each node of the mesh at rest",
+                        file.string()));
     }
     field.displacement = found->values;
     return field;

@@ -50,8 +50,10 @@ ForceDomain force_domain(const skeleton::Model& model, const Parameters& paramet
         Eigen::VectorXd f = skeleton::external_force(model, configuration.state, configuration.load);
         for (int e = 0; e < parameters.k0.size(); ++e) {
             const int p = parameters.parameter_of[e];
-            if (p >= 0) A.col(p) += parameters.k0[e] * G.col(e);
-            else f += parameters.k0[e] * G.col(e);
+            if (p >= 0)
+                A.col(p) += parameters.k0[e] * G.col(e);
+            else
+                f += parameters.k0[e] * G.col(e);
         }
         accumulate(result.forces, A(force_rows, Eigen::all), f(force_rows));
         accumulate(result.torques, A(torque_rows, Eigen::all) / length, f(torque_rows) / length);

@@ -16,9 +16,9 @@ struct MeasuredConfiguration {
 /// Squared net force as a quadratic of the multipliers m = exp(theta) (P), summed over measurements:
 ///   sum_j |A_j m + f_j|^2 = m^T H m + 2 g^T m + c.
 struct ForceStatistics {
-    Eigen::MatrixXd H;   // (P x P) [N^2]
-    Eigen::VectorXd g;   // (P) [N^2]
-    double c = 0;        // [N^2]
+    Eigen::MatrixXd H;  // (P x P) [N^2]
+    Eigen::VectorXd g;  // (P) [N^2]
+    double c = 0;       // [N^2]
 };
 
 /// Net forces and net torques on the free spheres in measured configurations; exact sufficient statistics, since both

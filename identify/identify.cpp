@@ -25,13 +25,14 @@ constexpr double calibration_share = 0.4;  // of the progress
 /// Beyond so many sphere equilibria for one look at all particles, large rotations are stood in for.
 constexpr double dear_evaluations = 3e4;
 
-/// N(MAP, (1 + 1 / P) H^-1): somewhat wider than Laplace's approximation, by less the more parameters there are, so that
-/// the effective sample size stands it.
+/// N(MAP, (1 + 1 / P) H^-1): somewhat wider than Laplace's approximation, by less the more parameters there are, so
+/// that the effective sample size stands it.
 GaussianProposal laplace_proposal(const FitResult& fit) {
     const Eigen::LLT<Eigen::MatrixXd> hessian(fit.hessian);
     if (hessian.info() != Eigen::Success) {
-        throw SolverFailure("the posterior's precision at the fit is not positive definite; take fewer parameters "
-                            "(zones or uniform)");
+        throw SolverFailure(
+            "the posterior's precision at the fit is not positive definite; take fewer parameters "
+            "(zones or uniform)");
     }
     const double wider = 1 + 1 / static_cast<double>(fit.theta.size());
     return {fit.theta, hessian.matrixL().toDenseMatrix() / std::sqrt(wider)};
@@ -65,10 +66,11 @@ IdentifyResult identify_tempered(const skeleton::Model& model, const Measurement
                                  const IdentifyOptions& options, const Progress& progress) {
     const std::vector<StateReadings> readings = collect_readings(model, set);
     if (std::ranges::none_of(readings, &StateReadings::tells_stiffness)) {
-        throw InvalidInput(fmt::format("measurement set '{}' has no state with both a load and a labelled reading: stiffness "
-                                       "shows only under a force or a known gravity; add a row with a force to "
-                                       "probes.csv and its markers to positions.csv",
-                                       set.name));
+        throw InvalidInput(
+            fmt::format("measurement set '{}' has no state with both a load and a labelled reading: stiffness "
+                        "shows only under a force or a known gravity; add a row with a force to "
+                        "probes.csv and its markers to positions.csv",
+                        set.name));
     }
 
     // the most probable stiffness
@@ -84,8 +86,9 @@ IdentifyResult identify_tempered(const skeleton::Model& model, const Measurement
     const int particles = options.particles > 0 ? options.particles : default_particles;
     const bool dear = is_dear(calibration.domain, model, particles);
     if (dear) {
-        result.notes.emplace_back("particles: large rotations enter as a correction found at the fit, as solving for each "
-                                  "particle anew would take too long");
+        result.notes.emplace_back(
+            "particles: large rotations enter as a correction found at the fit, as solving for each "
+            "particle anew would take too long");
     }
     const PositionDomain domain =
         dear ? calibration.domain.linearised(calibration.fit.theta, calibration.fit.prediction) : calibration.domain;
@@ -100,23 +103,22 @@ IdentifyResult identify_tempered(const skeleton::Model& model, const Measurement
 
     // particles from the fit's neighbourhood to the posterior
     TemperedOptions filter_options{.particles = particles, .seed = options.seed, .threads = options.threads};
-    TemperedResult filter = tempered_filter(log_density, laplace_proposal(calibration.fit), filter_options,
-                                            [&](std::string_view what, double fraction) {
-                                                report(progress, what,
-                                                       calibration_share + (1 - calibration_share) * fraction);
-                                            });
+    TemperedResult filter = tempered_filter(
+        log_density, laplace_proposal(calibration.fit), filter_options, [&](std::string_view what, double fraction) {
+            report(progress, what, calibration_share + (1 - calibration_share) * fraction);
+        });
 
     if (!filter.weighed) {
-        result.notes.emplace_back("particles: too many parameters to weigh them; they are drawn from the fit's own "
-                                  "covariance and moved towards the posterior, and the evidence is Laplace's");
+        result.notes.emplace_back(
+            "particles: too many parameters to weigh them; they are drawn from the fit's own "
+            "covariance and moved towards the posterior, and the evidence is Laplace's");
     }
     const Eigen::MatrixXd stiffness = stiffness_of(parameters, filter.particles);
     result.posterior = posterior_rows(parameters, stiffness, filter.log_weights, stiffness_prior(parameters, prior));
     Eigen::Index best = 0;
     filter.log_density.maxCoeff(&best);
     result.best = stiffness.row(best);
-    result.model =
-        with_stiffness(model, parameters, calibration.fit.theta.array().exp(), calibration.domain.law());
+    result.model = with_stiffness(model, parameters, calibration.fit.theta.array().exp(), calibration.domain.law());
     for (FilterStep& step : filter.history) {
         step.particles = stiffness_of(parameters, step.particles);
         result.history.push_back(std::move(step));
@@ -150,19 +152,18 @@ IdentifyResult identify_burion2008(const skeleton::Model& model, const Measureme
 
     IdentifyResult result;
     const Eigen::VectorXd units = parameters.units();
-    result.posterior =
-        posterior_rows(parameters, filter.particles * units.asDiagonal(), filter.log_weights,
-                       stiffness_prior(parameters, options.search_low, options.search_high));
+    result.posterior = posterior_rows(parameters, filter.particles * units.asDiagonal(), filter.log_weights,
+                                      stiffness_prior(parameters, options.search_low, options.search_high));
     result.best = filter.best.cwiseProduct(units);
     const bool linear = options.law == LawChoice::linear;
-    result.model = with_stiffness(model, parameters, filter.mean,
-                                  linear ? skeleton::Law::linear : skeleton::Law::large_rotation);
+    result.model =
+        with_stiffness(model, parameters, filter.mean, linear ? skeleton::Law::linear : skeleton::Law::large_rotation);
     for (FilterStep& step : filter.history) {
         step.particles = step.particles * units.asDiagonal();
         result.history.push_back(std::move(step));
     }
-    result.notes.push_back(fmt::format("{} of {} states tell every sphere's place and turn and were used", measured.size(),
-                                       set.states.size()));
+    result.notes.push_back(fmt::format("{} of {} states tell every sphere's place and turn and were used",
+                                       measured.size(), set.states.size()));
     result.notes.emplace_back("the spread of the particles is that of Algorithm 1's mutation, not of a posterior");
     return result;
 }

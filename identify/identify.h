@@ -25,43 +25,43 @@ struct IdentifyOptions {
     Scope scope = Scope::links;
     Method method = Method::tempered;
     LawChoice law = LawChoice::automatic;
-    int particles = 0;               // 0: 200 (tempered), 600 (burion2008)
-    int iterations = 20;             // burion2008: K
-    double search_low = 0.1;         // burion2008: box V, as multiples of the model's own stiffness
+    int particles = 0;        // 0: 200 (tempered), 600 (burion2008)
+    int iterations = 20;      // burion2008: K
+    double search_low = 0.1;  // burion2008: box V, as multiples of the model's own stiffness
     double search_high = 10.0;
-    std::vector<skeleton::Stiffness> fixed;   // kinds that are known: they stay as the model has them
+    std::vector<skeleton::Stiffness> fixed;  // kinds that are known: they stay as the model has them
     std::uint64_t seed = 1;
     int threads = 1;
-    void validate() const;           // @throws InvalidInput naming option, value, bound
+    void validate() const;  // @throws InvalidInput naming option, value, bound
 };
 
 /// A row of posterior.csv. A parameter that stands for several links tells their geometric mean stiffness.
 struct PosteriorRow {
-    std::string parameter;           // "elongation", "flexion:zone2", "torsion:link17"
-    int link = -1;                   // -1: stands for several
+    std::string parameter;  // "elongation", "flexion:zone2", "torsion:link17"
+    int link = -1;          // -1: stands for several
     std::string unit;
     double mean = 0, sd = 0, q025 = 0, q50 = 0, q975 = 0;
     double prior_mean = 0, prior_sd = 0;
-    bool informed = false;           // sd <= 0.7 prior_sd
+    bool informed = false;  // sd <= 0.7 prior_sd
 };
 
 /// The particle set after a step of the filter.
 struct FilterStep {
-    double temperature = 0;          // tempered: 0 proposal .. 1 posterior; burion2008: iteration
+    double temperature = 0;  // tempered: 0 proposal .. 1 posterior; burion2008: iteration
     double effective_samples = 0;
-    Eigen::MatrixXd particles;       // stiffnesses (particles x parameters), units as in the posterior
-    Eigen::VectorXd log_weights;     // before resampling (particles), normalised
+    Eigen::MatrixXd particles;    // stiffnesses (particles x parameters), units as in the posterior
+    Eigen::VectorXd log_weights;  // before resampling (particles), normalised
 };
 
 struct IdentifyResult {
-    skeleton::Model model;                  // with the law and the most probable stiffness; burion2008: the mean
-    std::vector<PosteriorRow> posterior;    // a row per parameter
-    Eigen::VectorXd best;                   // the particle of highest weight (parameters)
+    skeleton::Model model;                // with the law and the most probable stiffness; burion2008: the mean
+    std::vector<PosteriorRow> posterior;  // a row per parameter
+    Eigen::VectorXd best;                 // the particle of highest weight (parameters)
     std::vector<FilterStep> history;
     double log_evidence = 0;
-    double acceptance = 0;                  // of the moves
-    int equilibria = 0;                     // solved
-    std::vector<std::string> notes;         // what a user should know, in words
+    double acceptance = 0;           // of the moves
+    int equilibria = 0;              // solved
+    std::vector<std::string> notes;  // what a user should know, in words
 };
 
 /// Finds the stiffness of every link, so that the model follows the measurements. The model gets the most probable

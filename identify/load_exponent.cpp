@@ -7,6 +7,7 @@ namespace palpate::identify {
 namespace {
 
 constexpr double unknown_noise_floor = 0.02;  // of the typical error, where the noise is unknown
+constexpr double least_growth = 0.4;          // an exponent below it: the error is there without load
 constexpr double least_ratio = 1.2;           // between the largest load and the least, to tell anything
 
 struct LogPoint {
@@ -43,7 +44,7 @@ LoadExponent fit_line(const std::vector<LogPoint>& points) {
 
 const char* words_for(const LoadExponent& exponent) {
     if (exponent.sd > 0.5) return "the loads differ too little to tell how the error grows with them";
-    if (exponent.value < 0.4) return "the error is there without any load";
+    if (exponent.value < least_growth) return "the error is there without any load";
     if (exponent.value < 1.5) return "the error grows in proportion to the load, like a wrong stiffness";
     return "the error grows faster than the load, like a nonlinearity";
 }
@@ -79,12 +80,17 @@ std::optional<LoadExponent> load_exponent(const std::vector<ErrorUnderLoad>& sta
 
     // states without load, at the load at which an error in proportion to it would sink into the floor
     const double sinking_load = typical_load * floor / typical_error;
+    std::vector<LogPoint> silent;  // without load and without error
     for (const ErrorUnderLoad& state : unloaded) {
         const double error = beyond_noise(state, floor);
-        if (error > 3 * floor || !levels) points.push_back({std::log(sinking_load), std::log(error)});
+        (error > 3 * floor ? points : silent).push_back({std::log(sinking_load), std::log(error)});
     }
     if (!levels && unloaded.empty()) return std::nullopt;
 
+    // an error that vanishes with the load is not there without it, however the loaded states scatter
+    if (!levels || (!silent.empty() && fit_line(points).value < least_growth)) {
+        points.insert(points.end(), silent.begin(), silent.end());
+    }
     LoadExponent exponent = fit_line(points);
     exponent.words = words_for(exponent);
     return exponent;

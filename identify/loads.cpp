@@ -29,8 +29,8 @@ void sample_triangle(const Vec3& p0, const Vec3& p1, const Vec3& p2, const mesh:
     };
     for (int i = 0; i < n; ++i) {
         for (int j = 0; j < n - i; ++j) {
-            add(i + 1.0 / 3, j + 1.0 / 3);                      // upright piece
-            if (j < n - i - 1) add(i + 2.0 / 3, j + 2.0 / 3);   // its upside-down neighbour
+            add(i + 1.0 / 3, j + 1.0 / 3);                     // upright piece
+            if (j < n - i - 1) add(i + 2.0 / 3, j + 2.0 / 3);  // its upside-down neighbour
         }
     }
 }

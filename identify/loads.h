@@ -15,8 +15,9 @@ namespace palpate::identify {
 
 /// Turns contacts on the body into forces on a skeleton's skin.
 ///
-/// A contact's force is spread evenly over the skin within its radius, sampled finely; where no sample lies within (radius 0, or
-/// a small one), it acts at the nearest point of the skin. A model without a skin takes it where it is told to act.
+/// A contact's force is spread evenly over the skin within its radius, sampled finely; where no sample lies within
+/// (radius 0, or a small one), it acts at the nearest point of the skin. A model without a skin takes it where it is
+/// told to act.
 class ContactLoads {
 public:
     explicit ContactLoads(const skeleton::Model& model);

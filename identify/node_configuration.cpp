@@ -33,8 +33,8 @@ int only_sphere(const skeleton::Attachment& at) {
     return at.t >= 1 - rounding ? at.b : -1;
 }
 
-/// Points of a ball of radius 1: the 26 directions from a cube's middle to its corners, edges and sides, on two shells. Their
-/// second moments are those of a ball, so that a strain looks neither like a displacement nor like a turn.
+/// Points of a ball of radius 1: the 26 directions from a cube's middle to its corners, edges and sides, on two shells.
+/// Their second moments are those of a ball, so that a strain looks neither like a displacement nor like a turn.
 Points ball_points() {
     std::vector<Vec3> points;
     for (int x = -1; x <= 1; ++x) {
@@ -91,7 +91,8 @@ NodeConfiguration configuration_of_markers(const skeleton::Model& model, const M
     for (const Reading& reading : state.readings) {
         if (reading.marker < 0 || !reading.position.allFinite()) continue;
         const Marker& marker = set.markers[reading.marker];
-        const int sphere = only_sphere(marker.anchor ? attach(model, *marker.anchor, marker.rest) : attach(model, marker.rest));
+        const int sphere =
+            only_sphere(marker.anchor ? attach(model, *marker.anchor, marker.rest) : attach(model, marker.rest));
         if (sphere >= 0) on_sphere[sphere].push_back(&reading);
     }
 

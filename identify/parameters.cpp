@@ -77,8 +77,9 @@ Parameters group_stiffness(const skeleton::Model& model, Scope scope, const std:
                                std::exp(log_sum / static_cast<double>(links.size()))});
     }
     if (result.list.empty()) {
-        throw InvalidInput("the model has nothing to identify: all stiffnesses of its links are zero or fixed; "
-                           "give the links start values above zero");
+        throw InvalidInput(
+            "the model has nothing to identify: all stiffnesses of its links are zero or fixed; "
+            "give the links start values above zero");
     }
     return result;
 }

@@ -30,6 +30,27 @@ Eigen::VectorXd errors_of(const StateReadings& state, const Points& markers) {
     return difference.array().isNaN().select(0, difference).reshaped<Eigen::RowMajor>();
 }
 
+/// Adds the lower half of factor G^T S G, of a symmetric S (n x n) and a sparse G (n x P), by strips that stay in the
+/// cache.
+void add_congruence(double factor, const Eigen::MatrixXd& S, const Eigen::SparseMatrix<double>& G, Eigen::MatrixXd& H) {
+    using Entry = Eigen::SparseMatrix<double>::InnerIterator;
+    constexpr Eigen::Index width = 128;
+    for (Eigen::Index begin = 0; begin < G.cols(); begin += width) {
+        const Eigen::Index end = std::min(begin + width, G.cols());
+        // rows begin..end of G^T S
+        Eigen::MatrixXd SG = Eigen::MatrixXd::Zero(S.rows(), end - begin);
+        for (Eigen::Index p = begin; p < end; ++p) {
+            for (Entry g(G, p); g; ++g) SG.col(p - begin) += factor * g.value() * S.col(g.row());
+        }
+        const Eigen::MatrixXd GS = SG.transpose();
+        // times the columns of G, not above the diagonal
+        for (Eigen::Index p = 0; p < end; ++p) {
+            const Eigen::Index first = std::max(begin, p), count = end - first;
+            for (Entry g(G, p); g; ++g) H.col(p).segment(first, count) += g.value() * GS.col(g.row()).tail(count);
+        }
+    }
+}
+
 std::shared_ptr<const skeleton::Model> with_law(const skeleton::Model& model, skeleton::Law law) {
     auto copy = std::make_shared<skeleton::Model>(model);
     copy->law = law;
@@ -109,7 +130,8 @@ Prediction PositionDomain::predict_linear(const Eigen::VectorXd& k) const {
     Prediction prediction;
     for (int s = 0; s < static_cast<int>(states_.size()); ++s) {
         const Eigen::VectorXd moved = P_[s] * U.col(s);
-        prediction.markers.emplace_back(states_[s].rest + offsets_[s] + moved.reshaped<Eigen::RowMajor>(moved.size() / 3, 3));
+        prediction.markers.emplace_back(states_[s].rest + offsets_[s] +
+                                        moved.reshaped<Eigen::RowMajor>(moved.size() / 3, 3));
         prediction.equilibria.push_back({{}, 1, 0, U.col(s)});
     }
     return prediction;
@@ -165,8 +187,10 @@ NormalEquations PositionDomain::from_the_left(int s, const Eigen::SparseMatrix<d
                                               double ratio) const {
     // J^T W J = G_theta^T (X W X^T) G_theta
     const Eigen::VectorXd error = errors_of(states_[s], prediction.markers[s]);
-    const Eigen::MatrixXd right = ratio * pull_back.XWX * G_theta;
-    return {G_theta.transpose() * right, -G_theta.transpose() * (pull_back.X * weights_[s].cwiseProduct(error))};
+    NormalEquations result{Eigen::MatrixXd::Zero(G_theta.cols(), G_theta.cols()), {}};
+    add_congruence(ratio, pull_back.XWX, G_theta, result.H);
+    result.g = -G_theta.transpose() * (pull_back.X * weights_[s].cwiseProduct(error));
+    return result;
 }
 
 /// By the linear law states with the same markers share a pull-back but for one factor, where their weights do.
@@ -214,6 +238,7 @@ NormalEquations PositionDomain::normal_equations(const Eigen::VectorXd& theta, c
             sum.g += part.g;
         }
     }
+    sum.H.triangularView<Eigen::StrictlyUpper>() = sum.H.transpose();
     return sum;
 }
 

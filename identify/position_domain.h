@@ -12,14 +12,14 @@ namespace palpate::identify {
 
 /// A model's answer to all loads: where it stands, and the markers.
 struct Prediction {
-    std::vector<skeleton::Equilibrium> equilibria;   // (states)
-    std::vector<Points> markers;                     // of each state (m x 3) [mm]
+    std::vector<skeleton::Equilibrium> equilibria;  // (states)
+    std::vector<Points> markers;                    // of each state (m x 3) [mm]
 };
 
 /// Gauss-Newton's view of half the chi^2 of the errors d = (measured - modelled) / sigma.
 struct NormalEquations {
-    Eigen::MatrixXd H;   // J^T J (P x P), J = d d / d theta
-    Eigen::VectorXd g;   // J^T d (P)
+    Eigen::MatrixXd H;  // J^T J (P x P), J = d d / d theta
+    Eigen::VectorXd g;  // J^T d (P)
 };
 
 /// Errors of the markers at the model's own equilibria, and their derivatives by theta, the log multipliers.
@@ -42,8 +42,8 @@ public:
 
     const Parameters& parameters() const { return parameters_; }
     const std::vector<StateReadings>& states() const { return states_; }
-    int coordinates() const;           // measured, in all
-    int effective_coordinates() const; // the same, at most six a state
+    int coordinates() const;            // measured, in all
+    int effective_coordinates() const;  // the same, at most six a state
     skeleton::Law law() const { return model_->law; }
 
     /// Sets all sigmas.
@@ -76,6 +76,7 @@ private:
     };
     PullBack pull_back(int s, const Prediction& prediction, const skeleton::StaticsSolver& solver) const;
     std::optional<double> weight_ratio(int s, int other) const;
+    /// Parts of the normal equations; from the left H holds its lower half only.
     NormalEquations from_the_left(int s, const Eigen::SparseMatrix<double>& G_theta, const Prediction& prediction,
                                   const PullBack& pull_back, double ratio) const;
     NormalEquations from_the_right(int s, const Eigen::SparseMatrix<double>& G_theta, const Prediction& prediction,
@@ -86,11 +87,11 @@ private:
     std::shared_ptr<SolverPool> solvers_;
     Parameters parameters_;
     std::vector<StateReadings> states_;
-    std::vector<Points> offsets_;                            // added to the modelled markers (m x 3) [mm]
-    std::vector<Eigen::SparseMatrix<double>> P_;             // of each state at rest (3m x 6N)
-    Eigen::MatrixXd F_;                                      // loads at rest (6N x states)
-    std::vector<Eigen::VectorXd> weights_;                   // 1 / sigma^2, 0 for a missing coordinate, of each state (3m)
-    double typical_displacement_ = 0;                        // u_0 [mm]
+    std::vector<Points> offsets_;                 // added to the modelled markers (m x 3) [mm]
+    std::vector<Eigen::SparseMatrix<double>> P_;  // of each state at rest (3m x 6N)
+    Eigen::MatrixXd F_;                           // loads at rest (6N x states)
+    std::vector<Eigen::VectorXd> weights_;        // 1 / sigma^2, 0 for a missing coordinate, of each state (3m)
+    double typical_displacement_ = 0;             // u_0 [mm]
     double log_constant_ = 0;
     int threads_ = 1;
 };

@@ -8,7 +8,7 @@ namespace palpate::identify {
 /// Mean and sd of stiffnesses before the measurements, and the sd of their logarithms (P).
 struct StiffnessPrior {
     Eigen::VectorXd mean, sd;
-    Eigen::VectorXd log_sd;   // infinite: not told by logarithms
+    Eigen::VectorXd log_sd;  // infinite: not told by logarithms
 };
 
 /// Of log multipliers: the mean of the log-normal exp(N(m, s^2)) is exp(m + s^2 / 2), its sd the mean times
@@ -18,8 +18,9 @@ StiffnessPrior stiffness_prior(const Parameters& parameters, const LogNormalPrio
 /// Of multipliers that lie evenly in [low, high].
 StiffnessPrior stiffness_prior(const Parameters& parameters, double low, double high);
 
-/// A row per parameter, of weighted particles (N x P) of stiffnesses. Informed where the sd has fallen to 0.7 of the prior's or less,
-/// in the stiffness and in its logarithm: a wide log-normal's sd rests on its tail, which few particles see.
+/// A row per parameter, of weighted particles (N x P) of stiffnesses. Informed where the sd has fallen to 0.7 of the
+/// prior's or less, in the stiffness and in its logarithm: a wide log-normal's sd rests on its tail, which few
+/// particles see.
 std::vector<PosteriorRow> posterior_rows(const Parameters& parameters, const Eigen::MatrixXd& particles,
                                          const Eigen::VectorXd& log_weights, const StiffnessPrior& prior);
 

@@ -11,9 +11,9 @@ class RandomStream {
 public:
     RandomStream(std::uint64_t seed, std::uint64_t step, std::uint64_t item);
 
-    double uniform();                 // [0, 1)
-    double normal();                  // mean 0, sd 1
-    Eigen::VectorXd normals(int n);   // (n)
+    double uniform();                // [0, 1)
+    double normal();                 // mean 0, sd 1
+    Eigen::VectorXd normals(int n);  // (n)
 
 private:
     std::uint64_t next();

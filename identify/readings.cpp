@@ -60,8 +60,7 @@ std::vector<StateReadings> collect_readings(const skeleton::Model& model, const 
             readings.points.push_back(markers[reading.marker]);
             readings.rest.row(i) = set.markers[reading.marker].rest;
             readings.measured.row(i) = reading.position;
-            readings.noise[i] =
-                std::isnan(reading.sigma) ? set.position_noise.value_or(missing) : reading.sigma;
+            readings.noise[i] = std::isnan(reading.sigma) ? set.position_noise.value_or(missing) : reading.sigma;
         }
         readings.coordinates = static_cast<int>((!readings.measured.array().isNaN()).count());
         readings.displacement = rms(readings.measured - readings.rest);

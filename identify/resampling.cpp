@@ -18,9 +18,7 @@ double normalise(Eigen::VectorXd& log_weights) {
     return log_sum;
 }
 
-double effective_samples(const Eigen::VectorXd& log_weights) {
-    return 1 / (2 * log_weights.array()).exp().sum();
-}
+double effective_samples(const Eigen::VectorXd& log_weights) { return 1 / (2 * log_weights.array()).exp().sum(); }
 
 std::vector<int> low_variance_resample(const Eigen::VectorXd& log_weights, int count, double u) {
     const Eigen::VectorXd weights = log_weights.array().exp();

@@ -15,8 +15,8 @@
 namespace palpate::identify {
 namespace {
 
-/// With more particles than this for each parameter, copies that do not part are told apart by the rest: they may sit in
-/// modes of their own.
+/// With more particles than this for each parameter, copies that do not part are told apart by the rest: they may sit
+/// in modes of their own.
 constexpr double particles_per_parameter = 4;
 
 /// The cloud in whitened coordinates, a column per particle.
@@ -32,58 +32,68 @@ public:
     Filter(const LogDensity& log_density, const GaussianProposal& proposal, const TemperedOptions& options)
         : log_density_(log_density), proposal_(proposal), options_(options) {
         constexpr double log_root_two_pi = 0.5 * std::numbers::ln2 + 0.57236494292470008707;  // + ln sqrt(pi)
-        log_peak_ = proposal.L.diagonal().array().log().sum() -
-                    log_root_two_pi * static_cast<double>(proposal.mean.size());
+        log_peak_ =
+            proposal.L.diagonal().array().log().sum() - log_root_two_pi * static_cast<double>(proposal.mean.size());
     }
 
-    Eigen::VectorXd parameters(const Eigen::VectorXd& z) const {
-        return proposal_.mean + proposal_.L.transpose().triangularView<Eigen::Upper>().solve(z);
+    /// theta of each column of z.
+    Eigen::MatrixXd parameters(const Eigen::MatrixXd& z) const {
+        return proposal_.L.transpose().triangularView<Eigen::Upper>().solve(z).colwise() + proposal_.mean;
     }
 
     double log_proposal(const Eigen::VectorXd& z) const { return log_peak_ - z.squaredNorm() / 2; }
 
-    double log_ratio(const Eigen::VectorXd& z) const {
-        const double value = log_density_(parameters(z));
-        return std::isfinite(value) ? value - log_proposal(z) : -std::numeric_limits<double>::infinity();
+    /// ln pi - ln q of each column of z.
+    Eigen::VectorXd log_ratio(const Eigen::MatrixXd& z) const {
+        const Eigen::MatrixXd theta = parameters(z);
+        Eigen::VectorXd ratio(z.cols());
+        for_each_in_parallel(static_cast<int>(z.cols()), options_.threads, [&](int i) {
+            const double value = log_density_(theta.col(i));
+            ratio[i] = std::isfinite(value) ? value - log_proposal(z.col(i)) : -std::numeric_limits<double>::infinity();
+        });
+        return ratio;
     }
 
     Cloud draw() const {
-        Cloud cloud{Eigen::MatrixXd(proposal_.mean.size(), options_.particles), Eigen::VectorXd(options_.particles)};
-        for_each_in_parallel(cloud.size(), options_.threads, [&](int i) {
+        Cloud cloud{Eigen::MatrixXd(proposal_.mean.size(), options_.particles), {}};
+        for (int i = 0; i < options_.particles; ++i) {
             cloud.z.col(i) = RandomStream(options_.seed, 0, i).normals(static_cast<int>(cloud.z.rows()));
-            cloud.log_ratio[i] = log_ratio(cloud.z.col(i));
-        });
+        }
+        cloud.log_ratio = log_ratio(cloud.z);
         return cloud;
     }
 
     struct Moved {
-        double accepted;   // share of the particles
-        double distance;   // mean square of the way that they went, in z
+        double accepted;  // share of the particles
+        double distance;  // mean square of the way that they went, in z
     };
 
     /// One Crank-Nicolson move of every particle at temperature b.
     Moved move(Cloud& cloud, double b, double step, std::uint64_t round) const {
         const double keep = std::sqrt(1 - step * step);
-        Eigen::VectorXd distance = Eigen::VectorXd::Zero(cloud.size());
-        for_each_in_parallel(cloud.size(), options_.threads, [&](int i) {
+        Eigen::MatrixXd z(cloud.z.rows(), cloud.size());
+        Eigen::VectorXd log_u(cloud.size());
+        for (int i = 0; i < cloud.size(); ++i) {
             RandomStream random(options_.seed, round, i);
-            const double log_u = std::log(1 - random.uniform());
-            const Eigen::VectorXd z =
-                keep * cloud.z.col(i) + step * random.normals(static_cast<int>(cloud.z.rows()));
-            const double ratio = log_ratio(z);
-            if (log_u < b * (ratio - cloud.log_ratio[i])) {
-                distance[i] = (z - cloud.z.col(i)).squaredNorm();
-                cloud.z.col(i) = z;
-                cloud.log_ratio[i] = ratio;
-            }
-        });
-        return {static_cast<double>((distance.array() > 0).count()) / cloud.size(), distance.mean()};
+            log_u[i] = std::log(1 - random.uniform());
+            z.col(i) = keep * cloud.z.col(i) + step * random.normals(static_cast<int>(z.rows()));
+        }
+        const Eigen::VectorXd ratio = log_ratio(z);
+
+        int accepted = 0;
+        double distance = 0;
+        for (int i = 0; i < cloud.size(); ++i) {
+            if (!(log_u[i] < b * (ratio[i] - cloud.log_ratio[i]))) continue;
+            ++accepted;
+            distance += (z.col(i) - cloud.z.col(i)).squaredNorm();
+            cloud.z.col(i) = z.col(i);
+            cloud.log_ratio[i] = ratio[i];
+        }
+        return {static_cast<double>(accepted) / cloud.size(), distance / cloud.size()};
     }
 
     FilterStep record(const Cloud& cloud, double b, const Eigen::VectorXd& log_weights) const {
-        FilterStep step{b, effective_samples(log_weights), Eigen::MatrixXd(cloud.size(), cloud.z.rows()), log_weights};
-        for (int i = 0; i < cloud.size(); ++i) step.particles.row(i) = parameters(cloud.z.col(i));
-        return step;
+        return {b, effective_samples(log_weights), parameters(cloud.z).transpose(), log_weights};
     }
 
 private:
@@ -99,8 +109,7 @@ Eigen::VectorXd reweighted(const Eigen::VectorXd& log_weights, const Eigen::Vect
 }
 
 /// The largest step of temperature that leaves the wanted effective sample size.
-double temperature_step(const Eigen::VectorXd& log_weights, const Eigen::VectorXd& log_ratio, double b,
-                        double wanted) {
+double temperature_step(const Eigen::VectorXd& log_weights, const Eigen::VectorXd& log_ratio, double b, double wanted) {
     const auto effective = [&](double db) {
         Eigen::VectorXd trial = reweighted(log_weights, log_ratio, db);
         normalise(trial);
@@ -175,9 +184,10 @@ bool temper(const Filter& filter, const TemperedOptions& options, Mover& mover, 
     double b = 0;
     while (b < 1) {
         if (static_cast<int>(result.history.size()) > options.temperatures) {
-            throw SolverFailure(fmt::format("the particle filter stands at temperature {:.3g} of 1 after {} steps: the "
-                                            "measurements contradict each other or the model",
-                                            b, options.temperatures));
+            throw SolverFailure(
+                fmt::format("the particle filter stands at temperature {:.3g} of 1 after {} steps: the "
+                            "measurements contradict each other or the model",
+                            b, options.temperatures));
         }
         // next temperature, weights, and the evidence that they add up to
         const double db =
@@ -224,7 +234,7 @@ TemperedResult tempered_filter(const LogDensity& log_density, const GaussianProp
             mover.once(cloud, 1);
             report(progress, "particles", static_cast<double>(i) / (2 * options.moves));
         }
-        result.log_evidence = filter.log_ratio(Eigen::VectorXd::Zero(proposal.mean.size()));
+        result.log_evidence = filter.log_ratio(Eigen::MatrixXd::Zero(proposal.mean.size(), 1))[0];
     }
 
     result.history.push_back(filter.record(cloud, 1, result.log_weights));

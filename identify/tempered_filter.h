@@ -11,8 +11,8 @@ namespace palpate::identify {
 
 /// N(mean, (L L^T)^-1), where the filter's particles come from.
 struct GaussianProposal {
-    Eigen::VectorXd mean;   // (P)
-    Eigen::MatrixXd L;      // Cholesky factor of the precision, lower triangular (P x P)
+    Eigen::VectorXd mean;  // (P)
+    Eigen::MatrixXd L;     // Cholesky factor of the precision, lower triangular (P x P)
 };
 
 /// Logarithm of the unnormalised posterior density, likelihood times prior; -inf where there is none. Called from
@@ -20,10 +20,10 @@ struct GaussianProposal {
 using LogDensity = std::function<double(const Eigen::VectorXd& theta)>;
 
 struct TemperedOptions {
-    int particles = 200;              // N, >= 10
-    int moves = 10;                   // per temperature at most, >= 1
-    double least_effective = 0.5;     // of N, sets the temperatures, (0, 1)
-    int temperatures = 500;           // at most
+    int particles = 200;           // N, >= 10
+    int moves = 10;                // per temperature at most, >= 1
+    double least_effective = 0.5;  // of N, sets the temperatures, (0, 1)
+    int temperatures = 500;        // at most
     std::uint64_t seed = 1;
     int threads = 1;
 };
@@ -46,9 +46,9 @@ struct TemperedResult {
 /// resampling; moves by preconditioned Crank-Nicolson in q's whitened coordinates z, theta = mean + L^-T z,
 ///   z' = sqrt(1 - s^2) z + s xi,  xi ~ N(0, 1),
 /// which are reversible under q, so that a move is accepted by the tempered correction (pi / q)^b alone and does not
-/// die with the dimension [Cotter, Roberts, Stuart, White 2013]; s keeps 20-40 % of the moves accepted. They go on until
-/// copies have parted: until the squares of their ways add up to half of that between two particles. The last particles
-/// stay weighted.
+/// die with the dimension [Cotter, Roberts, Stuart, White 2013]; s keeps 20-40 % of the moves accepted. They go on
+/// until copies have parted: until the squares of their ways add up to half of that between two particles. The last
+/// particles stay weighted.
 ///
 /// Where `moves` of them do not part the copies and there are fewer than four particles a parameter (thousands of
 /// parameters, a posterior unlike q in many of them), resampling

@@ -42,7 +42,8 @@ std::vector<Marker> markers_on_spheres(const skeleton::Model& model) {
     for (const skeleton::Sphere& sphere : model.spheres) {
         if (sphere.held) continue;
         for (const Vec3& corner : corners) {
-            markers.push_back({static_cast<int>(markers.size()), sphere.center + sphere.radius / 2 * corner, sphere.center});
+            markers.push_back(
+                {static_cast<int>(markers.size()), sphere.center + sphere.radius / 2 * corner, sphere.center});
         }
     }
     return markers;

@@ -150,7 +150,7 @@ Points cavity_points(const std::vector<Shell>& shells) {
             for (const double step : {0.5, 0.1, 0.01, 1e-3, 1e-4})
                 for (const int t : by_area) {
                     const Vec3 normal = vectors.row(t).normalized();
-                    const Vec3 point = centroid(shell.surface, t) + sign * step * std::sqrt(areas[t]) * normal;
+                    Vec3 point = centroid(shell.surface, t) + sign * step * std::sqrt(areas[t]) * normal;
                     if (trees[s].inside(point) && count_around(trees, point) == shell.depth + 1) return point;
                 }
             throw SolverFailure(

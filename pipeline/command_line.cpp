@@ -81,6 +81,17 @@ void add_probing_flags(CLI::App* verb, CaseOverrides& say) {
     verb->add_option("--noise", say.noise, "1 sigma of the readings [mm]")->check(CLI::NonNegativeNumber)->group("Probing");
 }
 
+/// In the list of commands, a line each: examples stand in a command's own help.
+class OneLinePerCommand : public CLI::Formatter {
+public:
+    std::string make_subcommand(const CLI::App* sub) const override {
+        const std::string description = sub->get_description();
+        std::stringstream out;
+        CLI::detail::format_help(out, sub->get_display_name(), description.substr(0, description.find('\n')), 16);
+        return out.str();
+    }
+};
+
 }  // namespace
 
 CLI::App* CommandLine::Impl::verb(CLI::App& app, const std::string& name, const std::string& what, const std::string& examples,
@@ -219,6 +230,7 @@ std::string CommandLine::description() const {
 
 void CommandLine::set_up(CLI::App& app) {
     app.require_subcommand(1);
+    app.formatter(std::make_shared<OneLinePerCommand>());
     app.fallthrough();
     impl_->add_common(app);
     impl_->add_run(app);

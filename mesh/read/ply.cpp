@@ -23,6 +23,12 @@ public:
         : content_(content), file_(file), encoding_(header.encoding), at_(header.end), line_(header.lines + 1) {}
 
     double next(PlyType type) { return encoding_ == PlyEncoding::Text ? next_word() : next_binary(type); }
+    /// How many numbers the property holds here: one, or as many as its list says (none, where that is nonsense).
+    std::size_t next_count(const PlyProperty& property) {
+        if (!property.count) return 1;
+        const double count = next(*property.count);
+        return count >= 1 ? static_cast<std::size_t>(std::min(count, 1e15)) : 0;
+    }
     std::size_t left() const { return content_.size() - at_; }
     bool is_text() const { return encoding_ == PlyEncoding::Text; }
     int line() const { return line_; }
@@ -126,8 +132,7 @@ void check_count(const PlyElement& element, const Values& values, const std::fil
 void read_vertex(const PlyElement& element, Values& values, Polygons& polygons) {
     Vec3 position = Vec3::Constant(std::numeric_limits<double>::quiet_NaN());
     for (const PlyProperty& property : element.properties) {
-        auto repeat = property.count ? values.next(*property.count) : 1.0;
-        for (; repeat >= 1; --repeat) {
+        for (std::size_t k = values.next_count(property); k > 0; --k) {
             const double value = values.next(property.type);
             if (property.name.size() == 1 && property.name[0] >= 'x' && property.name[0] <= 'z')
                 position[property.name[0] - 'x'] = value;
@@ -141,8 +146,7 @@ void read_face(const PlyElement& element, Values& values, Polygons& polygons) {
     for (const PlyProperty& property : element.properties) {
         const bool is_corners =
             property.count && (property.name == "vertex_indices" || property.name == "vertex_index");
-        auto repeat = property.count ? values.next(*property.count) : 1.0;
-        for (; repeat >= 1; --repeat) {
+        for (std::size_t k = values.next_count(property); k > 0; --k) {
             const double value = values.next(property.type);
             if (!is_corners) continue;
             if (value != std::floor(value) || std::abs(value) > std::numeric_limits<int>::max())
@@ -186,8 +190,7 @@ Polygons read_ply(const std::string& content, const std::filesystem::path& file)
                 read_face(element, values, polygons);
             } else {
                 for (const PlyProperty& property : element.properties) {
-                    auto repeat = property.count ? values.next(*property.count) : 1.0;
-                    for (; repeat >= 1; --repeat) values.next(property.type);
+                    for (std::size_t k = values.next_count(property); k > 0; --k) values.next(property.type);
                 }
             }
         }

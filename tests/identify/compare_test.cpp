@@ -25,7 +25,7 @@ TEST(Compare, TheTruthLeavesNoiseOnly) {
     const Comparison comparison = compare(model, noisy_twin(model, 0.1));
     const double n = 30 * 48 * 3;
     EXPECT_NEAR(comparison.rms, 0.1, 0.1 * 4 / std::sqrt(2 * n));  // four sigma
-    EXPECT_NEAR(comparison.noise, 0.1, 1e-12);  // rounding
+    EXPECT_NEAR(comparison.noise, 0.1, 1e-12);                     // rounding
     EXPECT_TRUE(comparison.adequate);
     EXPECT_GT(comparison.p_value, 1e-4);
     EXPECT_LT(comparison.p_value, 1 - 1e-4);
@@ -40,7 +40,8 @@ TEST(Compare, AWrongStiffnessIsNotAdequateAndGrowsWithTheLoad) {
     std::vector<LoadState> states = push_spheres(model, {{0, 0, -1}, {0, 0, -2}, {0, 0, -4}});
     for (LoadState& state : states) state.contacts[0].point = model.spheres.back().center;
     states.emplace_back();  // unloaded
-    const MeasurementSet set = simulate_measurements(with_truth(model, {1.5}, {500}), states, markers_on_spheres(model), 0.001);
+    const MeasurementSet set =
+        simulate_measurements(with_truth(model, {1.5}, {500}), states, markers_on_spheres(model), 0.001);
     const Comparison comparison = compare(model, set);
     EXPECT_FALSE(comparison.adequate);
     EXPECT_LT(comparison.p_value, 1e-9);

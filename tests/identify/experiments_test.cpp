@@ -25,8 +25,8 @@ double relative_error(double value, double truth) { return std::abs(value / trut
 
 TEST(Burion2008, ExperimentOneFindsTheCubesStiffnessAsWellAsThePaper) {
     const skeleton::Model model = make_lattice({3, 3, 2});
-    const MeasurementSet set = simulate_measurements(with_truth(model, {1.3}, {430}), push_spheres(model, six_forces(6, 6)),
-                                                     markers_on_spheres(model));
+    const MeasurementSet set = simulate_measurements(with_truth(model, {1.3}, {430}),
+                                                     push_spheres(model, six_forces(6, 6)), markers_on_spheres(model));
     for (const std::uint64_t seed : {1, 2, 3, 4, 5}) {
         IdentifyOptions options = paper_options(600, seed);
         options.scope = Scope::uniform;
@@ -44,8 +44,8 @@ TEST(Burion2008, ExperimentOneFindsTheCubesStiffnessAsWellAsThePaper) {
 TEST(Burion2008, ExperimentTwoFindsThreeZonesOfASheetAsWellAsThePaper) {
     const skeleton::Model model = make_lattice({6, 3, 1}, 3);
     const std::vector<double> kE{0.9, 2.6, 1.5}, kF{300, 850, 520};
-    const MeasurementSet set = simulate_measurements(with_truth(model, kE, kF), push_spheres(model, six_forces(0.5, 10)),
-                                                     markers_on_spheres(model));
+    const MeasurementSet set = simulate_measurements(
+        with_truth(model, kE, kF), push_spheres(model, six_forces(0.5, 10)), markers_on_spheres(model));
     for (const std::uint64_t seed : {1, 2, 3, 4, 5}) {
         IdentifyOptions options = paper_options(900, seed);
         options.scope = Scope::zones;
@@ -60,8 +60,8 @@ TEST(Burion2008, ExperimentTwoFindsThreeZonesOfASheetAsWellAsThePaper) {
 
 TEST(Burion2008, SameSeedSameNumbers) {
     const skeleton::Model model = make_lattice({3, 2, 1});
-    const MeasurementSet set = simulate_measurements(with_truth(model, {1.3}, {430}), push_spheres(model, {{0, 0, -1}, {4, 0, 0}}),
-                                                     markers_on_spheres(model));
+    const MeasurementSet set = simulate_measurements(
+        with_truth(model, {1.3}, {430}), push_spheres(model, {{0, 0, -1}, {4, 0, 0}}), markers_on_spheres(model));
     IdentifyOptions options = paper_options(50, 7);
     options.scope = Scope::uniform;
     EXPECT_EQ(identify(model, set, options).best, identify(model, set, options).best);
@@ -71,8 +71,8 @@ TEST(Tempered, FindsThreeZonesFromNoisyMarkersWhereForcesAreBlind) {
     // 0.2 mm of noise, 0.5 % of the spacing: net forces are then off by more than half the stiffness
     const skeleton::Model model = make_lattice({6, 3, 1}, 3);
     const std::vector<double> kE{0.9, 2.6, 1.5}, kF{300, 850, 520};
-    const MeasurementSet set = simulate_measurements(with_truth(model, kE, kF), push_spheres(model, six_forces(0.5, 10)),
-                                                     markers_on_spheres(model), 0.2, 3);
+    const MeasurementSet set = simulate_measurements(
+        with_truth(model, kE, kF), push_spheres(model, six_forces(0.5, 10)), markers_on_spheres(model), 0.2, 3);
     IdentifyOptions options;
     options.scope = Scope::zones;
     options.fixed = {skeleton::Stiffness::torsion};

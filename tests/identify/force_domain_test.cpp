@@ -33,7 +33,7 @@ TEST(ForceDomain, StatisticsAreTheNetForcesOfTheModel) {
             torques += r.segment<3>(6 * i + 3).squaredNorm() / (40 * 40);
         }
     }
-    EXPECT_NEAR(value(domain.forces, m) / forces, 1, 1e-9);    // rounding
+    EXPECT_NEAR(value(domain.forces, m) / forces, 1, 1e-9);  // rounding
     EXPECT_NEAR(value(domain.torques, m) / torques, 1, 1e-9);
 }
 
@@ -62,7 +62,7 @@ TEST(ForceDomain, SolutionSatisfiesTheConditionsOfKuhnAndTucker) {
         const Eigen::VectorXd gradient = statistics.H * m + statistics.g;
         for (int p = 0; p < P; ++p) {
             EXPECT_GE(m[p], 0);
-            EXPECT_GE(gradient[p], -1e-9);                          // rounding
+            EXPECT_GE(gradient[p], -1e-9);  // rounding
             EXPECT_NEAR(m[p] * gradient[p], 0, 1e-9);
         }
     }
@@ -71,7 +71,7 @@ TEST(ForceDomain, SolutionSatisfiesTheConditionsOfKuhnAndTucker) {
 TEST(ForceDomain, OpenDirectionsStayAtTheModelsOwn) {
     const ForceStatistics statistics{Eigen::Vector2d(4, 0).asDiagonal(), Eigen::Vector2d(-2, 0), 1};
     const Eigen::VectorXd m = solve_force_domain(statistics);
-    EXPECT_NEAR(m[0], 0.5, 1e-9);   // the prior's share is 1e-11
+    EXPECT_NEAR(m[0], 0.5, 1e-9);  // the prior's share is 1e-11
     EXPECT_NEAR(m[1], 1, 1e-9);
 }
 

@@ -50,7 +50,7 @@ TEST(Identify, FindsTheTruthFromAStartAHundredTimesOff) {
         options.scope = Scope::uniform;
         options.particles = 50;
         const IdentifyResult result = identify(start, make_twin(truth), options);
-        EXPECT_NEAR(result.posterior[0].mean, 1.2, 1e-3);   // the model error never falls below 1e-4
+        EXPECT_NEAR(result.posterior[0].mean, 1.2, 1e-3);  // the model error never falls below 1e-4
         EXPECT_NEAR(result.posterior[1].mean, 400, 0.4);
         EXPECT_LT(compare(result.model, make_twin(truth)).relative, 1e-3);
     }
@@ -130,8 +130,9 @@ TEST(Identify, SetsThatTellNothingAreToldToTheUser) {
     const skeleton::Model model = make_lattice({3, 2, 1});
     MeasurementSet unloaded = make_twin(model);
     for (LoadState& state : unloaded.states) state.contacts.clear();
-    EXPECT_NE(message_of([&] { identify(model, unloaded, {}); }).find("no state with both a load and a labelled reading"),
-              std::string::npos);
+    EXPECT_NE(
+        message_of([&] { identify(model, unloaded, {}); }).find("no state with both a load and a labelled reading"),
+        std::string::npos);
 
     MeasurementSet few = simulate_measurements(model, push_spheres(model, {{0, 0, 1}}), markers_on_spheres(model));
     few.states[0].readings.resize(2);
@@ -147,10 +148,12 @@ TEST(Identify, OptionsNameValueAndBound) {
         change(options);
         return message_of([&] { options.validate(); });
     };
-    EXPECT_EQ(message([](auto& o) { o.particles = 3; }), "option particles is 3; it must be 0 (by the method) or at least 10");
+    EXPECT_EQ(message([](auto& o) { o.particles = 3; }),
+              "option particles is 3; it must be 0 (by the method) or at least 10");
     EXPECT_EQ(message([](auto& o) { o.iterations = 0; }), "option iterations is 0; it must be at least 1");
     EXPECT_EQ(message([](auto& o) { o.search_low = 0; }), "option search_low is 0; it must be above 0");
-    EXPECT_EQ(message([](auto& o) { o.search_high = 0.05; }), "option search_high is 0.05; it must be above search_low");
+    EXPECT_EQ(message([](auto& o) { o.search_high = 0.05; }),
+              "option search_high is 0.05; it must be above search_low");
     EXPECT_EQ(message([](auto& o) { o.threads = 0; }), "option threads is 0; it must be at least 1");
     EXPECT_EQ(message([](auto&) {}), "no exception");
 }

@@ -49,7 +49,8 @@ inline skeleton::Model with_truth(skeleton::Model model, const std::vector<doubl
 
 /// Six forces [N], of `across` along z and `along` in the plane x, y: a sheet gives way to the former far more.
 inline std::vector<Vec3> six_forces(double across, double along) {
-    return {{0, 0, -across}, {along, 0, 0}, {0, along, 0}, {0, 0, across}, {-along, 0, 0}, {0.8 * along, -0.6 * along, 0}};
+    return {{0, 0, -across}, {along, 0, 0},  {0, along, 0},
+            {0, 0, across},  {-along, 0, 0}, {0.8 * along, -0.6 * along, 0}};
 }
 
 /// A state for each force, on one free sphere after the other.

@@ -33,15 +33,15 @@ TEST(ContactLoads, APatchCarriesTheForceEvenlyRoundItsPoint) {
     const skeleton::Model model = slab();
     const Vec3 point(40, 35, 10), force(1, -2, -3);
     const skeleton::Load load = ContactLoads(model)({{point, force, 12}});
-    EXPECT_LT((total_force(load) - force).norm(), 1e-12);   // rounding
-    EXPECT_LT((center(load) - point).norm(), 0.5);          // pieces of a third of the radius, cut at the rim
+    EXPECT_LT((total_force(load) - force).norm(), 1e-12);  // rounding
+    EXPECT_LT((center(load) - point).norm(), 0.5);         // pieces of a third of the radius, cut at the rim
     double inertia = 0;
     for (const auto& f : load.forces) {
         EXPECT_LE((f.at.rest - point).norm(), 12);
         EXPECT_DOUBLE_EQ(f.at.rest.z(), 10);
         inertia += f.force.norm() / force.norm() * (f.at.rest - point).squaredNorm();
     }
-    EXPECT_NEAR(inertia, 12 * 12 / 2.0, 8);                 // of a disc r^2 / 2, a tenth for the rim
+    EXPECT_NEAR(inertia, 12 * 12 / 2.0, 8);  // of a disc r^2 / 2, a tenth for the rim
 }
 
 TEST(ContactLoads, WithoutRadiusTheNearestPointOfTheSkinTakesIt) {
@@ -60,7 +60,8 @@ TEST(ContactLoads, ARadiusThatReachesNoSkinActsAtTheNearestPoint) {
 
 TEST(ContactLoads, WithoutASkinTheForceActsWhereItIsTold) {
     const skeleton::Model model = make_lattice({3, 3, 1});
-    const skeleton::Load load = ContactLoads(model)({{Vec3(40, 40, 0), Vec3(0, 0, -1), 5}, {Vec3::Zero(), Vec3::Zero(), 0}});
+    const skeleton::Load load =
+        ContactLoads(model)({{Vec3(40, 40, 0), Vec3(0, 0, -1), 5}, {Vec3::Zero(), Vec3::Zero(), 0}});
     ASSERT_EQ(load.forces.size(), 1U);
     EXPECT_EQ(load.forces[0].at.rest, Vec3(40, 40, 0));
 }

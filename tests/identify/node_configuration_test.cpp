@@ -24,7 +24,7 @@ TEST(RigidFit, FindsARigidMotionExactly) {
     const Points y = (x * R.transpose()).rowwise() + d.transpose();
     const RigidFit fit = fit_rigid(x, y);
     ASSERT_TRUE(fit.unique);
-    EXPECT_LT((fit.R - R).norm(), 1e-12);                               // rounding
+    EXPECT_LT((fit.R - R).norm(), 1e-12);  // rounding
     EXPECT_LT((fit.R * (Vec3(7, 8, 9) - fit.c) + fit.d - R * Vec3(7, 8, 9) - d).norm(), 1e-11);
 }
 

@@ -26,7 +26,8 @@ Eigen::VectorXd numeric_gradient(const PositionDomain& domain, const Eigen::Vect
     for (Eigen::Index p = 0; p < theta.size(); ++p) {
         const Eigen::VectorXd step = h * Eigen::VectorXd::Unit(theta.size(), p);
         gradient[p] = (domain.chi_squared(domain.predict(theta + step, 1)) -
-                       domain.chi_squared(domain.predict(theta - step, 1))) / (4 * h);
+                       domain.chi_squared(domain.predict(theta - step, 1))) /
+                      (4 * h);
     }
     return gradient;
 }
@@ -39,7 +40,8 @@ Eigen::MatrixXd numeric_hessian(const PositionDomain& domain, const Eigen::Vecto
     std::vector<Eigen::VectorXd> columns;
     const auto flat = [](const Prediction& prediction) {
         std::vector<double> values;
-        for (const Points& markers : prediction.markers) values.insert(values.end(), markers.data(), markers.data() + markers.size());
+        for (const Points& markers : prediction.markers)
+            values.insert(values.end(), markers.data(), markers.data() + markers.size());
         return Eigen::VectorXd(Eigen::Map<Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size())));
     };
     for (Eigen::Index p = 0; p < P; ++p) {
@@ -61,7 +63,8 @@ TEST_P(BothLaws, DerivativesMatchFiniteDifferences) {
     const skeleton::Model model = with_law(make_lattice({3, 3, 1}), law);
     std::vector<Marker> markers = markers_on_spheres(model);
     markers.resize(8);
-    MeasurementSet set = simulate_measurements(with_truth(model, {1.5}, {500}), push_spheres(model, {{0, 0, -2}, {4, 3, 0}}), markers, 0.05);
+    MeasurementSet set = simulate_measurements(with_truth(model, {1.5}, {500}),
+                                               push_spheres(model, {{0, 0, -2}, {4, 3, 0}}), markers, 0.05);
     PositionDomain domain = make_domain(model, law, scope, set);
     ASSERT_EQ(domain.parameters().size() > 24, scope == Scope::links);
 
@@ -85,7 +88,8 @@ INSTANTIATE_TEST_SUITE_P(PositionDomain, BothLaws,
 
 TEST(PositionDomain, CommonFactorIsExactByTheLinearLawHoweverFarOff) {
     skeleton::Model model = with_law(make_lattice({3, 2, 2}), Law::linear);
-    const MeasurementSet set = simulate_measurements(model, push_spheres(model, {{0, 0, -5}, {5, 0, 0}, {0, 5, 0}}), markers_on_spheres(model));
+    const MeasurementSet set = simulate_measurements(model, push_spheres(model, {{0, 0, -5}, {5, 0, 0}, {0, 5, 0}}),
+                                                     markers_on_spheres(model));
     for (skeleton::Link& link : model.links) link.stiffness /= 250;
     const PositionDomain domain = make_domain(model, Law::linear, Scope::zones, set);
     EXPECT_NEAR(domain.common_factor(Eigen::VectorXd::Zero(domain.parameters().size())), std::log(250), 1e-9);
@@ -95,8 +99,8 @@ TEST(PositionDomain, FitFindsTheTruthOfNoiselessTwins) {
     for (const Law law : {Law::linear, Law::large_rotation}) {
         const skeleton::Model model = with_law(make_lattice({6, 3, 1}, 3), law);
         const std::vector<double> kE{0.9, 2.6, 1.5}, kF{300, 850, 520};
-        const MeasurementSet set =
-            simulate_measurements(with_truth(model, kE, kF), push_spheres(model, six_forces(0.5, 10)), markers_on_spheres(model));
+        const MeasurementSet set = simulate_measurements(
+            with_truth(model, kE, kF), push_spheres(model, six_forces(0.5, 10)), markers_on_spheres(model));
         PositionDomain domain = make_domain(model, law, Scope::zones, set);
         domain.set_model_error(1e-4);
         const LogNormalPrior prior{Eigen::VectorXd::Zero(9), Eigen::VectorXd::Constant(9, 3)};
@@ -135,7 +139,8 @@ TEST(PositionDomain, ManyVerticesDoNotDrownThePrior) {
     std::vector<Marker> many;
     for (int i = 0; i < 10; ++i) many.insert(many.end(), few.begin(), few.end());
     const auto trace = [&](const std::vector<Marker>& markers) {
-        const MeasurementSet set = simulate_measurements(model, push_spheres(model, {{0, 0, -1}, {5, 0, 0}, {0, 5, 0}}), markers);
+        const MeasurementSet set =
+            simulate_measurements(model, push_spheres(model, {{0, 0, -1}, {5, 0, 0}, {0, 5, 0}}), markers);
         const PositionDomain domain = make_domain(model, Law::linear, Scope::uniform, set);
         const Eigen::VectorXd theta = Eigen::VectorXd::Zero(3);
         return domain.normal_equations(theta, domain.predict(theta, 1)).H.trace();
@@ -145,7 +150,8 @@ TEST(PositionDomain, ManyVerticesDoNotDrownThePrior) {
 
 TEST(PositionDomain, MissingCoordinatesCountNothing) {
     const skeleton::Model model = with_law(make_lattice({3, 2, 1}), Law::linear);
-    MeasurementSet set = simulate_measurements(model, push_spheres(model, {{0, 0, -1}, {4, 0, 0}}), markers_on_spheres(model));
+    MeasurementSet set =
+        simulate_measurements(model, push_spheres(model, {{0, 0, -1}, {4, 0, 0}}), markers_on_spheres(model));
     for (LoadState& state : set.states) {
         for (Reading& reading : state.readings) reading.position.x() = missing;
     }
@@ -157,12 +163,14 @@ TEST(PositionDomain, MissingCoordinatesCountNothing) {
 TEST(PositionDomain, LinearisedDomainAgreesWhereItWasMade) {
     const skeleton::Model model = with_law(make_lattice({4, 2, 1}), Law::large_rotation);
     const MeasurementSet set =
-        simulate_measurements(with_truth(model, {1.5}, {500}), push_spheres(model, {{0, 0, -2}, {5, 0, 0}, {0, 5, 0}}), markers_on_spheres(model));
+        simulate_measurements(with_truth(model, {1.5}, {500}), push_spheres(model, {{0, 0, -2}, {5, 0, 0}, {0, 5, 0}}),
+                              markers_on_spheres(model));
     const PositionDomain domain = make_domain(model, Law::large_rotation, Scope::uniform, set);
     const Eigen::VectorXd theta = Eigen::VectorXd::Constant(3, -0.2);
     const Prediction prediction = domain.predict(theta, 1);
     const PositionDomain stand_in = domain.linearised(theta, prediction);
-    EXPECT_NEAR(stand_in.chi_squared(stand_in.predict(theta, 1)) / domain.chi_squared(prediction), 1, 1e-9);  // rounding
+    EXPECT_NEAR(stand_in.chi_squared(stand_in.predict(theta, 1)) / domain.chi_squared(prediction), 1,
+                1e-9);  // rounding
 }
 
 }  // namespace

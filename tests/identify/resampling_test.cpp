@@ -74,9 +74,9 @@ TEST(RandomStream, IsDecidedByItsKeyAndStandardNormal) {
     EXPECT_NE(RandomStream(1, 2, 3).normals(5), RandomStream(1, 3, 2).normals(5));
     constexpr int n = 100000;
     const Eigen::VectorXd z = RandomStream(4, 5, 6).normals(n);
-    EXPECT_NEAR(z.mean(), 0, 4 / std::sqrt(n));                          // four sigma
-    EXPECT_NEAR(z.squaredNorm() / n, 1, 4 * std::sqrt(2.0 / n));         // four sigma
-    EXPECT_NEAR(z.array().pow(4).mean(), 3, 4 * std::sqrt(96.0 / n));    // four sigma
+    EXPECT_NEAR(z.mean(), 0, 4 / std::sqrt(n));                        // four sigma
+    EXPECT_NEAR(z.squaredNorm() / n, 1, 4 * std::sqrt(2.0 / n));       // four sigma
+    EXPECT_NEAR(z.array().pow(4).mean(), 3, 4 * std::sqrt(96.0 / n));  // four sigma
 }
 
 }  // namespace

@@ -43,8 +43,7 @@ struct LinearGaussian {
         return sum;
     }
     double log_evidence() const {  // y ~ N(0, A A^T + sigma^2)
-        const Eigen::MatrixXd V =
-            A * A.transpose() + sigma * sigma * Eigen::MatrixXd::Identity(y.size(), y.size());
+        const Eigen::MatrixXd V = A * A.transpose() + sigma * sigma * Eigen::MatrixXd::Identity(y.size(), y.size());
         const Eigen::LLT<Eigen::MatrixXd> llt(V);
         return -0.5 * y.dot(llt.solve(y)) - llt.matrixLLT().diagonal().array().log().sum() -
                0.5 * static_cast<double>(y.size()) * std::log(2 * std::numbers::pi);
@@ -54,9 +53,8 @@ struct LinearGaussian {
 TEST(TemperedFilter, PosteriorOfALinearGaussianProblemIsExact) {
     const LinearGaussian problem(3, 8);
     TemperedOptions options{.particles = 4000, .seed = 3};
-    const TemperedResult result =
-        tempered_filter([&](const auto& theta) { return problem.log_density(theta); },
-                        round(Eigen::VectorXd::Zero(3), 1.2), options);
+    const TemperedResult result = tempered_filter([&](const auto& theta) { return problem.log_density(theta); },
+                                                  round(Eigen::VectorXd::Zero(3), 1.2), options);
 
     const Eigen::MatrixXd covariance = problem.precision().ldlt().solve(Eigen::MatrixXd::Identity(3, 3));
     const Eigen::VectorXd weights = result.log_weights.array().exp();
@@ -141,8 +139,8 @@ TEST(TemperedFilter, WhatCannotBeWeighedKeepsItsSpread) {
     const TemperedResult result = tempered_filter(density, round(Eigen::VectorXd::Zero(P), 1), {.particles = 50});
     EXPECT_FALSE(result.weighed);
     const double spread = result.particles.squaredNorm() / static_cast<double>(result.particles.size());
-    EXPECT_GT(spread, 0.25);  // not narrower than the posterior
-    EXPECT_LT(spread, 0.95);  // on its way from the proposal
+    EXPECT_GT(spread, 0.25);                                  // not narrower than the posterior
+    EXPECT_LT(spread, 0.95);                                  // on its way from the proposal
     EXPECT_NEAR(result.log_evidence, P * std::log(2), 1e-9);  // Laplace's at the mean: 1 / 0.5 each
     EXPECT_NEAR(effective_samples(result.log_weights), 50, 1e-9);
 }

@@ -37,8 +37,8 @@ TEST_P(Sample, KeepsWhatItPromises) {
     EXPECT_EQ(outcome.code, commands::done) << outcome.json["expectations_not_met"];
 }
 
-INSTANTIATE_TEST_SUITE_P(All, Sample, ::testing::ValuesIn(sample_names()), [](const auto& info) {
-    std::string name = info.param;
+INSTANTIATE_TEST_SUITE_P(All, Sample, ::testing::ValuesIn(sample_names()), [](const auto& named) {
+    std::string name = named.param;
     std::replace(name.begin(), name.end(), '-', '_');
     return name;
 });
