@@ -44,8 +44,8 @@ double model_error_after(const PositionDomain& domain, const FitResult& fit, con
 std::vector<StateReadings> most_displaced(std::vector<StateReadings> readings, int count) {
     std::erase_if(readings, [](const StateReadings& state) { return !state.tells_stiffness; });
     if (static_cast<int>(readings.size()) <= count) return readings;
-    std::vector<double> displacements;
-    for (const StateReadings& state : readings) displacements.push_back(state.displacement);
+    std::vector<double> displacements(readings.size());
+    std::ranges::transform(readings, displacements.begin(), &StateReadings::displacement);
     std::ranges::nth_element(displacements, displacements.begin() + count - 1, std::greater{});
     std::erase_if(readings, [least = displacements[count - 1]](const auto& s) { return s.displacement < least; });
     return readings;

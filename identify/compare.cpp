@@ -107,7 +107,8 @@ Comparison compare(const skeleton::Model& model, const MeasurementSet& set, int 
         totals.add(states[s], errors[s]);
         result.probes.push_back(error_of(state, states[s], errors[s]));
         result.max = std::max(result.max, result.probes.back().max);
-        under_load.push_back({rms(predicted[s] - states[s].rest), result.probes.back().rms, noise_of(states[s])});
+        under_load.push_back(
+            {rms(predicted[s] - states[s].rest), result.probes.back().rms, noise_of(states[s]), states[s].coordinates});
     }
     result.rms = std::sqrt(totals.error / totals.coordinates);
     result.relative = totals.displacement > 0 ? std::sqrt(totals.error / totals.displacement) : missing;

@@ -8,6 +8,7 @@ namespace {
 
 constexpr double unknown_noise_floor = 0.02;  // of the typical error, where the noise is unknown
 constexpr double least_growth = 0.4;          // an exponent below it: the error is there without load
+constexpr double rounding = 1e-9;             // a load below this share of the largest is none
 constexpr double least_ratio = 1.2;           // between the largest load and the least, to tell anything
 
 struct LogPoint {
@@ -21,6 +22,16 @@ double median(std::vector<double> values) {
 
 double beyond_noise(const ErrorUnderLoad& state, double floor) {
     return std::sqrt(std::max(state.rms * state.rms - state.noise * state.noise, floor * floor));
+}
+
+/// What may be left of noise that was taken off in squares: two sigma of a mean of so many squares.
+double noise_left(const ErrorUnderLoad& state) { return state.noise * std::pow(8.0 / state.coordinates, 0.25); }
+
+template <typename Value>
+std::vector<double> collect(const std::vector<ErrorUnderLoad>& states, Value value) {
+    std::vector<double> values(states.size());
+    std::ranges::transform(states, values.begin(), value);
+    return values;
 }
 
 /// Slope and its standard error; with two points there is no scatter to tell it from, and one in the slope is assumed.
@@ -52,26 +63,21 @@ const char* words_for(const LoadExponent& exponent) {
 }  // namespace
 
 std::optional<LoadExponent> load_exponent(const std::vector<ErrorUnderLoad>& states) {
+    double largest = 0;
+    for (const ErrorUnderLoad& state : states) largest = std::max(largest, state.load);
     std::vector<ErrorUnderLoad> loaded, unloaded;
-    for (const ErrorUnderLoad& state : states) (state.load > 0 ? loaded : unloaded).push_back(state);
+    for (const ErrorUnderLoad& state : states) (state.load > rounding * largest ? loaded : unloaded).push_back(state);
     if (loaded.empty()) return std::nullopt;
 
-    // what counts as no error: noise at a tenth, for it was taken off in squares
-    std::vector<double> errors, loads;
-    for (const ErrorUnderLoad& state : loaded) {
-        errors.push_back(state.rms);
-        loads.push_back(state.load);
-    }
-    const double typical_error = median(errors), typical_load = median(loads);
-    const double noise = median([&] {
-        std::vector<double> all;
-        for (const ErrorUnderLoad& state : states) all.push_back(state.noise);
-        return all;
-    }());
-    const double floor = noise > 0 ? noise / 10 : unknown_noise_floor * typical_error;
+    const std::vector<double> loads = collect(loaded, [](const ErrorUnderLoad& state) { return state.load; });
+    const double typical_load = median(loads);
+    const double typical_error = median(collect(loaded, [](const ErrorUnderLoad& state) { return state.rms; }));
+    const double noise_floor = median(collect(states, noise_left));
+    const double floor = noise_floor > 0 ? noise_floor : unknown_noise_floor * typical_error;
     if (typical_error <= floor) return std::nullopt;
 
     std::vector<LogPoint> points;
+    points.reserve(states.size());
     for (const ErrorUnderLoad& state : loaded) {
         points.push_back({std::log(state.load), std::log(beyond_noise(state, floor))});
     }
@@ -83,7 +89,7 @@ std::optional<LoadExponent> load_exponent(const std::vector<ErrorUnderLoad>& sta
     std::vector<LogPoint> silent;  // without load and without error
     for (const ErrorUnderLoad& state : unloaded) {
         const double error = beyond_noise(state, floor);
-        (error > 3 * floor ? points : silent).push_back({std::log(sinking_load), std::log(error)});
+        (error > floor ? points : silent).push_back({std::log(sinking_load), std::log(error)});
     }
     if (!levels && unloaded.empty()) return std::nullopt;
 

@@ -193,7 +193,8 @@ fs::path description_of(const fs::path& path) {
 std::vector<LoadState> read_probes(const fs::path& file) {
     MeasurementSet set;
     TableReader(set, SetUnits{}).read_probes(file);
-    if (set.states.empty()) throw InvalidInput(fmt::format("{}: the table has no rows. Add a row per contact and instant.", file.string()));
+    if (set.states.empty())
+        throw InvalidInput(fmt::format("{}: the table has no rows. Add a row per contact and instant.", file.string()));
     return set.states;
 }
 

@@ -18,9 +18,10 @@ Body make_body(const mesh::Surface& surface, const BodyOptions& options, const P
     const double longest = mesh::bounding_box(repaired.surface.vertices).longest_side();
     const double edge = options.edge_length > 0 ? options.edge_length : default_edge_share * longest;
     if (edge > 0.5 * longest) {
-        throw InvalidInput(fmt::format("edge length {:g} mm is more than half the body's longest side ({:g} mm): choose "
-                                       "a smaller one, 6 % of it is usual",
-                                       edge, longest));
+        throw InvalidInput(
+            fmt::format("edge length {:g} mm is more than half the body's longest side ({:g} mm): choose "
+                        "a smaller one, 6 % of it is usual",
+                        edge, longest));
     }
     report(progress, "remeshing the surface", 0.3);
     body.surface = mesh::remesh(repaired.surface, {.edge_length = edge});

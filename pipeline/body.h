@@ -11,15 +11,15 @@
 namespace palpate::pipeline {
 
 struct BodyOptions {
-    double edge_length = 0;         // of the tetrahedra [mm]; 0: 6 % of the longest side
+    double edge_length = 0;  // of the tetrahedra [mm]; 0: 6 % of the longest side
     bool linear_elements = false;
 };
 
 /// A body ready for finite elements.
 struct Body {
-    mesh::Surface surface;             // repaired and remeshed, closed
-    mesh::VolumeMesh volume;           // quadratic, unless linear elements were asked for
-    std::vector<std::string> notes;    // what was done to the surface, in words
+    mesh::Surface surface;           // repaired and remeshed, closed
+    mesh::VolumeMesh volume;         // quadratic, unless linear elements were asked for
+    std::vector<std::string> notes;  // what was done to the surface, in words
 };
 
 /// Surface to body: repair, remesh, fill with tetrahedra.

@@ -68,7 +68,8 @@ void read_identify(const YamlFields& yaml, identify::IdentifyOptions& options) {
     if (yaml.has("law")) options.law = parse(law_choices, yaml.text("law"), yaml.where("law"));
     if (yaml.has("fixed")) {
         options.fixed.clear();
-        for (const std::string& name : yaml.texts("fixed")) options.fixed.push_back(parse(stiffnesses, name, yaml.where("fixed")));
+        for (const std::string& name : yaml.texts("fixed"))
+            options.fixed.push_back(parse(stiffnesses, name, yaml.where("fixed")));
     }
     read_if(yaml, "particles", options.particles, [&](auto& key) { return yaml.integer(key, 0, 10'000'000); });
     read_if(yaml, "iterations", options.iterations, [&](auto& key) { return yaml.integer(key, 1, 100000); });
@@ -82,11 +83,13 @@ void read_expectation(const YamlFields& yaml, Expectation& expect) {
     read_if(yaml, "held_out_at_most", expect.held_out_at_most, [&](auto& key) { return yaml.number(key, 0, 1e9); });
     if (yaml.has("parameters")) {
         for (const YamlFields& item : yaml.mappings("parameters")) {
-            expect.parameters.push_back({item.text("name"), item.number("value", 1e-30, 1e30), item.number("within", 0, 1e9)});
+            expect.parameters.push_back(
+                {item.text("name"), item.number("value", 1e-30, 1e30), item.number("within", 0, 1e9)});
             item.finish();
         }
     }
-    read_if(yaml, "spheres_at_least", expect.spheres_at_least, [&](auto& key) { return yaml.integer(key, 1, 1000000); });
+    read_if(yaml, "spheres_at_least", expect.spheres_at_least,
+            [&](auto& key) { return yaml.integer(key, 1, 1000000); });
     yaml.finish();
 }
 
@@ -100,12 +103,14 @@ Case read_case_file(const YamlFields& yaml) {
     if (yaml.has("measurements")) c.measurements = folder / yaml.text("measurements");
     if (yaml.has("model")) c.model = folder / yaml.text("model");
     if (c.model && !c.measurements) {
-        throw InvalidInput(fmt::format("{}: a model needs measurements to be fitted to; name a set beside it", yaml.where("model")));
+        throw InvalidInput(
+            fmt::format("{}: a model needs measurements to be fitted to; name a set beside it", yaml.where("model")));
     }
     if (c.mesh.has_value() == c.measurements.has_value()) {
-        throw InvalidInput(fmt::format("{}: name either 'mesh' (a surface; simulation makes the measurements) or "
-                                       "'measurements' (a set), {}",
-                                       c.file.string(), c.mesh ? "not both" : "neither is there"));
+        throw InvalidInput(
+            fmt::format("{}: name either 'mesh' (a surface; simulation makes the measurements) or "
+                        "'measurements' (a set), {}",
+                        c.file.string(), c.mesh ? "not both" : "neither is there"));
     }
     if (yaml.has("unit")) c.unit = unit_in_mm(yaml.choice("unit", {"mm", "cm", "m"}));
     read_if(yaml, "longest", c.longest, [&](auto& key) { return yaml.number(key, 0, 1e9); });
@@ -123,7 +128,8 @@ Case read_case_file(const YamlFields& yaml) {
 
 bool is_mesh(const fs::path& file) {
     std::string extension = file.extension().string();
-    std::transform(extension.begin(), extension.end(), extension.begin(), [](unsigned char ch) { return std::tolower(ch); });
+    std::transform(extension.begin(), extension.end(), extension.begin(),
+                   [](unsigned char ch) { return std::tolower(ch); });
     constexpr std::array known{".stl", ".obj", ".ply", ".off", ".vtp"};
     return std::find(known.begin(), known.end(), extension) != known.end();
 }
@@ -138,8 +144,8 @@ Case case_of_input(const fs::path& input) {
         } else if (fs::exists(own)) {
             return read_case_file(YamlFields::from_file(own));
         } else {
-            throw InvalidInput(fmt::format("{}: the folder holds neither set.yaml (a measurement set) nor case.yaml",
-                                           input.string()));
+            throw InvalidInput(
+                fmt::format("{}: the folder holds neither set.yaml (a measurement set) nor case.yaml", input.string()));
         }
     } else if (is_mesh(input)) {
         c.mesh = input;
@@ -149,9 +155,10 @@ Case case_of_input(const fs::path& input) {
         if (format == case_format) return read_case_file(yaml);
         c.measurements = input.has_parent_path() ? input.parent_path() : fs::path(".");
     } else {
-        throw InvalidInput(fmt::format("{}: not a kind of input that is known: give a case.yaml, a measurement set (its "
-                                       "folder or set.yaml) or a surface (.stl, .obj, .ply, .off, .vtp)",
-                                       input.string()));
+        throw InvalidInput(
+            fmt::format("{}: not a kind of input that is known: give a case.yaml, a measurement set (its "
+                        "folder or set.yaml) or a surface (.stl, .obj, .ply, .off, .vtp)",
+                        input.string()));
     }
     const fs::path named = c.measurements ? fs::weakly_canonical(*c.measurements) : input;
     c.name = named.stem().string();
@@ -190,7 +197,8 @@ void ProbeOptions::validate() const {
     require(probes >= 1 && probes <= 10000, "probes", probes, "1 to 10000");
     require(held_out >= 0 && held_out < probes, "held_out", held_out, "0 to one less than the probes");
     require(markers >= 3 && markers <= 100000, "markers", markers, "3 to 100000");
-    require(displacement > 0 && displacement <= 0.5, "displacement", displacement, "above 0 to 0.5 of the longest side");
+    require(displacement > 0 && displacement <= 0.5, "displacement", displacement,
+            "above 0 to 0.5 of the longest side");
     require(radius > 0 && radius <= 0.5, "radius", radius, "above 0 to 0.5 of the longest side");
     require(noise >= 0, "noise", noise, "0 mm or more");
 }

@@ -31,13 +31,17 @@ std::string input_yaml(const Case& c) {
         text += fmt::format("unit: {}            # of the mesh\n", c.unit == 1 ? "mm" : c.unit == 10 ? "cm" : "m");
         text += fmt::format("longest: {}          # scale the mesh to this longest side [mm]; 0: not\n", c.longest);
     } else {
-        text += fmt::format("measurements: {}\n", quoted(std::filesystem::absolute(*c.measurements).lexically_normal().string()));
-        if (c.model) text += fmt::format("model: {}\n", quoted(std::filesystem::absolute(*c.model).lexically_normal().string()));
+        text += fmt::format("measurements: {}\n",
+                            quoted(std::filesystem::absolute(*c.measurements).lexically_normal().string()));
+        if (c.model)
+            text += fmt::format("model: {}\n", quoted(std::filesystem::absolute(*c.model).lexically_normal().string()));
     }
-    if (!c.supports.empty()) text += "supports:             # where the body is held [mm]\n" + mesh::regions_to_yaml(c.supports);
+    if (!c.supports.empty())
+        text += "supports:             # where the body is held [mm]\n" + mesh::regions_to_yaml(c.supports);
     if (c.young || c.poisson || c.density) {
         text += "material:\n" + optional_line("  young: {}            # [MPa]\n", c.young) +
-                optional_line("  poisson: {}\n", c.poisson) + optional_line("  density: {}          # [kg/m^3]\n", c.density);
+                optional_line("  poisson: {}\n", c.poisson) +
+                optional_line("  density: {}          # [kg/m^3]\n", c.density);
     }
     return text;
 }
@@ -79,8 +83,8 @@ std::string to_yaml(const Case& c) {
         "  search_low: {}       # burion2008: search box, as multiples of the start stiffness\n"
         "  search_high: {}\n"
         "seed: {}\n",
-        name_of(scopes, i.scope), name_of(methods, i.method), name_of(law_choices, i.law), fixed_names(i), i.particles, i.iterations, i.search_low,
-        i.search_high, i.seed);
+        name_of(scopes, i.scope), name_of(methods, i.method), name_of(law_choices, i.law), fixed_names(i), i.particles,
+        i.iterations, i.search_low, i.search_high, i.seed);
     const Expectation& e = c.expect;
     if (e.relative_at_most || e.held_out_at_most || e.spheres_at_least || !e.parameters.empty()) {
         text += "expect:\n" + optional_line("  relative_at_most: {}\n", e.relative_at_most) +

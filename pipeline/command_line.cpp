@@ -44,14 +44,17 @@ namespace {
 
 void add_body_flags(CLI::App* verb, CaseOverrides& say) {
     verb->add_option("--unit", say.unit, "Unit of the mesh")->check(CLI::IsMember({"mm", "cm", "m"}))->group("Body");
-    verb->add_option("--longest", say.longest, "Scale the mesh to this longest side [mm]")->check(CLI::PositiveNumber)->group("Body");
+    verb->add_option("--longest", say.longest, "Scale the mesh to this longest side [mm]")
+        ->check(CLI::PositiveNumber)
+        ->group("Body");
     verb->add_option("--young", say.young, "Young's modulus [MPa]")->check(CLI::PositiveNumber)->group("Body");
     verb->add_option("--poisson", say.poisson, "Poisson's ratio")->check(CLI::Range(-0.99, 0.4999))->group("Body");
     verb->add_option("--density", say.density, "Density [kg/m^3]")->check(CLI::NonNegativeNumber)->group("Body");
     verb->add_option("--edge-length", say.edge_length, "Of the tetrahedra [mm]; 6 % of the longest side by default")
         ->check(CLI::PositiveNumber)
         ->group("Body");
-    verb->add_flag("--linear-elements", say.linear_elements, "Four-node tetrahedra in place of quadratic ones")->group("Body");
+    verb->add_flag("--linear-elements", say.linear_elements, "Four-node tetrahedra in place of quadratic ones")
+        ->group("Body");
 }
 
 void add_skeleton_flags(CLI::App* verb, CaseOverrides& say) {
@@ -70,15 +73,20 @@ void add_identify_flags(CLI::App* verb, CaseOverrides& say) {
     verb->add_option("--parameters", say.parameters, "What is identified: uniform, zones, links")
         ->check(CLI::IsMember({"uniform", "zones", "links"}))
         ->group("Identification");
-    verb->add_option("--method", say.method, "tempered: particles tempered from a Laplace proposal; burion2008: Algorithm 1")
+    verb->add_option("--method", say.method,
+                     "tempered: particles tempered from a Laplace proposal; burion2008: Algorithm 1")
         ->check(CLI::IsMember({"tempered", "burion2008"}))
         ->group("Identification");
-    verb->add_option("--particles", say.particles, "Number of particles")->check(CLI::Range(2, 10'000'000))->group("Identification");
+    verb->add_option("--particles", say.particles, "Number of particles")
+        ->check(CLI::Range(2, 10'000'000))
+        ->group("Identification");
 }
 
 void add_probing_flags(CLI::App* verb, CaseOverrides& say) {
     verb->add_option("--probes", say.probes, "Number of loaded states")->check(CLI::Range(1, 10000))->group("Probing");
-    verb->add_option("--noise", say.noise, "1 sigma of the readings [mm]")->check(CLI::NonNegativeNumber)->group("Probing");
+    verb->add_option("--noise", say.noise, "1 sigma of the readings [mm]")
+        ->check(CLI::NonNegativeNumber)
+        ->group("Probing");
 }
 
 /// In the list of commands, a line each: examples stand in a command's own help.
@@ -94,8 +102,8 @@ public:
 
 }  // namespace
 
-CLI::App* CommandLine::Impl::verb(CLI::App& app, const std::string& name, const std::string& what, const std::string& examples,
-                                  std::function<Outcome()> action) {
+CLI::App* CommandLine::Impl::verb(CLI::App& app, const std::string& name, const std::string& what,
+                                  const std::string& examples, std::function<Outcome()> action) {
     CLI::App* sub = app.add_subcommand(name, what + "\n\nExamples:\n" + examples);
     sub->callback([this, action] { command = action; });
     return sub;
@@ -142,7 +150,8 @@ void CommandLine::Impl::add_check(CLI::App& app) {
 
 void CommandLine::Impl::add_mesh(CLI::App& app) {
     auto* sub = verb(app, "mesh", "Repairs, remeshes and fills a surface with tetrahedra.",
-                     "  palpate mesh liver.stl -o body.vtu --edge-length 8\n", [this] { return commands::mesh_body(mesh, common); });
+                     "  palpate mesh liver.stl -o body.vtu --edge-length 8\n",
+                     [this] { return commands::mesh_body(mesh, common); });
     sub->add_option("SURFACE", mesh.input, "STL, OBJ, PLY, OFF or VTP")->required();
     sub->add_option("-o,--output", mesh.output, "The volume mesh; body.vtu by default");
     add_body_flags(sub, mesh.say);
@@ -178,7 +187,8 @@ void CommandLine::Impl::add_identify(CLI::App& app) {
                      [this] { return commands::identify(identify, common); });
     sub->add_option("MODEL", identify.model, "model.json")->required();
     sub->add_option("SET", identify.set, "The measurements")->required();
-    sub->add_option("-o,--output", identify.output, "Folder for model.json, posterior.csv, history.pvd; identified by default");
+    sub->add_option("-o,--output", identify.output,
+                    "Folder for model.json, posterior.csv, history.pvd; identified by default");
     add_identify_flags(sub, identify.say);
     sub->add_option("--law", identify.law, "Law of equilibrium; by fit by default")
         ->check(CLI::IsMember({"automatic", "linear", "large-rotation"}))
@@ -189,13 +199,15 @@ void CommandLine::Impl::add_identify(CLI::App& app) {
 }
 
 void CommandLine::Impl::add_compare(CLI::App& app) {
-    auto* sub = verb(app, "compare", "Model against measurements: how wrong, where, under which probe.",
-                     "  palpate compare model.json set/\n  palpate compare model.json set/ --tolerance 0.5 && echo good enough\n",
-                     [this] { return commands::compare(compare, common); });
+    auto* sub = verb(
+        app, "compare", "Model against measurements: how wrong, where, under which probe.",
+        "  palpate compare model.json set/\n  palpate compare model.json set/ --tolerance 0.5 && echo good enough\n",
+        [this] { return commands::compare(compare, common); });
     sub->add_option("MODEL", compare.model, "model.json")->required();
     sub->add_option("SET", compare.set, "The measurements")->required();
     sub->add_option("-o,--output", compare.output, "Folder for compare.json and the .vtp series");
-    sub->add_option("--tolerance", compare.tolerance, "Exit code 5 where the rms error is larger [mm]")->check(CLI::NonNegativeNumber);
+    sub->add_option("--tolerance", compare.tolerance, "Exit code 5 where the rms error is larger [mm]")
+        ->check(CLI::NonNegativeNumber);
 }
 
 void CommandLine::Impl::add_simulate(CLI::App& app) {
@@ -224,7 +236,8 @@ std::string CommandLine::description() const {
            "  palpate run liver.stl --longest 200      calibrate against finite elements\n"
            "  palpate run my-measurements/             calibrate against measurements\n"
            "  palpate check liver.stl                  what is wrong with this mesh?\n\n"
-           "Units: mm, N, MPa, s. Exit codes: 0 done, 1 internal error, 2 wrong usage, 3 bad input, 4 numerical failure,\n"
+           "Units: mm, N, MPa, s. Exit codes: 0 done, 1 internal error, 2 wrong usage, 3 bad input, 4 numerical "
+           "failure,\n"
            "5 tolerance not met.";
 }
 

@@ -45,8 +45,8 @@ private:
         const double elapsed = seconds_since(start_);
         const std::string left =
             done > 0.02 && done < 1 ? fmt::format("{:4.0f} s left", elapsed * (1 - done) / done) : std::string(11, ' ');
-        fmt::print(stderr, "\r{:<28.28} [{:<{}}] {:3.0f} % {}", what_, std::string(static_cast<std::size_t>(filled), '='),
-                   width, 100 * done, left);
+        fmt::print(stderr, "\r{:<28.28} [{:<{}}] {:3.0f} % {}", what_,
+                   std::string(static_cast<std::size_t>(filled), '='), width, 100 * done, left);
         if (done >= 1) fmt::print(stderr, "\r{}\r", std::string(79, ' '));
         std::fflush(stderr);
     }

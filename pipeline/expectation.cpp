@@ -12,15 +12,19 @@ namespace {
 using nlohmann::json;
 
 /// What is unknown keeps no promise.
-double known(const json& value) { return value.is_number() ? value.get<double>() : std::numeric_limits<double>::infinity(); }
+double known(const json& value) {
+    return value.is_number() ? value.get<double>() : std::numeric_limits<double>::infinity();
+}
 
-std::string broken_parameter(const Expectation::Parameter& expected, const std::vector<identify::PosteriorRow>& posterior) {
-    const auto row = std::find_if(posterior.begin(), posterior.end(), [&](auto& r) { return r.parameter == expected.name; });
+std::string broken_parameter(const Expectation::Parameter& expected,
+                             const std::vector<identify::PosteriorRow>& posterior) {
+    const auto row =
+        std::find_if(posterior.begin(), posterior.end(), [&](auto& r) { return r.parameter == expected.name; });
     if (row == posterior.end()) return fmt::format("no parameter '{}' was identified", expected.name);
     const double off = std::abs(row->mean / expected.value - 1);
     if (off <= expected.within) return {};
-    return fmt::format("{} is {:.5g} {}, expected {:g} within {:.2g} %: it is off by {:.2g} %", expected.name, row->mean, row->unit,
-                       expected.value, 100 * expected.within, 100 * off);
+    return fmt::format("{} is {:.5g} {}, expected {:g} within {:.2g} %: it is off by {:.2g} %", expected.name,
+                       row->mean, row->unit, expected.value, 100 * expected.within, 100 * off);
 }
 
 }  // namespace

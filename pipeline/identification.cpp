@@ -20,10 +20,15 @@ void write_identification(const std::filesystem::path& folder, const identify::I
 nlohmann::json identify_settings(const identify::IdentifyOptions& options) {
     nlohmann::json fixed = nlohmann::json::array();
     for (const auto kind : options.fixed) fixed.push_back(name_of(stiffnesses, kind));
-    return {{"fixed", fixed}, {"parameters", name_of(scopes, options.scope)}, {"method", name_of(methods, options.method)},
-            {"law", name_of(law_choices, options.law)},     {"particles", options.particles},
-            {"iterations", options.iterations},             {"search_low", options.search_low},
-            {"search_high", options.search_high},           {"seed", options.seed}};
+    return {{"fixed", fixed},
+            {"parameters", name_of(scopes, options.scope)},
+            {"method", name_of(methods, options.method)},
+            {"law", name_of(law_choices, options.law)},
+            {"particles", options.particles},
+            {"iterations", options.iterations},
+            {"search_low", options.search_low},
+            {"search_high", options.search_high},
+            {"seed", options.seed}};
 }
 
 }  // namespace palpate::pipeline

@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <malloc.h>
 
 #include <CLI/CLI.hpp>
 #include <exception>
@@ -32,7 +33,8 @@ commands::Outcome guarded(const std::function<commands::Outcome()>& command) {
     } catch (const SolverFailure& e) {
         return failed(e.what(), commands::numerical_failure);
     } catch (const std::bad_alloc&) {
-        return failed("the memory is exhausted; choose larger elements (--edge-length) or fewer probes", commands::numerical_failure);
+        return failed("the memory is exhausted; choose larger elements (--edge-length) or fewer probes",
+                      commands::numerical_failure);
     } catch (const std::exception& e) {
         return failed(fmt::format("internal error, please report it: {}", e.what()), commands::internal_error);
     }
@@ -41,6 +43,9 @@ commands::Outcome guarded(const std::function<commands::Outcome()>& command) {
 }  // namespace
 
 int main(int argc, char** argv) {
+    // Matrices of some MB come and go in inner loops: kept by the allocator, not handed back to the system each time.
+    mallopt(M_MMAP_THRESHOLD, 256 << 20);
+    mallopt(M_TRIM_THRESHOLD, 512 << 20);
     CommandLine line;
     CLI::App app(line.description(), "palpate");
     line.set_up(app);

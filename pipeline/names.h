@@ -15,9 +15,8 @@ namespace palpate::pipeline {
 template <typename Enum, std::size_t N>
 using Names = std::array<std::pair<const char*, Enum>, N>;
 
-inline constexpr Names<identify::Scope, 3> scopes{{{"uniform", identify::Scope::uniform},
-                                                   {"zones", identify::Scope::zones},
-                                                   {"links", identify::Scope::links}}};
+inline constexpr Names<identify::Scope, 3> scopes{
+    {{"uniform", identify::Scope::uniform}, {"zones", identify::Scope::zones}, {"links", identify::Scope::links}}};
 inline constexpr Names<identify::Method, 2> methods{
     {{"tempered", identify::Method::tempered}, {"burion2008", identify::Method::burion2008}}};
 inline constexpr Names<identify::LawChoice, 3> law_choices{{{"automatic", identify::LawChoice::automatic},

@@ -22,7 +22,8 @@ using identify::LoadState;
 using identify::MeasurementSet;
 
 /// Surface vertices that may be touched: the patch keeps clear of the supports.
-std::vector<int> free_vertices(const mesh::Surface& surface, const std::vector<mesh::Region>& supports, double clearance) {
+std::vector<int> free_vertices(const mesh::Surface& surface, const std::vector<mesh::Region>& supports,
+                               double clearance) {
     const std::vector<char> held = mesh::contains(supports, surface.vertices);
     std::vector<int> held_ids;
     for (int v = 0; v < surface.vertices.rows(); ++v) {
@@ -59,7 +60,8 @@ Eigen::VectorXd load_scales(const Eigen::MatrixXd& unit_displacements, double wa
     return scales;
 }
 
-std::vector<identify::Marker> spread_markers(const mesh::Surface& surface, const std::vector<mesh::Region>& supports, int count) {
+std::vector<identify::Marker> spread_markers(const mesh::Surface& surface, const std::vector<mesh::Region>& supports,
+                                             int count) {
     const std::vector<char> held = mesh::contains(supports, surface.vertices);
     std::vector<int> free;
     for (int v = 0; v < surface.vertices.rows(); ++v) {
@@ -97,9 +99,10 @@ std::vector<mesh::Contact> probing_contacts(const mesh::Surface& surface, const 
     const double radius = options.radius * mesh::bounding_box(surface.vertices).longest_side();
     const std::vector<int> free = free_vertices(surface, supports, 1.2 * radius);
     if (free.empty()) {
-        throw InvalidInput(fmt::format("no surface is left to probe: all of it lies within {:.3g} mm (1.2 contact radii) of a "
-                                       "support; make the supports or the contact radius smaller",
-                                       1.2 * radius));
+        throw InvalidInput(
+            fmt::format("no surface is left to probe: all of it lies within {:.3g} mm (1.2 contact radii) of a "
+                        "support; make the supports or the contact radius smaller",
+                        1.2 * radius));
     }
     std::mt19937_64 random(seed);
     const Points candidates = surface.vertices(free, Eigen::all);
@@ -108,7 +111,8 @@ std::vector<mesh::Contact> probing_contacts(const mesh::Surface& surface, const 
     std::vector<mesh::Contact> contacts;
     const std::vector<int> sites = mesh::farthest_points(candidates, options.probes, first);
     for (int p = 0; p < options.probes; ++p) {
-        const int site = sites[static_cast<std::size_t>(p) % sites.size()];  // more probes than vertices: again, otherwise directed
+        const int site =
+            sites[static_cast<std::size_t>(p) % sites.size()];  // more probes than vertices: again, otherwise directed
         contacts.push_back({candidates.row(site).transpose(),
                             probing_direction(p, normals.row(free[site]).transpose(), random), radius});
     }

@@ -11,8 +11,8 @@ namespace palpate::pipeline {
 
 /// A reference simulation as measurements.
 struct ProbedBody {
-    identify::MeasurementSet set;      // markers, an unloaded state, and a state for each probe
-    Eigen::MatrixXd displacements;     // full fields (3n x states) [mm], in the order of set.states
+    identify::MeasurementSet set;   // markers, an unloaded state, and a state for each probe
+    Eigen::MatrixXd displacements;  // full fields (3n x states) [mm], in the order of set.states
 };
 
 /// Presses, pulls and pushes sideways on a body in small strain (linear elasticity), and reads markers on its surface.

@@ -43,9 +43,11 @@ json marker_errors(const identify::Comparison& c, const identify::MeasurementSet
 }  // namespace
 
 json to_json(const identify::Comparison& c, const identify::MeasurementSet& set) {
-    json result = {{"error", {{"rms_mm", c.rms}, {"max_mm", c.max}, {"relative", known(c.relative)}, {"noise_mm", known(c.noise)}}},
-                   {"adequate", c.adequate},
-                   {"p_value", known(c.p_value)}};
+    json result = {
+        {"error",
+         {{"rms_mm", c.rms}, {"max_mm", c.max}, {"relative", known(c.relative)}, {"noise_mm", known(c.noise)}}},
+        {"adequate", c.adequate},
+        {"p_value", known(c.p_value)}};
     if (c.load_exponent) {
         result["load_exponent"] = {
             {"value", c.load_exponent->value}, {"sd", c.load_exponent->sd}, {"words", c.load_exponent->words}};
@@ -125,7 +127,8 @@ std::string in_words(const identify::Comparison& c) {
                             c.adequate ? "what is left is noise" : "the model lacks something");
     }
     text += ".";
-    if (c.load_exponent) text += fmt::format("\nLoad exponent {:.1f}: {}.", c.load_exponent->value, c.load_exponent->words);
+    if (c.load_exponent)
+        text += fmt::format("\nLoad exponent {:.1f}: {}.", c.load_exponent->value, c.load_exponent->words);
     return text;
 }
 

@@ -85,9 +85,10 @@ RunFolder::RunFolder(fs::path folder, bool force) : folder_(std::move(folder)) {
     }
     if (fs::exists(folder_ / record_name)) record_ = read_record(folder_ / record_name);
     if (fs::exists(folder_) && !fs::is_empty(folder_) && record_.is_null() && !force) {
-        throw InvalidInput(fmt::format("{}: the folder holds files that palpate did not make; name another one, or say "
-                                       "--force to write into it",
-                                       folder_.string()));
+        throw InvalidInput(
+            fmt::format("{}: the folder holds files that palpate did not make; name another one, or say "
+                        "--force to write into it",
+                        folder_.string()));
     }
     std::error_code failed;
     fs::create_directories(folder_, failed);
@@ -97,8 +98,8 @@ RunFolder::RunFolder(fs::path folder, bool force) : folder_(std::move(folder)) {
     if (lock_ < 0) throw IoError(fmt::format("{}: cannot be written into", folder_.string()));
     if (flock(lock_, LOCK_EX | LOCK_NB) != 0) {
         close(lock_);
-        throw InvalidInput(fmt::format("{}: another palpate works in this folder; wait for it, or name another folder with -o",
-                                       folder_.string()));
+        throw InvalidInput(fmt::format(
+            "{}: another palpate works in this folder; wait for it, or name another folder with -o", folder_.string()));
     }
     if (record_.is_null()) record_ = json::object();
     record_["program"] = "palpate";

@@ -8,16 +8,16 @@
 
 namespace palpate::pipeline {
 
-/// The folder of a run: a lock against a second run in it, and stages that are not run again while nothing that they depend on
-/// has changed.
+/// The folder of a run: a lock against a second run in it, and stages that are not run again while nothing that they
+/// depend on has changed.
 ///
 /// A stage has a key: the SHA-256 of its settings, of the input files that it reads, and of the keys of the stages
 /// before it. run.json records the key, the outputs with their SHA-256, seconds and peak memory of every finished
 /// stage; a stage that was killed is not in it.
 class RunFolder {
 public:
-    /// Makes the folder, or takes up one that palpate made. @throws InvalidInput when it holds something else and `force` is false, or
-    /// another run works in it.
+    /// Makes the folder, or takes up one that palpate made. @throws InvalidInput when it holds something else and
+    /// `force` is false, or another run works in it.
     RunFolder(std::filesystem::path folder, bool force);
     ~RunFolder();
     RunFolder(const RunFolder&) = delete;
@@ -25,10 +25,10 @@ public:
 
     struct StagePlan {
         std::string name;
-        nlohmann::json settings;                       // all that the result depends on, beside files and earlier stages
-        std::vector<std::filesystem::path> inputs;     // files outside the run folder
-        std::vector<std::string> after;                // earlier stages whose results are read
-        std::vector<std::filesystem::path> outputs;    // relative to the run folder
+        nlohmann::json settings;                     // all that the result depends on, beside files and earlier stages
+        std::vector<std::filesystem::path> inputs;   // files outside the run folder
+        std::vector<std::string> after;              // earlier stages whose results are read
+        std::vector<std::filesystem::path> outputs;  // relative to the run folder
     };
     /// Runs `work` unless the stage is finished with the same key and untouched outputs. Returns whether it ran.
     /// `work` returns figures to keep in run.json.

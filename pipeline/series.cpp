@@ -126,11 +126,10 @@ void write_particle_series(const fs::path& file, const identify::IdentifyResult&
         }
         points << kE, kF * widest, zone;
         const fs::path vtp = file.parent_path() / file.stem() / step_name("particles", h);
-        mesh::write_vtp_lines(vtp, points, {},
-                              {.points = {{"elongation [N/mm]", kE},
-                                          {"flexion [N*mm/rad]", kF},
-                                          {"zone", zone},
-                                          {"weight [-]", weight}}});
+        mesh::write_vtp_lines(
+            vtp, points, {},
+            {.points = {
+                 {"elongation [N/mm]", kE}, {"flexion [N*mm/rad]", kF}, {"zone", zone}, {"weight [-]", weight}}});
         steps.push_back({static_cast<double>(h), vtp});
     }
     mesh::write_pvd(file, steps);

@@ -15,8 +15,8 @@ namespace palpate::pipeline {
 void write_marker_series(const std::filesystem::path& folder, const std::string& name,
                          const identify::MeasurementSet& set, const identify::Comparison& comparison);
 
-/// The model's shape in every state as a series: its skin at rest with "displacement [mm]" to warp by, and, where the set has full
-/// fields, "measured [mm]" and "error [mm]" of the skin.
+/// The model's shape in every state as a series: its skin at rest with "displacement [mm]" to warp by, and, where the
+/// set has full fields, "measured [mm]" and "error [mm]" of the skin.
 void write_skin_series(const std::filesystem::path& folder, const std::string& name, const skeleton::Model& model,
                        const identify::MeasurementSet& set);
 

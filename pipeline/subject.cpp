@@ -15,13 +15,14 @@ void read_mesh(Subject& subject) {
     subject.surface = mesh::read_surface(*c.mesh);
     const double longest = mesh::bounding_box(subject.surface.vertices).longest_side();
     if (longest <= 0) {
-        throw InvalidInput(fmt::format("{}: all its vertices are at one place; a body needs an extent", c.mesh->string()));
+        throw InvalidInput(
+            fmt::format("{}: all its vertices are at one place; a body needs an extent", c.mesh->string()));
     }
     const double scale = c.longest > 0 ? c.longest / longest : c.unit;
     subject.surface.vertices *= scale;
     if (c.longest == 0 && c.unit == 1) {
-        subject.assumptions.push_back(
-            fmt::format("The mesh is taken to be in mm: {:.4g} mm at its longest (--unit or --longest say otherwise).", longest));
+        subject.assumptions.push_back(fmt::format(
+            "The mesh is taken to be in mm: {:.4g} mm at its longest (--unit or --longest say otherwise).", longest));
     }
 }
 
@@ -43,10 +44,11 @@ void choose_supports(Subject& subject) {
     } else {
         const mesh::BoxRegion clamp = default_clamp(mesh::bounding_box(subject.surface.vertices));
         subject.supports = {clamp};
-        subject.assumptions.push_back(fmt::format(
-            "Held over the 5 % of its length at the low end of its longest axis, in the box {:.4g}, {:.4g}, {:.4g} to {:.4g}, "
-            "{:.4g}, {:.4g} mm ('supports' in a case say otherwise).",
-            clamp.min.x(), clamp.min.y(), clamp.min.z(), clamp.max.x(), clamp.max.y(), clamp.max.z()));
+        subject.assumptions.push_back(
+            fmt::format("Held over the 5 % of its length at the low end of its longest axis, in the box {:.4g}, "
+                        "{:.4g}, {:.4g} to {:.4g}, "
+                        "{:.4g}, {:.4g} mm ('supports' in a case say otherwise).",
+                        clamp.min.x(), clamp.min.y(), clamp.min.z(), clamp.max.x(), clamp.max.y(), clamp.max.z()));
     }
     if (subject.set) subject.set->supports = subject.supports;
 }
@@ -63,11 +65,14 @@ double choose(const std::optional<double>& said, double measured, double fallbac
 void choose_material(Subject& subject) {
     const Case& c = subject.settings;
     const auto guess = subject.set && subject.set->material ? *subject.set->material : identify::MaterialGuess{};
-    const double density = subject.set && subject.set->density ? *subject.set->density / fem::tonne_per_mm3 : identify::missing;
-    subject.material.young = choose(c.young, guess.young, 0.1, "Young's modulus", " MPa", "--young", subject.assumptions);
-    subject.material.poisson = choose(c.poisson, guess.poisson, 0.45, "Poisson's ratio", "", "--poisson", subject.assumptions);
-    subject.material.density =
-        fem::tonne_per_mm3 * choose(c.density, density, 1000, "The density", " kg/m^3", "--density", subject.assumptions);
+    const double density =
+        subject.set && subject.set->density ? *subject.set->density / fem::tonne_per_mm3 : identify::missing;
+    subject.material.young =
+        choose(c.young, guess.young, 0.1, "Young's modulus", " MPa", "--young", subject.assumptions);
+    subject.material.poisson =
+        choose(c.poisson, guess.poisson, 0.45, "Poisson's ratio", "", "--poisson", subject.assumptions);
+    subject.material.density = fem::tonne_per_mm3 * choose(c.density, density, 1000, "The density", " kg/m^3",
+                                                           "--density", subject.assumptions);
     subject.material.validate();
 }
 

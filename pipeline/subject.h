@@ -20,8 +20,8 @@ struct Subject {
     std::vector<mesh::Region> supports;
     fem::Material material;
     std::optional<identify::MeasurementSet> set;
-    std::vector<std::filesystem::path> files;     // that were read
-    std::vector<std::string> assumptions;         // what nobody said and was assumed, in words
+    std::vector<std::filesystem::path> files;  // that were read
+    std::vector<std::string> assumptions;      // what nobody said and was assumed, in words
 };
 
 /// @throws IoError, InvalidInput.

@@ -60,7 +60,8 @@ identify::MeasurementSet probe_twin(const skeleton::Model& model, const ProbeOpt
         state.probe = p + 1;
         state.contacts = {{model.spheres[site].center, direction * (options.displacement * longest / compliance), 0.0}};
     }
-    return identify::simulate_measurements(model, std::move(states), identify::markers_on_spheres(model), options.noise, seed);
+    return identify::simulate_measurements(model, std::move(states), identify::markers_on_spheres(model), options.noise,
+                                           seed);
 }
 
 }  // namespace palpate::pipeline

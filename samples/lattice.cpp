@@ -14,7 +14,8 @@ skeleton::Sphere lattice_sphere(const Vec3& center) {
     return {center, radius, mass, 0.4 * mass * radius * radius * Mat3::Identity(), center.x() == 0};
 }
 
-/// A lattice of n(x,y,z) spheres in `zones` of even length along x, in a box whose sides pass through the outer spheres.
+/// A lattice of n(x,y,z) spheres in `zones` of even length along x, in a box whose sides pass through the outer
+/// spheres.
 skeleton::Model make_lattice(const std::string& name, const Eigen::Vector3i& n, int zones) {
     skeleton::Model model;
     model.name = name;
@@ -24,7 +25,9 @@ skeleton::Model make_lattice(const std::string& name, const Eigen::Vector3i& n, 
         for (int j = 0; j < n.y(); ++j) {
             for (int k = 0; k < n.z(); ++k) {
                 model.spheres.push_back(lattice_sphere(spacing * Vec3(i, j, k)));
-                const auto join = [&](int other) { model.links.push_back({index(i, j, k), other, spacing, Vec3(2, 750, 500), zone}); };
+                const auto join = [&](int other) {
+                    model.links.push_back({index(i, j, k), other, spacing, Vec3(2, 750, 500), zone});
+                };
                 if (i + 1 < n.x()) join(index(i + 1, j, k));
                 if (j + 1 < n.y()) join(index(i, j + 1, k));
                 if (k + 1 < n.z()) join(index(i, j, k + 1));
@@ -32,7 +35,8 @@ skeleton::Model make_lattice(const std::string& name, const Eigen::Vector3i& n, 
         }
     }
     const double half_thickness = n.z() == 1 ? 8 : 0;  // a sheet's skin lies a little off its spheres
-    const Vec3 low(0, 0, -half_thickness), high = spacing * (n.array() - 1).matrix().cast<double>() + Vec3(0, 0, half_thickness);
+    const Vec3 low(0, 0, -half_thickness),
+        high = spacing * (n.array() - 1).matrix().cast<double>() + Vec3(0, 0, half_thickness);
     model.surface = mesh::make_box(low, high, (n.array() - 1).max(1));
     for (Eigen::Index v = 0; v < model.surface.vertices.rows(); ++v) {
         model.skin.push_back(skeleton::attach(model, model.surface.vertices.row(v).transpose()));

@@ -13,11 +13,11 @@ namespace palpate::skeleton {
 
 /// A filling sphere: a rigid node of the skeleton. [Conti, Khatib, Baur 2003]
 struct Sphere {
-    Vec3 center = Vec3::Zero();    // at rest [mm]
-    double radius = 0;             // [mm]
-    double mass = 0;               // of its share of the body [tonne]
-    Mat3 inertia = Mat3::Zero();   // of that share about the centre [tonne mm^2]
-    bool held = false;             // stands in a support: neither moves nor turns
+    Vec3 center = Vec3::Zero();   // at rest [mm]
+    double radius = 0;            // [mm]
+    double mass = 0;              // of its share of the body [tonne]
+    Mat3 inertia = Mat3::Zero();  // of that share about the centre [tonne mm^2]
+    bool held = false;            // stands in a support: neither moves nor turns
 };
 
 /// The three stiffnesses of a link, in this order everywhere.
@@ -27,18 +27,18 @@ inline constexpr std::array<const char*, 3> stiffness_units{"N/mm", "N*mm/rad", 
 
 /// An elastic link between two spheres.
 struct Link {
-    int a = 0, b = 0;                              // spheres, a < b
-    double length = 0;                             // at rest [mm]
-    Eigen::Vector3d stiffness = Vec3::Zero();      // kE [N/mm], kF [N mm/rad], kT [N mm/rad]
-    int zone = 0;                                  // links of a zone share their stiffness multipliers when identified by zones
+    int a = 0, b = 0;                          // spheres, a < b
+    double length = 0;                         // at rest [mm]
+    Eigen::Vector3d stiffness = Vec3::Zero();  // kE [N/mm], kF [N mm/rad], kT [N mm/rad]
+    int zone = 0;  // links of a zone share their stiffness multipliers when identified by zones
 };
 
 /// Where a point of the body hangs: on the nearest sphere (a == b, or t = 0, 1) or link. It follows
 /// p = (1 - t) (x_a + R_a (rest - X_a)) + t (x_b + R_b (rest - X_b)): exact for rigid motions.
 struct Attachment {
     int a = 0, b = 0;
-    double t = 0;               // [0, 1]
-    Vec3 rest = Vec3::Zero();   // [mm]
+    double t = 0;              // [0, 1]
+    Vec3 rest = Vec3::Zero();  // [mm]
 };
 
 /// How far a model's rotations reach.
@@ -54,8 +54,8 @@ struct Model {
     Law law = Law::large_rotation;
     std::vector<Sphere> spheres;
     std::vector<Link> links;
-    mesh::Surface surface;               // at rest
-    std::vector<Attachment> skin;        // of each vertex of the surface
+    mesh::Surface surface;         // at rest
+    std::vector<Attachment> skin;  // of each vertex of the surface
     std::vector<mesh::Region> supports;
     std::map<std::string, std::string> provenance;  // where it comes from, in words
 

@@ -13,7 +13,8 @@ constexpr double largest_length = 1e12;  // [unit of the file]: whatever is larg
 Region read_box(const YamlFields& yaml, double unit) {
     const BoxRegion box{unit * yaml.vector("min"), unit * yaml.vector("max")};
     if (!(box.min.array() <= box.max.array()).all()) {
-        throw InvalidInput(fmt::format("{}: the box's max is below its min in some direction; swap them there", yaml.where("max")));
+        throw InvalidInput(
+            fmt::format("{}: the box's max is below its min in some direction; swap them there", yaml.where("max")));
     }
     yaml.finish();
     return box;
@@ -26,7 +27,8 @@ Region read_sphere(const YamlFields& yaml, double unit) {
 }
 
 Region read_plane(const YamlFields& yaml, double unit) {
-    const PlaneRegion plane{unit * yaml.vector("point"), yaml.vector("normal"), unit * yaml.number("within", 0, largest_length)};
+    const PlaneRegion plane{unit * yaml.vector("point"), yaml.vector("normal"),
+                            unit * yaml.number("within", 0, largest_length)};
     if (plane.normal.norm() == 0) {
         throw InvalidInput(fmt::format("{}: a normal of length 0 has no direction; give one", yaml.where("normal")));
     }
@@ -63,8 +65,9 @@ Region read_region(const YamlFields& yaml, double unit) {
     for (const char* candidate : kinds) {
         if (!yaml.has(candidate)) continue;
         if (!kind.empty()) {
-            throw InvalidInput(fmt::format("{}: one region is named '{}' and '{}'; begin a new '- ' item for the second", yaml.where(candidate),
-                                           kind, candidate));
+            throw InvalidInput(
+                fmt::format("{}: one region is named '{}' and '{}'; begin a new '- ' item for the second",
+                            yaml.where(candidate), kind, candidate));
         }
         kind = candidate;
     }
@@ -83,7 +86,9 @@ Region read_region(const YamlFields& yaml, double unit) {
 std::string list(const Vec3& v) { return fmt::format("[{}, {}, {}]", v.x(), v.y(), v.z()); }
 
 struct ToYaml {
-    std::string operator()(const BoxRegion& r) const { return fmt::format("box: {{min: {}, max: {}}}", list(r.min), list(r.max)); }
+    std::string operator()(const BoxRegion& r) const {
+        return fmt::format("box: {{min: {}, max: {}}}", list(r.min), list(r.max));
+    }
     std::string operator()(const SphereRegion& r) const {
         return fmt::format("sphere: {{center: {}, radius: {}}}", list(r.center), r.radius);
     }
@@ -103,8 +108,9 @@ std::vector<Region> read_regions(const YamlFields& yaml, const std::string& key,
     std::vector<Region> regions;
     for (const YamlFields& item : yaml.mappings(key)) regions.push_back(read_region(item, unit));
     if (regions.empty()) {
-        throw InvalidInput(fmt::format("{}: the list is empty; a body must be held somewhere: give a box, sphere, plane or points",
-                                       yaml.where(key)));
+        throw InvalidInput(
+            fmt::format("{}: the list is empty; a body must be held somewhere: give a box, sphere, plane or points",
+                        yaml.where(key)));
     }
     return regions;
 }

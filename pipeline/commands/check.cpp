@@ -10,14 +10,16 @@ namespace palpate::pipeline::commands {
 namespace {
 
 std::string describe_set(const identify::MeasurementSet& set) {
-    const auto loaded = std::count_if(set.states.begin(), set.states.end(), [](auto& s) { return !s.contacts.empty(); });
+    const auto loaded =
+        std::count_if(set.states.begin(), set.states.end(), [](auto& s) { return !s.contacts.empty(); });
     std::size_t readings = 0, unlabelled = 0;
     for (const auto& state : set.states) {
         readings += state.readings.size();
         unlabelled += static_cast<std::size_t>(
             std::count_if(state.readings.begin(), state.readings.end(), [](auto& r) { return r.marker < 0; }));
     }
-    std::string text = fmt::format("{} states ({} loaded), {} markers, {} readings", set.states.size(), loaded, set.markers.size(), readings);
+    std::string text = fmt::format("{} states ({} loaded), {} markers, {} readings", set.states.size(), loaded,
+                                   set.markers.size(), readings);
     if (unlabelled) text += fmt::format(" ({} without a label: left out for now)", unlabelled);
     if (!set.position_noise) text += "; no noise is stated";
     return text + ".\n";
@@ -31,10 +33,11 @@ Outcome check(const CheckOptions& options, const Common&) {
     const std::vector<std::string> faults = mesh::describe_faults(surface);
 
     Outcome outcome;
-    outcome.text = fmt::format("{}: {} vertices, {} triangles, {} part{}, {:.4g} x {:.4g} x {:.4g} mm, volume {:.4g} mm^3.\n",
-                               options.input.string(), surface.vertices, surface.triangles, surface.components,
-                               surface.components == 1 ? "" : "s", surface.box.extent().x(), surface.box.extent().y(),
-                               surface.box.extent().z(), surface.volume);
+    outcome.text =
+        fmt::format("{}: {} vertices, {} triangles, {} part{}, {:.4g} x {:.4g} x {:.4g} mm, volume {:.4g} mm^3.\n",
+                    options.input.string(), surface.vertices, surface.triangles, surface.components,
+                    surface.components == 1 ? "" : "s", surface.box.extent().x(), surface.box.extent().y(),
+                    surface.box.extent().z(), surface.volume);
     if (subject.set) outcome.text += describe_set(*subject.set);
     for (const std::string& fault : faults) outcome.text += "  - " + fault + "\n";
     outcome.text += faults.empty() ? "The surface is sound.\n" : "";

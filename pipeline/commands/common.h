@@ -14,8 +14,8 @@ enum ExitCode { done = 0, internal_error = 1, wrong_usage = 2, bad_input = 3, nu
 
 /// What every command understands.
 struct Common {
-    bool json = false;     // the result as one JSON object on standard output, nothing else there
-    bool force = false;    // overwrite what palpate did not make
+    bool json = false;   // the result as one JSON object on standard output, nothing else there
+    bool force = false;  // overwrite what palpate did not make
     int threads = 1;
     std::optional<std::uint64_t> seed;  // absent: the case's, or 1
 };

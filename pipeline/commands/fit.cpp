@@ -51,8 +51,9 @@ Outcome identify(const IdentifyCommandOptions& options, const Common& common) {
     Outcome outcome;
     outcome.json = summary_json(found);
     outcome.json["model"] = (output / "model.json").string();
-    outcome.text = fmt::format("{}: {} parameters, {} of them informed by the measurements.\n", (output / "model.json").string(),
-                               found.posterior.size(), outcome.json["informed"].get<int>());
+    outcome.text =
+        fmt::format("{}: {} parameters, {} of them informed by the measurements.\n", (output / "model.json").string(),
+                    found.posterior.size(), outcome.json["informed"].get<int>());
     if (found.posterior.size() <= 30) {
         for (const auto& row : found.posterior) {
             outcome.text += fmt::format("  {:<20} {:>10.4g} +- {:.2g} {}\n", row.parameter, row.mean, row.sd, row.unit);
@@ -80,7 +81,8 @@ Outcome compare(const CompareOptions& options, const Common& common) {
     }
     if (options.tolerance && comparison.rms > *options.tolerance) {
         outcome.code = not_met;
-        Console::error(fmt::format("the error of {:.4g} mm rms is above the tolerance of {:g} mm", comparison.rms, *options.tolerance));
+        Console::error(fmt::format("the error of {:.4g} mm rms is above the tolerance of {:g} mm", comparison.rms,
+                                   *options.tolerance));
     }
     return outcome;
 }

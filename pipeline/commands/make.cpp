@@ -29,7 +29,9 @@ Body body_of(const Subject& subject, double edge_length) {
     return body;
 }
 
-fs::path or_default(const fs::path& said, const std::string& fallback) { return said.empty() ? fs::path(fallback) : said; }
+fs::path or_default(const fs::path& said, const std::string& fallback) {
+    return said.empty() ? fs::path(fallback) : said;
+}
 
 Outcome probe_model(const ProbeCommandOptions& options, const fs::path& output) {
     const skeleton::Model model = skeleton::read_model(options.input);
@@ -39,7 +41,8 @@ Outcome probe_model(const ProbeCommandOptions& options, const fs::path& output) 
     const identify::MeasurementSet set = probe_twin(model, how, options.say.seed.value_or(1));
     identify::write_measurement_set(output, set);
     Outcome outcome;
-    outcome.text = fmt::format("{}: {} states of the skeleton itself, {} markers.\n", output.string(), set.states.size(), set.markers.size());
+    outcome.text = fmt::format("{}: {} states of the skeleton itself, {} markers.\n", output.string(),
+                               set.states.size(), set.markers.size());
     outcome.json = {{"set", output.string()}, {"states", set.states.size()}, {"markers", set.markers.size()}};
     return outcome;
 }
@@ -58,8 +61,8 @@ Outcome mesh_body(const MeshOptions& options, const Common& common) {
     mesh::write_vtu(output, body.volume);
     Outcome outcome;
     const double volume = mesh::element_volumes(body.volume).sum();
-    outcome.text = fmt::format("{}: {} tetrahedra, {} nodes, {:.4g} mm^3.\n", output.string(), body.volume.tetrahedra.rows(),
-                               body.volume.nodes.rows(), volume);
+    outcome.text = fmt::format("{}: {} tetrahedra, {} nodes, {:.4g} mm^3.\n", output.string(),
+                               body.volume.tetrahedra.rows(), body.volume.nodes.rows(), volume);
     outcome.json = {{"file", output.string()},
                     {"tetrahedra", body.volume.tetrahedra.rows()},
                     {"nodes", body.volume.nodes.rows()},
@@ -86,14 +89,11 @@ Outcome skeleton(const SkeletonOptions& options, const Common& common) {
     skeleton::write_model(output, model);
     const auto held = std::count_if(model.spheres.begin(), model.spheres.end(), [](auto& s) { return s.held; });
     Outcome outcome;
-    outcome.text = fmt::format("{}: {} spheres ({} held), {} links; no surface is further than {:.3g} mm outside the spheres.\n",
-                               output.string(), model.spheres.size(), held, model.links.size(), report.coverage);
-    outcome.json = {{"file", output.string()},
-                    {"spheres", model.spheres.size()},
-                    {"held", held},
-                    {"links", model.links.size()},
-                    {"coverage_mm", report.coverage},
-                    {"notes", report.notes}};
+    outcome.text =
+        fmt::format("{}: {} spheres ({} held), {} links; no surface is further than {:.3g} mm outside the spheres.\n",
+                    output.string(), model.spheres.size(), held, model.links.size(), report.coverage);
+    outcome.json = {{"file", output.string()},     {"spheres", model.spheres.size()}, {"held", held},
+                    {"links", model.links.size()}, {"coverage_mm", report.coverage},  {"notes", report.notes}};
     return outcome;
 }
 
@@ -119,9 +119,10 @@ Outcome probe(const ProbeCommandOptions& options, const Common& common) {
     probed.set.name = settings.name;
     write_probed_body(output, probed, body.volume);
     Outcome outcome;
-    outcome.text = fmt::format("{}: {} states, {} markers, with full fields.\n", output.string(), probed.set.states.size(),
-                               probed.set.markers.size());
-    outcome.json = {{"set", output.string()}, {"states", probed.set.states.size()}, {"markers", probed.set.markers.size()}};
+    outcome.text = fmt::format("{}: {} states, {} markers, with full fields.\n", output.string(),
+                               probed.set.states.size(), probed.set.markers.size());
+    outcome.json = {
+        {"set", output.string()}, {"states", probed.set.states.size()}, {"markers", probed.set.markers.size()}};
     return outcome;
 }
 

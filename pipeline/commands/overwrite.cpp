@@ -31,8 +31,9 @@ bool made_by_palpate(const fs::path& target) {
 
 void refuse_to_overwrite(const fs::path& target, bool force) {
     if (force || !fs::exists(target) || made_by_palpate(target)) return;
-    throw InvalidInput(fmt::format("{}: exists and was not made by palpate; choose another name with -o, or say --force to replace it",
-                                   target.string()));
+    throw InvalidInput(
+        fmt::format("{}: exists and was not made by palpate; choose another name with -o, or say --force to replace it",
+                    target.string()));
 }
 
 }  // namespace palpate::pipeline::commands

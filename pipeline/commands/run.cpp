@@ -86,35 +86,36 @@ private:
             take_model(*c.model);
             return;
         }
-        const bool ran = folder_.stage(
-            {"skeleton",
-             {{"spheres", c.skeleton.spheres},
-              {"coverage", c.skeleton.coverage},
-              {"zones", c.skeleton.zones},
-              {"young", subject_.material.young},
-              {"poisson", subject_.material.poisson},
-              {"density", subject_.material.density},
-              {"supports", mesh::regions_to_yaml(subject_.supports)}},
-             {},
-             {"mesh"},
-             {"skeleton/model.json", "skeleton/skeleton.vtp", "skeleton/medial_axis.vtp"}},
-            [&] {
-                skeleton::BuildReport report;
-                skeleton::Model model = skeleton::build_skeleton(surface_, body_, subject_.material, subject_.supports,
-                                                                 c.skeleton, &report);
-                model.name = c.name;
-                for (const std::string& note : report.notes) Console::notice(note);
-                skeleton::write_model(file, model);
-                skeleton::write_model_vtp(folder_.path() / "skeleton/skeleton.vtp", model);
-                mesh::write_vtp_lines(folder_.path() / "skeleton/medial_axis.vtp", report.medial_centers, {},
-                                      {.points = {{"radius [mm]", report.medial_radii}}});
-                const auto held = std::count_if(model.spheres.begin(), model.spheres.end(), [](auto& s) { return s.held; });
-                return json{{"spheres", model.spheres.size()},
-                            {"held_spheres", held},
-                            {"links", model.links.size()},
-                            {"coverage_mm", report.coverage},
-                            {"notes", report.notes}};
-            });
+        const bool ran =
+            folder_.stage({"skeleton",
+                           {{"spheres", c.skeleton.spheres},
+                            {"coverage", c.skeleton.coverage},
+                            {"zones", c.skeleton.zones},
+                            {"young", subject_.material.young},
+                            {"poisson", subject_.material.poisson},
+                            {"density", subject_.material.density},
+                            {"supports", mesh::regions_to_yaml(subject_.supports)}},
+                           {},
+                           {"mesh"},
+                           {"skeleton/model.json", "skeleton/skeleton.vtp", "skeleton/medial_axis.vtp"}},
+                          [&] {
+                              skeleton::BuildReport report;
+                              skeleton::Model model = skeleton::build_skeleton(surface_, body_, subject_.material,
+                                                                               subject_.supports, c.skeleton, &report);
+                              model.name = c.name;
+                              for (const std::string& note : report.notes) Console::notice(note);
+                              skeleton::write_model(file, model);
+                              skeleton::write_model_vtp(folder_.path() / "skeleton/skeleton.vtp", model);
+                              mesh::write_vtp_lines(folder_.path() / "skeleton/medial_axis.vtp", report.medial_centers,
+                                                    {}, {.points = {{"radius [mm]", report.medial_radii}}});
+                              const auto held = std::count_if(model.spheres.begin(), model.spheres.end(),
+                                                              [](auto& s) { return s.held; });
+                              return json{{"spheres", model.spheres.size()},
+                                          {"held_spheres", held},
+                                          {"links", model.links.size()},
+                                          {"coverage_mm", report.coverage},
+                                          {"notes", report.notes}};
+                          });
         model_ = skeleton::read_model(file);
         tell("skeleton", ran, fmt::format("{} spheres, {} links", model_.spheres.size(), model_.links.size()));
     }
@@ -127,7 +128,8 @@ private:
             return json{{"spheres", model.spheres.size()}, {"links", model.links.size()}};
         });
         model_ = skeleton::read_model(folder_.path() / "skeleton/model.json");
-        Console::notice(fmt::format("skeleton   {} spheres, {} links, as given", model_.spheres.size(), model_.links.size()));
+        Console::notice(
+            fmt::format("skeleton   {} spheres, {} links, as given", model_.spheres.size(), model_.links.size()));
     }
 
     void make_measurements() {
@@ -169,14 +171,17 @@ private:
         folder_.note("held_out_probes", held_out);
         fit_ = states_of(set_, [&](const identify::LoadState& s) { return !is_held_out(s.probe, p); });
         held_out_ = states_of(set_, [&](const identify::LoadState& s) { return is_held_out(s.probe, p); });
-        tell("reference", ran, fmt::format("{} states in small strain, {} of them held out", set_.states.size(), held_out_.states.size()));
+        tell(
+            "reference", ran,
+            fmt::format("{} states in small strain, {} of them held out", set_.states.size(), held_out_.states.size()));
     }
 
     void write_reference_series(const identify::MeasurementSet& set) const {
         std::vector<mesh::SeriesStep> steps;
         for (std::size_t s = 0; s < set.states.size(); ++s) {
-            steps.push_back({static_cast<double>(s), folder_.path() / "measurements/field" /
-                                                         fmt::format("{}_{}.vtu", set.states[s].probe, set.states[s].time)});
+            steps.push_back(
+                {static_cast<double>(s), folder_.path() / "measurements/field" /
+                                             fmt::format("{}_{}.vtu", set.states[s].probe, set.states[s].time)});
         }
         mesh::write_pvd(folder_.path() / "reference/reference.pvd", steps);
     }
@@ -235,15 +240,12 @@ private:
         Outcome outcome;
         outcome.text = summary(result) + fmt::format("\nReport: {}\nParaView: paraview --script={}\n", page.string(),
                                                      (folder_.path() / "view.py").string());
-        outcome.json = {{"run", folder_.path().string()},
-                        {"report", page.string()},
-                        {"spheres", model_.spheres.size()},
-                        {"links", model_.links.size()},
-                        {"compare", result},
-                        {"stages", folder_.record()["stages"]}};
-        const std::vector<std::string> broken =
-            broken_expectations(subject_.settings.expect, result, read_posterior(folder_.path() / "identify/posterior.csv"),
-                                static_cast<int>(model_.spheres.size()));
+        outcome.json = {
+            {"run", folder_.path().string()}, {"report", page.string()}, {"spheres", model_.spheres.size()},
+            {"links", model_.links.size()},   {"compare", result},       {"stages", folder_.record()["stages"]}};
+        const std::vector<std::string> broken = broken_expectations(
+            subject_.settings.expect, result, read_posterior(folder_.path() / "identify/posterior.csv"),
+            static_cast<int>(model_.spheres.size()));
         for (const std::string& line : broken) Console::error("expectation not met: " + line);
         outcome.json["expectations_not_met"] = broken;
         outcome.code = broken.empty() ? done : not_met;
@@ -252,14 +254,16 @@ private:
 
     std::string summary(const json& result) const {
         const auto percent = [](const json& error) { return 100 * error["relative"].get<double>(); };
-        std::string text = fmt::format("{}: {} spheres, {} links.\n", subject_.settings.name, model_.spheres.size(), model_.links.size());
+        std::string text = fmt::format("{}: {} spheres, {} links.\n", subject_.settings.name, model_.spheres.size(),
+                                       model_.links.size());
         const json& error = result["error"];
-        text += fmt::format("Error against the {}: {:.3g} mm rms, {:.3g} mm at most", subject_.set ? "measurements" : "FEM reference",
-                            error["rms_mm"].get<double>(), error["max_mm"].get<double>());
+        text += fmt::format("Error against the {}: {:.3g} mm rms, {:.3g} mm at most",
+                            subject_.set ? "measurements" : "FEM reference", error["rms_mm"].get<double>(),
+                            error["max_mm"].get<double>());
         if (error["relative"].is_number()) text += fmt::format(", {:.1f} % of the displacement", percent(error));
         if (result.contains("held_out")) {
-            text += fmt::format(" ({:.1f} % on the probes that were fitted, {:.1f} % on those held out)", percent(result["fitted"]),
-                                percent(result["held_out"]));
+            text += fmt::format(" ({:.1f} % on the probes that were fitted, {:.1f} % on those held out)",
+                                percent(result["fitted"]), percent(result["held_out"]));
         }
         text += ".";
         if (error["noise_mm"].is_number()) {

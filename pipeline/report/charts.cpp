@@ -46,14 +46,16 @@ std::string bar_chart(const std::vector<Bar>& bars, const std::string& title, co
     for (double tick = 0; tick <= highest + step; tick += step) {
         const double y = bottom - scale * tick;
         if (y < top - 1) break;
-        svg += line(left, y, width - right, y, R"(stroke="#d8dee5")") + text(left - 6, y + 4, fmt::format("{:g}", tick), "end");
+        svg += line(left, y, width - right, y, R"(stroke="#d8dee5")") +
+               text(left - 6, y + 4, fmt::format("{:g}", tick), "end");
     }
     const double pitch = (width - left - right) / static_cast<double>(bars.size());
     for (std::size_t i = 0; i < bars.size(); ++i) {
-        svg += fmt::format(R"(<rect class="bar{}" x="{:.1f}" y="{:.1f}" width="{:.1f}" height="{:.1f}"><title>{}: {:.3g} {}</title></rect>)",
-                           bars[i].highlighted ? " held-out" : "", left + pitch * (static_cast<double>(i) + 0.1),
-                           bottom - scale * bars[i].value, 0.8 * pitch, scale * bars[i].value, escape(bars[i].label), bars[i].value,
-                           escape(unit));
+        svg += fmt::format(
+            R"(<rect class="bar{}" x="{:.1f}" y="{:.1f}" width="{:.1f}" height="{:.1f}"><title>{}: {:.3g} {}</title></rect>)",
+            bars[i].highlighted ? " held-out" : "", left + pitch * (static_cast<double>(i) + 0.1),
+            bottom - scale * bars[i].value, 0.8 * pitch, scale * bars[i].value, escape(bars[i].label), bars[i].value,
+            escape(unit));
     }
     return svg + "</svg>";
 }
@@ -76,7 +78,8 @@ std::string interval_chart(const std::vector<Interval>& intervals, const std::st
     };
     std::string svg = open(bottom + 20, title) + text(0, 16, title + " [" + unit + "]");
     for (double tick = low; tick <= high * 1.001; tick *= 10) {
-        svg += line(x(tick), top, x(tick), bottom, R"(stroke="#d8dee5")") + text(x(tick), bottom + 14, fmt::format("{:g}", tick), "middle");
+        svg += line(x(tick), top, x(tick), bottom, R"(stroke="#d8dee5")") +
+               text(x(tick), bottom + 14, fmt::format("{:g}", tick), "middle");
     }
     for (std::size_t i = 0; i < intervals.size(); ++i) {
         const Interval& v = intervals[i];
@@ -84,8 +87,8 @@ std::string interval_chart(const std::vector<Interval>& intervals, const std::st
         svg += text(0, y + 4, v.label);
         svg += line(x(v.prior_low), y, x(v.prior_high), y, R"(stroke="#d8dee5" stroke-width="8")");
         svg += line(x(v.low), y, x(v.high), y, R"(stroke="#2a6f97" stroke-width="3")");
-        svg += fmt::format(R"(<circle cx="{:.1f}" cy="{:.1f}" r="4" fill="#2a6f97"><title>{:.4g} {}</title></circle>)", x(v.middle), y,
-                           v.middle, escape(unit));
+        svg += fmt::format(R"(<circle cx="{:.1f}" cy="{:.1f}" r="4" fill="#2a6f97"><title>{:.4g} {}</title></circle>)",
+                           x(v.middle), y, v.middle, escape(unit));
     }
     return svg + "</svg>";
 }

@@ -6,7 +6,7 @@
 namespace palpate::pipeline {
 
 struct Bar {
-    std::string label;     // told when pointed at
+    std::string label;  // told when pointed at
     double value;
     bool highlighted;
 };
@@ -17,8 +17,8 @@ std::string bar_chart(const std::vector<Bar>& bars, const std::string& title, co
 /// A value known up to an interval, before and after measuring.
 struct Interval {
     std::string label;
-    double low, middle, high;             // posterior: 2.5 %, mean, 97.5 %
-    double prior_low, prior_high;         // prior: 95 %
+    double low, middle, high;      // posterior: 2.5 %, mean, 97.5 %
+    double prior_low, prior_high;  // prior: 95 %
 };
 
 /// Posterior intervals over prior ones, on a logarithmic axis, as SVG; all values > 0.

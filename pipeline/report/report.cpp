@@ -52,42 +52,53 @@ std::string tile(const std::string& value, const std::string& what) {
 
 std::string lead(const RunFiles& files) {
     const json& error = files.compare["error"];
-    std::string text = fmt::format("The model is off by {:.3g} mm rms, {} of the displacement, and {:.3g} mm at most. ",
-                                   error["rms_mm"].get<double>(), percent(error["relative"]), error["max_mm"].get<double>());
+    std::string text =
+        fmt::format("The model is off by {:.3g} mm rms, {} of the displacement, and {:.3g} mm at most. ",
+                    error["rms_mm"].get<double>(), percent(error["relative"]), error["max_mm"].get<double>());
     if (files.compare.contains("held_out")) {
-        text += fmt::format("On the probes that were fitted it is off by {}, on those kept from the fit by {}. ",
-                            percent(files.compare["fitted"]["relative"]), percent(files.compare["held_out"]["relative"]));
+        text +=
+            fmt::format("On the probes that were fitted it is off by {}, on those kept from the fit by {}. ",
+                        percent(files.compare["fitted"]["relative"]), percent(files.compare["held_out"]["relative"]));
     }
     if (error["noise_mm"].is_number()) {
-        text += fmt::format("The noise is {:.3g} mm: {}. ", error["noise_mm"].get<double>(),
-                            files.compare["adequate"].get<bool>() ? "what is left is noise" : "the model lacks something");
+        text +=
+            fmt::format("The noise is {:.3g} mm: {}. ", error["noise_mm"].get<double>(),
+                        files.compare["adequate"].get<bool>() ? "what is left is noise" : "the model lacks something");
     }
     if (files.compare.contains("load_exponent")) {
-        text += fmt::format("The error grows with the load to the power {:.1f}: {}.", files.compare["load_exponent"]["value"].get<double>(),
+        text += fmt::format("The error grows with the load to the power {:.1f}: {}.",
+                            files.compare["load_exponent"]["value"].get<double>(),
                             files.compare["load_exponent"]["words"].get<std::string>());
     }
     return text;
 }
 
 std::string tiles(const RunFiles& files) {
-    const auto held = std::count_if(files.model.spheres.begin(), files.model.spheres.end(), [](auto& s) { return s.held; });
-    const auto informed = std::count_if(files.posterior.begin(), files.posterior.end(), [](auto& r) { return r.informed; });
-    return "<div class=\"tiles\">" + tile(percent(files.compare["error"]["relative"]), "rms error over rms displacement") +
+    const auto held =
+        std::count_if(files.model.spheres.begin(), files.model.spheres.end(), [](auto& s) { return s.held; });
+    const auto informed =
+        std::count_if(files.posterior.begin(), files.posterior.end(), [](auto& r) { return r.informed; });
+    return "<div class=\"tiles\">" +
+           tile(percent(files.compare["error"]["relative"]), "rms error over rms displacement") +
            tile(fmt::format("{:.3g} mm", files.compare["error"]["max_mm"].get<double>()), "largest error") +
            tile(fmt::format("{} + {}", files.model.spheres.size() - held, held), "spheres, free + held") +
            tile(std::to_string(files.model.links.size()), "links") +
            tile(fmt::format("{} of {}", informed, files.posterior.size()), "stiffnesses informed by the data") +
-           tile(skeleton::law_names[static_cast<std::size_t>(files.model.law)], "law that the model plays by") + "</div>";
+           tile(skeleton::law_names[static_cast<std::size_t>(files.model.law)], "law that the model plays by") +
+           "</div>";
 }
 
 std::string pictures(const RunFiles& files) {
     std::vector<Dot> dots;
     for (const json& m : files.compare["markers"]) {
-        dots.push_back({{m["at"][0].get<double>(), m["at"][1].get<double>(), m["at"][2].get<double>()}, m["rms_mm"].get<double>()});
+        dots.push_back({{m["at"][0].get<double>(), m["at"][1].get<double>(), m["at"][2].get<double>()},
+                        m["rms_mm"].get<double>()});
     }
     return "<div class=\"pair\"><figure>" + skeleton_picture(files.model) +
-           "<figcaption class=\"soft\">Spheres and links; spheres that are held in orange.</figcaption></figure><figure>" +
-           dot_picture(files.model, dots, "mm") + "<figcaption class=\"soft\">Where the model is wrong.</figcaption></figure></div>";
+           "<figcaption class=\"soft\">Spheres and links; spheres that are held in "
+           "orange.</figcaption></figure><figure>" +
+           dot_picture(files.model, dots, "mm") +
+           "<figcaption class=\"soft\">Where the model is wrong.</figcaption></figure></div>";
 }
 
 std::string probe_chart(const RunFiles& files) {
@@ -95,7 +106,8 @@ std::string probe_chart(const RunFiles& files) {
     std::vector<Bar> rms, relative;
     for (const json& p : files.compare["probes"]) {
         const bool kept = std::find(held_out.begin(), held_out.end(), p["probe"]) != held_out.end();
-        const std::string label = fmt::format("probe {}, time {:g}{}", p["probe"].get<int>(), p["time"].get<double>(), kept ? ", held out" : "");
+        const std::string label = fmt::format("probe {}, time {:g}{}", p["probe"].get<int>(), p["time"].get<double>(),
+                                              kept ? ", held out" : "");
         rms.push_back({label, p["rms_mm"].get<double>(), kept});
         if (p["relative"].is_number()) relative.push_back({label, 100 * p["relative"].get<double>(), kept});
     }
@@ -133,17 +145,20 @@ std::string stage_table(const RunFiles& files) {
         for (const auto& [key, value] : s["figures"].items()) {
             if (!value.is_number() && !value.is_string()) continue;
             figures += figures.empty() ? "" : ", ";
-            figures += key + " " + (value.is_number() ? fmt::format("{:.4g}", value.get<double>()) : value.get<std::string>());
+            figures +=
+                key + " " + (value.is_number() ? fmt::format("{:.4g}", value.get<double>()) : value.get<std::string>());
         }
-        rows += fmt::format("<tr><td>{}</td><td>{:.1f}</td><td>{:.0f}</td><td style=\"text-align:left\">{}</td></tr>", stage,
-                            s["seconds"].get<double>(), s["peak_memory_mb"].get<double>(), escape(figures));
+        rows += fmt::format("<tr><td>{}</td><td>{:.1f}</td><td>{:.0f}</td><td style=\"text-align:left\">{}</td></tr>",
+                            stage, s["seconds"].get<double>(), s["peak_memory_mb"].get<double>(), escape(figures));
     }
-    return "<table><tr><th>stage</th><th>seconds</th><th>peak MB</th><th style=\"text-align:left\">figures</th></tr>" + rows + "</table>";
+    return "<table><tr><th>stage</th><th>seconds</th><th>peak MB</th><th style=\"text-align:left\">figures</th></tr>" +
+           rows + "</table>";
 }
 
 std::string assumption_list(const RunFiles& files) {
     std::string items;
-    for (const json& a : files.record.value("assumptions", json::array())) items += "<li>" + escape(a.get<std::string>()) + "</li>";
+    for (const json& a : files.record.value("assumptions", json::array()))
+        items += "<li>" + escape(a.get<std::string>()) + "</li>";
     for (const json& n : files.record["stages"]["identify"]["figures"].value("notes", json::array())) {
         items += "<li>" + escape(n.get<std::string>()) + "</li>";
     }
@@ -155,14 +170,16 @@ std::string assumption_list(const RunFiles& files) {
 void write_report(const fs::path& run, const fs::path& page) {
     const RunFiles files = read_run(run);
     const std::string name = escape(files.model.name.empty() ? run.filename().string() : files.model.name);
-    mesh::write_text(page, "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">"
-                           "<meta name=\"viewport\" content=\"width=device-width,initial-scale=1\">"
-                           "<meta name=\"generator\" content=\"palpate\"><title>" + name + "</title><style>" + page_style +
-                           "</style></head><body><h1>" + name + "</h1><p class=\"lead\">" + escape(lead(files)) + "</p>" + tiles(files) +
-                           "<h2>Model</h2>" + pictures(files) + "<h2>Error</h2>" + probe_chart(files) + "<h2>Stiffness</h2>" +
-                           posterior_charts(files) + assumption_list(files) + "<h2>Stages</h2>" + stage_table(files) +
-                           "<h2>Settings</h2><pre>" + escape(files.settings) + "</pre><p class=\"soft\">palpate " +
-                           escape(files.record.value("version", "")) + "</p></body></html>\n");
+    mesh::write_text(page,
+                     "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">"
+                     "<meta name=\"viewport\" content=\"width=device-width,initial-scale=1\">"
+                     "<meta name=\"generator\" content=\"palpate\"><title>" +
+                         name + "</title><style>" + page_style + "</style></head><body><h1>" + name +
+                         "</h1><p class=\"lead\">" + escape(lead(files)) + "</p>" + tiles(files) + "<h2>Model</h2>" +
+                         pictures(files) + "<h2>Error</h2>" + probe_chart(files) + "<h2>Stiffness</h2>" +
+                         posterior_charts(files) + assumption_list(files) + "<h2>Stages</h2>" + stage_table(files) +
+                         "<h2>Settings</h2><pre>" + escape(files.settings) + "</pre><p class=\"soft\">palpate " +
+                         escape(files.record.value("version", "")) + "</p></body></html>\n");
 }
 
 }  // namespace palpate::pipeline

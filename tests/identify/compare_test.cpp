@@ -117,9 +117,9 @@ TEST(Compare, ASetWithoutReadingsIsToldToTheUser) {
 std::vector<ErrorUnderLoad> errors(double p, bool unloaded) {
     std::vector<ErrorUnderLoad> states;
     for (const double load : {1.0, 2.0, 3.0, 1.1, 2.2, 2.9}) {
-        states.push_back({load, std::hypot(0.5 * std::pow(load, p), 0.01), 0.01});
+        states.push_back({load, std::hypot(0.5 * std::pow(load, p), 0.01), 0.01, 100});
     }
-    if (unloaded) states.push_back({0, std::hypot(p == 0 ? 0.5 : 0.0, 0.01), 0.01});
+    if (unloaded) states.push_back({0, std::hypot(p == 0 ? 0.5 : 0.0, 0.01), 0.01, 100});
     return states;
 }
 
@@ -137,9 +137,9 @@ TEST(LoadExponent, FindsThePower) {
 
 TEST(LoadExponent, AnErrorThatIsThereWithoutLoadSaysZero) {
     std::vector<ErrorUnderLoad> states;
-    for (int i = 0; i < 6; ++i) states.push_back({5, 0.5 + 0.01 * i, 0.01});
+    for (int i = 0; i < 6; ++i) states.push_back({5, 0.5 + 0.01 * i, 0.01, 100});
     EXPECT_FALSE(load_exponent(states).has_value());  // one load level
-    states.push_back({0, 0.52, 0.01});
+    states.push_back({1e-14, 0.52, 0.01, 100});       // rounding is no load
     const auto exponent = load_exponent(states);
     ASSERT_TRUE(exponent.has_value());
     EXPECT_NEAR(exponent->value, 0, 0.05);  // scatter of a few per cent over a wide range of loads

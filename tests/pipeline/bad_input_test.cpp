@@ -40,7 +40,8 @@ TEST(BadInput, MissingFile) {
 
 TEST(BadInput, EmptyFile) {
     const Scratch scratch;
-    EXPECT_THAT(message_of_run(scratch, scratch.write("empty.stl", "")), AllOf(HasSubstr("empty.stl"), HasSubstr("empty")));
+    EXPECT_THAT(message_of_run(scratch, scratch.write("empty.stl", "")),
+                AllOf(HasSubstr("empty.stl"), HasSubstr("empty")));
 }
 
 TEST(BadInput, TruncatedStl) {
@@ -61,7 +62,8 @@ TEST(BadInput, CoordinateThatIsNoNumber) {
     const Scratch scratch;
     std::string text = box_obj;
     text.replace(text.find("v 100 20 0"), 10, "v 100 nan 0");
-    EXPECT_THAT(message_of_run(scratch, scratch.write("box.obj", text)), AllOf(HasSubstr("box.obj"), HasSubstr("line 3")));
+    EXPECT_THAT(message_of_run(scratch, scratch.write("box.obj", text)),
+                AllOf(HasSubstr("box.obj"), HasSubstr("line 3")));
 }
 
 TEST(BadInput, IndexOutOfRange) {
@@ -74,14 +76,16 @@ TEST(BadInput, IndexOutOfRange) {
 
 TEST(BadInput, UnknownKindOfFile) {
     const Scratch scratch;
-    EXPECT_THAT(message_of_run(scratch, scratch.write("body.docx", "x")), AllOf(HasSubstr("body.docx"), HasSubstr(".stl")));
+    EXPECT_THAT(message_of_run(scratch, scratch.write("body.docx", "x")),
+                AllOf(HasSubstr("body.docx"), HasSubstr(".stl")));
 }
 
 TEST(BadInput, UnknownKeyIsNamedWithItsNeighbour) {
     const Scratch scratch;
     scratch.write("box.obj", box_obj);
     const auto file = scratch.write("case.yaml", "format: palpate-case/1\nmesh: box.obj\nskeleton: {shperes: 12}\n");
-    EXPECT_THAT(message_of_run(scratch, file), AllOf(HasSubstr("case.yaml"), HasSubstr("line 3"), HasSubstr("shperes"), HasSubstr("spheres")));
+    EXPECT_THAT(message_of_run(scratch, file),
+                AllOf(HasSubstr("case.yaml"), HasSubstr("line 3"), HasSubstr("shperes"), HasSubstr("spheres")));
 }
 
 TEST(BadInput, YamlAliasBombIsRefused) {
@@ -92,7 +96,8 @@ TEST(BadInput, YamlAliasBombIsRefused) {
         for (int i = 0; i < 9; ++i) bomb += std::string(i ? "," : "") + "*" + static_cast<char>(c - 1);
         bomb += "]\n";
     }
-    EXPECT_THAT(message_of_run(scratch, scratch.write("case.yaml", bomb)), AllOf(HasSubstr("case.yaml"), HasSubstr("alias")));
+    EXPECT_THAT(message_of_run(scratch, scratch.write("case.yaml", bomb)),
+                AllOf(HasSubstr("case.yaml"), HasSubstr("alias")));
 }
 
 TEST(BadInput, NoSupports) {
@@ -112,7 +117,8 @@ TEST(BadInput, ProbeOffTheSurface) {
     const Scratch scratch;
     scratch.write("set/rest.obj", box_obj);
     scratch.write("set/set.yaml",
-                  "format: palpate-measurements/1\nrest_surface: rest.obj\nsupports:\n  - box: {min: [-1, -1, -1], max: [1, 21, 21]}\n");
+                  "format: palpate-measurements/1\nrest_surface: rest.obj\nsupports:\n  - box: {min: [-1, -1, -1], "
+                  "max: [1, 21, 21]}\n");
     scratch.write("set/probes.csv", "probe,time,x,y,z,fx,fy,fz,radius\n7,0,100,10,400,0,0,-1,3\n");
     scratch.write("set/markers.csv", "marker,x,y,z\n0,100,10,20\n");
     scratch.write("set/positions.csv", "probe,time,marker,x,y,z\n7,0,0,100,10,18\n");

@@ -34,10 +34,11 @@ TEST(Run, LeavesTheFilesThatItPromises) {
     const Scratch scratch;
     const commands::Outcome outcome = commands::run(small_run(scratch), {});
     EXPECT_EQ(outcome.code, commands::done);
-    for (const char* file : {"case.yaml", "run.json", "mesh/body.vtu", "skeleton/model.json", "skeleton/skeleton.vtp",
-                             "skeleton/medial_axis.vtp", "reference/reference.pvd", "measurements/set.yaml", "identify/model.json",
-                             "identify/posterior.csv", "identify/history.pvd", "compare/compare.json", "compare/markers.pvd",
-                             "compare/skin.pvd", "report.html", "view.py"}) {
+    for (const char* file :
+         {"case.yaml", "run.json", "mesh/body.vtu", "skeleton/model.json", "skeleton/skeleton.vtp",
+          "skeleton/medial_axis.vtp", "reference/reference.pvd", "measurements/set.yaml", "identify/model.json",
+          "identify/posterior.csv", "identify/history.pvd", "compare/compare.json", "compare/markers.pvd",
+          "compare/skin.pvd", "report.html", "view.py"}) {
         EXPECT_TRUE(std::filesystem::exists(scratch / "run" / file)) << file;
     }
     // Eight spheres in a slender beam follow finite elements to far better than half: what is left is their coarseness.
@@ -83,10 +84,11 @@ TEST(Run, ThreadCountChangesNoNumber) {
 TEST(Run, TellsExpectationsThatAreNotMet) {
     const Scratch scratch;
     small_run(scratch);
-    const auto file = scratch.write("case.yaml",
-                                    "format: palpate-case/1\nmesh: beam.stl\nvolume: {edge_length: 12}\nskeleton: {spheres: 8}\n"
-                                    "probing: {probes: 5, held_out: 1}\nidentify: {parameters: uniform, particles: 40}\n"
-                                    "expect: {relative_at_most: 0.000001}\n");
+    const auto file =
+        scratch.write("case.yaml",
+                      "format: palpate-case/1\nmesh: beam.stl\nvolume: {edge_length: 12}\nskeleton: {spheres: 8}\n"
+                      "probing: {probes: 5, held_out: 1}\nidentify: {parameters: uniform, particles: 40}\n"
+                      "expect: {relative_at_most: 0.000001}\n");
     const commands::Outcome outcome = commands::run({.input = file, .output = scratch / "run", .say = {}}, {});
     EXPECT_EQ(outcome.code, commands::not_met);
     EXPECT_EQ(outcome.json["expectations_not_met"].size(), 1U);

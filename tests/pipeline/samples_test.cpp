@@ -31,9 +31,9 @@ class Sample : public ::testing::TestWithParam<std::string> {};
 
 TEST_P(Sample, KeepsWhatItPromises) {
     const Scratch scratch;
-    const commands::Outcome outcome =
-        commands::run({.input = fs::path(PALPATE_SAMPLES) / GetParam() / "case.yaml", .output = scratch / "run", .say = {}},
-                      {.json = false, .force = false, .threads = 2, .seed = {}});
+    const commands::Outcome outcome = commands::run(
+        {.input = fs::path(PALPATE_SAMPLES) / GetParam() / "case.yaml", .output = scratch / "run", .say = {}},
+        {.json = false, .force = false, .threads = 2, .seed = {}});
     EXPECT_EQ(outcome.code, commands::done) << outcome.json["expectations_not_met"];
 }
 
@@ -43,7 +43,8 @@ INSTANTIATE_TEST_SUITE_P(All, Sample, ::testing::ValuesIn(sample_names()), [](co
     return name;
 });
 
-/// The committed sets of the paper's experiments are those that the code makes. Equilibria are found to 1e-9 of the load.
+/// The committed sets of the paper's experiments are those that the code makes. Equilibria are found to 1e-9 of the
+/// load.
 TEST(Experiments, AreWhatTheirCodeMakes) {
     for (const samples::Experiment& experiment : {samples::make_cube_experiment(), samples::make_sheet_experiment()}) {
         const fs::path folder = fs::path(PALPATE_SAMPLES) / experiment.start.name;

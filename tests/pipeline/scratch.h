@@ -13,8 +13,8 @@ class Scratch {
 public:
     Scratch() {
         const auto* test = ::testing::UnitTest::GetInstance()->current_test_info();
-        folder_ = std::filesystem::temp_directory_path() /
-                  (std::string("palpate-") + test->test_suite_name() + "-" + test->name() + "-" + std::to_string(getpid()));
+        folder_ = std::filesystem::temp_directory_path() / (std::string("palpate-") + test->test_suite_name() + "-" +
+                                                            test->name() + "-" + std::to_string(getpid()));
         std::filesystem::remove_all(folder_);
         std::filesystem::create_directories(folder_);
     }
