@@ -201,7 +201,9 @@ private:
              subject_.set ? std::vector<std::string>{"skeleton"} : std::vector<std::string>{"skeleton", "measurements"},
              {"identify/model.json", "identify/posterior.csv", "identify/history.pvd"}},
             [&] {
-                const identify::IdentifyResult found = identify::identify(model_, fit_, options, Console::progress());
+                identify::IdentifyResult found = identify::identify(model_, fit_, options, Console::progress());
+                // In small strain both laws agree, and a real-time model is to be bent far.
+                if (!subject_.set) found.model.law = skeleton::Law::large_rotation;
                 for (const std::string& note : found.notes) Console::notice(note);
                 write_identification(folder_.path() / "identify", found);
                 return summary_json(found);

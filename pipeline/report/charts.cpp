@@ -10,7 +10,7 @@
 namespace palpate::pipeline {
 namespace {
 
-constexpr double width = 460, left = 56, right = 12;  // [px]
+constexpr double width = 460, left = 56, right = 28;  // [px]
 
 /// A step of 1, 2 or 5 times a power of ten that cuts the range in about four.
 double nice_step(double range) {
