@@ -11,9 +11,9 @@
 #include <numeric>
 #include <span>
 
-#include "fem/assembly.h"
-#include "fem/cholesky.h"
-#include "fem/restraint.h"
+#include "fem/elements/assembly.h"
+#include "fem/solve/cholesky.h"
+#include "fem/solve/restraint.h"
 #include "mesh/errors.h"
 
 namespace palpate::fem {

@@ -6,9 +6,9 @@
 #include <array>
 #include <map>
 
-#include "fem/element_locator.h"
-#include "fem/nearest_face.h"
-#include "fem/shape.h"
+#include "fem/elements/element_locator.h"
+#include "fem/elements/nearest_face.h"
+#include "fem/elements/shape.h"
 
 namespace palpate::fem {
 

@@ -7,8 +7,8 @@
 #include <map>
 #include <optional>
 
-#include "fem/nearest_face.h"
-#include "fem/shape.h"
+#include "fem/elements/nearest_face.h"
+#include "fem/elements/shape.h"
 #include "mesh/errors.h"
 
 namespace palpate::fem {

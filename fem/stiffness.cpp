@@ -3,8 +3,8 @@
 #include <Eigen/LU>
 #include <numeric>
 
-#include "fem/assembly.h"
-#include "fem/shape.h"
+#include "fem/elements/assembly.h"
+#include "fem/elements/shape.h"
 
 namespace palpate::fem {
 

@@ -4,10 +4,10 @@
 #include <boost/math/special_functions/gamma.hpp>
 #include <cmath>
 
+#include "identify/fit/solver_pool.h"
 #include "identify/load_exponent.h"
 #include "identify/parallel.h"
-#include "identify/readings.h"
-#include "identify/solver_pool.h"
+#include "identify/set/readings.h"
 #include "mesh/errors.h"
 #include "skeleton/statics.h"
 

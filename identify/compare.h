@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "identify/measurement_set.h"
+#include "identify/set/measurement_set.h"
 #include "skeleton/model.h"
 
 namespace palpate::identify {

@@ -7,12 +7,12 @@
 #include <cmath>
 #include <limits>
 
-#include "identify/burion2008.h"
-#include "identify/calibrate.h"
-#include "identify/field.h"
-#include "identify/node_configuration.h"
-#include "identify/posterior.h"
-#include "identify/tempered_filter.h"
+#include "identify/fit/calibrate.h"
+#include "identify/fit/node_configuration.h"
+#include "identify/particles/burion2008.h"
+#include "identify/particles/posterior.h"
+#include "identify/particles/tempered_filter.h"
+#include "identify/set/field.h"
 #include "mesh/errors.h"
 #include "skeleton/statics.h"
 

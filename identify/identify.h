@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "identify/measurement_set.h"
+#include "identify/set/measurement_set.h"
 #include "mesh/progress.h"
 #include "skeleton/model.h"
 

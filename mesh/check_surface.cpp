@@ -7,9 +7,9 @@
 #include <map>
 #include <set>
 
-#include "mesh/self_intersections.h"
-#include "mesh/shells.h"
-#include "mesh/weld.h"
+#include "mesh/topology/self_intersections.h"
+#include "mesh/topology/shells.h"
+#include "mesh/topology/weld.h"
 
 namespace palpate::mesh {
 namespace {

@@ -7,11 +7,11 @@
 #include <cmath>
 #include <utility>
 
-#include "mesh/cgal_mesh.h"
 #include "mesh/check_surface.h"
-#include "mesh/creases.h"
 #include "mesh/errors.h"
 #include "mesh/repair/steps.h"
+#include "mesh/topology/cgal_mesh.h"
+#include "mesh/topology/creases.h"
 
 namespace palpate::mesh {
 namespace {

@@ -8,9 +8,9 @@
 #include "mesh/check_surface.h"
 #include "mesh/errors.h"
 #include "mesh/repair/steps.h"
-#include "mesh/shells.h"
 #include "mesh/surface_tree.h"
-#include "mesh/weld.h"
+#include "mesh/topology/shells.h"
+#include "mesh/topology/weld.h"
 
 namespace palpate::mesh {
 namespace {

@@ -10,9 +10,9 @@
 #include <map>
 #include <new>
 
-#include "mesh/child_process.h"
 #include "mesh/errors.h"
-#include "mesh/shells.h"
+#include "mesh/io/child_process.h"
+#include "mesh/topology/shells.h"
 
 namespace palpate::mesh {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "identify/twin.h"
+#include "identify/set/twin.h"
 
 namespace palpate::samples {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "identify/measurement_set.h"
+#include "identify/set/measurement_set.h"
 #include "skeleton/model.h"
 
 namespace palpate::samples {

@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <iostream>
 
-#include "identify/measurement_set.h"
+#include "identify/set/measurement_set.h"
 #include "mesh/read_surface.h"
 #include "samples/lattice.h"
 #include "samples/organ.h"

@@ -3,8 +3,8 @@
 
 #include <iterator>
 
-#include "mesh/cgal_mesh.h"
 #include "mesh/repair/steps.h"
+#include "mesh/topology/cgal_mesh.h"
 
 namespace palpate::mesh {
 

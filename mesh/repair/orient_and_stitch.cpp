@@ -2,8 +2,8 @@
 #include <CGAL/Polygon_mesh_processing/repair_polygon_soup.h>
 #include <CGAL/Polygon_mesh_processing/stitch_borders.h>
 
-#include "mesh/cgal_mesh.h"
 #include "mesh/repair/steps.h"
+#include "mesh/topology/cgal_mesh.h"
 
 namespace palpate::mesh {
 

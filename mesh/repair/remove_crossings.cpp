@@ -1,8 +1,8 @@
 #include <CGAL/Polygon_mesh_processing/repair_degeneracies.h>
 #include <CGAL/Polygon_mesh_processing/repair_self_intersections.h>
 
-#include "mesh/cgal_mesh.h"
 #include "mesh/repair/steps.h"
+#include "mesh/topology/cgal_mesh.h"
 
 namespace palpate::mesh {
 

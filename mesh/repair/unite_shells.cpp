@@ -1,9 +1,9 @@
 #include <CGAL/Polygon_mesh_processing/corefinement.h>
 
-#include "mesh/cgal_mesh.h"
 #include "mesh/errors.h"
 #include "mesh/repair/steps.h"
-#include "mesh/shells.h"
+#include "mesh/topology/cgal_mesh.h"
+#include "mesh/topology/shells.h"
 
 namespace palpate::mesh {
 

@@ -1,7 +1,7 @@
 #include <CGAL/alpha_wrap_3.h>
 
-#include "mesh/cgal_mesh.h"
 #include "mesh/repair/steps.h"
+#include "mesh/topology/cgal_mesh.h"
 
 namespace palpate::mesh {
 

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 
+#include "pipeline/case/subject.h"
 #include "pipeline/commands/common.h"
-#include "pipeline/results.h"
-#include "pipeline/subject.h"
+#include "pipeline/results/results.h"
 
 namespace palpate::pipeline::commands {
 namespace {

@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-#include "pipeline/case.h"
+#include "pipeline/case/case.h"
 #include "pipeline/console.h"
 
 namespace palpate::pipeline::commands {

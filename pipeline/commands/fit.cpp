@@ -1,15 +1,15 @@
 #include <fmt/format.h>
 
-#include "identify/loads.h"
+#include "identify/set/loads.h"
 #include "mesh/errors.h"
 #include "mesh/io/atomic_file.h"
 #include "mesh/io/region_yaml.h"
 #include "mesh/io/vtk_files.h"
+#include "pipeline/case/names.h"
 #include "pipeline/commands/common.h"
-#include "pipeline/identification.h"
-#include "pipeline/names.h"
-#include "pipeline/results.h"
-#include "pipeline/series.h"
+#include "pipeline/results/identification.h"
+#include "pipeline/results/results.h"
+#include "pipeline/results/series.h"
 #include "skeleton/model_io.h"
 
 // What works on a model and measurements: identify, compare, simulate.
@@ -71,7 +71,7 @@ Outcome compare(const CompareOptions& options, const Common& common) {
 
     Outcome outcome;
     outcome.json = to_json(comparison, set);
-    outcome.text = in_words(comparison) + "\n";
+    outcome.text = in_words(outcome.json) + "\n";
     if (!options.output.empty()) {
         refuse_to_overwrite(options.output, common.force);
         write_marker_series(options.output, "markers", set, comparison);

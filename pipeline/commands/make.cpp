@@ -5,11 +5,11 @@
 #include "fem/elastic_body.h"
 #include "mesh/errors.h"
 #include "mesh/io/vtk_files.h"
-#include "pipeline/body.h"
+#include "pipeline/case/subject.h"
 #include "pipeline/commands/common.h"
-#include "pipeline/probing.h"
-#include "pipeline/subject.h"
-#include "pipeline/twin_probing.h"
+#include "pipeline/reference/body.h"
+#include "pipeline/reference/probing.h"
+#include "pipeline/reference/twin_probing.h"
 #include "skeleton/model_io.h"
 
 // What makes something from a mesh: a body, a skeleton, measurements.

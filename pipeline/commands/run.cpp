@@ -5,19 +5,19 @@
 #include "mesh/io/region_yaml.h"
 #include "mesh/io/vtk_files.h"
 #include "mesh/read_surface.h"
-#include "pipeline/body.h"
+#include "pipeline/case/expectation.h"
+#include "pipeline/case/subject.h"
 #include "pipeline/commands/common.h"
-#include "pipeline/expectation.h"
-#include "pipeline/held_out.h"
-#include "pipeline/identification.h"
-#include "pipeline/posterior_file.h"
-#include "pipeline/probing.h"
+#include "pipeline/reference/body.h"
+#include "pipeline/reference/held_out.h"
+#include "pipeline/reference/probing.h"
 #include "pipeline/report/report.h"
 #include "pipeline/report/view_script.h"
-#include "pipeline/results.h"
-#include "pipeline/run_folder.h"
-#include "pipeline/series.h"
-#include "pipeline/subject.h"
+#include "pipeline/results/identification.h"
+#include "pipeline/results/posterior_file.h"
+#include "pipeline/results/results.h"
+#include "pipeline/results/series.h"
+#include "pipeline/run_folder/run_folder.h"
 #include "skeleton/model_io.h"
 
 namespace palpate::pipeline::commands {
@@ -240,8 +240,11 @@ private:
 
     Outcome conclude(json result, const fs::path& page) const {
         Outcome outcome;
-        outcome.text = summary(result) + fmt::format("\nReport: {}\nParaView: paraview --script={}\n", page.string(),
-                                                     (folder_.path() / "view.py").string());
+        outcome.text = fmt::format("{}: {} spheres, {} links.\n", subject_.settings.name, model_.spheres.size(),
+                                   model_.links.size()) +
+                       in_words(result) +
+                       fmt::format("\nReport: {}\nParaView: paraview --script={}\n", page.string(),
+                                   (folder_.path() / "view.py").string());
         outcome.json = {
             {"run", folder_.path().string()}, {"report", page.string()}, {"spheres", model_.spheres.size()},
             {"links", model_.links.size()},   {"compare", result},       {"stages", folder_.record()["stages"]}};
@@ -252,31 +255,6 @@ private:
         outcome.json["expectations_not_met"] = broken;
         outcome.code = broken.empty() ? done : not_met;
         return outcome;
-    }
-
-    std::string summary(const json& result) const {
-        const auto percent = [](const json& error) { return 100 * error["relative"].get<double>(); };
-        std::string text = fmt::format("{}: {} spheres, {} links.\n", subject_.settings.name, model_.spheres.size(),
-                                       model_.links.size());
-        const json& error = result["error"];
-        text += fmt::format("Error against the {}: {:.3g} mm rms, {:.3g} mm at most",
-                            subject_.set ? "measurements" : "FEM reference", error["rms_mm"].get<double>(),
-                            error["max_mm"].get<double>());
-        if (error["relative"].is_number()) text += fmt::format(", {:.1f} % of the displacement", percent(error));
-        if (result.contains("held_out")) {
-            text += fmt::format(" ({:.1f} % on the probes that were fitted, {:.1f} % on those held out)",
-                                percent(result["fitted"]), percent(result["held_out"]));
-        }
-        text += ".";
-        if (error["noise_mm"].is_number()) {
-            text += fmt::format(" Noise: {:.3g} mm; {}.", error["noise_mm"].get<double>(),
-                                result["adequate"].get<bool>() ? "what is left is noise" : "the model lacks something");
-        }
-        if (result.contains("load_exponent")) {
-            text += fmt::format("\nLoad exponent {:.1f}: {}.", result["load_exponent"]["value"].get<double>(),
-                                result["load_exponent"]["words"].get<std::string>());
-        }
-        return text;
     }
 
     void tell(const std::string& stage, bool ran, const std::string& what) const {

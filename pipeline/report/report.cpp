@@ -8,11 +8,12 @@
 
 #include "mesh/errors.h"
 #include "mesh/io/atomic_file.h"
-#include "pipeline/posterior_file.h"
 #include "pipeline/report/charts.h"
 #include "pipeline/report/escape.h"
 #include "pipeline/report/page.h"
 #include "pipeline/report/picture.h"
+#include "pipeline/results/posterior_file.h"
+#include "pipeline/results/results.h"
 #include "skeleton/model_io.h"
 
 namespace palpate::pipeline {
@@ -48,29 +49,6 @@ std::string percent(const json& relative) {
 
 std::string tile(const std::string& value, const std::string& what) {
     return fmt::format(R"(<div class="tile"><b>{}</b>{}</div>)", escape(value), escape(what));
-}
-
-std::string lead(const RunFiles& files) {
-    const json& error = files.compare["error"];
-    std::string text =
-        fmt::format("The model is off by {:.3g} mm rms, {} of the displacement, and {:.3g} mm at most. ",
-                    error["rms_mm"].get<double>(), percent(error["relative"]), error["max_mm"].get<double>());
-    if (files.compare.contains("held_out")) {
-        text +=
-            fmt::format("On the probes that were fitted it is off by {}, on those kept from the fit by {}. ",
-                        percent(files.compare["fitted"]["relative"]), percent(files.compare["held_out"]["relative"]));
-    }
-    if (error["noise_mm"].is_number()) {
-        text +=
-            fmt::format("The noise is {:.3g} mm: {}. ", error["noise_mm"].get<double>(),
-                        files.compare["adequate"].get<bool>() ? "what is left is noise" : "the model lacks something");
-    }
-    if (files.compare.contains("load_exponent")) {
-        text += fmt::format("The error grows with the load to the power {:.1f}: {}.",
-                            files.compare["load_exponent"]["value"].get<double>(),
-                            files.compare["load_exponent"]["words"].get<std::string>());
-    }
-    return text;
 }
 
 std::string tiles(const RunFiles& files) {
@@ -175,11 +153,12 @@ void write_report(const fs::path& run, const fs::path& page) {
                      "<meta name=\"viewport\" content=\"width=device-width,initial-scale=1\">"
                      "<meta name=\"generator\" content=\"palpate\"><title>" +
                          name + "</title><style>" + page_style + "</style></head><body><h1>" + name +
-                         "</h1><p class=\"lead\">" + escape(lead(files)) + "</p>" + tiles(files) + "<h2>Model</h2>" +
-                         pictures(files) + "<h2>Error</h2>" + probe_chart(files) + "<h2>Stiffness</h2>" +
-                         posterior_charts(files) + assumption_list(files) + "<h2>Stages</h2>" + stage_table(files) +
-                         "<h2>Settings</h2><pre>" + escape(files.settings) + "</pre><p class=\"soft\">palpate " +
-                         escape(files.record.value("version", "")) + "</p></body></html>\n");
+                         "</h1><p class=\"lead\">" + escape(in_words(files.compare)) + "</p>" + tiles(files) +
+                         "<h2>Model</h2>" + pictures(files) + "<h2>Error</h2>" + probe_chart(files) +
+                         "<h2>Stiffness</h2>" + posterior_charts(files) + assumption_list(files) + "<h2>Stages</h2>" +
+                         stage_table(files) + "<h2>Settings</h2><pre>" + escape(files.settings) +
+                         "</pre><p class=\"soft\">palpate " + escape(files.record.value("version", "")) +
+                         "</p></body></html>\n");
 }
 
 }  // namespace palpate::pipeline

@@ -7,7 +7,7 @@
 
 #include "bodies.h"
 #include "fem/elastic_body.h"
-#include "fem/shape.h"
+#include "fem/elements/shape.h"
 
 namespace palpate::fem {
 namespace {

@@ -1,4 +1,4 @@
-#include "fem/shape.h"
+#include "fem/elements/shape.h"
 
 #include <gtest/gtest.h>
 

@@ -1,9 +1,9 @@
-#include "identify/force_domain.h"
+#include "identify/fit/force_domain.h"
 
 #include <gtest/gtest.h>
 
-#include "identify/node_configuration.h"
-#include "identify/random.h"
+#include "identify/fit/node_configuration.h"
+#include "identify/particles/random.h"
 #include "lattice.h"
 
 namespace palpate::identify {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "identify/twin.h"
+#include "identify/set/twin.h"
 #include "skeleton/model.h"
 #include "skeleton/statics.h"
 

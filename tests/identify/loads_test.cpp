@@ -1,4 +1,4 @@
-#include "identify/loads.h"
+#include "identify/set/loads.h"
 
 #include <gtest/gtest.h>
 

@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "identify/measurement_set.h"
+#include "identify/set/measurement_set.h"
 #include "mesh/errors.h"
 #include "mesh/io/vtk_files.h"
 #include "mesh/read_surface.h"

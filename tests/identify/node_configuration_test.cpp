@@ -1,4 +1,4 @@
-#include "identify/node_configuration.h"
+#include "identify/fit/node_configuration.h"
 
 #include <gtest/gtest.h>
 

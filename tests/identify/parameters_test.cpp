@@ -1,4 +1,4 @@
-#include "identify/parameters.h"
+#include "identify/fit/parameters.h"
 
 #include <gtest/gtest.h>
 

@@ -1,8 +1,8 @@
-#include "identify/position_domain.h"
+#include "identify/fit/position_domain.h"
 
 #include <gtest/gtest.h>
 
-#include "identify/fit.h"
+#include "identify/fit/fit.h"
 #include "lattice.h"
 
 namespace palpate::identify {

@@ -1,11 +1,11 @@
-#include "identify/resampling.h"
+#include "identify/particles/resampling.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "identify/random.h"
+#include "identify/particles/random.h"
 #include "mesh/errors.h"
 
 namespace palpate::identify {

@@ -1,4 +1,4 @@
-#include "identify/tempered_filter.h"
+#include "identify/particles/tempered_filter.h"
 
 #include <gtest/gtest.h>
 
@@ -6,8 +6,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "identify/random.h"
-#include "identify/resampling.h"
+#include "identify/particles/random.h"
+#include "identify/particles/resampling.h"
 #include "mesh/errors.h"
 
 namespace palpate::identify {

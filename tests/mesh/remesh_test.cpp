@@ -5,8 +5,8 @@
 #include <cmath>
 
 #include "mesh/check_surface.h"
-#include "mesh/creases.h"
 #include "mesh/errors.h"
+#include "mesh/topology/creases.h"
 #include "tests/mesh/faulty_surfaces.h"
 #include "tests/temporary_folder.h"
 

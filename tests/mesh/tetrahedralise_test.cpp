@@ -8,8 +8,8 @@
 #include <cstdlib>
 #include <thread>
 
-#include "mesh/child_process.h"
 #include "mesh/errors.h"
+#include "mesh/io/child_process.h"
 #include "tests/mesh/faulty_surfaces.h"
 #include "tests/temporary_folder.h"
 

@@ -1,0 +1,84 @@
+#include "fem/solve/cholesky.h"
+
+#include <cblas.h>
+#include <fmt/format.h>
+
+#include <new>
+
+#include "fem/solve/factorise.h"
+#include "mesh/errors.h"
+
+namespace palpate::fem {
+
+namespace {
+
+/// Smallest over largest pivot; pivots are the squares on the diagonal of L.
+double pivot_ratio(const Supernodes& structure, const double* values) {
+    double smallest = INFINITY, largest = 0;
+    for (int s = 0; s < structure.count(); ++s) {
+        for (int c = 0; c < structure.columns(s); ++c) {
+            const double diagonal = values[structure.first_value[s] + c * (structure.height(s) + std::int64_t(1))];
+            smallest = std::min(smallest, diagonal);
+            largest = std::max(largest, diagonal);
+        }
+    }
+    return smallest * smallest / (largest * largest);
+}
+
+}  // namespace
+
+Cholesky::Cholesky(Supernodes structure, const LowerMatrix& K) : structure_(std::move(structure)) {
+    for (int s = 0; s < structure_.count(); ++s) tallest_ = std::max(tallest_, structure_.height(s));
+    try {
+        values_ = std::make_unique_for_overwrite<double[]>(structure_.first_value.back());
+    } catch (const std::bad_alloc&) {
+        throw SolverFailure(
+            fmt::format("The factor of the stiffness matrix ({} unknowns) needs {:.1f} GB, which memory does not hold. "
+                        "Take a coarser mesh.",
+                        structure_.size(), entries() * 8e-9));
+    }
+    // The parallel work is ours; BLAS's own threads would get in its way.
+    openblas_set_num_threads(1);
+    constexpr double singular = 1e-14;  // a mechanism leaves a pivot of rounding's size
+    if (!factorise(structure_, K, values_.get()) || !(pivot_ratio(structure_, values_.get()) > singular)) {
+        throw SolverFailure(
+            "The stiffness matrix is singular: a part of the body can move without resistance. Does it hang on the "
+            "rest "
+            "by one edge or corner only? Repair the surface there, or hold the part.");
+    }
+}
+
+void Cholesky::solve(Block& X) const {
+    openblas_set_num_threads(1);
+    const auto p = static_cast<int>(X.cols());
+    Block gathered(tallest_, p);
+
+    // Forward: X1 <- L11^-1 X1, then X2 <- X2 - L21 X1. BLAS counts by columns and sees X transposed.
+    for (int s = 0; s < structure_.count(); ++s) {
+        const int n = structure_.columns(s), height = structure_.height(s);
+        const auto below = structure_.rows_below(s);
+        const double* L = values_.get() + structure_.first_value[s];
+        if (X.middleRows(structure_.first_column[s], n).isZero(0)) continue;
+        double* X1 = X.row(structure_.first_column[s]).data();
+        cblas_dtrsm(CblasColMajor, CblasRight, CblasLower, CblasTrans, CblasNonUnit, p, n, 1.0, L, height, X1, p);
+        if (below.empty()) continue;
+        cblas_dgemm(CblasColMajor, CblasNoTrans, CblasTrans, p, height - n, n, 1.0, X1, p, L + n, height, 0.0,
+                    gathered.data(), p);
+        for (std::size_t k = 0; k < below.size(); ++k) X.row(below[k]) -= gathered.row(k);
+    }
+    // Backward: X1 <- L11^-T (X1 - L21^T X2).
+    for (int s = structure_.count(); s-- > 0;) {
+        const int n = structure_.columns(s), height = structure_.height(s);
+        const auto below = structure_.rows_below(s);
+        const double* L = values_.get() + structure_.first_value[s];
+        double* X1 = X.row(structure_.first_column[s]).data();
+        if (!below.empty()) {
+            for (std::size_t k = 0; k < below.size(); ++k) gathered.row(k) = X.row(below[k]);
+            cblas_dgemm(CblasColMajor, CblasNoTrans, CblasNoTrans, p, n, height - n, -1.0, gathered.data(), p, L + n,
+                        height, 1.0, X1, p);
+        }
+        cblas_dtrsm(CblasColMajor, CblasRight, CblasLower, CblasNoTrans, CblasNonUnit, p, n, 1.0, L, height, X1, p);
+    }
+}
+
+}  // namespace palpate::fem

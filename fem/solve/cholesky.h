@@ -1,0 +1,35 @@
+#pragma once
+
+#include <Eigen/SparseCore>
+#include <cstdint>
+#include <memory>
+
+#include "fem/solve/supernodes.h"
+
+namespace palpate::fem {
+
+/// The lower half of a symmetric matrix.
+using LowerMatrix = Eigen::SparseMatrix<double, Eigen::ColMajor, std::int64_t>;
+/// Right-hand sides beside each other, those of one unknown together in memory (n x p).
+using Block = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+/// K = L L^T of a sparse positive definite matrix by supernodes.
+class Cholesky {
+public:
+    /// Works in parallel over the elimination tree and over fixed tiles of large supernodes: the same numbers on any
+    /// number of threads. @throws SolverFailure when K is singular to rounding, or memory does not suffice.
+    Cholesky(Supernodes structure, const LowerMatrix& K);
+
+    /// X <- K^-1 X on one thread. Supernodes that a load does not reach are passed over. Safe from several threads.
+    void solve(Block& X) const;
+
+    /// Stored entries of the factor.
+    double entries() const { return static_cast<double>(structure_.first_value.back()); }
+
+private:
+    Supernodes structure_;
+    std::unique_ptr<double[]> values_;
+    int tallest_ = 0;  // supernode [rows]
+};
+
+}  // namespace palpate::fem

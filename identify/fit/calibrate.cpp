@@ -1,0 +1,168 @@
+#include "identify/fit/calibrate.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "mesh/errors.h"
+
+namespace palpate::identify {
+namespace {
+
+constexpr double wide_sd = 3;         // of ln multipliers that many links share
+constexpr double link_sd = 0.7;       // of ln of one link's, round the uniform fit
+constexpr double first_error = 0.03;  // relative model error to begin with
+constexpr double least_error = 1e-4;  // the model error never falls below it: no model is exact
+constexpr double settled = 1e-4;      // of half the chi^2: a hundredth of a posterior's sd
+constexpr int states_for_law = 12;    // that choose the law, the most displaced ones
+
+LogNormalPrior prior_round(const Eigen::VectorXd& mean, double sd) {
+    return {mean, Eigen::VectorXd::Constant(mean.size(), sd)};
+}
+
+/// Parameters that the measurements, rather than the prior, decide: tr(H (H + 1 / sd^2)^-1). [MacKay 1992]
+double effective_parameters(const FitResult& fit, const LogNormalPrior& prior) {
+    // = P - sum (1 / sd^2) (H + 1 / sd^2)^-1_ii, and the inverse's diagonal is that of L^-T L^-1
+    const auto P = fit.theta.size();
+    const Eigen::LLT<Eigen::MatrixXd> llt(fit.hessian);
+    const Eigen::MatrixXd inverse_L = llt.matrixL().solve(Eigen::MatrixXd::Identity(P, P));
+    return static_cast<double>(P) - inverse_L.colwise().squaredNorm().dot(prior.sd.cwiseAbs2().cwiseInverse());
+}
+
+/// Relative model error that a fit leaves, as an unfitted reading would see it.
+double model_error_after(const PositionDomain& domain, const FitResult& fit, const LogNormalPrior& prior) {
+    const double readings = domain.effective_coordinates();
+    const double fitted = std::min(effective_parameters(fit, prior), 0.75 * readings);
+    return std::max(least_error,
+                    domain.estimate_model_error(fit.prediction) * std::sqrt(readings / (readings - fitted)));
+}
+
+/// The states that moved most, in their order.
+std::vector<StateReadings> most_displaced(std::vector<StateReadings> readings, int count) {
+    std::erase_if(readings, [](const StateReadings& state) { return !state.tells_stiffness; });
+    if (static_cast<int>(readings.size()) <= count) return readings;
+    std::vector<double> displacements(readings.size());
+    std::ranges::transform(readings, displacements.begin(), &StateReadings::displacement);
+    std::ranges::nth_element(displacements, displacements.begin() + count - 1, std::greater{});
+    std::erase_if(readings, [least = displacements[count - 1]](const auto& s) { return s.displacement < least; });
+    return readings;
+}
+
+class Calibrator {
+public:
+    Calibrator(const skeleton::Model& model, const std::vector<StateReadings>& readings, const IdentifyOptions& options)
+        : model_(model), readings_(readings), options_(options) {}
+
+    skeleton::Law choose_law() {
+        if (options_.law == LawChoice::linear) return skeleton::Law::linear;
+        if (options_.law == LawChoice::large_rotation) return skeleton::Law::large_rotation;
+
+        const std::vector<StateReadings> sample = most_displaced(readings_, states_for_law);
+        const auto chi_squared = [&](skeleton::Law law) -> std::optional<double> {
+            const PositionDomain domain(model_, law, group_stiffness(model_, Scope::uniform, options_.fixed), sample,
+                                        options_.threads);
+            try {
+                return fit_uniform(domain, first_error).fit.chi_squared;
+            } catch (const SolverFailure&) {
+                return std::nullopt;
+            }
+        };
+        const std::optional<double> linear = chi_squared(skeleton::Law::linear);
+        const std::optional<double> large = chi_squared(skeleton::Law::large_rotation);
+        if (!large) {
+            note("law: linear; by large rotations no equilibrium was found under the measured loads");
+            return skeleton::Law::linear;
+        }
+        const bool is_linear = linear && *linear < *large;
+        note(fmt::format("law: {}, chosen by fit (chi^2 {:.4g} linear, {:.4g} large rotation)",
+                         is_linear ? "linear" : "large rotation", linear.value_or(missing), *large));
+        return is_linear ? skeleton::Law::linear : skeleton::Law::large_rotation;
+    }
+
+    struct Stage {
+        LogNormalPrior prior;
+        FitResult fit;
+        double model_error;
+    };
+
+    /// One multiplier a kind, round the best common factor.
+    Stage fit_uniform(PositionDomain domain, double model_error) {
+        domain.set_model_error(model_error);
+        const Eigen::VectorXd zero = Eigen::VectorXd::Zero(domain.parameters().size());
+        const Eigen::VectorXd center = zero.array() + domain.common_factor(zero);
+        return {prior_round(center, wide_sd), fit(domain, prior_round(center, wide_sd), center), model_error};
+    }
+
+    FitResult fit(const PositionDomain& domain, const LogNormalPrior& prior, const Eigen::VectorXd& start) {
+        FitResult result = fit_map(domain, prior, start, options_.threads, {.tolerance = settled});
+        equilibria_ += result.evaluations * static_cast<int>(domain.states().size());
+        return result;
+    }
+
+    void note(std::string words) { notes_.push_back(std::move(words)); }
+
+    const skeleton::Model& model_;
+    const std::vector<StateReadings>& readings_;
+    const IdentifyOptions& options_;
+    int equilibria_ = 0;
+    std::vector<std::string> notes_;
+};
+
+/// The value of each kind of stiffness in a uniform fit, for the parameters of a finer scope.
+Eigen::VectorXd spread_kinds(const Parameters& fine, const Parameters& uniform, const Eigen::VectorXd& theta) {
+    Eigen::VectorXd result(fine.size());
+    for (int p = 0; p < fine.size(); ++p) {
+        const auto same = std::ranges::find(uniform.list, fine.list[p].kind, &Parameter::kind);
+        result[p] = theta[same - uniform.list.begin()];
+    }
+    return result;
+}
+
+}  // namespace
+
+Calibration calibrate(const skeleton::Model& model, const std::vector<StateReadings>& readings,
+                      const IdentifyOptions& options, const Progress& progress) {
+    Calibrator calibrator(model, readings, options);
+    report(progress, "law", 0);
+    const skeleton::Law law = calibrator.choose_law();
+
+    // one multiplier a kind; a second time with the model error that the first fit left
+    report(progress, "uniform fit", 0.1);
+    const PositionDomain uniform(model, law, group_stiffness(model, Scope::uniform, options.fixed), readings,
+                                 options.threads);
+    Calibrator::Stage stage = calibrator.fit_uniform(uniform, first_error);
+    stage = calibrator.fit_uniform(uniform, model_error_after(uniform, stage.fit, stage.prior));
+    double model_error = stage.model_error;
+
+    PositionDomain domain = uniform;
+    LogNormalPrior prior = stage.prior;
+    FitResult fit = std::move(stage.fit);
+    if (options.scope != Scope::uniform) {
+        // finer, from the uniform fit; again twice
+        domain =
+            PositionDomain(model, law, group_stiffness(model, options.scope, options.fixed), readings, options.threads);
+        const Eigen::VectorXd start = spread_kinds(domain.parameters(), uniform.parameters(), fit.theta);
+        prior = options.scope == Scope::links
+                    ? prior_round(start, link_sd)
+                    : prior_round(spread_kinds(domain.parameters(), uniform.parameters(), prior.mean), wide_sd);
+        domain.set_model_error(model_error);
+        report(progress, "first fit", 0.2);
+        fit = calibrator.fit(domain, prior, start);
+        model_error = std::min(model_error, model_error_after(domain, fit, prior));
+        report(progress, "second fit", 0.6);
+        domain.set_model_error(model_error);
+        fit = calibrator.fit(domain, prior, fit.theta);
+    } else {
+        domain.set_model_error(model_error);
+    }
+    calibrator.note(
+        fmt::format("relative model error: {:.2g} % of the displacement, beyond the noise", 100 * model_error));
+    if (!fit.converged) calibrator.note("the fit stopped before it settled: take the posterior with care");
+    return {std::move(domain), std::move(prior),       std::move(fit),
+            model_error,       calibrator.equilibria_, std::move(calibrator.notes_)};
+}
+
+}  // namespace palpate::identify

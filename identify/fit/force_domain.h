@@ -1,0 +1,39 @@
+#pragma once
+
+#include <vector>
+
+#include "identify/fit/parameters.h"
+#include "skeleton/statics.h"
+
+namespace palpate::identify {
+
+/// A measured configuration of all spheres, and what acted in it.
+struct MeasuredConfiguration {
+    skeleton::State state;
+    skeleton::Load load;
+};
+
+/// Squared net force as a quadratic of the multipliers m = exp(theta) (P), summed over measurements:
+///   sum_j |A_j m + f_j|^2 = m^T H m + 2 g^T m + c.
+struct ForceStatistics {
+    Eigen::MatrixXd H;  // (P x P) [N^2]
+    Eigen::VectorXd g;  // (P) [N^2]
+    double c = 0;       // [N^2]
+};
+
+/// Net forces and net torques on the free spheres in measured configurations; exact sufficient statistics, since both
+/// are linear in the stiffnesses. Torques are over the mean link length. [Burion 2008, eqs. 7-8]
+struct ForceDomain {
+    ForceStatistics forces, torques;
+};
+
+ForceDomain force_domain(const skeleton::Model& model, const Parameters& parameters,
+                         const std::vector<MeasuredConfiguration>& measured);
+
+/// The multipliers >= 0 with the smallest net force: argmin m^T H m + 2 g^T m. [Lawson & Hanson 1974, ch. 23]
+/// Directions that the measurements leave open stay at 1, by a prior of `prior_share` of H's mean diagonal.
+Eigen::VectorXd solve_force_domain(const ForceStatistics& statistics, double prior_share = 1e-11);
+
+ForceStatistics operator+(const ForceStatistics& a, const ForceStatistics& b);
+
+}  // namespace palpate::identify

@@ -1,0 +1,99 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "identify/fit/parameters.h"
+#include "identify/fit/solver_pool.h"
+#include "identify/set/readings.h"
+
+namespace palpate::identify {
+
+/// A model's answer to all loads: where it stands, and the markers.
+struct Prediction {
+    std::vector<skeleton::Equilibrium> equilibria;  // (states)
+    std::vector<Points> markers;                    // of each state (m x 3) [mm]
+};
+
+/// Gauss-Newton's view of half the chi^2 of the errors d = (measured - modelled) / sigma.
+struct NormalEquations {
+    Eigen::MatrixXd H;  // J^T J (P x P), J = d d / d theta
+    Eigen::VectorXd g;  // J^T d (P)
+};
+
+/// Errors of the markers at the model's own equilibria, and their derivatives by theta, the log multipliers.
+///
+/// In equilibrium r(x, k) = f_ext + G k = 0, so dx/dk = T^-1 G with the tangent T = -dr/dx, and a marker moves by
+/// P T^-1 G: exact derivatives for one factorisation a state (linear law: one in all), through P T^-1 G dk/dtheta
+/// from the right where parameters are few, through (T^-1 P^T)^T from the left where readings are.
+///
+/// A reading's sigma. A coarse model errs by more than the noise, and alike for neighbouring markers: a thousand
+/// vertices must not count as a thousand independent readings. So a state's readings together count as about six
+/// of the relative model error `rel`:
+///   sigma^2 = noise^2 + max(1, n / 6) rel^2 (u^2 + (u_0 / 3)^2)
+/// with n the state's measured coordinates, u their rms displacement and u_0 the median of u over the states: one that
+/// hardly moves, with its probe next to a clamp say, does not rule by its small u.
+class PositionDomain {
+public:
+    /// States that tell nothing about stiffness are left out. @pre one tells.
+    PositionDomain(const skeleton::Model& model, skeleton::Law law, Parameters parameters,
+                   const std::vector<StateReadings>& readings, int threads);
+
+    const Parameters& parameters() const { return parameters_; }
+    const std::vector<StateReadings>& states() const { return states_; }
+    int coordinates() const;            // measured, in all
+    int effective_coordinates() const;  // the same, at most six a state
+    skeleton::Law law() const { return model_->law; }
+
+    /// Sets all sigmas.
+    void set_model_error(double rel);
+    /// The `rel` that explains what a prediction leaves beyond the noise: the median over the states.
+    double estimate_model_error(const Prediction& prediction) const;
+
+    /// Equilibria at k(theta). `start`: those of a neighbouring theta. Safe from several threads, with `threads` 1.
+    /// @throws SolverFailure where there is none.
+    Prediction predict(const Eigen::VectorXd& theta, int threads, const Prediction* start = nullptr) const;
+    double chi_squared(const Prediction& prediction) const;
+    /// ln of the likelihood's constant: - sum ln(sigma sqrt(2 pi)).
+    double log_constant() const { return log_constant_; }
+    NormalEquations normal_equations(const Eigen::VectorXd& theta, const Prediction& prediction) const;
+
+    /// Logarithm of the factor on all stiffnesses k(theta) that fits best by the linear law, where displacements go as
+    /// its inverse: closed form, however far off the start is.
+    double common_factor(const Eigen::VectorXd& theta) const;
+
+    /// The same domain by the linear law, its markers moved by what `prediction`, at theta, differs from that law's
+    /// there: a cheap stand-in for large rotations near theta.
+    PositionDomain linearised(const Eigen::VectorXd& theta, const Prediction& prediction) const;
+
+private:
+    Prediction predict_linear(const Eigen::VectorXd& k) const;
+    /// A state's readings pulled back to the forces: X = T^-1 P^T (6N x 3m), and X W X^T (6N x 6N).
+    struct PullBack {
+        int state = -1;
+        Eigen::MatrixXd X, XWX;
+    };
+    PullBack pull_back(int s, const Prediction& prediction, const skeleton::StaticsSolver& solver) const;
+    std::optional<double> weight_ratio(int s, int other) const;
+    /// Parts of the normal equations; from the left H holds its lower half only.
+    NormalEquations from_the_left(int s, const Eigen::SparseMatrix<double>& G_theta, const Prediction& prediction,
+                                  const PullBack& pull_back, double ratio) const;
+    NormalEquations from_the_right(int s, const Eigen::SparseMatrix<double>& G_theta, const Prediction& prediction,
+                                   const skeleton::StaticsSolver& solver) const;
+    Eigen::SparseMatrix<double> observation(int s, const Prediction& prediction) const;
+
+    std::shared_ptr<const skeleton::Model> model_;
+    std::shared_ptr<SolverPool> solvers_;
+    Parameters parameters_;
+    std::vector<StateReadings> states_;
+    std::vector<Points> offsets_;                 // added to the modelled markers (m x 3) [mm]
+    std::vector<Eigen::SparseMatrix<double>> P_;  // of each state at rest (3m x 6N)
+    Eigen::MatrixXd F_;                           // loads at rest (6N x states)
+    std::vector<Eigen::VectorXd> weights_;        // 1 / sigma^2, 0 for a missing coordinate, of each state (3m)
+    double typical_displacement_ = 0;             // u_0 [mm]
+    double log_constant_ = 0;
+    int threads_ = 1;
+};
+
+}  // namespace palpate::identify

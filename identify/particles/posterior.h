@@ -1,0 +1,30 @@
+#pragma once
+
+#include "identify/fit/fit.h"
+#include "identify/identify.h"
+
+namespace palpate::identify {
+
+/// Mean and sd of stiffnesses before the measurements, and the sd of their logarithms (P).
+struct StiffnessPrior {
+    Eigen::VectorXd mean, sd;
+    Eigen::VectorXd log_sd;  // infinite: not told by logarithms
+};
+
+/// Of log multipliers: the mean of the log-normal exp(N(m, s^2)) is exp(m + s^2 / 2), its sd the mean times
+/// sqrt(exp(s^2) - 1).
+StiffnessPrior stiffness_prior(const Parameters& parameters, const LogNormalPrior& prior);
+
+/// Of multipliers that lie evenly in [low, high].
+StiffnessPrior stiffness_prior(const Parameters& parameters, double low, double high);
+
+/// A row per parameter, of weighted particles (N x P) of stiffnesses. Informed where the sd has fallen to 0.7 of the
+/// prior's or less, in the stiffness and in its logarithm: a wide log-normal's sd rests on its tail, which few
+/// particles see.
+std::vector<PosteriorRow> posterior_rows(const Parameters& parameters, const Eigen::MatrixXd& particles,
+                                         const Eigen::VectorXd& log_weights, const StiffnessPrior& prior);
+
+/// Stiffnesses of particles of log multipliers (N x P).
+Eigen::MatrixXd stiffness_of(const Parameters& parameters, const Eigen::MatrixXd& theta);
+
+}  // namespace palpate::identify

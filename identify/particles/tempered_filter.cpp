@@ -1,0 +1,251 @@
+#include "identify/particles/tempered_filter.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "identify/parallel.h"
+#include "identify/particles/random.h"
+#include "identify/particles/resampling.h"
+#include "mesh/errors.h"
+
+namespace palpate::identify {
+namespace {
+
+/// With more particles than this for each parameter, copies that do not part are told apart by the rest: they may sit
+/// in modes of their own.
+constexpr double particles_per_parameter = 4;
+
+/// The cloud in whitened coordinates, a column per particle.
+struct Cloud {
+    Eigen::MatrixXd z;          // (P x N)
+    Eigen::VectorXd log_ratio;  // ln pi - ln q of each (N)
+
+    int size() const { return static_cast<int>(z.cols()); }
+};
+
+class Filter {
+public:
+    Filter(const LogDensity& log_density, const GaussianProposal& proposal, const TemperedOptions& options)
+        : log_density_(log_density), proposal_(proposal), options_(options) {
+        constexpr double log_root_two_pi = 0.5 * std::numbers::ln2 + 0.57236494292470008707;  // + ln sqrt(pi)
+        log_peak_ =
+            proposal.L.diagonal().array().log().sum() - log_root_two_pi * static_cast<double>(proposal.mean.size());
+    }
+
+    /// theta of each column of z.
+    Eigen::MatrixXd parameters(const Eigen::MatrixXd& z) const {
+        return proposal_.L.transpose().triangularView<Eigen::Upper>().solve(z).colwise() + proposal_.mean;
+    }
+
+    double log_proposal(const Eigen::VectorXd& z) const { return log_peak_ - z.squaredNorm() / 2; }
+
+    /// ln pi - ln q of each column of z.
+    Eigen::VectorXd log_ratio(const Eigen::MatrixXd& z) const {
+        const Eigen::MatrixXd theta = parameters(z);
+        Eigen::VectorXd ratio(z.cols());
+        for_each_in_parallel(static_cast<int>(z.cols()), options_.threads, [&](int i) {
+            const double value = log_density_(theta.col(i));
+            ratio[i] = std::isfinite(value) ? value - log_proposal(z.col(i)) : -std::numeric_limits<double>::infinity();
+        });
+        return ratio;
+    }
+
+    Cloud draw() const {
+        Cloud cloud{Eigen::MatrixXd(proposal_.mean.size(), options_.particles), {}};
+        for (int i = 0; i < options_.particles; ++i) {
+            cloud.z.col(i) = RandomStream(options_.seed, 0, i).normals(static_cast<int>(cloud.z.rows()));
+        }
+        cloud.log_ratio = log_ratio(cloud.z);
+        return cloud;
+    }
+
+    struct Moved {
+        double accepted;  // share of the particles
+        double distance;  // mean square of the way that they went, in z
+    };
+
+    /// One Crank-Nicolson move of every particle at temperature b.
+    Moved move(Cloud& cloud, double b, double step, std::uint64_t round) const {
+        const double keep = std::sqrt(1 - step * step);
+        Eigen::MatrixXd z(cloud.z.rows(), cloud.size());
+        Eigen::VectorXd log_u(cloud.size());
+        for (int i = 0; i < cloud.size(); ++i) {
+            RandomStream random(options_.seed, round, i);
+            log_u[i] = std::log(1 - random.uniform());
+            z.col(i) = keep * cloud.z.col(i) + step * random.normals(static_cast<int>(z.rows()));
+        }
+        const Eigen::VectorXd ratio = log_ratio(z);
+
+        int accepted = 0;
+        double distance = 0;
+        for (int i = 0; i < cloud.size(); ++i) {
+            if (!(log_u[i] < b * (ratio[i] - cloud.log_ratio[i]))) continue;
+            ++accepted;
+            distance += (z.col(i) - cloud.z.col(i)).squaredNorm();
+            cloud.z.col(i) = z.col(i);
+            cloud.log_ratio[i] = ratio[i];
+        }
+        return {static_cast<double>(accepted) / cloud.size(), distance / cloud.size()};
+    }
+
+    FilterStep record(const Cloud& cloud, double b, const Eigen::VectorXd& log_weights) const {
+        return {b, effective_samples(log_weights), parameters(cloud.z).transpose(), log_weights};
+    }
+
+private:
+    const LogDensity& log_density_;
+    const GaussianProposal& proposal_;
+    const TemperedOptions& options_;
+    double log_peak_ = 0;  // ln q(mean)
+};
+
+/// Weights after going from temperature b by db: w (pi / q)^db.
+Eigen::VectorXd reweighted(const Eigen::VectorXd& log_weights, const Eigen::VectorXd& log_ratio, double db) {
+    return log_weights + db * log_ratio;
+}
+
+/// The largest step of temperature that leaves the wanted effective sample size.
+double temperature_step(const Eigen::VectorXd& log_weights, const Eigen::VectorXd& log_ratio, double b, double wanted) {
+    const auto effective = [&](double db) {
+        Eigen::VectorXd trial = reweighted(log_weights, log_ratio, db);
+        normalise(trial);
+        return effective_samples(trial);
+    };
+    if (effective(1 - b) >= wanted) return 1 - b;
+    double low = 0, high = 1 - b;
+    for (int i = 0; i < 60 && high - low > 1e-3 * high; ++i) {
+        const double middle = (low + high) / 2;
+        (effective(middle) >= wanted ? low : high) = middle;
+    }
+    return high;  // never zero: particles without density go with the first step
+}
+
+void resample(Cloud& cloud, Eigen::VectorXd& log_weights, double u) {
+    const Cloud before = cloud;
+    const std::vector<int> chosen = low_variance_resample(log_weights, cloud.size(), u);
+    for (int i = 0; i < cloud.size(); ++i) {
+        cloud.z.col(i) = before.z.col(chosen[i]);
+        cloud.log_ratio[i] = before.log_ratio[chosen[i]];
+    }
+    log_weights.setConstant(-std::log(cloud.size()));
+}
+
+/// Moves with a step that adapts: longer when too many are accepted, shorter when too few.
+class Mover {
+public:
+    Mover(const Filter& filter, int moves) : filter_(filter), moves_(moves) {}
+
+    /// One move of all particles; returns the mean square of the way that they went.
+    double once(Cloud& cloud, double b) {
+        const Filter::Moved moved = filter_.move(cloud, b, step_, ++round_);
+        accepted_ += moved.accepted;
+        ++made_;
+        if (moved.accepted < 0.2) step_ *= 0.6;
+        if (moved.accepted > 0.4) step_ = std::min(1.0, step_ * 1.5);
+        return moved.distance;
+    }
+
+    /// Moves until copies have parted: until the squares of their ways add up to half of that between two
+    /// particles, each of which lies `spread` from the middle in mean square. False when they did not.
+    bool part(Cloud& cloud, double b, double spread) {
+        double way = 0;
+        for (int i = 0; i < moves_ && way < spread; ++i) way += once(cloud, b);
+        return way >= spread;
+    }
+
+    std::uint64_t next_round() { return ++round_; }
+    double acceptance() const { return made_ > 0 ? accepted_ / made_ : 0; }
+    int made() const { return made_; }
+
+private:
+    const Filter& filter_;
+    int moves_;
+    double step_ = 0.5, accepted_ = 0;
+    int made_ = 0;
+    std::uint64_t round_ = 0;
+};
+
+/// Mean square distance of weighted particles from their mean, in z.
+double spread_of(const Cloud& cloud, const Eigen::VectorXd& log_weights) {
+    const Eigen::VectorXd weights = log_weights.array().exp();
+    const Eigen::VectorXd mean = cloud.z * weights;
+    return (cloud.z.colwise() - mean).colwise().squaredNorm() * weights;
+}
+
+Eigen::VectorXd equal_weights(int n) { return Eigen::VectorXd::Constant(n, -std::log(n)); }
+
+/// The weighed particles, from b = 0 to 1; false when copies do not part.
+bool temper(const Filter& filter, const TemperedOptions& options, Mover& mover, Cloud& cloud, TemperedResult& result,
+            const Progress& progress) {
+    double b = 0;
+    while (b < 1) {
+        if (static_cast<int>(result.history.size()) > options.temperatures) {
+            throw SolverFailure(
+                fmt::format("the particle filter stands at temperature {:.3g} of 1 after {} steps: the "
+                            "measurements contradict each other or the model",
+                            b, options.temperatures));
+        }
+        // next temperature, weights, and the evidence that they add up to
+        const double db =
+            temperature_step(result.log_weights, cloud.log_ratio, b, options.least_effective * cloud.size());
+        b = std::min(1.0, b + db);
+        result.log_weights = reweighted(result.log_weights, cloud.log_ratio, db);
+        result.log_evidence += normalise(result.log_weights);
+        result.history.push_back(filter.record(cloud, b, result.log_weights));
+        const double spread = spread_of(cloud, result.log_weights);
+
+        // equal weights again, but at the end, where nothing is gained by it
+        if (b < 1) {
+            resample(cloud, result.log_weights, RandomStream(options.seed, mover.next_round(), cloud.size()).uniform());
+        }
+        const bool parted = mover.part(cloud, b, spread);
+        if (!parted && particles_per_parameter * static_cast<double>(cloud.z.rows()) > cloud.size()) return false;
+        report(progress, "particles", b);
+    }
+    return true;
+}
+
+}  // namespace
+
+TemperedResult tempered_filter(const LogDensity& log_density, const GaussianProposal& proposal,
+                               const TemperedOptions& options, const Progress& progress) {
+    const Filter filter(log_density, proposal, options);
+    Mover mover(filter, options.moves);
+
+    // particles of the proposal, b = 0
+    report(progress, "particles", 0);
+    const Cloud drawn = filter.draw();
+    Cloud cloud = drawn;
+    TemperedResult result;
+    result.log_weights = equal_weights(options.particles);
+    result.history.push_back(filter.record(cloud, 0, result.log_weights));
+
+    result.weighed = temper(filter, options, mover, cloud, result, progress);
+    if (!result.weighed) {
+        // all of them again, unweighed, by the posterior's own moves; those without density wait for their first one
+        cloud = drawn;
+        result.history.resize(1);
+        result.log_weights = equal_weights(options.particles);
+        for (int i = 0; i < 2 * options.moves; ++i) {
+            mover.once(cloud, 1);
+            report(progress, "particles", static_cast<double>(i) / (2 * options.moves));
+        }
+        result.log_evidence = filter.log_ratio(Eigen::MatrixXd::Zero(proposal.mean.size(), 1))[0];
+    }
+
+    result.history.push_back(filter.record(cloud, 1, result.log_weights));
+    result.particles = result.history.back().particles;
+    result.acceptance = mover.acceptance();
+    result.evaluations = (1 + mover.made()) * options.particles;
+    result.log_density.resize(cloud.size());
+    for (int i = 0; i < cloud.size(); ++i) {
+        result.log_density[i] = cloud.log_ratio[i] + filter.log_proposal(cloud.z.col(i));
+    }
+    return result;
+}
+
+}  // namespace palpate::identify

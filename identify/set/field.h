@@ -1,0 +1,23 @@
+#pragma once
+
+#include <filesystem>
+
+#include "identify/set/measurement_set.h"
+#include "mesh/volume_mesh.h"
+
+namespace palpate::identify {
+
+/// The full displacement field of a state.
+struct Field {
+    mesh::VolumeMesh mesh;  // at rest
+    Points displacement;    // of its nodes (n x 3) [mm]
+};
+
+/// @throws IoError, InvalidInput when the file has no point array `displacement` of three components.
+Field read_field(const std::filesystem::path& file);
+
+/// The set with markers: its own where it has readings, else up to `markers` vertices of its rest surface, read from
+/// the fields of the states that have one.
+MeasurementSet with_markers_of_fields(const MeasurementSet& set, int markers = 300);
+
+}  // namespace palpate::identify

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "identify/set/measurement_set.h"
+#include "mesh/contact.h"
+#include "skeleton/statics.h"
+
+namespace palpate::mesh {
+class SurfaceTree;
+}
+
+namespace palpate::identify {
+
+/// Turns contacts on the body into forces on a skeleton's skin.
+///
+/// A contact's force is spread evenly over the skin within its radius, sampled finely; where no sample lies within
+/// (radius 0, or a small one), it acts at the nearest point of the skin. A model without a skin takes it where it is
+/// told to act.
+class ContactLoads {
+public:
+    explicit ContactLoads(const skeleton::Model& model);
+    ~ContactLoads();
+
+    skeleton::Load operator()(const std::vector<mesh::Contact>& contacts, const Vec3& gravity = Vec3::Zero()) const;
+    /// What is known to act in a state of a set; gravity that is not known is none.
+    skeleton::Load operator()(const MeasurementSet& set, const LoadState& state) const;
+
+private:
+    const skeleton::Model& model_;
+    std::unique_ptr<mesh::SurfaceTree> tree_;
+};
+
+/// Gravity known to act in a state: the state's own, else the set's, else none.
+std::optional<Vec3> known_gravity(const MeasurementSet& set, const LoadState& state);
+
+}  // namespace palpate::identify

@@ -1,0 +1,74 @@
+#include "identify/set/readings.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "identify/set/loads.h"
+
+namespace palpate::identify {
+namespace {
+
+std::vector<skeleton::Attachment> attach_markers(const skeleton::Model& model, const std::vector<Marker>& markers) {
+    std::vector<skeleton::Attachment> points;
+    points.reserve(markers.size());
+    for (const Marker& marker : markers) {
+        points.push_back(marker.anchor ? attach(model, *marker.anchor, marker.rest) : attach(model, marker.rest));
+    }
+    return points;
+}
+
+bool is_known_to_act(const MeasurementSet& set, const LoadState& state) {
+    const bool pushed = std::ranges::any_of(state.contacts, [](const mesh::Contact& c) { return !c.force.isZero(0); });
+    return pushed || !known_gravity(set, state).value_or(Vec3::Zero()).isZero(0);
+}
+
+}  // namespace
+
+double rms(const Points& difference) {
+    double sum = 0;
+    int count = 0;
+    for (const double d : difference.reshaped()) {
+        if (std::isnan(d)) continue;
+        sum += d * d;
+        ++count;
+    }
+    return count > 0 ? std::sqrt(sum / count) : 0;
+}
+
+std::vector<StateReadings> collect_readings(const skeleton::Model& model, const MeasurementSet& set) {
+    const std::vector<skeleton::Attachment> markers = attach_markers(model, set.markers);
+    const ContactLoads loads(model);
+    std::vector<StateReadings> result;
+
+    for (int s = 0; s < static_cast<int>(set.states.size()); ++s) {
+        const LoadState& state = set.states[s];
+        StateReadings readings;
+        readings.state = s;
+        for (int row = 0; row < static_cast<int>(state.readings.size()); ++row) {
+            const Reading& reading = state.readings[row];
+            if (reading.marker >= 0 && !reading.position.array().isNaN().all()) readings.rows.push_back(row);
+        }
+        if (readings.rows.empty()) continue;
+
+        const auto m = static_cast<Eigen::Index>(readings.rows.size());
+        readings.rest.resize(m, 3);
+        readings.measured.resize(m, 3);
+        readings.noise.resize(m);
+        for (Eigen::Index i = 0; i < m; ++i) {
+            const Reading& reading = state.readings[readings.rows[i]];
+            readings.markers.push_back(reading.marker);
+            readings.points.push_back(markers[reading.marker]);
+            readings.rest.row(i) = set.markers[reading.marker].rest;
+            readings.measured.row(i) = reading.position;
+            readings.noise[i] = std::isnan(reading.sigma) ? set.position_noise.value_or(missing) : reading.sigma;
+        }
+        readings.coordinates = static_cast<int>((!readings.measured.array().isNaN()).count());
+        readings.displacement = rms(readings.measured - readings.rest);
+        readings.load = loads(set, state);
+        readings.tells_stiffness = is_known_to_act(set, state);
+        result.push_back(std::move(readings));
+    }
+    return result;
+}
+
+}  // namespace palpate::identify

@@ -1,0 +1,78 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "fem/material.h"
+#include "identify/identify.h"
+#include "identify/set/measurement_set.h"
+#include "mesh/region.h"
+#include "skeleton/build.h"
+
+namespace palpate::pipeline {
+
+/// How a reference simulation probes a body.
+struct ProbeOptions {
+    int probes = 12;              // loaded states, [1, 10000]
+    int held_out = 0;             // of them, how many are kept from the fit, spread evenly
+    int markers = 150;            // surface points that are read, [3, 100000]
+    double displacement = 0.005;  // largest, as a share of the longest side, (0, 0.5]
+    double radius = 0.06;         // of a contact patch, as a share of the longest side, (0, 0.5]
+    double noise = 0;             // 1 sigma added to every reading [mm]
+    void validate() const;
+};
+
+/// What a sample promises; `run` checks it and ends with exit code 5 where it does not hold.
+struct Expectation {
+    /// A stiffness that is known, as in posterior.csv.
+    struct Parameter {
+        std::string name;
+        double value;   // in the parameter's unit
+        double within;  // as a share of the value
+    };
+    std::vector<Parameter> parameters;
+    std::optional<double> relative_at_most;  // rms error over rms displacement, over all states
+    std::optional<double> held_out_at_most;  // the same over states kept from the fit
+    std::optional<int> spheres_at_least;
+};
+
+/// All settings of a run, in mm, N, MPa, s, tonne: what was asked for, and defaults for the rest.
+struct Case {
+    std::filesystem::path file;  // that it was read from; empty for a bare mesh or set
+    std::string name;
+    std::optional<std::filesystem::path> mesh;  // one of these two is there
+    std::optional<std::filesystem::path> measurements;
+    std::optional<std::filesystem::path> model;     // a skeleton to start from, with measurements; else it is made
+    double unit = 1;                                // [mm] per unit of the mesh
+    double longest = 0;                             // the mesh is scaled to this longest side [mm]; 0: not
+    std::vector<mesh::Region> supports;             // empty: the set's, or the default clamp
+    std::optional<double> young, poisson, density;  // [MPa], [-], [kg/m^3]; absent: the set's, or defaults
+    double edge_length = 0;                         // of the tetrahedra [mm]; 0: 6 % of the longest side
+    bool linear_elements = false;
+    skeleton::BuildOptions skeleton;
+    ProbeOptions probing{.probes = 60, .held_out = 12};
+    identify::IdentifyOptions identify;
+    Expectation expect;
+};
+
+/// What the command line says on top of a case.
+struct CaseOverrides {
+    std::string unit;  // mm, cm, m; empty: not said
+    std::optional<double> longest, young, poisson, density, edge_length, noise, coverage;
+    std::optional<int> spheres, zones, probes, particles;
+    std::string parameters, method;  // empty: not said
+    std::optional<std::uint64_t> seed;
+    bool linear_elements = false;
+};
+
+/// A case from a case.yaml, a measurement set (folder or set.yaml) or a bare mesh, told apart by what they are.
+/// @throws IoError, InvalidInput.
+Case read_case(const std::filesystem::path& input, const CaseOverrides& overrides = {});
+
+/// The case with every setting, defaults included, as YAML that read_case reads back.
+std::string to_yaml(const Case& settings);
+
+}  // namespace palpate::pipeline

@@ -1,0 +1,94 @@
+#include "pipeline/case/subject.h"
+
+#include <fmt/format.h>
+
+#include "mesh/errors.h"
+#include "mesh/read_surface.h"
+#include "pipeline/reference/body.h"
+
+namespace palpate::pipeline {
+namespace {
+
+void read_mesh(Subject& subject) {
+    const Case& c = subject.settings;
+    subject.files = {*c.mesh};
+    subject.surface = mesh::read_surface(*c.mesh);
+    const double longest = mesh::bounding_box(subject.surface.vertices).longest_side();
+    if (longest <= 0) {
+        throw InvalidInput(
+            fmt::format("{}: all its vertices are at one place; a body needs an extent", c.mesh->string()));
+    }
+    const double scale = c.longest > 0 ? c.longest / longest : c.unit;
+    subject.surface.vertices *= scale;
+    if (c.longest == 0 && c.unit == 1) {
+        subject.assumptions.push_back(fmt::format(
+            "The mesh is taken to be in mm: {:.4g} mm at its longest (--unit or --longest say otherwise).", longest));
+    }
+}
+
+void read_set(Subject& subject) {
+    const Case& c = subject.settings;
+    subject.set = identify::read_measurement_set(*c.measurements);
+    subject.surface = subject.set->rest_surface;
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(subject.set->folder)) {
+        if (entry.is_regular_file() && entry.path().filename() != "truth.json") subject.files.push_back(entry.path());
+    }
+    std::sort(subject.files.begin(), subject.files.end());
+}
+
+void choose_supports(Subject& subject) {
+    if (!subject.settings.supports.empty()) {
+        subject.supports = subject.settings.supports;
+    } else if (subject.set) {
+        subject.supports = subject.set->supports;
+    } else {
+        const mesh::BoxRegion clamp = default_clamp(mesh::bounding_box(subject.surface.vertices));
+        subject.supports = {clamp};
+        subject.assumptions.push_back(
+            fmt::format("Held over the 5 % of its length at the low end of its longest axis, in the box {:.4g}, "
+                        "{:.4g}, {:.4g} to {:.4g}, "
+                        "{:.4g}, {:.4g} mm ('supports' in a case say otherwise).",
+                        clamp.min.x(), clamp.min.y(), clamp.min.z(), clamp.max.x(), clamp.max.y(), clamp.max.z()));
+    }
+    if (subject.set) subject.set->supports = subject.supports;
+}
+
+/// What the case says, else the set, else a default, which is said aloud.
+double choose(const std::optional<double>& said, double measured, double fallback, const std::string& name,
+              const std::string& unit, const std::string& flag, std::vector<std::string>& assumptions) {
+    if (said) return *said;
+    if (std::isfinite(measured)) return measured;
+    assumptions.push_back(fmt::format("{} is taken to be {:g}{} ({} says otherwise).", name, fallback, unit, flag));
+    return fallback;
+}
+
+void choose_material(Subject& subject) {
+    const Case& c = subject.settings;
+    const auto guess = subject.set && subject.set->material ? *subject.set->material : identify::MaterialGuess{};
+    const double density =
+        subject.set && subject.set->density ? *subject.set->density / fem::tonne_per_mm3 : identify::missing;
+    subject.material.young =
+        choose(c.young, guess.young, 0.1, "Young's modulus", " MPa", "--young", subject.assumptions);
+    subject.material.poisson =
+        choose(c.poisson, guess.poisson, 0.45, "Poisson's ratio", "", "--poisson", subject.assumptions);
+    subject.material.density = fem::tonne_per_mm3 * choose(c.density, density, 1000, "The density", " kg/m^3",
+                                                           "--density", subject.assumptions);
+    subject.material.validate();
+}
+
+}  // namespace
+
+Subject read_subject(Case settings) {
+    Subject subject;
+    subject.settings = std::move(settings);
+    if (subject.settings.mesh) {
+        read_mesh(subject);
+    } else {
+        read_set(subject);
+    }
+    choose_supports(subject);
+    if (!subject.settings.model) choose_material(subject);
+    return subject;
+}
+
+}  // namespace palpate::pipeline

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "fem/material.h"
+#include "identify/set/measurement_set.h"
+#include "mesh/region.h"
+#include "mesh/surface.h"
+#include "pipeline/case/case.h"
+
+namespace palpate::pipeline {
+
+/// What a case is about, read and converted: a body's surface [mm], where it is held, what it is made of, and the
+/// measurements if there are any.
+struct Subject {
+    Case settings;
+    mesh::Surface surface;
+    std::vector<mesh::Region> supports;
+    fem::Material material;
+    std::optional<identify::MeasurementSet> set;
+    std::vector<std::filesystem::path> files;  // that were read
+    std::vector<std::string> assumptions;      // what nobody said and was assumed, in words
+};
+
+/// @throws IoError, InvalidInput.
+Subject read_subject(Case settings);
+
+}  // namespace palpate::pipeline

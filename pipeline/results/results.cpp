@@ -1,0 +1,147 @@
+#include "pipeline/results/results.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+namespace palpate::pipeline {
+namespace {
+
+using nlohmann::json;
+
+json numbers(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
+
+/// JSON has no NaN: what is unknown is null.
+json known(double value) { return std::isfinite(value) ? json(value) : json(nullptr); }
+
+/// Rms error of each marker over all states, with its place at rest.
+json marker_errors(const identify::Comparison& c, const identify::MeasurementSet& set) {
+    std::vector<double> squares(set.markers.size(), 0.0);
+    std::vector<int> counts(set.markers.size(), 0);
+    for (std::size_t s = 0; s < set.states.size(); ++s) {
+        const auto& readings = set.states[s].readings;
+        for (std::size_t r = 0; r < readings.size(); ++r) {
+            if (readings[r].marker < 0) continue;
+            const Vec3 error = readings[r].position - c.predicted[s].row(static_cast<Eigen::Index>(r)).transpose();
+            for (const double e : error) {
+                if (std::isnan(e)) continue;
+                squares[readings[r].marker] += e * e;
+                ++counts[readings[r].marker];
+            }
+        }
+    }
+    json markers = json::array();
+    for (std::size_t m = 0; m < set.markers.size(); ++m) {
+        if (counts[m] == 0) continue;
+        markers.push_back({{"marker", set.markers[m].id},
+                           {"rms_mm", std::sqrt(squares[m] / counts[m])},
+                           {"at", numbers(set.markers[m].rest)}});
+    }
+    return markers;
+}
+
+}  // namespace
+
+json to_json(const identify::Comparison& c, const identify::MeasurementSet& set) {
+    json result = {
+        {"error",
+         {{"rms_mm", c.rms}, {"max_mm", c.max}, {"relative", known(c.relative)}, {"noise_mm", known(c.noise)}}},
+        {"adequate", c.adequate},
+        {"p_value", known(c.p_value)}};
+    if (c.load_exponent) {
+        result["load_exponent"] = {
+            {"value", c.load_exponent->value}, {"sd", c.load_exponent->sd}, {"words", c.load_exponent->words}};
+    }
+    result["probes"] = json::array();
+    for (const auto& p : c.probes) {
+        result["probes"].push_back({{"probe", p.probe},
+                                    {"time", p.time},
+                                    {"rms_mm", p.rms},
+                                    {"max_mm", p.max},
+                                    {"relative", known(p.relative)}});
+    }
+    result["worst"] = json::array();
+    for (const auto& w : c.worst) {
+        result["worst"].push_back({{"marker", w.marker},
+                                   {"probe", w.probe},
+                                   {"time", w.time},
+                                   {"error_mm", w.error},
+                                   {"at", numbers(w.at)},
+                                   {"towards", numbers(w.towards)}});
+    }
+    result["markers"] = marker_errors(c, set);
+    return result;
+}
+
+json to_json(const mesh::SurfaceReport& r) {
+    return {{"vertices", r.vertices},
+            {"triangles", r.triangles},
+            {"duplicate_vertices", r.duplicate_vertices},
+            {"degenerate_triangles", r.degenerate_triangles},
+            {"duplicate_triangles", r.duplicate_triangles},
+            {"boundary_edges", r.boundary_edges},
+            {"holes", r.holes},
+            {"non_manifold_edges", r.non_manifold_edges},
+            {"inconsistent_edges", r.inconsistent_edges},
+            {"self_intersections", r.self_intersections},
+            {"components", r.components},
+            {"closed", r.closed},
+            {"outward", r.outward},
+            {"volume_mm3", r.volume},
+            {"area_mm2", r.area},
+            {"box", {{"min", numbers(r.box.min)}, {"max", numbers(r.box.max)}}},
+            {"sound", r.sound()}};
+}
+
+json summary_json(const identify::IdentifyResult& result) {
+    json posterior = json::array();
+    int informed = 0;
+    for (const auto& row : result.posterior) informed += row.informed ? 1 : 0;
+    if (result.posterior.size() <= 30) {
+        for (const auto& row : result.posterior) {
+            posterior.push_back({{"parameter", row.parameter},
+                                 {"unit", row.unit},
+                                 {"mean", row.mean},
+                                 {"sd", row.sd},
+                                 {"q025", row.q025},
+                                 {"q975", row.q975}});
+        }
+    }
+    return {{"law", skeleton::law_names[static_cast<std::size_t>(result.model.law)]},
+            {"parameters", result.posterior.size()},
+            {"informed", informed},
+            {"posterior", posterior},
+            {"log_evidence", known(result.log_evidence)},
+            {"effective_samples", result.history.empty() ? 0.0 : result.history.back().effective_samples},
+            {"acceptance", known(result.acceptance)},
+            {"equilibria", result.equilibria},
+            {"notes", result.notes}};
+}
+
+std::string in_words(const json& compare) {
+    const auto share = [](const json& error) {
+        return error["relative"].is_number() ? fmt::format("{:.1f} %", 100 * error["relative"].get<double>())
+                                             : std::string("an unknown share");
+    };
+    const json& error = compare["error"];
+    std::string text =
+        fmt::format("The model is off by {:.3g} mm rms, {} of the displacement, and by {:.3g} mm at most.",
+                    error["rms_mm"].get<double>(), share(error), error["max_mm"].get<double>());
+    if (compare.contains("held_out")) {
+        text += fmt::format(" On the probes that were fitted it is off by {}, on those kept from the fit by {}.",
+                            share(compare["fitted"]), share(compare["held_out"]));
+    }
+    if (error["noise_mm"].is_number()) {
+        text += fmt::format(" The noise is {:.3g} mm: {}.", error["noise_mm"].get<double>(),
+                            compare["adequate"].get<bool>() ? "what is left is noise" : "the model lacks something");
+    }
+    if (compare.contains("load_exponent")) {
+        const json& exponent = compare["load_exponent"];
+        text += fmt::format(" The error goes with the load to the power {:.1f} +- {:.1f}: {}.",
+                            exponent["value"].get<double>(), exponent["sd"].get<double>(),
+                            exponent["words"].get<std::string>());
+    }
+    return text;
+}
+
+}  // namespace palpate::pipeline

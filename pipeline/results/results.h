@@ -1,0 +1,22 @@
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "identify/compare.h"
+#include "identify/identify.h"
+#include "mesh/check_surface.h"
+#include "skeleton/build.h"
+
+namespace palpate::pipeline {
+
+/// Machine-read results, as `--json` prints them and files hold them.
+nlohmann::json to_json(const identify::Comparison& comparison, const identify::MeasurementSet& set);
+nlohmann::json to_json(const mesh::SurfaceReport& report);
+nlohmann::json summary_json(const identify::IdentifyResult& result);
+
+/// What compare.json says, in sentences.
+std::string in_words(const nlohmann::json& compare);
+
+}  // namespace palpate::pipeline

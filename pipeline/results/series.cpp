@@ -1,0 +1,138 @@
+#include "pipeline/results/series.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <optional>
+
+#include "fem/interpolation.h"
+#include "identify/set/loads.h"
+#include "mesh/errors.h"
+#include "mesh/io/vtk_files.h"
+
+namespace palpate::pipeline {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string step_name(const std::string& name, std::size_t step) { return fmt::format("{}_{:03}.vtp", name, step); }
+
+/// Displacement of the skin in a full field.
+std::optional<Points> field_on_skin(const skeleton::Model& model, const identify::LoadState& state) {
+    if (state.field.empty()) return std::nullopt;
+    mesh::MeshData data;
+    const mesh::VolumeMesh mesh = mesh::read_vtu(state.field, &data);
+    const auto found = std::find_if(data.points.begin(), data.points.end(),
+                                    [](const mesh::DataArray& array) { return array.name == "displacement"; });
+    if (found == data.points.end() || found->values.cols() != 3) {
+        throw InvalidInput(fmt::format("{}: has no point array 'displacement' of 3 components", state.field.string()));
+    }
+    return Points(fem::interpolation(mesh, model.surface.vertices) * found->values);
+}
+
+/// Columns of the particle matrix of one kind of stiffness, in order.
+std::vector<int> columns_of(const identify::IdentifyResult& result, const std::string& kind) {
+    std::vector<int> columns;
+    for (std::size_t p = 0; p < result.posterior.size(); ++p) {
+        const std::string& name = result.posterior[p].parameter;
+        if (name.substr(0, name.find(':')) == kind) columns.push_back(static_cast<int>(p));
+    }
+    return columns;
+}
+
+}  // namespace
+
+void write_marker_series(const fs::path& folder, const std::string& name, const identify::MeasurementSet& set,
+                         const identify::Comparison& comparison) {
+    std::vector<mesh::SeriesStep> steps;
+    for (std::size_t s = 0; s < set.states.size(); ++s) {
+        const auto& readings = set.states[s].readings;
+        std::vector<int> labelled;
+        for (int r = 0; r < static_cast<int>(readings.size()); ++r) {
+            if (readings[r].marker >= 0 && readings[r].position.allFinite()) labelled.push_back(r);
+        }
+        const auto count = static_cast<Eigen::Index>(labelled.size());
+        Points measured(count, 3), rest(count, 3), predicted(count, 3);
+        Eigen::VectorXd ids(count);
+        for (Eigen::Index i = 0; i < count; ++i) {
+            const identify::Reading& reading = readings[labelled[i]];
+            const identify::Marker& marker = set.markers[reading.marker];
+            measured.row(i) = reading.position;
+            rest.row(i) = marker.rest;
+            predicted.row(i) = comparison.predicted[s].row(labelled[i]);
+            ids[i] = marker.id;
+        }
+        const fs::path file = folder / step_name(name, s);
+        mesh::write_vtp_lines(file, measured, {},
+                              {.points = {{"error [mm]", measured - predicted},
+                                          {"displacement [mm]", predicted - rest},
+                                          {"measured [mm]", measured - rest},
+                                          {"marker", ids}}});
+        steps.push_back({static_cast<double>(s), file});
+    }
+    mesh::write_pvd(folder / (name + ".pvd"), steps);
+}
+
+Points skin_displacement(const skeleton::Model& model, const skeleton::Equilibrium& equilibrium) {
+    return skeleton::observe(model, equilibrium, model.skin) - model.surface.vertices;
+}
+
+void write_skin_series(const fs::path& folder, const std::string& name, const skeleton::Model& model,
+                       const identify::MeasurementSet& set) {
+    skeleton::StaticsSolver solver(model);
+    const identify::ContactLoads to_load(model);
+    const Eigen::VectorXd k = skeleton::stiffness_vector(model);
+    std::vector<mesh::SeriesStep> steps;
+    for (std::size_t s = 0; s < set.states.size(); ++s) {
+        const Points u = skin_displacement(model, solver.solve(k, to_load(set, set.states[s])));
+        mesh::MeshData data{.points = {{"displacement [mm]", u}}};
+        if (const auto measured = field_on_skin(model, set.states[s])) {
+            data.points.push_back({"measured [mm]", *measured});
+            data.points.push_back({"error [mm]", *measured - u});
+        }
+        const fs::path file = folder / step_name(name, s);
+        mesh::write_vtp(file, model.surface, data);
+        steps.push_back({static_cast<double>(s), file});
+    }
+    mesh::write_pvd(folder / (name + ".pvd"), steps);
+}
+
+void write_particle_series(const fs::path& file, const identify::IdentifyResult& result) {
+    const std::vector<int> elongation = columns_of(result, "elongation"), flexion = columns_of(result, "flexion");
+    constexpr std::size_t most_groups = 64;  // a plane for each of hundreds of links is no picture
+    const std::size_t groups = std::min({elongation.size(), flexion.size(), most_groups});
+    std::vector<mesh::SeriesStep> steps;
+    const double widest = result.history.empty() ? 1.0 : [&] {
+        double e = 0, f = 0;
+        for (std::size_t g = 0; g < groups; ++g) {
+            e = std::max(e, result.history.front().particles.col(elongation[g]).maxCoeff());
+            f = std::max(f, result.history.front().particles.col(flexion[g]).maxCoeff());
+        }
+        return f > 0 ? e / f : 1.0;
+    }();
+    for (std::size_t h = 0; h < result.history.size(); ++h) {
+        const identify::FilterStep& step = result.history[h];
+        const Eigen::Index m = step.particles.rows();
+        const Eigen::Index count = m * static_cast<Eigen::Index>(groups);
+        Points points(count, 3);
+        Eigen::VectorXd kE(count), kF(count), zone(count), weight(count);
+        for (std::size_t g = 0; g < groups; ++g) {
+            const auto rows = Eigen::seqN(static_cast<Eigen::Index>(g) * m, m);
+            kE(rows) = step.particles.col(elongation[g]);
+            kF(rows) = step.particles.col(flexion[g]);
+            zone(rows).setConstant(static_cast<double>(g));
+            weight(rows) = step.log_weights.array().exp();
+        }
+        points << kE, kF * widest, zone;
+        const fs::path vtp = file.parent_path() / file.stem() / step_name("particles", h);
+        mesh::write_vtp_lines(
+            vtp, points, {},
+            {.points = {
+                 {"elongation [N/mm]", kE}, {"flexion [N*mm/rad]", kF}, {"zone", zone}, {"weight [-]", weight}}});
+        steps.push_back({static_cast<double>(h), vtp});
+    }
+    mesh::write_pvd(file, steps);
+}
+
+}  // namespace palpate::pipeline
