@@ -37,10 +37,18 @@ struct CommandLine::Impl {
 
     /// A verb whose help begins with examples.
     CLI::App* verb(CLI::App& app, const std::string& name, const std::string& what, const std::string& examples,
-                   std::function<Outcome()> action);
+                   const std::function<Outcome()>& action);
 };
 
 namespace {
+
+constexpr const char* description =
+    "From a mesh to a calibrated real-time model of spheres and links.\n\n"
+    "  palpate run liver.stl --longest 200      calibrate against finite elements\n"
+    "  palpate run my-measurements/             calibrate against measurements\n"
+    "  palpate check liver.stl                  what is wrong with this mesh?\n\n"
+    "Units: mm, N, MPa, s. Exit codes: 0 done, 1 internal error, 2 wrong usage, 3 bad input, 4 numerical failure,\n"
+    "5 tolerance not met.";
 
 void add_body_flags(CLI::App* verb, CaseOverrides& say) {
     verb->add_option("--unit", say.unit, "Unit of the mesh")->check(CLI::IsMember({"mm", "cm", "m"}))->group("Body");
@@ -103,7 +111,7 @@ public:
 }  // namespace
 
 CLI::App* CommandLine::Impl::verb(CLI::App& app, const std::string& name, const std::string& what,
-                                  const std::string& examples, std::function<Outcome()> action) {
+                                  const std::string& examples, const std::function<Outcome()>& action) {
     CLI::App* sub = app.add_subcommand(name, what + "\n\nExamples:\n" + examples);
     sub->callback([this, action] { command = action; });
     return sub;
@@ -231,17 +239,8 @@ CommandLine::CommandLine() : impl_(std::make_unique<Impl>()) {
 }
 CommandLine::~CommandLine() = default;
 
-std::string CommandLine::description() const {
-    return "From a mesh to a calibrated real-time model of spheres and links.\n\n"
-           "  palpate run liver.stl --longest 200      calibrate against finite elements\n"
-           "  palpate run my-measurements/             calibrate against measurements\n"
-           "  palpate check liver.stl                  what is wrong with this mesh?\n\n"
-           "Units: mm, N, MPa, s. Exit codes: 0 done, 1 internal error, 2 wrong usage, 3 bad input, 4 numerical "
-           "failure,\n"
-           "5 tolerance not met.";
-}
-
-void CommandLine::set_up(CLI::App& app) {
+std::optional<commands::ExitCode> CommandLine::parse(int argc, char** argv) {
+    CLI::App app(description, "palpate");
     app.require_subcommand(1);
     app.formatter(std::make_shared<OneLinePerCommand>());
     app.fallthrough();
@@ -255,6 +254,12 @@ void CommandLine::set_up(CLI::App& app) {
     impl_->add_compare(app);
     impl_->add_simulate(app);
     impl_->add_report(app);
+    try {
+        app.parse(argc, argv);
+    } catch (const CLI::ParseError& e) {
+        return app.exit(e) == 0 ? commands::done : commands::wrong_usage;
+    }
+    return std::nullopt;
 }
 
 const commands::Common& CommandLine::common() const { return impl_->common; }

@@ -2,13 +2,9 @@
 
 #include <functional>
 #include <memory>
-#include <string>
+#include <optional>
 
 #include "pipeline/commands/common.h"
-
-namespace CLI {
-class App;
-}
 
 namespace palpate::pipeline {
 
@@ -18,8 +14,8 @@ public:
     CommandLine();
     ~CommandLine();
 
-    void set_up(CLI::App& app);
-    std::string description() const;
+    /// Help, version and wrong usage are answered here: the exit code then, else nothing.
+    std::optional<commands::ExitCode> parse(int argc, char** argv);
 
     // After parsing:
     const commands::Common& common() const;

@@ -1,15 +1,12 @@
 #include <fmt/format.h>
 #include <malloc.h>
 
-#include <CLI/CLI.hpp>
 #include <exception>
 #include <new>
-#include <thread>
 
 #include "mesh/errors.h"
 #include "pipeline/command_line.h"
 #include "pipeline/commands/common.h"
-#include "pipeline/version.h"
 
 namespace {
 
@@ -47,14 +44,7 @@ int main(int argc, char** argv) {
     mallopt(M_MMAP_THRESHOLD, 256 << 20);
     mallopt(M_TRIM_THRESHOLD, 512 << 20);
     CommandLine line;
-    CLI::App app(line.description(), "palpate");
-    line.set_up(app);
-    try {
-        app.parse(argc, argv);
-    } catch (const CLI::ParseError& e) {
-        const int code = app.exit(e);
-        return code == 0 ? commands::done : commands::wrong_usage;
-    }
+    if (const auto answered = line.parse(argc, argv)) return *answered;
     Console::set_up(line.verbosity());
     const commands::Outcome outcome = guarded(line.command());
     if (line.common().json) {
