@@ -101,9 +101,9 @@ void add_probing_flags(CLI::App* verb, CaseOverrides& say) {
 class OneLinePerCommand : public CLI::Formatter {
 public:
     std::string make_subcommand(const CLI::App* sub) const override {
-        const std::string description = sub->get_description();
+        const std::string text = sub->get_description();
         std::stringstream out;
-        CLI::detail::format_help(out, sub->get_display_name(), description.substr(0, description.find('\n')), 16);
+        CLI::detail::format_help(out, sub->get_display_name(), text.substr(0, text.find('\n')), 16);
         return out.str();
     }
 };
