@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <numeric>
 
 #include "mesh/errors.h"
@@ -75,6 +76,20 @@ std::vector<int> share_out(const Body& body, std::vector<Site>& sites, std::vect
             sites.erase(sites.begin() + static_cast<std::ptrdiff_t>(i));
             spheres.erase(spheres.begin() + static_cast<std::ptrdiff_t>(i));
         }
+    }
+}
+
+// An extra sphere covers a corner, and the cell that is left to it is a splinter, while the body's own material joins
+// it to its neighbours all round: their links stand for a rod as thick as the ball.
+void thicken_extras(const std::vector<Site>& sites, const std::vector<Sphere>& spheres,
+                    std::vector<Section>& sections) {
+    for (Section& s : sections) {
+        if (!sites[s.a].extra && !sites[s.b].extra) continue;
+        const double r = std::min(spheres[s.a].radius, spheres[s.b].radius);
+        const double area = std::numbers::pi * r * r, moment = area * r * r / 4;
+        s.area = std::max(s.area, area);
+        s.moment_1 = std::max(s.moment_1, moment);
+        s.moment_2 = std::max(s.moment_2, moment);
     }
 }
 
@@ -175,7 +190,9 @@ Model build_skeleton(const mesh::Surface& surface, const mesh::VolumeMesh& volum
     // Who belongs to whom: cells, masses, links, skin.
     const std::vector<int> owner = share_out(body, sites, model.spheres);
     set_masses(body.graph, owner, material.density, model.spheres);
-    model.links = make_links(find_sections(body.graph, body.core, owner, sites), material);
+    std::vector<Section> sections = find_sections(body.graph, body.core, owner, sites);
+    thicken_extras(sites, model.spheres, sections);
+    model.links = make_links(sections, material);
     set_zones(body, sites, options.zones, model.links);
     model.surface = surface;
     model.supports = supports;

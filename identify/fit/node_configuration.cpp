@@ -134,9 +134,8 @@ std::vector<MeasuredConfiguration> measured_configurations(const skeleton::Model
     std::vector<MeasuredConfiguration> measured;
     for (const LoadState& state : set.states) {
         if (!is_loaded(state)) continue;
-        const NodeConfiguration configuration = state.field.empty()
-                                                    ? configuration_of_markers(model, set, state)
-                                                    : configuration_of_field(model, read_field(state.field));
+        const NodeConfiguration configuration = state.field.empty() ? configuration_of_markers(model, set, state)
+                                                                    : configuration_of_field(model, read_field(state));
         if (configuration.complete()) measured.push_back({configuration.state, loads(set, state)});
     }
     return measured;

@@ -10,17 +10,18 @@
 
 namespace palpate::identify {
 
-Field read_field(const std::filesystem::path& file) {
+Field read_field(const LoadState& state) {
     mesh::MeshData data;
-    Field field{mesh::read_vtu(file, &data), {}};
+    Field field{mesh::read_vtu(state.field, &data), {}};
     const auto found = std::ranges::find(data.points, "displacement", &mesh::DataArray::name);
     if (found == data.points.end() || found->values.cols() != 3) {
         throw InvalidInput(
-            fmt::format("{}: no point array 'displacement' of three components [mm]; write one row "
+            fmt::format("{}: no point array 'displacement' of three components; write one row "
                         "for each node of the mesh at rest",
-                        file.string()));
+                        state.field.string()));
     }
-    field.displacement = found->values;
+    field.mesh.nodes *= state.field_unit;
+    field.displacement = state.field_unit * found->values;
     return field;
 }
 
@@ -41,7 +42,7 @@ MeasurementSet with_markers_of_fields(const MeasurementSet& set, int markers) {
     }
     for (LoadState& state : result.states) {
         if (state.field.empty()) continue;
-        const Field field = read_field(state.field);
+        const Field field = read_field(state);
         const Points moved = rest + fem::interpolation(field.mesh, rest) * field.displacement;
         for (int i = 0; i < count; ++i) state.readings.push_back({i, moved.row(i), missing});
     }

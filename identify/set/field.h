@@ -1,7 +1,5 @@
 #pragma once
 
-#include <filesystem>
-
 #include "identify/set/measurement_set.h"
 #include "mesh/volume_mesh.h"
 
@@ -13,8 +11,9 @@ struct Field {
     Points displacement;    // of its nodes (n x 3) [mm]
 };
 
-/// @throws IoError, InvalidInput when the file has no point array `displacement` of three components.
-Field read_field(const std::filesystem::path& file);
+/// The field of a state that has one, in mm. @throws IoError, InvalidInput when its file has no point array
+/// `displacement` of three components.
+Field read_field(const LoadState& state);
 
 /// The set with markers: its own where it has readings, else up to `markers` vertices of its rest surface, read from
 /// the fields of the states that have one.

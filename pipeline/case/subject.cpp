@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "identify/set/field.h"
 #include "mesh/errors.h"
 #include "mesh/read_surface.h"
 #include "pipeline/reference/body.h"
@@ -28,7 +29,7 @@ void read_mesh(Subject& subject) {
 
 void read_set(Subject& subject) {
     const Case& c = subject.settings;
-    subject.set = identify::read_measurement_set(*c.measurements);
+    subject.set = read_measurements(*c.measurements);
     subject.surface = subject.set->rest_surface;
     for (const auto& entry : std::filesystem::recursive_directory_iterator(subject.set->folder)) {
         if (entry.is_regular_file() && entry.path().filename() != "truth.json") subject.files.push_back(entry.path());
@@ -77,6 +78,10 @@ void choose_material(Subject& subject) {
 }
 
 }  // namespace
+
+identify::MeasurementSet read_measurements(const std::filesystem::path& path) {
+    return identify::with_markers_of_fields(identify::read_measurement_set(path));
+}
 
 Subject read_subject(Case settings) {
     Subject subject;

@@ -24,6 +24,10 @@ struct Subject {
     std::vector<std::string> assumptions;      // what nobody said and was assumed, in words
 };
 
+/// A measurement set with readings: where it has full fields only, vertices of its surface are read from them.
+/// @throws IoError, InvalidInput.
+identify::MeasurementSet read_measurements(const std::filesystem::path& path);
+
 /// @throws IoError, InvalidInput.
 Subject read_subject(Case settings);
 

@@ -6,6 +6,7 @@
 #include "mesh/io/region_yaml.h"
 #include "mesh/io/vtk_files.h"
 #include "pipeline/case/names.h"
+#include "pipeline/case/subject.h"
 #include "pipeline/commands/common.h"
 #include "pipeline/results/identification.h"
 #include "pipeline/results/results.h"
@@ -33,7 +34,7 @@ Outcome identify(const IdentifyCommandOptions& options, const Common& common) {
     const fs::path output = options.output.empty() ? fs::path("identified") : options.output;
     refuse_to_overwrite(output, common.force);
     skeleton::Model model = skeleton::read_model(options.model);
-    const identify::MeasurementSet set = identify::read_measurement_set(options.set);
+    const identify::MeasurementSet set = read_measurements(options.set);
     take_supports(model, set);
 
     identify::IdentifyOptions how;
@@ -65,7 +66,7 @@ Outcome identify(const IdentifyCommandOptions& options, const Common& common) {
 
 Outcome compare(const CompareOptions& options, const Common& common) {
     skeleton::Model model = skeleton::read_model(options.model);
-    const identify::MeasurementSet set = identify::read_measurement_set(options.set);
+    const identify::MeasurementSet set = read_measurements(options.set);
     take_supports(model, set);
     const identify::Comparison comparison = identify::compare(model, set, common.threads);
 

@@ -40,10 +40,20 @@ def has_array(source, array):
     return source.PointData.GetArray(array) is not None
 
 
-def last_step(view, reader):
-    times = list(reader.TimestepValues) if hasattr(reader.TimestepValues, "__len__") else [reader.TimestepValues]
-    view.ViewTime = times[min(1, len(times) - 1)] if times else 0
-    reader.UpdatePipeline(view.ViewTime)
+def reach(source, array):
+    return max(abs(x) for c in range(3) for x in source.PointData[array].GetRange(c))
+
+
+def show_largest_step(view, reader, array):
+    """Goes to the state in which the array reaches furthest; returns how far."""
+    times = reader.TimestepValues
+    best = 0.0, 0.0
+    for time in times if hasattr(times, "__len__") else [times]:
+        reader.UpdatePipeline(time)
+        best = max(best, (reach(reader, array), time))
+    view.ViewTime = best[1]
+    reader.UpdatePipeline(best[1])
+    return best[0]
 
 
 def size_of(source):
@@ -55,13 +65,11 @@ def size_of(source):
 def shape_view(view):
     """The model's shape, displacements magnified to 10 % of the size."""
     skin = PVDReader(FileName=path("compare", "skin.pvd"))
-    last_step(view, skin)
+    largest = show_largest_step(view, skin, "displacement [mm]")
     size = size_of(skin)
-    largest = skin.PointData["displacement [mm]"]
-    reach = max(abs(x) for c in range(3) for x in largest.GetRange(c)) or 1.0
     warp = WarpByVector(Input=skin)
     warp.Vectors = ["POINTS", "displacement [mm]"]
-    warp.ScaleFactor = 1.0 if reach > 0.03 * size else 0.1 * size / reach
+    warp.ScaleFactor = 0.1 * size / largest if 1e-6 * size < largest < 0.03 * size else 1.0
     Show(warp, view)
     colour(view, warp, "POINTS", "displacement [mm]")
     if not has_array(skin, "measured [mm]"):
@@ -102,7 +110,7 @@ def error_view(view):
     surface = XMLPolyDataReader(FileName=[path("mesh", "surface.vtp")])
     Show(surface, view).Opacity = 0.3
     markers = PVDReader(FileName=path("compare", "markers.pvd"))
-    last_step(view, markers)
+    show_largest_step(view, markers, "error [mm]")
     dots = Glyph(Input=markers, GlyphType="Sphere")
     dots.ScaleArray = ["POINTS", "No scale array"]
     dots.ScaleFactor = 0.02 * size_of(surface)

@@ -7,8 +7,8 @@
 #include <optional>
 
 #include "fem/interpolation.h"
+#include "identify/set/field.h"
 #include "identify/set/loads.h"
-#include "mesh/errors.h"
 #include "mesh/io/vtk_files.h"
 
 namespace palpate::pipeline {
@@ -21,14 +21,8 @@ std::string step_name(const std::string& name, std::size_t step) { return fmt::f
 /// Displacement of the skin in a full field.
 std::optional<Points> field_on_skin(const skeleton::Model& model, const identify::LoadState& state) {
     if (state.field.empty()) return std::nullopt;
-    mesh::MeshData data;
-    const mesh::VolumeMesh mesh = mesh::read_vtu(state.field, &data);
-    const auto found = std::find_if(data.points.begin(), data.points.end(),
-                                    [](const mesh::DataArray& array) { return array.name == "displacement"; });
-    if (found == data.points.end() || found->values.cols() != 3) {
-        throw InvalidInput(fmt::format("{}: has no point array 'displacement' of 3 components", state.field.string()));
-    }
-    return Points(fem::interpolation(mesh, model.surface.vertices) * found->values);
+    const identify::Field field = identify::read_field(state);
+    return Points(fem::interpolation(field.mesh, model.surface.vertices) * field.displacement);
 }
 
 /// Columns of the particle matrix of one kind of stiffness, in order.

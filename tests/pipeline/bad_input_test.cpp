@@ -6,17 +6,16 @@
 #include "mesh/errors.h"
 #include "mesh/read_surface.h"
 #include "pipeline/commands/common.h"
-#include "tests/pipeline/scratch.h"
+#include "tests/temporary_folder.h"
 
 namespace palpate::pipeline {
 namespace {
 
 using ::testing::AllOf;
 using ::testing::HasSubstr;
-using testing::Scratch;
 
 /// The message of a run on `input`; nothing may stand in the run folder afterwards.
-std::string message_of_run(const Scratch& scratch, const std::filesystem::path& input) {
+std::string message_of_run(const TemporaryFolder& scratch, const std::filesystem::path& input) {
     std::string message;
     try {
         commands::run({.input = input, .output = scratch / "run", .say = {}}, {});
@@ -34,18 +33,18 @@ const std::string box_obj =
     "f 1 4 3 2\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n";
 
 TEST(BadInput, MissingFile) {
-    const Scratch scratch;
+    const TemporaryFolder scratch;
     EXPECT_THAT(message_of_run(scratch, scratch / "none.stl"), AllOf(HasSubstr("none.stl"), HasSubstr("no such file")));
 }
 
 TEST(BadInput, EmptyFile) {
-    const Scratch scratch;
+    const TemporaryFolder scratch;
     EXPECT_THAT(message_of_run(scratch, scratch.write("empty.stl", "")),
                 AllOf(HasSubstr("empty.stl"), HasSubstr("empty")));
 }
 
 TEST(BadInput, TruncatedStl) {
-    const Scratch scratch;
+    const TemporaryFolder scratch;
     const auto whole = scratch / "box.stl";
     mesh::write_surface(whole, mesh::make_box({0, 0, 0}, {100, 20, 20}, {2, 1, 1}));
     std::filesystem::resize_file(whole, std::filesystem::file_size(whole) - 30);
@@ -53,13 +52,13 @@ TEST(BadInput, TruncatedStl) {
 }
 
 TEST(BadInput, TextInPlaceOfAMesh) {
-    const Scratch scratch;
+    const TemporaryFolder scratch;
     EXPECT_THAT(message_of_run(scratch, scratch.write("letter.stl", "Dear all,\nplease find the mesh attached.\n")),
                 HasSubstr("letter.stl"));
 }
 
 TEST(BadInput, CoordinateThatIsNoNumber) {
-    const Scratch scratch;
+    const TemporaryFolder scratch;
     std::string text = box_obj;
     text.replace(text.find("v 100 20 0"), 10, "v 100 nan 0");
     EXPECT_THAT(message_of_run(scratch, scratch.write("box.obj", text)),
@@ -67,7 +66,7 @@ TEST(BadInput, CoordinateThatIsNoNumber) {
 }
 
 TEST(BadInput, IndexOutOfRange) {
-    const Scratch scratch;
+    const TemporaryFolder scratch;
     std::string text = box_obj;
     text.replace(text.find("f 5 6 7 8"), 9, "f 5 6 7 99");
     EXPECT_THAT(message_of_run(scratch, scratch.write("box.obj", text)),
@@ -75,13 +74,13 @@ TEST(BadInput, IndexOutOfRange) {
 }
 
 TEST(BadInput, UnknownKindOfFile) {
-    const Scratch scratch;
+    const TemporaryFolder scratch;
     EXPECT_THAT(message_of_run(scratch, scratch.write("body.docx", "x")),
                 AllOf(HasSubstr("body.docx"), HasSubstr(".stl")));
 }
 
 TEST(BadInput, UnknownKeyIsNamedWithItsNeighbour) {
-    const Scratch scratch;
+    const TemporaryFolder scratch;
     scratch.write("box.obj", box_obj);
     const auto file = scratch.write("case.yaml", "format: palpate-case/1\nmesh: box.obj\nskeleton: {shperes: 12}\n");
     EXPECT_THAT(message_of_run(scratch, file),
@@ -89,7 +88,7 @@ TEST(BadInput, UnknownKeyIsNamedWithItsNeighbour) {
 }
 
 TEST(BadInput, YamlAliasBombIsRefused) {
-    const Scratch scratch;
+    const TemporaryFolder scratch;
     std::string bomb = "format: palpate-case/1\na: &a [x, x, x, x, x, x, x, x, x]\n";
     for (char c = 'b'; c <= 'j'; ++c) {
         bomb += std::string(1, c) + ": &" + c + " [";
@@ -101,20 +100,20 @@ TEST(BadInput, YamlAliasBombIsRefused) {
 }
 
 TEST(BadInput, NoSupports) {
-    const Scratch scratch;
+    const TemporaryFolder scratch;
     scratch.write("box.obj", box_obj);
     const auto file = scratch.write("case.yaml", "format: palpate-case/1\nmesh: box.obj\nsupports: []\n");
     EXPECT_THAT(message_of_run(scratch, file), AllOf(HasSubstr("case.yaml"), HasSubstr("supports"), HasSubstr("held")));
 }
 
 TEST(BadInput, MeshAndMeasurementsTogether) {
-    const Scratch scratch;
+    const TemporaryFolder scratch;
     const auto file = scratch.write("case.yaml", "format: palpate-case/1\nmesh: a.stl\nmeasurements: b\n");
     EXPECT_THAT(message_of_run(scratch, file), HasSubstr("not both"));
 }
 
 TEST(BadInput, ProbeOffTheSurface) {
-    const Scratch scratch;
+    const TemporaryFolder scratch;
     scratch.write("set/rest.obj", box_obj);
     scratch.write("set/set.yaml",
                   "format: palpate-measurements/1\nrest_surface: rest.obj\nsupports:\n  - box: {min: [-1, -1, -1], "
@@ -126,14 +125,14 @@ TEST(BadInput, ProbeOffTheSurface) {
 }
 
 TEST(BadInput, FolderOfSomebodyElse) {
-    const Scratch scratch;
+    const TemporaryFolder scratch;
     const auto input = scratch.write("box.obj", box_obj);
     scratch.write("run/thesis.tex", "years of work");
     EXPECT_THAT(message_of_run(scratch, input), AllOf(HasSubstr("did not make"), HasSubstr("--force")));
 }
 
 TEST(BadInput, FileOfSomebodyElseIsNotReplaced) {
-    const Scratch scratch;
+    const TemporaryFolder scratch;
     const auto input = scratch.write("box.obj", box_obj);
     const auto precious = scratch.write("body.vtu", "somebody's");
     EXPECT_THROW(commands::mesh_body({.input = input, .output = precious, .say = {}}, {}), InvalidInput);
@@ -142,7 +141,7 @@ TEST(BadInput, FileOfSomebodyElseIsNotReplaced) {
 
 /// A surface that encloses nothing is refused after reading, before anything is written for it.
 TEST(BadInput, OpenSheetEnclosesNothing) {
-    const Scratch scratch;
+    const TemporaryFolder scratch;
     const auto input = scratch.write("sheet.obj", "v 0 0 0\nv 100 0 0\nv 100 50 0\nv 0 50 0\nf 1 2 3 4\n");
     std::string message;
     try {

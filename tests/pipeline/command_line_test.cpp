@@ -9,12 +9,10 @@
 #include <nlohmann/json.hpp>
 
 #include "mesh/read_surface.h"
-#include "tests/pipeline/scratch.h"
+#include "tests/temporary_folder.h"
 
 namespace palpate::pipeline {
 namespace {
-
-using testing::Scratch;
 
 struct Finished {
     int code;
@@ -31,7 +29,7 @@ Finished palpate(const std::string& arguments) {
 }
 
 TEST(CommandLine, ExitCodesTellWhatWentWrong) {
-    const Scratch scratch;
+    const TemporaryFolder scratch;
     EXPECT_EQ(palpate("--version").code, 0);
     EXPECT_EQ(palpate("--help").code, 0);
     EXPECT_EQ(palpate("").code, 2);
@@ -41,7 +39,7 @@ TEST(CommandLine, ExitCodesTellWhatWentWrong) {
 }
 
 TEST(CommandLine, JsonStandsAloneOnStandardOutput) {
-    const Scratch scratch;
+    const TemporaryFolder scratch;
     mesh::write_surface(scratch / "box.stl", mesh::make_box({0, 0, 0}, {10, 2, 2}, {5, 1, 1}));
     const Finished check = palpate("check --json " + (scratch / "box.stl").string());
     EXPECT_EQ(check.code, 0);

@@ -9,15 +9,14 @@
 #include "mesh/io/atomic_file.h"
 #include "mesh/read_surface.h"
 #include "pipeline/commands/common.h"
-#include "tests/pipeline/scratch.h"
+#include "tests/temporary_folder.h"
 
 namespace palpate::pipeline {
 namespace {
 
 using nlohmann::json;
-using testing::Scratch;
 
-commands::RunOptions small_run(const Scratch& scratch) {
+commands::RunOptions small_run(const TemporaryFolder& scratch) {
     mesh::write_surface(scratch / "beam.stl", mesh::make_box({0, 0, 0}, {100, 20, 20}, {10, 2, 2}));
     commands::RunOptions options{.input = scratch / "beam.stl", .output = scratch / "run", .say = {}};
     options.say.edge_length = 12;
@@ -28,10 +27,10 @@ commands::RunOptions small_run(const Scratch& scratch) {
     return options;
 }
 
-json record(const Scratch& scratch) { return json::parse(mesh::read_text(scratch / "run/run.json"))["stages"]; }
+json record(const TemporaryFolder& scratch) { return json::parse(mesh::read_text(scratch / "run/run.json"))["stages"]; }
 
 TEST(Run, LeavesTheFilesThatItPromises) {
-    const Scratch scratch;
+    const TemporaryFolder scratch;
     const commands::Outcome outcome = commands::run(small_run(scratch), {});
     EXPECT_EQ(outcome.code, commands::done);
     for (const char* file :
@@ -46,8 +45,23 @@ TEST(Run, LeavesTheFilesThatItPromises) {
     EXPECT_TRUE(outcome.json["compare"].contains("held_out"));
 }
 
+/// A simulation's fields are measurements too: without markers, the surface's vertices are read from them.
+TEST(Run, TakesASetOfFieldsWithoutMarkers) {
+    const TemporaryFolder scratch;
+    commands::run(small_run(scratch), {});
+    const auto set = scratch / "run/measurements";
+    std::filesystem::remove(set / "markers.csv");
+    std::filesystem::remove(set / "positions.csv");
+    const commands::Outcome outcome = commands::compare(
+        {.model = scratch / "run/identify/model.json", .set = set, .output = scratch / "compared", .tolerance = {}},
+        {});
+    EXPECT_EQ(outcome.code, commands::done);
+    EXPECT_LT(outcome.json["error"]["relative"].get<double>(), 0.5);
+    EXPECT_TRUE(std::filesystem::exists(scratch / "compared/markers.pvd"));
+}
+
 TEST(Run, RepeatsNothingWhoseInputsAreUnchanged) {
-    const Scratch scratch;
+    const TemporaryFolder scratch;
     commands::RunOptions options = small_run(scratch);
     commands::run(options, {});
     const json before = record(scratch);
@@ -63,7 +77,7 @@ TEST(Run, RepeatsNothingWhoseInputsAreUnchanged) {
 }
 
 TEST(Run, SettingsReadBackGiveTheSameRun) {
-    const Scratch scratch;
+    const TemporaryFolder scratch;
     commands::run(small_run(scratch), {});
     const json before = record(scratch);
     std::filesystem::copy(scratch / "run/case.yaml", scratch / "again.yaml");
@@ -72,7 +86,7 @@ TEST(Run, SettingsReadBackGiveTheSameRun) {
 }
 
 TEST(Run, ThreadCountChangesNoNumber) {
-    const Scratch scratch;
+    const TemporaryFolder scratch;
     commands::RunOptions options = small_run(scratch);
     commands::run(options, {.json = false, .force = false, .threads = 1, .seed = {}});
     const std::string one = mesh::read_text(scratch / "run/identify/posterior.csv");
@@ -82,7 +96,7 @@ TEST(Run, ThreadCountChangesNoNumber) {
 }
 
 TEST(Run, TellsExpectationsThatAreNotMet) {
-    const Scratch scratch;
+    const TemporaryFolder scratch;
     small_run(scratch);
     const auto file =
         scratch.write("case.yaml",
@@ -95,7 +109,7 @@ TEST(Run, TellsExpectationsThatAreNotMet) {
 }
 
 TEST(Run, ReportNeedsNoNetwork) {
-    const Scratch scratch;
+    const TemporaryFolder scratch;
     commands::run(small_run(scratch), {});
     const std::string page = mesh::read_text(scratch / "run/report.html");
     EXPECT_EQ(page.find("http"), std::string::npos);

@@ -10,13 +10,12 @@
 #include "samples/lattice.h"
 #include "samples/organ.h"
 #include "skeleton/model_io.h"
-#include "tests/pipeline/scratch.h"
+#include "tests/temporary_folder.h"
 
 namespace palpate::pipeline {
 namespace {
 
 namespace fs = std::filesystem;
-using testing::Scratch;
 
 std::vector<std::string> sample_names() {
     std::vector<std::string> names;
@@ -30,7 +29,7 @@ std::vector<std::string> sample_names() {
 class Sample : public ::testing::TestWithParam<std::string> {};
 
 TEST_P(Sample, KeepsWhatItPromises) {
-    const Scratch scratch;
+    const TemporaryFolder scratch;
     const commands::Outcome outcome = commands::run(
         {.input = fs::path(PALPATE_SAMPLES) / GetParam() / "case.yaml", .output = scratch / "run", .say = {}},
         {.json = false, .force = false, .threads = 2, .seed = {}});
@@ -63,7 +62,7 @@ TEST(Experiments, AreWhatTheirCodeMakes) {
 
 /// The committed organ is the one that the code makes, to the single precision that STL holds.
 TEST(Organ, IsWhatItsCodeMakes) {
-    const Scratch scratch;
+    const TemporaryFolder scratch;
     mesh::write_surface(scratch / "organ.stl", samples::make_organ());
     EXPECT_EQ(mesh::read_text(scratch / "organ.stl"), mesh::read_text(fs::path(PALPATE_SAMPLES) / "organ/organ.stl"));
 }
