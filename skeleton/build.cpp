@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <numeric>
 
 #include "mesh/errors.h"
@@ -79,17 +78,23 @@ std::vector<int> share_out(const Body& body, std::vector<Site>& sites, std::vect
     }
 }
 
-// An extra sphere covers a corner, and the cell that is left to it is a splinter, while the body's own material joins
-// it to its neighbours all round: their links stand for a rod as thick as the ball.
-void thicken_extras(const std::vector<Site>& sites, const std::vector<Sphere>& spheres,
-                    std::vector<Section>& sections) {
+// An extra sphere covers a corner, and the cell that is left to it is a splinter. But it lies in the same section of
+// the body as the sphere that it hangs on, and sections keep their shape: their link is as stout as the stoutest there.
+void thicken_extras(const std::vector<Site>& sites, std::vector<Section>& sections) {
+    std::vector<Section> stoutest(sites.size());
+    for (const Section& s : sections) {
+        if (sites[s.a].extra || sites[s.b].extra) continue;
+        for (const int end : {s.a, s.b}) {
+            if (s.area > stoutest[end].area) stoutest[end] = s;
+        }
+    }
     for (Section& s : sections) {
-        if (!sites[s.a].extra && !sites[s.b].extra) continue;
-        const double r = std::min(spheres[s.a].radius, spheres[s.b].radius);
-        const double area = std::numbers::pi * r * r, moment = area * r * r / 4;
-        s.area = std::max(s.area, area);
-        s.moment_1 = std::max(s.moment_1, moment);
-        s.moment_2 = std::max(s.moment_2, moment);
+        for (const auto& [extra, other] : {std::pair(s.a, s.b), std::pair(s.b, s.a)}) {
+            if (!sites[extra].extra) continue;
+            s.area = std::max(s.area, stoutest[other].area);
+            s.moment_1 = std::max(s.moment_1, stoutest[other].moment_1);
+            s.moment_2 = std::max(s.moment_2, stoutest[other].moment_2);
+        }
     }
 }
 
@@ -191,7 +196,7 @@ Model build_skeleton(const mesh::Surface& surface, const mesh::VolumeMesh& volum
     const std::vector<int> owner = share_out(body, sites, model.spheres);
     set_masses(body.graph, owner, material.density, model.spheres);
     std::vector<Section> sections = find_sections(body.graph, body.core, owner, sites);
-    thicken_extras(sites, model.spheres, sections);
+    thicken_extras(sites, sections);
     model.links = make_links(sections, material);
     set_zones(body, sites, options.zones, model.links);
     model.surface = surface;

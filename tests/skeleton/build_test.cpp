@@ -211,6 +211,31 @@ TEST(BuildSkeleton, AnUncalibratedChainBendsLikeABeam) {
     EXPECT_NEAR(sag(built_limb().model, Vec3(160, 8, 8)) / euler, 1, 0.03);
 }
 
+/// A thick limb's square end gets spheres of its own for its corners. Pushed at a corner, the end face stays a face:
+/// its vertices lie within a tenth of the deflection round where the face's mean motion and turn put them.
+TEST(BuildSkeleton, AnEndPushedAtItsCornerKeepsItsShape) {
+    const Built built = build(block(Vec3(100, 30, 30), {20, 6, 6}));
+    ASSERT_GT(loops(built.model), 0) << "corners without spheres of their own test nothing";
+    const fem::Material material;
+    const double force = 2 * 3 * material.young * std::pow(30., 4) / 12 / std::pow(100., 3);  // [N], 2 mm by Euler
+    const Equilibrium bent =
+        equilibrium(built.model, {.forces = {{attach(built.model, Vec3(100, 30, 30)), Vec3(0, 0, -force)}}});
+
+    std::vector<Attachment> end;
+    for (const Attachment& vertex : built.model.skin) {
+        if (vertex.rest.x() > 99.9) end.push_back(vertex);
+    }
+    Points rest(std::ssize(end), 3);
+    for (std::size_t i = 0; i < end.size(); ++i) rest.row(static_cast<Eigen::Index>(i)) = end[i].rest;
+    const Points moved = observe(built.model, bent, end);
+    const Eigen::Matrix4d motion = Eigen::umeyama(rest.transpose().eval(), moved.transpose().eval(), false);
+    const Points rigid =
+        (rest * motion.topLeftCorner<3, 3>().transpose()).rowwise() + motion.topRightCorner<3, 1>().transpose();
+    const double deflection = (moved - rest).rowwise().norm().mean();
+    EXPECT_GT(deflection, 1);
+    EXPECT_LT((moved - rigid).rowwise().norm().maxCoeff(), 0.1 * deflection);
+}
+
 TEST(BuildSkeleton, AnUncalibratedLumpBendsLikeABeamWithinAFactorOfTwo) {
     const fem::Material material;
     const double area = 1600, I = area * area / 12;
