@@ -68,10 +68,12 @@ void choose_material(Subject& subject) {
     const auto guess = subject.set && subject.set->material ? *subject.set->material : identify::MaterialGuess{};
     const double density =
         subject.set && subject.set->density ? *subject.set->density / fem::tonne_per_mm3 : identify::missing;
+    // A fit only starts from what is assumed here; a reference simulation takes it for true.
+    const std::string start = subject.set ? " to start from" : "";
     subject.material.young =
-        choose(c.young, guess.young, 0.1, "Young's modulus", " MPa", "--young", subject.assumptions);
+        choose(c.young, guess.young, 0.1, "Young's modulus" + start, " MPa", "--young", subject.assumptions);
     subject.material.poisson =
-        choose(c.poisson, guess.poisson, 0.45, "Poisson's ratio", "", "--poisson", subject.assumptions);
+        choose(c.poisson, guess.poisson, 0.45, "Poisson's ratio" + start, "", "--poisson", subject.assumptions);
     subject.material.density = fem::tonne_per_mm3 * choose(c.density, density, 1000, "The density", " kg/m^3",
                                                            "--density", subject.assumptions);
     subject.material.validate();

@@ -97,10 +97,13 @@ json summary_json(const identify::IdentifyResult& result) {
     json posterior = json::array();
     int informed = 0;
     for (const auto& row : result.posterior) informed += row.informed ? 1 : 0;
-    if (result.posterior.size() <= 30) {
-        for (const auto& row : result.posterior) {
+    constexpr std::size_t most_listed = 30;  // the rest stands in posterior.csv
+    if (result.posterior.size() <= most_listed) {
+        for (std::size_t p = 0; p < result.posterior.size(); ++p) {
+            const identify::PosteriorRow& row = result.posterior[p];
             posterior.push_back({{"parameter", row.parameter},
                                  {"unit", row.unit},
+                                 {"best", result.best[static_cast<Eigen::Index>(p)]},
                                  {"mean", row.mean},
                                  {"sd", row.sd},
                                  {"q025", row.q025},
