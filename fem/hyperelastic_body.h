@@ -1,0 +1,102 @@
+#pragma once
+
+#include <Eigen/SparseCore>
+#include <memory>
+#include <vector>
+
+#include "fem/material.h"
+#include "fem/point_potential.h"
+#include "fem/stiffness.h"
+#include "mesh/volume_mesh.h"
+
+namespace palpate::fem {
+
+/// How a body's stress follows from its deformation gradient F; all agree in small strain.
+/// mu: shear modulus, K: bulk modulus; J = det F, E = (F^T F - I) / 2.
+enum class Law {
+    linear,     // small strain: as linear solvers write
+    svk,        // St. Venant-Kirchhoff: mu dev(E):dev(E) + K/2 (tr E)^2
+    neo_hooke,  // mu/2 (J^-2/3 tr F^T F - 3) + K/2 (J - 1)^2
+};
+
+/// What a body is made of and what acts on it besides contact forces.
+struct BodySetting {
+    Law law = Law::neo_hooke;
+    Material material;
+    Potentials effects;
+};
+
+struct NewtonOptions {
+    double tolerance = 1e-8;  // of the residual's norm, as a share of the load's, > 0
+    int iterations = 60;      // at one load, >= 1
+    void validate() const;    // @throws InvalidInput naming option, value and bound
+};
+
+struct BodyEquilibrium {
+    Eigen::VectorXd u;       // displacement of the nodes (3n) [mm]
+    int iterations = 0;      // steps, in all
+    int factorisations = 0;  // of the tangent, in all
+    double residual = 0;     // norm of the net force left at free nodes [N]
+};
+
+/// J = d(internal force + effects)/du, factored in some configuration.
+class BodyTangent {
+public:
+    virtual ~BodyTangent() = default;
+    /// J^-1 B (3n x p); rows of held nodes are ignored in B and zero in the result. Safe from several threads.
+    virtual Eigen::MatrixXd solve(const Eigen::MatrixXd& B) const = 0;
+};
+
+/// Points that an effect acts on: nodes of the mesh, and their weights.
+struct NodeWeights {
+    std::vector<int> nodes;
+    Eigen::VectorXd weights;
+};
+
+/// A body of quadratic tetrahedra in large deformation: its elastic energy, forces, tangent and equilibria under dead
+/// loads. Elements keep their volume in the mean (P2/P0), which does not lock near nu = 0.5. [Simo, Taylor & Pister
+/// 1985] Degree of freedom 3 i + c is component c of node i. Const and safe from several threads; the same numbers on
+/// any number of them.
+class HyperelasticBody {
+public:
+    /// `held`: a flag per node (n). @throws InvalidInput when elements are not quadratic or turned inside out, or too
+    /// little is held to stop rigid motion.
+    HyperelasticBody(mesh::VolumeMesh mesh, std::vector<char> held, Dilatation dilatation = Dilatation::mean);
+    ~HyperelasticBody();
+    HyperelasticBody(HyperelasticBody&&) noexcept;
+
+    const mesh::VolumeMesh& mesh() const;
+    const std::vector<char>& held() const;
+    NodeWeights points(ActsOn what, double density) const;
+
+    /// Elastic energy and effects less the work of the dead load f (3n) [N mm]; infinite where an element is inside
+    /// out.
+    double potential(const Eigen::VectorXd& u, const BodySetting& setting, const Eigen::VectorXd& f) const;
+    /// Net force f - d(energy)/du on every node (3n) [N]; at held nodes minus the support's reaction.
+    /// @throws SolverFailure where an element is inside out.
+    Eigen::VectorXd residual(const Eigen::VectorXd& u, const BodySetting& setting, const Eigen::VectorXd& f) const;
+    /// J of all nodes, held ones too (3n x 3n), symmetric, both halves [N/mm].
+    Eigen::SparseMatrix<double> tangent(const Eigen::VectorXd& u, const BodySetting& setting) const;
+    /// @throws SolverFailure when J is not positive definite on the free nodes.
+    std::shared_ptr<const BodyTangent> factor(const Eigen::VectorXd& u, const BodySetting& setting) const;
+
+    /// Internal forces at unit moduli (3n x 2): the internal force is mu * column 0 + K * column 1.
+    Eigen::Matrix<double, Eigen::Dynamic, 2> modulus_forces(const Eigen::VectorXd& u, const BodySetting& setting) const;
+    /// Internal forces of weighted elements (3n x c): column j is sum_e W(e, j) f_e; W (elements x c).
+    Eigen::MatrixXd element_forces(const Eigen::VectorXd& u, const BodySetting& setting,
+                                   const Eigen::MatrixXd& W) const;
+    /// d residual / d parameters of one effect (3n x P).
+    Eigen::MatrixXd effect_forces(const Eigen::VectorXd& u, const PointPotential& effect, double density) const;
+
+    /// The displacement in which the net force vanishes at the free nodes: Newton's method on the potential with line
+    /// search, started from the linear answer or a neighbouring state `start`, factors reused while they serve;
+    /// load stepping when it fails at once. @throws SolverFailure with iterations and residual when none was found.
+    BodyEquilibrium equilibrium(const BodySetting& setting, const Eigen::VectorXd& f, const NewtonOptions& options = {},
+                                const Eigen::VectorXd* start = nullptr) const;
+
+private:
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace palpate::fem

@@ -1,0 +1,109 @@
+#pragma once
+
+#include <Eigen/SparseCore>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "fem/point_potential.h"
+#include "mesh/contact.h"
+#include "mesh/types.h"
+
+namespace palpate::identify {
+
+/// A number behind a model's stiffness, as a logarithm, and what is believed of it before the measurements.
+struct StiffnessParameter {
+    std::string name;
+    double start = 0;
+    double prior_mean = 0, prior_sd = 1;
+};
+
+/// What a model is told to be.
+struct Setting {
+    int law = 0;              // index in BodyModel::laws
+    Eigen::VectorXd theta;    // stiffness parameters (P)
+    fem::Potentials effects;  // in force beyond the model's own
+};
+
+/// What acts in a state and is known.
+struct Action {
+    std::vector<mesh::Contact> contacts;
+    Vec3 gravity = Vec3::Zero();  // [mm/s^2]
+};
+
+/// J = -d residual / d step in some configuration, factored.
+class Tangent {
+public:
+    virtual ~Tangent() = default;
+    /// J^-1 B (dofs x p), zero at what is held. Safe from several threads.
+    virtual Eigen::MatrixXd solve(const Eigen::MatrixXd& B) const = 0;
+};
+
+/// A model of a body, as identification, comparison and diagnosis see it: they do not know whether it is made of finite
+/// elements or of spheres and links. All members are const and safe from several threads.
+///
+/// A configuration q is a vector of the model's own; a step of it is (dofs). Residuals are generalized forces (dofs).
+class BodyModel {
+public:
+    virtual ~BodyModel() = default;
+
+    virtual int dofs() const = 0;
+    virtual const std::vector<std::string>& laws() const = 0;
+    virtual const std::vector<StiffnessParameter>& parameters() const = 0;
+    /// The largest side of the body at rest [mm].
+    virtual double size() const = 0;
+    /// Young's modulus that a setting amounts to [MPa]; for how deep a contact may dent.
+    virtual double young(const Setting& setting) const = 0;
+    /// Does the law bend and turn with the body?
+    virtual bool is_nonlinear(const Setting& setting) const = 0;
+
+    // The five questions.
+
+    /// Where all net forces vanish. `start`: a neighbouring configuration. @throws SolverFailure where there is none.
+    virtual Eigen::VectorXd equilibrium(const Setting& setting, const Action& action,
+                                        const Eigen::VectorXd* start = nullptr) const = 0;
+    /// Net generalized force; minus the reaction at what is held.
+    virtual Eigen::VectorXd residual(const Eigen::VectorXd& q, const Setting& setting, const Action& action) const = 0;
+    /// The factored tangent. @throws SolverFailure when it is not positive definite.
+    virtual std::shared_ptr<const Tangent> tangent(const Eigen::VectorXd& q, const Setting& setting,
+                                                   const Action& action) const = 0;
+    /// d residual / d theta (dofs x P): the force signatures of the stiffness parameters.
+    virtual Eigen::MatrixXd parameter_force(const Eigen::VectorXd& q, const Setting& setting) const = 0;
+    /// Positions of the markers (m x 3) [mm].
+    virtual Points observe(const Eigen::VectorXd& q, const Setting& setting) const = 0;
+    /// P = d observe / d step (3m x dofs).
+    virtual Eigen::SparseMatrix<double> observation(const Eigen::VectorXd& q, const Setting& setting) const = 0;
+
+    // What diagnosis asks besides.
+
+    virtual Eigen::VectorXd advance(const Eigen::VectorXd& q, const Eigen::VectorXd& step,
+                                    const Setting& setting) const = 0;
+    /// d residual / d parameters of an effect (dofs x its parameters); it need not be in force.
+    virtual Eigen::MatrixXd effect_force(const Eigen::VectorXd& q, const Setting& setting,
+                                         const fem::PointPotential& effect) const = 0;
+    /// The generalized force of one contact (dofs).
+    virtual Eigen::VectorXd contact_force(const Eigen::VectorXd& q, const Setting& setting,
+                                          const mesh::Contact& contact) const = 0;
+    /// The model's direction of its surface near a point: outward unit normal.
+    virtual Vec3 normal_near(const Vec3& point, double radius) const = 0;
+
+    /// The pieces that the body is made of, which may be softer or stiffer than the rest: centres (p x 3) [mm].
+    virtual const Points& pieces() const = 0;
+    /// Pieces that a support's border cuts (p flags).
+    virtual const std::vector<char>& pieces_at_support() const = 0;
+    /// d residual / d ln stiffness of weighted pieces (dofs x c); W (p x c).
+    virtual Eigen::MatrixXd piece_force(const Eigen::VectorXd& q, const Setting& setting,
+                                        const Eigen::MatrixXd& W) const = 0;
+
+    /// Points that the supports hold (s x 3) and their shares (s), which add up to 1.
+    virtual const Points& support_points() const = 0;
+    virtual const Eigen::VectorXd& support_shares() const = 0;
+    /// How what is held moves with a rigid motion of the supports about `centre`: translations, then rotation vectors
+    /// (dofs x 6); zero at what is free.
+    virtual Eigen::MatrixXd support_motion(const Vec3& centre) const = 0;
+    /// J * step, at what is held too (dofs x p).
+    virtual Eigen::MatrixXd tangent_times(const Eigen::VectorXd& q, const Setting& setting, const Action& action,
+                                          const Eigen::MatrixXd& steps) const = 0;
+};
+
+}  // namespace palpate::identify
