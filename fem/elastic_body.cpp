@@ -92,7 +92,8 @@ ElasticBody::ElasticBody(mesh::VolumeMesh mesh, const Material& material, const 
         stats.seconds_assemble = seconds_since(start);
 
         start = std::chrono::steady_clock::now();
-        impl_->factor = std::make_unique<Cholesky>(std::move(elimination.supernodes), K);
+        impl_->factor =
+            std::make_unique<Cholesky>(std::make_shared<const Supernodes>(std::move(elimination.supernodes)), K);
         stats.seconds_factor = seconds_order + seconds_since(start);
         stats.free_dofs = static_cast<int>(K.rows());
     });

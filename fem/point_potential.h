@@ -17,10 +17,10 @@ enum class ActsOn {
 
 /// A potential at one point, at unit weight, and its derivatives by where the point stands.
 struct PointTerms {
-    double energy = 0;               // [N mm per unit weight]
-    Vec3 gradient = Vec3::Zero();    // d energy / d x
-    Mat3 hessian = Mat3::Zero();     // d^2 energy / d x^2
-    Eigen::Matrix3Xd by_parameter;   // d gradient / d parameter (3 x P); filled on demand
+    double energy = 0;              // [N mm per unit weight]
+    Vec3 gradient = Vec3::Zero();   // d energy / d x
+    Mat3 hessian = Mat3::Zero();    // d^2 energy / d x^2
+    Eigen::Matrix3Xd by_parameter;  // d gradient / d parameter (3 x P); filled on demand
 };
 
 /// A physical effect as a potential on points of a body:

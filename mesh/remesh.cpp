@@ -21,7 +21,6 @@ using cgal::Mesh;
 using Edge = Mesh::Edge_index;
 using Vertex = Mesh::Vertex_index;
 
-constexpr double allowed_volume_change = 0.01;
 constexpr int attempts = 7;
 constexpr double most_triangles = 100'000;  // more would make a body that nobody can compute with
 
@@ -30,7 +29,6 @@ struct Attempt {
     Surface surface;
     double volume_change = 1;  // as a share of the volume
     bool sound = false;        // closed, outward, without crossings, no part or handle more or less
-    bool good() const { return sound && volume_change <= allowed_volume_change; }
 };
 
 /// Number of parts, and Euler's characteristic V - E + F.
@@ -67,10 +65,9 @@ Attempt attempt(const Surface& surface, const Creases& creases, double length, i
     return result;
 }
 
-std::string reason(const Attempt& tried) {
+std::string reason(const Attempt& tried, double allowed) {
     if (!tried.sound) return "the new triangles cross each other";
-    return fmt::format("the volume changes by {:.1f} % (allowed: {:.0f} %)", 100 * tried.volume_change,
-                       100 * allowed_volume_change);
+    return fmt::format("the volume changes by {:.1f} % (allowed: {:.0f} %)", 100 * tried.volume_change, 100 * allowed);
 }
 
 }  // namespace
@@ -84,6 +81,9 @@ void RemeshOptions::validate() const {
     if (!(crease_angle > 0 && crease_angle < 180))
         throw InvalidInput(fmt::format(
             "Remeshing: crease_angle is {} degrees; more than 0 and less than 180 is allowed.", crease_angle));
+    if (!(volume_change > 0 && volume_change <= 0.2))
+        throw InvalidInput(
+            fmt::format("Remeshing: volume_change is {}; more than 0 and at most 0.2 is allowed.", volume_change));
     if (iterations < 1 || iterations > 100)
         throw InvalidInput(fmt::format("Remeshing: iterations is {}; 1 to 100 is allowed.", iterations));
 }
@@ -107,9 +107,9 @@ Surface remesh(const Surface& surface, const RemeshOptions& options) {
             break;
         }
         const Attempt tried = attempt(surface, creases, length, options.iterations);
-        if (tried.good()) return tried.surface;
-        last = fmt::format("at {:.4g} mm {}", length, reason(tried));
-        const double wanted = std::sqrt(0.8 * allowed_volume_change / std::max(tried.volume_change, 1e-12));
+        if (tried.sound && tried.volume_change <= options.volume_change) return tried.surface;
+        last = fmt::format("at {:.4g} mm {}", length, reason(tried, options.volume_change));
+        const double wanted = std::sqrt(0.8 * options.volume_change / std::max(tried.volume_change, 1e-12));
         length *= std::clamp(wanted, 0.4, tried.sound ? 0.9 : 0.75);
     }
     throw SolverFailure(

@@ -13,9 +13,10 @@ struct SmoothSurfaceOptions {
 /// The smooth body behind a faceted one: boundary nodes of a body of quadratic tetrahedra are moved from the facets of
 /// `surface` to the smooth surface that its vertices are taken to lie on, inner nodes follow.
 ///
-/// Each edge of the surface gets a midpoint off the chord: by the normals at its ends, -((d.n_a) n_a - (d.n_b) n_b)/8
-/// [cf. Vlachos et al. 2001], along creases by their tangents; triangles bulge quadratically between. Facets of a scan
-/// or an STL file are chords of the true surface, and a body cut by chords is up to a tenth too soft.
+/// Each edge of the surface gets a midpoint off the chord d: by the normals at its ends,
+/// -((d.n_a) n_a - (d.n_b) n_b) / (4 h (1 + h)), h = |n_a + n_b|/2 [cf. Vlachos et al. 2001; h makes arcs exact], along
+/// creases by their tangents; triangles bulge quadratically between. Facets of a scan or an STL file are chords of the
+/// true surface, and a body cut by chords is up to a tenth too soft.
 /// Elements that would turn inside out stay straighter. Linear elements are returned as they are.
 /// @throws InvalidInput for options out of range.
 VolumeMesh curve_to(const VolumeMesh& body, const Surface& surface, const SmoothSurfaceOptions& options = {});

@@ -95,6 +95,23 @@ Points vertex_normals(const Surface& surface) {
     return normals;
 }
 
+Vec3 mean_normal(const Surface& surface, const Vec3& point, double radius) {
+    const Points areas = area_vectors(surface);
+    Vec3 sum = Vec3::Zero(), nearest = Vec3::Zero();
+    double least = INFINITY;
+    for (Eigen::Index t = 0; t < areas.rows(); ++t) {
+        Vec3 centre = Vec3::Zero();
+        for (const int vertex : surface.triangles.row(t)) centre += surface.vertices.row(vertex).transpose() / 3;
+        const double distance = (centre - point).norm();
+        if (distance < radius) sum += areas.row(t);
+        if (distance < least) {
+            least = distance;
+            nearest = areas.row(t);
+        }
+    }
+    return (sum.norm() > 0 ? sum : nearest).normalized();
+}
+
 Surface make_box(const Vec3& min, const Vec3& max, const Eigen::Vector3i& quads) {
     assert((quads.array() > 0).all() && (max - min).minCoeff() > 0);
 

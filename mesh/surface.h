@@ -31,6 +31,10 @@ Points area_vectors(const Surface& surface);
 /// Unit vertex normals, weighted by angle (n x 3). [Thurmer & Wuthrich 1998]
 Points vertex_normals(const Surface& surface);
 
+/// Which way the surface looks near a point: unit mean normal of the triangles whose centre lies within `radius` [mm],
+/// else that of the one with the nearest centre. @pre there are triangles.
+Vec3 mean_normal(const Surface& surface, const Vec3& point, double radius);
+
 /// An axis-aligned box as 12 triangles, each side cut into n(x,y,z) quads; for samples and tests.
 Surface make_box(const Vec3& min, const Vec3& max, const Eigen::Vector3i& quads);
 

@@ -9,7 +9,7 @@
 namespace palpate::skeleton {
 
 struct EquilibriumOptions {
-    double tolerance = 1e-9;  // of the residual, as a share of the largest external force, > 0
+    double tolerance = 1e-9;  // of the residual, as a share of the largest force of loads and effects, > 0
     int iterations = 200;     // Newton steps at one load, >= 1
     void validate() const;    // @throws InvalidInput naming option, value and bound
 };
@@ -22,7 +22,8 @@ struct Equilibrium {
 };
 
 /// The configuration in which all net forces vanish, by the model's law: one linear step from rest, or Newton on the
-/// potential, globalised so that it ends in a stable equilibrium; load stepping when it fails at once.
+/// potential, globalised so that it ends in a stable equilibrium; load stepping when it fails at once. The model's
+/// effects are in force; the linear law takes them as they are at rest, to first order.
 /// `start`: a neighbouring state, rest by default.
 /// @throws SolverFailure with iterations and residual when none was found, or naming the sphere that nothing keeps
 /// from moving; InvalidInput when no sphere is held or some hang on no held one.
@@ -41,12 +42,18 @@ Eigen::SparseMatrix<double> observation_jacobian(const Model& model, const Equil
 /// tangent's inverse, d observe / d k = P J^-1 link_forces.
 Eigen::SparseMatrix<double> link_forces(const Model& model, const Equilibrium& equilibrium);
 
+/// Force signatures of an effect in an equilibrium, by the model's law (6N x P): d residual / d its parameters, at held
+/// spheres too. The effect need not be in force. By the linear law it is what the effect's force, linearised at rest,
+/// changes by. @throws InvalidInput when the model has nothing that the effect acts on.
+Eigen::MatrixXd effect_forces(const Model& model, const Equilibrium& equilibrium, const fem::PointPotential& effect);
+
 /// Solves for equilibria of one model again and again, with other stiffnesses k (3L, ordered as stiffness_vector) and
 /// loads: keeps ordering, symbolic factorisation and work space. Not for several threads at once: one each.
 class StaticsSolver {
 public:
-    /// Keeps what it needs of the model. @throws InvalidInput when no sphere is held or some hang on no held one.
-    explicit StaticsSolver(const Model& model);
+    /// Keeps what it needs of the model. `extra`: effects in force beyond the model's own.
+    /// @throws InvalidInput when no sphere is held or some hang on no held one, or as potentials_of.
+    explicit StaticsSolver(const Model& model, const fem::Potentials& extra = {});
     ~StaticsSolver();
     StaticsSolver(StaticsSolver&&) noexcept;
     StaticsSolver& operator=(StaticsSolver&&) noexcept;
@@ -60,7 +67,8 @@ public:
         return solve(k, load, options, start ? &start->state : nullptr);
     }
 
-    /// Linear steps from rest (6N x p) under generalized forces F (6N x p): one factorisation, whatever the law.
+    /// Linear steps from rest (6N x p) under generalized forces F (6N x p): one factorisation, whatever the law. The
+    /// effects' stiffness at rest takes part, their forces there are for F to tell.
     Eigen::MatrixXd linear_steps(const Eigen::VectorXd& k, const Eigen::MatrixXd& F);
 
     /// Factors the tangent J in an equilibrium, by the model's law (linear: at rest). @throws SolverFailure when it
@@ -68,7 +76,7 @@ public:
     void factor_tangent(const Eigen::VectorXd& k, const Load& load, const Equilibrium& equilibrium);
 
     /// J^-1 B (6N x p) with the tangent of the last solve, linear_steps or factor_tangent; rows of held spheres are
-    /// ignored in B and zero in the result.
+    /// ignored in B and zero in the result, unless an effect releases them.
     Eigen::MatrixXd solve_tangent(const Eigen::MatrixXd& B) const;
 
 private:

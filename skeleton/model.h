@@ -8,6 +8,7 @@
 #include "mesh/region.h"
 #include "mesh/surface.h"
 #include "mesh/types.h"
+#include "skeleton/effects/effect.h"
 
 namespace palpate::skeleton {
 
@@ -17,7 +18,7 @@ struct Sphere {
     double radius = 0;            // [mm]
     double mass = 0;              // of its share of the body [tonne]
     Mat3 inertia = Mat3::Zero();  // of that share about the centre [tonne mm^2]
-    bool held = false;            // stands in a support: neither moves nor turns
+    bool held = false;            // stands in a support: neither moves nor turns, unless an effect holds the body there
 };
 
 /// The three stiffnesses of a link, in this order everywhere.
@@ -48,12 +49,13 @@ enum class Law {
 };
 inline constexpr std::array<const char*, 2> law_names{"linear", "large-rotation"};
 
-/// A body as spheres joined by elastic links, with a skin.
+/// A body as spheres joined by elastic links, with a skin, under the effects that are in force.
 struct Model {
     std::string name;
     Law law = Law::large_rotation;
     std::vector<Sphere> spheres;
     std::vector<Link> links;
+    std::vector<Effect> effects;   // beyond the links; those of a measurement are only recorded
     mesh::Surface surface;         // at rest
     std::vector<Attachment> skin;  // of each vertex of the surface
     std::vector<mesh::Region> supports;

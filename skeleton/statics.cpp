@@ -5,6 +5,7 @@
 #include <cassert>
 
 #include "mesh/errors.h"
+#include "skeleton/effects/placed_effects.h"
 #include "skeleton/link_energy.h"
 
 namespace palpate::skeleton {
@@ -17,6 +18,8 @@ LinkTerms terms_of(const Model& model, const State& state, const Link& link) {
     return link_terms(link.length, rest_direction(model, link), state.x.row(link.a).transpose(), state.R[link.a],
                       state.x.row(link.b).transpose(), state.R[link.b], false);
 }
+
+PlacedEffects effects_of(const Model& model) { return {model, potentials_of(model.effects)}; }
 
 // Row of entry i of a link's twelve.
 int row_of(const Link& link, int i) { return i < 6 ? 6 * link.a + i : 6 * link.b + i - 6; }
@@ -61,14 +64,16 @@ void set_stiffness(Model& model, const Eigen::VectorXd& k) {
     for (size_t l = 0; l < model.links.size(); ++l) model.links[l].stiffness = k.segment<3>(3 * l);
 }
 
+Eigen::VectorXd effect_force(const Model& model, const State& state) { return effects_of(model).force(state); }
+
 double potential(const Model& model, const State& state, const Load& load) {
-    double energy = -external_work(model, state, load);
+    double energy = effects_of(model).energy(state).sum - external_work(model, state, load);
     for (const Link& link : model.links) energy += link.stiffness.dot(terms_of(model, state, link).energy);
     return energy;
 }
 
 Eigen::VectorXd residual(const Model& model, const State& state, const Load& load) {
-    Eigen::VectorXd r = external_force(model, state, load);
+    Eigen::VectorXd r = external_force(model, state, load) + effect_force(model, state);
     for (const Link& link : model.links) {
         const Vec12 g = terms_of(model, state, link).gradient * link.stiffness;
         r.segment<6>(Eigen::Index{6} * link.a) -= g.head<6>();
@@ -92,6 +97,16 @@ Eigen::SparseMatrix<double> tangent(const Model& model, const State& state, cons
         for (int j = 0; j < 3; ++j)
             for (int i = 0; i < 3; ++i)
                 entries.emplace_back(6 * sphere + 3 + i, 6 * sphere + 3 + j, -curvature[sphere](i, j));
+    const PlacedEffects effects = effects_of(model);
+    const std::vector<PlacedEffects::Block> blocks = effects.curvature(state);
+    for (size_t p = 0; p < blocks.size(); ++p) {
+        const auto [a, b] = effects.pairs()[p];
+        for (int j = 0; j < 6; ++j)
+            for (int i = 0; i < 6; ++i) {
+                entries.emplace_back(6 * a + i, 6 * b + j, blocks[p](i, j));
+                if (a != b) entries.emplace_back(6 * b + j, 6 * a + i, blocks[p](i, j));
+            }
+    }
     Eigen::SparseMatrix<double> J(model.dofs(), model.dofs());
     J.setFromTriplets(entries.begin(), entries.end());
     return J;

@@ -9,7 +9,8 @@
 namespace palpate::skeleton {
 
 /// Force signatures (6N x 3L): column 3 l + s is the force on the spheres of link l at unit stiffness s. The net
-/// force is external_force + link_forces * k, linear in the stiffnesses. [Burion 2008, eqs. 7-8 with the sum kept]
+/// force is external_force + effect_force + link_forces * k, linear in the stiffnesses. [Burion 2008, eqs. 7-8 with
+/// the sum kept]
 Eigen::SparseMatrix<double> link_forces(const Model& model, const State& state);
 
 /// Stiffnesses of all links (3L), as link_forces orders them.
@@ -19,10 +20,15 @@ void set_stiffness(Model& model, const Eigen::VectorXd& k);
 /// Unit vector from a to b at rest. @throws InvalidInput when the two spheres have the same centre.
 Vec3 rest_direction(const Model& model, const Link& link);
 
-/// Total elastic energy less the work of dead forces [N mm]; the residual is minus its derivative.
+/// Force of the model's effects (6N), at held spheres too [N, N mm].
+/// @throws InvalidInput as make_potential, and when the model has nothing that an effect acts on.
+Eigen::VectorXd effect_force(const Model& model, const State& state);
+
+/// Total elastic energy less the work of dead forces, and the effects' energy [N mm]; the residual is minus its
+/// derivative.
 double potential(const Model& model, const State& state, const Load& load);
 
-/// Net generalized force on each sphere (6N), zero in equilibrium but at held spheres.
+/// Net generalized force on each sphere (6N), zero in equilibrium but at held spheres; there minus the reaction.
 Eigen::VectorXd residual(const Model& model, const State& state, const Load& load);
 
 /// Second derivative of the potential by the step, in exponential coordinates (6N x 6N), symmetric [N/mm, N, N mm];

@@ -27,25 +27,32 @@ double pivot_ratio(const Supernodes& structure, const double* values) {
 
 }  // namespace
 
-Cholesky::Cholesky(Supernodes structure, const LowerMatrix& K) : structure_(std::move(structure)) {
-    for (int s = 0; s < structure_.count(); ++s) tallest_ = std::max(tallest_, structure_.height(s));
+Cholesky::Cholesky(std::shared_ptr<const Supernodes> structure) : structure_(std::move(structure)) {
+    for (int s = 0; s < structure_->count(); ++s) tallest_ = std::max(tallest_, structure_->height(s));
     try {
-        values_ = std::make_unique_for_overwrite<double[]>(structure_.first_value.back());
+        values_ = std::make_unique_for_overwrite<double[]>(structure_->first_value.back());
     } catch (const std::bad_alloc&) {
         throw SolverFailure(
             fmt::format("The factor of the stiffness matrix ({} unknowns) needs {:.1f} GB, which memory does not hold. "
                         "Take a coarser mesh.",
-                        structure_.size(), entries() * 8e-9));
+                        structure_->size(), entries() * 8e-9));
     }
-    // The parallel work is ours; BLAS's own threads would get in its way.
-    openblas_set_num_threads(1);
-    constexpr double singular = 1e-14;  // a mechanism leaves a pivot of rounding's size
-    if (!factorise(structure_, K, values_.get()) || !(pivot_ratio(structure_, values_.get()) > singular)) {
+}
+
+Cholesky::Cholesky(std::shared_ptr<const Supernodes> structure, const LowerMatrix& K) : Cholesky(std::move(structure)) {
+    if (!factor(K)) {
         throw SolverFailure(
             "The stiffness matrix is singular: a part of the body can move without resistance. Does it hang on the "
             "rest "
             "by one edge or corner only? Repair the surface there, or hold the part.");
     }
+}
+
+bool Cholesky::factor(const LowerMatrix& K) {
+    // The parallel work is ours; BLAS's own threads would get in its way.
+    openblas_set_num_threads(1);
+    constexpr double singular = 1e-14;  // a mechanism leaves a pivot of rounding's size
+    return factorise(*structure_, K, values_.get()) && pivot_ratio(*structure_, values_.get()) > singular;
 }
 
 void Cholesky::solve(Block& X) const {
@@ -54,12 +61,12 @@ void Cholesky::solve(Block& X) const {
     Block gathered(tallest_, p);
 
     // Forward: X1 <- L11^-1 X1, then X2 <- X2 - L21 X1. BLAS counts by columns and sees X transposed.
-    for (int s = 0; s < structure_.count(); ++s) {
-        const int n = structure_.columns(s), height = structure_.height(s);
-        const auto below = structure_.rows_below(s);
-        const double* L = values_.get() + structure_.first_value[s];
-        if (X.middleRows(structure_.first_column[s], n).isZero(0)) continue;
-        double* X1 = X.row(structure_.first_column[s]).data();
+    for (int s = 0; s < structure_->count(); ++s) {
+        const int n = structure_->columns(s), height = structure_->height(s);
+        const auto below = structure_->rows_below(s);
+        const double* L = values_.get() + structure_->first_value[s];
+        if (X.middleRows(structure_->first_column[s], n).isZero(0)) continue;
+        double* X1 = X.row(structure_->first_column[s]).data();
         cblas_dtrsm(CblasColMajor, CblasRight, CblasLower, CblasTrans, CblasNonUnit, p, n, 1.0, L, height, X1, p);
         if (below.empty()) continue;
         cblas_dgemm(CblasColMajor, CblasNoTrans, CblasTrans, p, height - n, n, 1.0, X1, p, L + n, height, 0.0,
@@ -67,11 +74,11 @@ void Cholesky::solve(Block& X) const {
         for (std::size_t k = 0; k < below.size(); ++k) X.row(below[k]) -= gathered.row(k);
     }
     // Backward: X1 <- L11^-T (X1 - L21^T X2).
-    for (int s = structure_.count(); s-- > 0;) {
-        const int n = structure_.columns(s), height = structure_.height(s);
-        const auto below = structure_.rows_below(s);
-        const double* L = values_.get() + structure_.first_value[s];
-        double* X1 = X.row(structure_.first_column[s]).data();
+    for (int s = structure_->count(); s-- > 0;) {
+        const int n = structure_->columns(s), height = structure_->height(s);
+        const auto below = structure_->rows_below(s);
+        const double* L = values_.get() + structure_->first_value[s];
+        double* X1 = X.row(structure_->first_column[s]).data();
         if (!below.empty()) {
             for (std::size_t k = 0; k < below.size(); ++k) gathered.row(k) = X.row(below[k]);
             cblas_dgemm(CblasColMajor, CblasNoTrans, CblasNoTrans, p, n, height - n, -1.0, gathered.data(), p, L + n,

@@ -16,18 +16,24 @@ using Block = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMa
 /// K = L L^T of a sparse positive definite matrix by supernodes.
 class Cholesky {
 public:
-    /// Works in parallel over the elimination tree and over fixed tiles of large supernodes: the same numbers on any
-    /// number of threads. @throws SolverFailure when K is singular to rounding, or memory does not suffice.
-    Cholesky(Supernodes structure, const LowerMatrix& K);
+    /// Room for factors of this structure. @throws SolverFailure when memory does not suffice.
+    explicit Cholesky(std::shared_ptr<const Supernodes> structure);
+    /// @throws SolverFailure when K is singular to rounding, or memory does not suffice.
+    Cholesky(std::shared_ptr<const Supernodes> structure, const LowerMatrix& K);
+
+    /// Factors K in place of what was factored before; false, and nothing to solve with, when K is not positive
+    /// definite to rounding. Works in parallel over the elimination tree and over fixed tiles of large supernodes: the
+    /// same numbers on any number of threads.
+    bool factor(const LowerMatrix& K);
 
     /// X <- K^-1 X on one thread. Supernodes that a load does not reach are passed over. Safe from several threads.
     void solve(Block& X) const;
 
     /// Stored entries of the factor.
-    double entries() const { return static_cast<double>(structure_.first_value.back()); }
+    double entries() const { return static_cast<double>(structure_->first_value.back()); }
 
 private:
-    Supernodes structure_;
+    std::shared_ptr<const Supernodes> structure_;
     std::unique_ptr<double[]> values_;
     int tallest_ = 0;  // supernode [rows]
 };

@@ -69,6 +69,13 @@ public:
     }
 
     bool run() {
+        // A thread that waits here takes up none of the caller's other work, which may itself wait for this one.
+        tbb::this_task_arena::isolate([&] { eliminate_all(); });
+        return positive_;
+    }
+
+private:
+    void eliminate_all() {
         // Leaves of the elimination tree start; who finishes the last child goes on with the parent.
         std::vector<int> leaves;
         for (int s = 0; s < structure_.count(); ++s) {
@@ -85,10 +92,8 @@ public:
             });
         }
         tasks.wait();
-        return positive_;
     }
 
-private:
     double* block(int s) const { return values_ + structure_.first_value[s]; }
 
     /// Left-looking: what is left of K's columns after all updates, then a dense factorisation by tiles.

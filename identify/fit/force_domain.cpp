@@ -47,7 +47,8 @@ ForceDomain force_domain(const skeleton::Model& model, const Parameters& paramet
         // r = G k + f_ext = A m + f: A gathers the columns that share a multiplier, f keeps what stays as it is
         const Eigen::SparseMatrix<double> G = skeleton::link_forces(model, configuration.state);
         Eigen::MatrixXd A = Eigen::MatrixXd::Zero(G.rows(), P);
-        Eigen::VectorXd f = skeleton::external_force(model, configuration.state, configuration.load);
+        Eigen::VectorXd f = skeleton::external_force(model, configuration.state, configuration.load) +
+                            skeleton::effect_force(model, configuration.state);
         for (int e = 0; e < parameters.k0.size(); ++e) {
             const int p = parameters.parameter_of[e];
             if (p >= 0)

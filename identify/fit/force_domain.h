@@ -21,8 +21,9 @@ struct ForceStatistics {
     double c = 0;       // [N^2]
 };
 
-/// Net forces and net torques on the free spheres in measured configurations; exact sufficient statistics, since both
-/// are linear in the stiffnesses. Torques are over the mean link length. [Burion 2008, eqs. 7-8]
+/// Net forces and net torques on the free spheres in measured configurations, the model's effects in force; exact
+/// sufficient statistics, since both are linear in the stiffnesses. Torques are over the mean link length. [Burion
+/// 2008, eqs. 7-8]
 struct ForceDomain {
     ForceStatistics forces, torques;
 };

@@ -1,11 +1,14 @@
 #include "identify/fit/node_configuration.h"
 
+#include <fmt/format.h>
+
 #include <Eigen/Geometry>
 #include <Eigen/SVD>
 #include <algorithm>
 
 #include "fem/interpolation.h"
 #include "identify/set/loads.h"
+#include "mesh/errors.h"
 
 namespace palpate::identify {
 namespace {
@@ -54,6 +57,16 @@ double reach(const skeleton::Model& model, int sphere) {
         if (i != sphere) least = std::min(least, (model.spheres[i].center - model.spheres[sphere].center).norm() / 2);
     }
     return least;
+}
+
+void require_fixed_supports(const skeleton::Model& model) {
+    for (const skeleton::Effect& effect : model.effects) {
+        if (!skeleton::is_body_effect(effect.name) || !fem::release_supports({make_potential(effect)})) continue;
+        throw InvalidInput(
+            fmt::format("method burion2008 takes held spheres to stay where they are, but the model's effect '{}' lets "
+                        "them move: take it out of the model, or use method tempered",
+                        effect.name));
+    }
 }
 
 bool is_loaded(const LoadState& state) {
@@ -130,10 +143,12 @@ NodeConfiguration configuration_of_field(const skeleton::Model& model, const Fie
 }
 
 std::vector<MeasuredConfiguration> measured_configurations(const skeleton::Model& model, const MeasurementSet& set) {
+    require_fixed_supports(model);
     const ContactLoads loads(model);
+    const bool always_loaded = is_always_loaded(model);
     std::vector<MeasuredConfiguration> measured;
     for (const LoadState& state : set.states) {
-        if (!is_loaded(state)) continue;
+        if (!always_loaded && !is_loaded(state)) continue;
         const NodeConfiguration configuration = state.field.empty() ? configuration_of_markers(model, set, state)
                                                                     : configuration_of_field(model, read_field(state));
         if (configuration.complete()) measured.push_back({configuration.state, loads(set, state)});

@@ -34,6 +34,7 @@ NodeConfiguration configuration_of_markers(const skeleton::Model& model, const M
 NodeConfiguration configuration_of_field(const skeleton::Model& model, const Field& field);
 
 /// The loaded states of a set in which all spheres are known, from the field where there is one, else from the markers.
+/// @throws InvalidInput when an effect of the model moves the held spheres: where they stand is not measured.
 std::vector<MeasuredConfiguration> measured_configurations(const skeleton::Model& model, const MeasurementSet& set);
 
 }  // namespace palpate::identify

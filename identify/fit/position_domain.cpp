@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "identify/parallel.h"
+#include "skeleton/effects/placed_effects.h"
 #include "skeleton/statics.h"
 
 namespace palpate::identify {
@@ -57,6 +58,12 @@ std::shared_ptr<const skeleton::Model> with_law(const skeleton::Model& model, sk
     return copy;
 }
 
+/// Do effects withstand displacements at rest, as a soft support does?
+bool effects_have_stiffness(const skeleton::Model& model) {
+    const skeleton::PlacedEffects effects(model, skeleton::potentials_of(model.effects));
+    return !std::ranges::all_of(effects.curvature(effects.rest()), [](const auto& block) { return block.isZero(0); });
+}
+
 }  // namespace
 
 PositionDomain::PositionDomain(const skeleton::Model& model, skeleton::Law law, Parameters parameters,
@@ -68,11 +75,13 @@ PositionDomain::PositionDomain(const skeleton::Model& model, skeleton::Law law, 
     std::ranges::copy_if(readings, std::back_inserter(states_), &StateReadings::tells_stiffness);
 
     const skeleton::State rest = rest_state(*model_);
+    const Eigen::VectorXd effects = skeleton::effect_force(*model_, rest);
+    goes_as_inverse_ = !effects_have_stiffness(*model_);
     F_.resize(model_->dofs(), static_cast<Eigen::Index>(states_.size()));
     std::vector<double> displacements;
     for (int s = 0; s < static_cast<int>(states_.size()); ++s) {
         P_.push_back(skeleton::observation_jacobian(*model_, rest, states_[s].points));
-        F_.col(s) = skeleton::external_force(*model_, rest, states_[s].load);
+        F_.col(s) = skeleton::external_force(*model_, rest, states_[s].load) + effects;
         offsets_.emplace_back(Points::Zero(states_[s].rest.rows(), 3));
         displacements.push_back(states_[s].displacement);
     }
@@ -243,6 +252,8 @@ NormalEquations PositionDomain::normal_equations(const Eigen::VectorXd& theta, c
 }
 
 double PositionDomain::common_factor(const Eigen::VectorXd& theta) const {
+    if (!goes_as_inverse_) return 0;
+
     // measured displacement = scale x modelled one, weighted least squares
     const SolverPool::Loan solver(*solvers_);
     const Eigen::MatrixXd U = solver->linear_steps(parameters_.stiffness(theta), F_);

@@ -60,7 +60,8 @@ public:
     NormalEquations normal_equations(const Eigen::VectorXd& theta, const Prediction& prediction) const;
 
     /// Logarithm of the factor on all stiffnesses k(theta) that fits best by the linear law, where displacements go as
-    /// its inverse: closed form, however far off the start is.
+    /// its inverse: closed form, however far off the start is. 0 where they do not, as effects add a stiffness of
+    /// their own.
     double common_factor(const Eigen::VectorXd& theta) const;
 
     /// The same domain by the linear law, its markers moved by what `prediction`, at theta, differs from that law's
@@ -89,8 +90,9 @@ private:
     std::vector<StateReadings> states_;
     std::vector<Points> offsets_;                 // added to the modelled markers (m x 3) [mm]
     std::vector<Eigen::SparseMatrix<double>> P_;  // of each state at rest (3m x 6N)
-    Eigen::MatrixXd F_;                           // loads at rest (6N x states)
+    Eigen::MatrixXd F_;                           // loads and effects at rest (6N x states)
     std::vector<Eigen::VectorXd> weights_;        // 1 / sigma^2, 0 for a missing coordinate, of each state (3m)
+    bool goes_as_inverse_ = true;                 // displacement, with a factor on all stiffnesses
     double typical_displacement_ = 0;             // u_0 [mm]
     double log_constant_ = 0;
     int threads_ = 1;

@@ -16,6 +16,7 @@ struct StiffnessParameter {
     std::string name;
     double start = 0;
     double prior_mean = 0, prior_sd = 1;
+    bool stiffens = true;  // all such parameters raised by ln c make the body c times as stiff
 };
 
 /// What a model is told to be.
@@ -56,6 +57,9 @@ public:
     virtual double young(const Setting& setting) const = 0;
     /// Does the law bend and turn with the body?
     virtual bool is_nonlinear(const Setting& setting) const = 0;
+
+    /// Undeformed.
+    virtual Eigen::VectorXd rest(const Setting& setting) const = 0;
 
     // The five questions.
 

@@ -75,6 +75,10 @@ skeleton::Load ContactLoads::operator()(const MeasurementSet& set, const LoadSta
     return (*this)(state.contacts, known_gravity(set, state).value_or(Vec3::Zero()));
 }
 
+bool is_always_loaded(const skeleton::Model& model) {
+    return !skeleton::effect_force(model, rest_state(model)).isZero(0);
+}
+
 std::optional<Vec3> known_gravity(const MeasurementSet& set, const LoadState& state) {
     if (state.gravity.allFinite()) return state.gravity;
     return set.gravity;

@@ -32,6 +32,9 @@ private:
     std::unique_ptr<mesh::SurfaceTree> tree_;
 };
 
+/// Does an effect of the model pull at it whatever else acts, as its weight does?
+bool is_always_loaded(const skeleton::Model& model);
+
 /// Gravity known to act in a state: the state's own, else the set's, else none.
 std::optional<Vec3> known_gravity(const MeasurementSet& set, const LoadState& state);
 

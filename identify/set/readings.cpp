@@ -38,6 +38,7 @@ double rms(const Points& difference) {
 std::vector<StateReadings> collect_readings(const skeleton::Model& model, const MeasurementSet& set) {
     const std::vector<skeleton::Attachment> markers = attach_markers(model, set.markers);
     const ContactLoads loads(model);
+    const bool always_loaded = is_always_loaded(model);
     std::vector<StateReadings> result;
 
     for (int s = 0; s < static_cast<int>(set.states.size()); ++s) {
@@ -65,7 +66,7 @@ std::vector<StateReadings> collect_readings(const skeleton::Model& model, const 
         readings.coordinates = static_cast<int>((!readings.measured.array().isNaN()).count());
         readings.displacement = rms(readings.measured - readings.rest);
         readings.load = loads(set, state);
-        readings.tells_stiffness = is_known_to_act(set, state);
+        readings.tells_stiffness = always_loaded || is_known_to_act(set, state);
         result.push_back(std::move(readings));
     }
     return result;

@@ -18,7 +18,7 @@ struct StateReadings {
     Eigen::VectorXd noise;                     // 1 sigma of each (m) [mm], NaN when unknown
     int coordinates = 0;                       // that were measured
     double displacement = 0;                   // rms over them [mm]
-    bool tells_stiffness = false;              // a force or gravity is known to act
+    bool tells_stiffness = false;              // a force or gravity is known to act, or an effect of the model
 };
 
 /// A state each that has labelled readings, in the set's order; unlabelled readings are left out.

@@ -16,7 +16,7 @@ void JsonField::complain(const std::string& what) const {
 }
 
 void JsonField::fail(const std::string& allowed) const {
-    using Handler = nlohmann::json::error_handler_t;
+    using Handler = nlohmann::ordered_json::error_handler_t;
     complain(fmt::format("is {}, but must be {}", mesh::cited(json_->dump(-1, ' ', false, Handler::replace)), allowed));
 }
 
@@ -48,7 +48,7 @@ std::vector<JsonField> JsonField::list() const {
     if (!json_->is_array()) fail("a list");
     std::vector<JsonField> elements;
     elements.reserve(json_->size());
-    for (const nlohmann::json& element : *json_)
+    for (const nlohmann::ordered_json& element : *json_)
         elements.push_back({element, file_, fmt::format("{}[{}]", path_, elements.size())});
     return elements;
 }

@@ -13,7 +13,7 @@ namespace palpate::skeleton {
 class JsonField {
 public:
     /// The whole of `file`. `json` must outlive this and all that come out of it.
-    JsonField(const nlohmann::json& json, std::string file) : json_(&json), file_(std::move(file)) {}
+    JsonField(const nlohmann::ordered_json& json, std::string file) : json_(&json), file_(std::move(file)) {}
 
     /// A field of this object. @throws InvalidInput when there is none.
     JsonField operator[](const std::string& key) const;
@@ -45,10 +45,10 @@ public:
     [[noreturn]] void complain(const std::string& what) const;
 
 private:
-    JsonField(const nlohmann::json& json, const std::string& file, std::string path)
+    JsonField(const nlohmann::ordered_json& json, const std::string& file, std::string path)
         : json_(&json), file_(file), path_(std::move(path)) {}
 
-    const nlohmann::json* json_;
+    const nlohmann::ordered_json* json_;
     std::string file_;
     std::string path_;  // "links[17].flexion", empty for the whole
 };

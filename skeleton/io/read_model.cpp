@@ -12,10 +12,10 @@ namespace palpate::skeleton {
 
 namespace {
 
-nlohmann::json parse(const std::filesystem::path& file) {
+nlohmann::ordered_json parse(const std::filesystem::path& file) {
     const std::string text = mesh::read_text(file);
     try {
-        return nlohmann::json::parse(text);
+        return nlohmann::ordered_json::parse(text);  // ordered: an effect keeps its parameters' order
     } catch (const nlohmann::json::exception& error) {
         // "[json.exception.parse_error.101] parse error at line 3, column 5: ...": ours begins after the bracket.
         const std::string what = error.what();
@@ -107,6 +107,24 @@ mesh::Region read_region(const JsonField& field) {
     return points;
 }
 
+Effect read_effect(const JsonField& field) {
+    field.allow_only({"name", "parameters"});
+    Effect effect{field["name"].text(), {}};
+    const JsonField parameters = field["parameters"];
+    for (const std::string& name : parameters.keys()) {
+        const JsonField parameter = parameters[name];
+        parameter.allow_only({"value", "unit"});
+        effect.parameters.push_back(
+            {name, parameter["value"].number(), parameter.has("unit") ? parameter["unit"].text() : std::string()});
+    }
+    try {
+        if (is_body_effect(effect.name)) make_potential(effect);
+    } catch (const InvalidInput& error) {
+        field.complain(error.what());
+    }
+    return effect;
+}
+
 void read_skin(const JsonField& field, Model& model) {
     field.allow_only({"vertices", "triangles", "attachments"});
     const std::vector<JsonField> vertices = field["vertices"].list();
@@ -136,7 +154,7 @@ void read_skin(const JsonField& field, Model& model) {
 }  // namespace
 
 Model read_model(const std::filesystem::path& file) {
-    const nlohmann::json json = parse(file);
+    const nlohmann::ordered_json json = parse(file);
     const JsonField root(json, file.string());
     root.allow_only({"format", "name", "law", "spheres", "links", "effects", "skin", "supports", "provenance"});
     root["format"].choice({"palpate-model/1"});
@@ -149,8 +167,8 @@ Model read_model(const std::filesystem::path& file) {
     for (const JsonField& sphere : root["spheres"].list()) model.spheres.push_back(read_sphere(sphere, model.supports));
     if (model.spheres.empty()) root["spheres"].fail("a list of at least one sphere");
     model.links = read_links(root["links"], model.spheres);
-    if (root.has("effects") && !root["effects"].list().empty())
-        root["effects"].complain("this version knows no effects; write an empty list, []");
+    if (root.has("effects"))
+        for (const JsonField& effect : root["effects"].list()) model.effects.push_back(read_effect(effect));
     if (root.has("skin")) read_skin(root["skin"], model);
     if (root.has("provenance"))
         for (const std::string& key : root["provenance"].keys()) model.provenance[key] = root["provenance"][key].text();

@@ -28,6 +28,16 @@ Json to_json(const Link& link) {
     return json;
 }
 
+Json to_json(const Effect& effect) {
+    Json parameters = Json::object();
+    for (const EffectParameter& parameter : effect.parameters) {
+        Json& json = parameters[parameter.name];
+        json["value"] = parameter.value;
+        if (!parameter.unit.empty()) json["unit"] = parameter.unit;
+    }
+    return {{"name", effect.name}, {"parameters", parameters}};
+}
+
 Json to_json(const Attachment& attachment) { return {attachment.a, attachment.b, attachment.t}; }
 
 template <typename Rows>
@@ -77,7 +87,7 @@ std::string to_text(const Model& model) {
     text += "  \"law\": " + Json(law_names[static_cast<size_t>(model.law)]).dump() + ",\n";
     text += "  \"spheres\": " + lines(all_to_json(model.spheres)) + ",\n";
     text += "  \"links\": " + lines(all_to_json(model.links)) + ",\n";
-    text += "  \"effects\": [],\n";
+    text += "  \"effects\": " + lines(all_to_json(model.effects)) + ",\n";
     if (model.surface.vertices.rows() > 0) {
         const std::string deep(6, ' ');
         text += "  \"skin\": {\n    \"vertices\": " + lines(rows_of(model.surface.vertices), deep);

@@ -48,13 +48,30 @@ void require_held(const Model& model) {
                     loose, c.x(), c.y(), c.z(), n - static_cast<int>(reached.size()), n));
 }
 
+// Where an effect takes the place of the supports it moves what they held; but a held sphere that nothing is joined to
+// stays, as nothing tells where it would go.
+void release(const PlacedEffects& effects, Model& body) {
+    if (!effects.release_supports()) return;
+    std::vector<char> moves = effects.supported();
+    for (const Link& link : body.links) moves[link.a] = moves[link.b] = 1;
+    for (size_t i = 0; i < body.spheres.size(); ++i)
+        if (moves[i]) body.spheres[i].held = false;
+}
+
+fem::Potentials joined(fem::Potentials all, const fem::Potentials& more) {
+    all.insert(all.end(), more.begin(), more.end());
+    return all;
+}
+
 }  // namespace
 
-SkeletonSystem::SkeletonSystem(const Model& model) : matrix_(0, {}) {
+SkeletonSystem::SkeletonSystem(const Model& model, const fem::Potentials& extra)
+    : effects_(model, joined(potentials_of(model.effects), extra)), matrix_(0, {}) {
     require_held(model);
     body_.law = model.law;
     body_.spheres = model.spheres;
     body_.links = model.links;
+    release(effects_, body_);
 
     for (const Sphere& sphere : body_.spheres) {
         reach_ = std::max(reach_, sphere.center.cwiseAbs().maxCoeff());
@@ -71,9 +88,19 @@ SkeletonSystem::SkeletonSystem(const Model& model) : matrix_(0, {}) {
         coupling_of_.push_back(couples ? static_cast<int>(couplings.size()) : -1);
         if (couples) couplings.push_back({i, j});
     }
+    for (const auto& [a, b] : effects_.pairs()) {
+        const int i = block_of_[a], j = block_of_[b];
+        const bool couples = a != b && i >= 0 && j >= 0;
+        coupling_of_pair_.push_back(couples ? static_cast<int>(couplings.size()) : -1);
+        if (couples) couplings.push_back({i, j});
+    }
     if (!body_.links.empty()) length_ = sum / static_cast<double>(body_.links.size());
     metric_ << 1, 1, 1, length_ * length_, length_ * length_, length_ * length_;
     matrix_ = BlockCholesky(static_cast<int>(free_.size()), couplings);
+
+    effect_load_ = largest_force(effects_.force(effects_.rest()));
+    for (const BlockCholesky::Block& block : effects_.curvature(effects_.rest()))
+        effect_stiffness_ = std::max(effect_stiffness_, block.diagonal().cwiseAbs().cwiseQuotient(metric_).maxCoeff());
 }
 
 Balance SkeletonSystem::balance(const Eigen::VectorXd& k, const State& state, const Load& load) const {
@@ -89,11 +116,17 @@ Balance SkeletonSystem::balance(const Eigen::VectorXd& k, const State& state, co
         net.segment<6>(Eigen::Index{6} * link.a) -= gradient.head<6>();
         net.segment<6>(Eigen::Index{6} * link.b) -= gradient.tail<6>();
     }
+    if (!effects_.empty()) net += effects_.force(state, effect_share_);
     for (size_t i = 0; i < body_.spheres.size(); ++i)
         if (body_.spheres[i].held) net.segment<6>(6 * i).setZero();
 
     const double work = external_work(body_, state, load);
-    return {elastic - work, 1e-14 * (elastic + std::abs(work)), net, largest_force(net)};
+    const PlacedEffects::Energy effects = effects_.energy(state, effect_share_);
+    return {elastic - work + effects.sum, 1e-14 * (elastic + std::abs(work) + effects.size), net, largest_force(net)};
+}
+
+double SkeletonSystem::largest_load(const State& state, const Load& load) const {
+    return std::max(largest_force(external_force(body_, state, load)), effect_load_);
 }
 
 double SkeletonSystem::largest_force(const Eigen::VectorXd& f) const {
@@ -104,7 +137,7 @@ double SkeletonSystem::largest_force(const Eigen::VectorXd& f) const {
 }
 
 double SkeletonSystem::stiffest(const Eigen::VectorXd& k) const {
-    double most = 0;
+    double most = effect_stiffness_;
     for (size_t l = 0; l < body_.links.size(); ++l)
         most = std::max({most, k[3 * l], k[3 * l + 1] / (length_ * length_), k[3 * l + 2] / (length_ * length_)});
     return most;
@@ -139,12 +172,22 @@ void SkeletonSystem::assemble(const Eigen::VectorXd& k, const State& state, cons
         if (j >= 0) matrix_.add_diagonal(j, H.bottomRightCorner<6, 6>());
         if (coupling_of_[l] >= 0) matrix_.add_coupling(coupling_of_[l], H.topRightCorner<6, 6>());
     }
+    assemble_effects(state);
     if (!load || load->forces.empty()) return;
     const std::vector<Mat3> curvature = external_curvature(body_, state, *load);
     BlockCholesky::Block A = BlockCholesky::Block::Zero();
     for (size_t i = 0; i < free_.size(); ++i) {
         A.bottomRightCorner<3, 3>() = -curvature[free_[i]];
         matrix_.add_diagonal(static_cast<int>(i), A);
+    }
+}
+
+void SkeletonSystem::assemble_effects(const State& state) {
+    const std::vector<BlockCholesky::Block> blocks = effects_.curvature(state, effect_share_);
+    for (size_t p = 0; p < blocks.size(); ++p) {
+        const auto [a, b] = effects_.pairs()[p];
+        if (a == b && block_of_[a] >= 0) matrix_.add_diagonal(block_of_[a], blocks[p]);
+        if (coupling_of_pair_[p] >= 0) matrix_.add_coupling(coupling_of_pair_[p], blocks[p]);
     }
 }
 

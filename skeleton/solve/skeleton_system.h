@@ -3,6 +3,7 @@
 #include <optional>
 #include <vector>
 
+#include "skeleton/effects/placed_effects.h"
 #include "skeleton/load.h"
 #include "skeleton/solve/block_cholesky.h"
 
@@ -17,27 +18,34 @@ struct Balance {
 };
 
 /// A model's equations of equilibrium with held spheres eliminated, ready to be evaluated and factored for many
-/// stiffnesses k (3L, ordered as stiffness_vector), states and loads.
+/// stiffnesses k (3L, ordered as stiffness_vector), states and loads; its effects are in force.
 class SkeletonSystem {
 public:
-    /// Keeps what it needs of the model. @throws InvalidInput when no sphere is held or some hang on no held one.
-    explicit SkeletonSystem(const Model& model);
+    /// Keeps what it needs of the model. `extra`: effects beyond its own.
+    /// @throws InvalidInput when no sphere is held or some hang on no held one, or as potentials_of.
+    SkeletonSystem(const Model& model, const fem::Potentials& extra);
 
-    const Model& body() const { return body_; }  // spheres, links and law
-    double length() const { return length_; }    // mean of the links [mm]
+    const Model& body() const { return body_; }  // spheres, links and law; held are those that nothing releases
+    const PlacedEffects& effects() const { return effects_; }
+    double length() const { return length_; }  // mean of the links [mm]
+
+    /// How much of the effects is in force, but of those that hold the supports; 1 if not told otherwise.
+    void scale_effects(double share) { effect_share_ = share; }
 
     Balance balance(const Eigen::VectorXd& k, const State& state, const Load& load) const;
+    /// Largest force of a load, or of the effects at rest, on a free sphere [N].
+    double largest_load(const State& state, const Load& load) const;
     /// Largest force on a free sphere, torques over the mean link length [N].
     double largest_force(const Eigen::VectorXd& f) const;
     /// What rounding of positions and angles leaves of forces that cancel [N].
     double force_rounding(const Eigen::VectorXd& k) const;
-    /// Largest stiffness, those of angles over the mean link length squared [N/mm].
+    /// Largest stiffness of links and effects, those of angles over the mean link length squared [N/mm].
     double stiffest(const Eigen::VectorXd& k) const;
     /// How much of a step can be made at once, (0, 1]: no sphere turns by more than half a radian, no link's ends part
     /// by more than half its length.
     double step_limit(const Eigen::VectorXd& step) const;
 
-    /// Assembles the tangent; without a load the links' alone.
+    /// Assembles the tangent; without a load the links' and effects' alone.
     void assemble(const Eigen::VectorXd& k, const State& state, const Load* load = nullptr);
     /// Factors tangent + shift [N/mm] * metric, which makes turning and moving comparable.
     std::optional<BlockCholesky::BadPivot> factor(double shift);
@@ -50,12 +58,18 @@ public:
     Eigen::VectorXd metric_times(const Eigen::VectorXd& step) const;
 
 private:
+    void assemble_effects(const State& state);
+
     Model body_;
-    std::vector<Vec3> directions_;   // of the links at rest
-    std::vector<int> free_;          // spheres
-    std::vector<int> block_of_;      // place in `free_` of each sphere, -1: held
-    std::vector<int> coupling_of_;   // of each link, -1: an end is held
-    double length_ = 1, reach_ = 0;  // largest coordinate [mm]
+    PlacedEffects effects_;
+    double effect_share_ = 1;
+    double effect_load_ = 0, effect_stiffness_ = 0;  // largest at rest [N, N/mm]
+    std::vector<int> coupling_of_pair_;              // of the effects, -1: one sphere alone, or an end is held
+    std::vector<Vec3> directions_;                   // of the links at rest
+    std::vector<int> free_;                          // spheres
+    std::vector<int> block_of_;                      // place in `free_` of each sphere, -1: held
+    std::vector<int> coupling_of_;                   // of each link, -1: an end is held
+    double length_ = 1, reach_ = 0;                  // largest coordinate [mm]
     BlockCholesky::Vec6 metric_;
     BlockCholesky matrix_;
 };

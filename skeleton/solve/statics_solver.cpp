@@ -27,8 +27,9 @@ Equilibrium solve_linear(SkeletonSystem& system, const Eigen::VectorXd& k, const
     result.step = system.solve(system.balance(k, rest, load).net);
     result.state = advance(rest, result.step);
     result.iterations = 1;
-    result.residual =
-        system.largest_force(external_force(system.body(), rest, load) + link_forces(system.body(), result) * k);
+    Eigen::VectorXd left = external_force(system.body(), rest, load) + link_forces(system.body(), result) * k;
+    if (!system.effects().empty()) left += system.effects().linear_force(result.step);
+    result.residual = system.largest_force(left);
     return result;
 }
 
@@ -44,14 +45,30 @@ std::optional<std::string> failure_of_newton(SkeletonSystem& system, const Eigen
     }
 }
 
-// From rest, a quarter of the load at a time, less where that fails. `result` comes from a try with the whole load.
+// A share of the effects in force, all of them again at its end.
+class ScaledEffects {
+public:
+    explicit ScaledEffects(SkeletonSystem& system) : system_(system) {}
+    ~ScaledEffects() { system_.scale_effects(1); }
+    ScaledEffects(const ScaledEffects&) = delete;
+    ScaledEffects& operator=(const ScaledEffects&) = delete;
+    void set(double share) { system_.scale_effects(share); }
+
+private:
+    SkeletonSystem& system_;
+};
+
+// From rest, a quarter of load and effects at a time, less where that fails. `result` comes from a try with the whole
+// load.
 void step_load(SkeletonSystem& system, const Eigen::VectorXd& k, const Load& load, const EquilibriumOptions& options,
                Equilibrium& result) {
     const double left = result.residual;
     Equilibrium reached = result;
     reached.state = rest_state(system.body());
+    ScaledEffects effects(system);
     for (double share = 0, more = 0.25; share < 1;) {
         result = reached;
+        effects.set(share + more);
         const auto failure = failure_of_newton(system, k, scaled(load, share + more), options, result);
         if (!failure) {
             reached = result;
@@ -86,7 +103,8 @@ struct StaticsSolver::Impl {
     SkeletonSystem system;
 };
 
-StaticsSolver::StaticsSolver(const Model& model) : impl_(new Impl{SkeletonSystem(model)}) {}
+StaticsSolver::StaticsSolver(const Model& model, const fem::Potentials& extra)
+    : impl_(new Impl{SkeletonSystem(model, extra)}) {}
 StaticsSolver::~StaticsSolver() = default;
 StaticsSolver::StaticsSolver(StaticsSolver&&) noexcept = default;
 StaticsSolver& StaticsSolver::operator=(StaticsSolver&&) noexcept = default;

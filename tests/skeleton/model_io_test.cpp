@@ -62,6 +62,10 @@ TEST_F(ModelFile, IsReadBackEqual) {
     model.spheres[1].inertia << 1.1, 0.1, 0.2, 0.1, 2.2, 0.3, 0.2, 0.3, 3.3;
     model.links[4].zone = 7;
     model.links[5].length *= 1.25;
+    model.effects = {{"gravity", {{"gz", -9810, "mm/s^2"}, {"gx", 1.0 / 3, "mm/s^2"}, {"gy", 0, ""}}},
+                     {"compliant-support", {{"stiffness", 2.5, "N/mm"}}},
+                     {"outliers", {}},
+                     {"misalignment", {{"tx", 0.1, "mm"}, {"rz", 0.01, "rad"}}}};
     model.surface = mesh::make_sphere({10, 5, 5}, 1.0 / 3, 1);
     for (Eigen::Index i = 0; i < model.surface.vertices.rows(); ++i)
         model.skin.push_back(attach(model, model.surface.vertices.row(i).transpose()));
@@ -88,6 +92,16 @@ TEST_F(ModelFile, IsReadBackEqual) {
     EXPECT_EQ(stiffness_vector(read), stiffness_vector(model));
     EXPECT_EQ(read.links[4].zone, 7);
     EXPECT_EQ(read.links[5].length, model.links[5].length);
+    ASSERT_EQ(read.effects.size(), model.effects.size());
+    for (size_t e = 0; e < model.effects.size(); ++e) {
+        EXPECT_EQ(read.effects[e].name, model.effects[e].name);
+        ASSERT_EQ(read.effects[e].parameters.size(), model.effects[e].parameters.size());
+        for (size_t p = 0; p < model.effects[e].parameters.size(); ++p) {
+            EXPECT_EQ(read.effects[e].parameters[p].name, model.effects[e].parameters[p].name);
+            EXPECT_EQ(read.effects[e].parameters[p].value, model.effects[e].parameters[p].value);
+            EXPECT_EQ(read.effects[e].parameters[p].unit, model.effects[e].parameters[p].unit);
+        }
+    }
     EXPECT_EQ(read.surface.vertices, model.surface.vertices);
     EXPECT_EQ(read.surface.triangles, model.surface.triangles);
     ASSERT_EQ(read.skin.size(), model.skin.size());
@@ -166,12 +180,32 @@ TEST_F(ModelFile, EveryFaultIsNamed) {
               "links[1]: joins spheres 0 and 1, as links[0] does already; keep one of them");
     const auto top = [&](const std::string& extra) { return complaint(two_spheres("", "", ", " + extra)); };
     EXPECT_EQ(top(R"("law": "quadratic")"), "law: is '\"quadratic\"', but must be one of 'linear', 'large-rotation'");
-    EXPECT_EQ(top(R"("effects": [{}])"), "effects: this version knows no effects; write an empty list, []");
     EXPECT_EQ(top(R"("name": 3)"), "name: is '3', but must be a text");
     EXPECT_EQ(top(R"("provenance": [])"), "provenance: is '[]', but must be an object");
     EXPECT_EQ(top(R"("skni": [])"),
               "the field 'skni' is not known (did you mean 'skin'?); known are 'format', 'name', 'law', 'spheres', "
               "'links', 'effects', 'skin', 'supports', 'provenance'");
+}
+
+TEST_F(ModelFile, FaultsOfEffectsAreNamed) {
+    const auto effect = [&](const std::string& name, const std::string& parameters) {
+        return complaint(two_spheres("", "",
+                                     R"(, "effects": [{"name": "outliers", "parameters": {}}, {"name": ")" + name +
+                                         R"(", "parameters": )" + parameters + "}]"));
+    };
+    EXPECT_EQ(complaint(two_spheres("", "", R"(, "effects": {})")), "effects: is '{}', but must be a list");
+    EXPECT_EQ(complaint(two_spheres("", "", R"(, "effects": [{}])")), "effects[0]: the field 'name' is missing");
+    EXPECT_EQ(complaint(two_spheres("", "", R"(, "effects": [{"name": "gravity", "value": 1}])")),
+              "effects[0]: the field 'value' is not known; known are 'name', 'parameters'");
+    EXPECT_EQ(effect("gravity", "3"), "effects[1].parameters: is '3', but must be an object");
+    EXPECT_EQ(effect("gravity", R"({"gx": {"value": "down"}})"),
+              "effects[1].parameters.gx.value: is '\"down\"', but must be a number");
+    EXPECT_EQ(effect("gravity", R"({"gx": {"value": 1}})"),
+              "effects[1]: effect 'gravity': the parameter 'gy' [mm/s^2] is missing");
+    EXPECT_EQ(effect("compliant-support", R"({"stiffness": {"value": -1, "unit": "N/mm"}})"),
+              "effects[1]: effect 'compliant-support': stiffness is -1 N/mm, but must be above 0");
+    EXPECT_EQ(effect("gravty", "{}").rfind("effects[1]: effect 'gravty' is not known (did you mean 'gravity'?)", 0),
+              0u);
 }
 
 TEST_F(ModelFile, FaultsOfSkinAndSupportsAreNamed) {

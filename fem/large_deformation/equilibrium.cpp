@@ -1,0 +1,73 @@
+#include "fem/large_deformation/equilibrium.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cassert>
+
+#include "fem/large_deformation/newton.h"
+#include "mesh/errors.h"
+
+namespace palpate::fem {
+
+void NewtonOptions::validate() const {
+    if (!(tolerance > 0 && tolerance < 1)) {
+        throw InvalidInput(fmt::format(
+            "tolerance (share of the load that may stay unbalanced) is {}; allowed: more than 0, less than 1.",
+            tolerance));
+    }
+    if (iterations < 1) throw InvalidInput(fmt::format("iterations is {}; allowed: 1 and more.", iterations));
+    if (load_steps < 1) throw InvalidInput(fmt::format("load_steps is {}; allowed: 1 and more.", load_steps));
+}
+
+BodyEquilibrium find_equilibrium(const BodyShape& body, const EliminationOrder& order, const BodySetting& setting,
+                                 const Eigen::VectorXd& f, const NewtonOptions& options, const Eigen::VectorXd* start) {
+    const Unknowns& unknowns = order.unknowns;
+    assert(f.size() == body.mesh.nodes.size());
+    BodyEquilibrium result;
+    result.u.setZero(f.size());
+
+    const LoadedBody loaded(body, setting, f);
+    const double load = unknowns.gather(loaded.net_force(result.u)).norm();  // at rest nothing else pulls
+    if (load == 0) return result;
+
+    const double rounding = 4 * loaded.rounding();
+    const auto tolerance = [&](double share) { return std::max(share * load, rounding); };
+    Newton newton(order, options.iterations);
+    Eigen::VectorXd& u = result.u;
+    const auto from_start = [&] {
+        if (!start) return false;
+        u = unknowns.scatter(unknowns.gather(*start));
+        return loaded.admits(u) && newton.minimise(loaded, tolerance(options.tolerance), u);
+    };
+    // Each step starts where the last two point to; only the last has to be exact.
+    const auto in_steps = [&](int steps) {
+        Eigen::VectorXd last = Eigen::VectorXd::Zero(f.size());
+        u = last;
+        for (int k = 1; k <= steps; ++k) {
+            const LoadedBody part(body, setting, f, static_cast<double>(k) / steps);
+            const Eigen::VectorXd ahead = 2 * u - last;
+            last = u;
+            if (part.admits(ahead)) u = ahead;
+            const double share = k == steps ? options.tolerance : std::max(options.tolerance, 1e-3);
+            if (!newton.minimise(part, tolerance(share), u)) return false;
+        }
+        return true;
+    };
+    const bool found = from_start() || in_steps(1) || (options.load_steps >= 4 && in_steps(4)) ||
+                       (options.load_steps > 4 && in_steps(options.load_steps));
+    result.iterations = newton.iterations();
+    result.factorisations = newton.factorisations();
+    result.residual = newton.residual();
+    if (!found) {
+        throw SolverFailure(fmt::format(
+            "No equilibrium was found under a load of {:.4g} N (root of the sum of squares over nodes) in {} steps, "
+            "with the load in up to {} parts: {:.4g} N stay unbalanced. The body may not bear the load (a pressure "
+            "above "
+            "Young's modulus of {:.4g} MPa presses it flat): check the force and its unit, or leave this state out.",
+            load, result.iterations, options.load_steps, result.residual, setting.material.young));
+    }
+    return result;
+}
+
+}  // namespace palpate::fem

@@ -1,0 +1,12 @@
+#pragma once
+
+#include "fem/large_deformation/loaded_body.h"
+
+namespace palpate::fem {
+
+/// Newton's method from `start`, else from rest, else with the load in 4 and then 16 steps.
+/// @throws SolverFailure with iterations and residual when all fail.
+BodyEquilibrium find_equilibrium(const BodyShape& body, const EliminationOrder& order, const BodySetting& setting,
+                                 const Eigen::VectorXd& f, const NewtonOptions& options, const Eigen::VectorXd* start);
+
+}  // namespace palpate::fem

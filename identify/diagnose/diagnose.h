@@ -1,0 +1,84 @@
+#pragma once
+
+#include <array>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "identify/diagnose/held_out.h"
+#include "identify/diagnose/outliers.h"
+#include "identify/diagnose/refit.h"
+#include "mesh/progress.h"
+
+namespace palpate::identify {
+
+enum class Verdict {
+    adequate,        // what is left is noise
+    missing_effect,  // the explanation leaves only noise
+    ambiguous,       // two or more explain it alike
+    unexplained,     // something is missing that the catalogue does not hold
+};
+inline constexpr std::array<const char*, 4> verdict_names{"adequate", "missing-effect", "ambiguous", "unexplained"};
+
+struct DiagnoseOptions {
+    std::vector<std::string> without;     // effects left out of the catalogue
+    std::vector<skeleton::Effect> known;  // effects that the model has already: in every explanation, fitted anew
+    std::optional<int> law;               // the only one to be tried; absent: the one that explains most
+    bool screen = true;                   // false: the baseline alone, for a comparison
+    int refits = 4;                       // candidates that are confirmed by a refit, at most
+    double least_screen = 3;              // ln Bayes factor of the screen below which none is refitted
+    double least_evidence = 10;           // ln Bayes factor of the refit, to claim an effect
+    double least_lead = 5;                // over the runner-up
+    double most_left = 1.1;               // whitened rms, for what is left to be noise
+    double most_strain = 3;               // of a nuisance, in its prior sd
+    RefitOptions refit;
+    void validate() const;  // @throws InvalidInput naming option, value and bound
+};
+
+/// One effect as an explanation.
+struct Candidate {
+    std::shared_ptr<const Effect> effect;
+    double screened = 0;          // ln Bayes factor without refitting
+    double log_bayes_factor = 0;  // after the refit where there was one
+    double keep = 1;              // how much of its signature the rest cannot swallow
+    double probability = 0;       // among all candidates and none
+    double predicted_rms_mm = 0;  // what the screen expects to be left
+    std::optional<Refit> refit = std::nullopt;
+    std::optional<HeldOut> held_out = std::nullopt;
+    skeleton::Effect told = {};   // its numbers
+    std::vector<double> sd = {};  // of them
+};
+
+struct NextProbe {
+    std::string kind, why;
+    std::optional<mesh::Contact> contact = std::nullopt;
+};
+
+/// What a model lacks, judged on its errors.
+struct Diagnosis {
+    Verdict verdict = Verdict::adequate;
+    std::vector<std::string> explanation;
+    std::vector<Candidate> ranking;  // by evidence, most first
+    Refit baseline;                  // nothing added, under the law that explains most
+    HeldOut baseline_held_out;
+    int law = 0;                       // of the explanation
+    std::vector<double> law_evidence;  // of each law without effects, less the best; -inf: no equilibria
+    Outliers outliers;
+    Problem problem;  // without the outliers
+    std::optional<NextProbe> next_probe;
+    bool noise_known = true;
+    double noise = 0;                // 1 sigma, told or estimated, rms [mm]
+    std::vector<std::string> notes;  // what a user should know, in words
+
+    /// The fit that explains most: the leading candidate's where it is claimed, else the baseline.
+    const Refit& best() const;
+};
+
+/// Screens the catalogue by force signatures, refits what leads under the laws that matter, and says what is missing,
+/// or that nothing is, or that it does not know. [design: score test, Laplace evidence, leave-one-out]
+/// @throws SolverFailure when the model has no equilibria under these loads; InvalidInput without labelled readings.
+Diagnosis diagnose(const BodyModel& model, const MeasurementSet& set, const DiagnoseOptions& options,
+                   const Progress& progress = {});
+
+}  // namespace palpate::identify

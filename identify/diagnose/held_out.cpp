@@ -1,0 +1,88 @@
+#include "identify/diagnose/held_out.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace palpate::identify {
+
+HeldOut leave_probes_out(const Problem& problem, const Refit& fit) {
+    // All unknowns as one linear model about their priors' means: d + A (x - mean) = A x' + nuisances + noise.
+    const Eigen::Index own = fit.columns.cols(), all = own + fit.nuisances.columns.cols();
+    Eigen::MatrixXd A(problem.rows(), all);
+    A << fit.columns, fit.nuisances.columns;
+    Eigen::VectorXd precisions(all);
+    precisions << fit.prior_sd.cwiseAbs2().cwiseInverse(), fit.nuisances.precisions;
+    const Eigen::VectorXd d = fit.error + fit.columns * (fit.explanation.all() - fit.prior_mean);
+
+    std::vector<int> group(problem.rows());
+    for (Eigen::Index n = 0; n < problem.rows(); ++n) group[n] = problem.probe[problem.action[n]];
+    const LeftOut left = leave_out(Whitening(fit.V->weights(), A, precisions), d, group);
+    const auto N = static_cast<double>(problem.rows());
+    return {std::sqrt(left.error.cwiseProduct(problem.sigma).squaredNorm() / N),
+            std::sqrt(left.whitened.squaredNorm() / N),
+            {}};
+}
+
+namespace {
+
+/// The fit's explanation in another problem, and how uncertain its numbers are there.
+struct Carried {
+    Explanation explanation;
+    Eigen::MatrixXd covariance;
+};
+
+Carried carry(const BodyModel& model, const Problem& unseen, const Refit& fit) {
+    Carried result;
+    result.explanation = fit.explanation;
+    std::vector<Eigen::Index> from;  // place in the fit of each number, -1: it is of these probes alone
+    std::vector<double> prior_sd;
+    for (Eigen::Index p = 0; p < fit.explanation.theta.size(); ++p) {
+        from.push_back(p);
+        prior_sd.push_back(fit.prior_sd[p]);
+    }
+    Eigen::Index at = fit.explanation.theta.size();
+    for (std::size_t e = 0; e < fit.explanation.effects.size(); ++e) {
+        const Effect& effect = *fit.explanation.effects[e];
+        const auto numbers = effect.numbers(model, unseen);
+        result.explanation.values[e] = effect.values(numbers, effect.told(fit.numbers[e], fit.explanation.values[e]));
+        for (const EffectNumber& number : numbers) {
+            const auto same = std::ranges::find(fit.numbers[e], number.name, &EffectNumber::name);
+            from.push_back(same == fit.numbers[e].end() ? -1 : at + (same - fit.numbers[e].begin()));
+            prior_sd.push_back(number.prior_sd);
+        }
+        at += std::ssize(fit.numbers[e]);
+    }
+    result.covariance.setZero(std::ssize(from), std::ssize(from));
+    for (std::size_t i = 0; i < from.size(); ++i) {
+        for (std::size_t j = 0; j < from.size(); ++j) {
+            if (from[i] >= 0 && from[j] >= 0) result.covariance(i, j) = fit.covariance(from[i], from[j]);
+        }
+        if (from[i] < 0) result.covariance(i, i) = prior_sd[i] * prior_sd[i];
+    }
+    return result;
+}
+
+}  // namespace
+
+HeldOut predict(const BodyModel& model, const Problem& unseen, const Refit& fit, const RefitOptions& options) {
+    const auto [explanation, covariance] = carry(model, unseen, fit);
+    const Played played = play(model, unseen, explanation, options.threads);
+    const Eigen::VectorXd error = (unseen.measured - unseen.pick(played.markers)).cwiseQuotient(unseen.sigma);
+    const Nuisances nuisances = make_nuisances(model, unseen, explanation, played, options.threads, options.nuisances);
+    const Eigen::MatrixXd own =
+        answers(model, unseen, explanation, played, {own_signatures(model, unseen, explanation)}, options.threads)
+            .front() +
+        seen_directly(unseen, explanation, played);
+
+    const Eigen::MatrixXd spread = covariance.llt().matrixL();
+    Eigen::MatrixXd A(unseen.rows(), own.cols() + nuisances.columns.cols());
+    A << own * spread, nuisances.columns;
+    Eigen::VectorXd precisions(A.cols());
+    precisions << Eigen::VectorXd::Ones(own.cols()), nuisances.precisions;
+    const Whitening V(contact_weights(model, unseen, explanation, options.nuisances), A, precisions);
+    const auto N = static_cast<double>(unseen.rows());
+    return {std::sqrt(error.cwiseProduct(unseen.sigma).squaredNorm() / N),
+            std::sqrt(error.dot(V.apply(error).col(0)) / N), V.residual(error)};
+}
+
+}  // namespace palpate::identify

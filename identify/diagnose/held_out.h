@@ -1,0 +1,20 @@
+#pragma once
+
+#include "identify/diagnose/refit.h"
+
+namespace palpate::identify {
+
+/// How well a fit predicts what it has not seen: each probe's readings from all others, by the fit's own linearisation.
+struct HeldOut {
+    double rms_mm = 0;              // over all measured coordinates; the contacts' nuisances are unknown there
+    double whitened_rms = 0;        // in sigmas of noise and of what nobody can know
+    Eigen::VectorXd residual = {};  // predictions only: what the unknowns do not explain either, in sigmas (N)
+};
+HeldOut leave_probes_out(const Problem& problem, const Refit& fit);
+
+/// How well a fit predicts another problem of the same body, by its own equilibria there: what the fit left uncertain
+/// and the nuisances of the new probes count as unknown.
+/// @throws SolverFailure where an action has no equilibrium.
+HeldOut predict(const BodyModel& model, const Problem& unseen, const Refit& fit, const RefitOptions& options);
+
+}  // namespace palpate::identify

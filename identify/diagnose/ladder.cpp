@@ -1,0 +1,208 @@
+#include "identify/diagnose/ladder.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <set>
+
+#include "identify/effects/catalogue.h"
+#include "identify/fit/calibrate.h"
+#include "identify/models/skeleton_body.h"
+#include "identify/set/readings.h"
+#include "mesh/errors.h"
+#include "skeleton/statics.h"
+
+namespace palpate::identify {
+namespace {
+
+bool is_loaded(const LoadState& state) {
+    return std::ranges::any_of(state.contacts, [](const mesh::Contact& c) { return !c.force.isZero(0); });
+}
+
+/// A quarter of the loaded probes, spread evenly; none where there are fewer than three.
+std::vector<int> probes_to_hold_out(const MeasurementSet& set) {
+    std::set<int> loaded;
+    for (const LoadState& state : set.states) {
+        if (is_loaded(state)) loaded.insert(state.probe);
+    }
+    const std::vector<int> probes(loaded.begin(), loaded.end());
+    if (probes.size() < 3) return {};
+    const std::size_t count = std::max<std::size_t>(1, probes.size() / 4);
+    std::vector<int> held_out;
+    for (std::size_t i = 0; i < count; ++i) held_out.push_back(probes[(2 * i + 1) * probes.size() / (2 * count)]);
+    return held_out;
+}
+
+MeasurementSet part_of(const MeasurementSet& set, const std::vector<int>& probes, bool of_them) {
+    MeasurementSet part = set;
+    std::erase_if(part.states, [&](const LoadState& state) {
+        return (std::ranges::find(probes, state.probe) != probes.end()) != of_them;
+    });
+    return part;
+}
+
+/// An explanation's effects as they are told.
+std::vector<skeleton::Effect> told(const Diagnosis& diagnosis) {
+    std::vector<skeleton::Effect> result;
+    const Refit& fit = diagnosis.best();
+    for (std::size_t e = 0; e < fit.explanation.effects.size(); ++e) {
+        result.push_back(fit.explanation.effects[e]->told(fit.numbers[e], fit.explanation.values[e]));
+    }
+    for (const Candidate& candidate : diagnosis.ranking) {
+        const bool set_aside = candidate.effect->name() == "outliers" && !diagnosis.outliers.readings.empty();
+        if (set_aside) result.push_back(candidate.told);
+    }
+    return result;
+}
+
+/// The measurements without the faults that are known, and without outliers where these are one of them.
+MeasurementSet understood(const MeasurementSet& set, const std::vector<skeleton::Effect>& effects,
+                          const std::vector<int>& outliers) {
+    MeasurementSet result = without_readings(set, outliers);
+    for (const skeleton::Effect& effect : effects) result = find_effect(effect.name)->corrected(result, effect);
+    return result;
+}
+
+class Climb {
+public:
+    Climb(const skeleton::Model& model, const BodyModel* reference, const MeasurementSet& set,
+          const LadderOptions& options, const Progress& progress)
+        : model_(model), set_(set), options_(options), progress_(progress) {
+        if (!reference) {
+            own_body_ = std::make_unique<SkeletonBody>(model, set.markers, 0.1);
+            body_ = own_body_.get();
+            body_is_skeleton_ = true;
+        } else {
+            body_ = reference;
+        }
+        result_.held_out_probes = probes_to_hold_out(set);
+        fitted_ = part_of(set, result_.held_out_probes, false);
+        held_out_ = part_of(set, result_.held_out_probes, true);
+    }
+
+    Ladder run(const std::vector<std::string>& effects, const Diagnosis* diagnosis) {
+        for (std::size_t rung = 0; rung <= effects.size(); ++rung) {
+            report(progress_, fmt::format("ladder, step {}", rung),
+                   static_cast<double>(rung) / static_cast<double>(effects.size() + 1));
+            add_step({effects.begin(), effects.begin() + static_cast<std::ptrdiff_t>(rung)}, diagnosis);
+        }
+        finish(effects, diagnosis);
+        return std::move(result_);
+    }
+
+private:
+    /// The body explained with these effects and no others.
+    Diagnosis explain(const MeasurementSet& set, const std::vector<std::string>& effects,
+                      const Diagnosis* diagnosis) const {
+        DiagnoseOptions options = options_.diagnose;
+        options.screen = false;
+        for (const std::string& name : effects) options.known.push_back(start_of(name, diagnosis));
+        if (std::ranges::find(effects, "outliers") == effects.end()) options.without.emplace_back("outliers");
+        if (diagnosis) options.law = diagnosis->law;
+        return diagnose(*body_, set, options);
+    }
+
+    static skeleton::Effect start_of(const std::string& name, const Diagnosis* diagnosis) {
+        if (diagnosis) {
+            for (const Candidate& candidate : diagnosis->ranking) {
+                if (candidate.effect->name() == name && !candidate.told.name.empty()) return candidate.told;
+            }
+        }
+        return {name, {}};
+    }
+
+    void add_step(const std::vector<std::string>& effects, const Diagnosis* diagnosis) {
+        LadderStep step;
+        const Diagnosis found = explain(fitted_, effects, diagnosis);
+        const Refit& fit = found.best();
+        step.effects = told(found);
+        step.log_evidence = fit.log_evidence;
+        if (!effects.empty() && diagnosis) {
+            const auto& ranking = diagnosis->ranking;
+            const auto own =
+                std::ranges::find_if(ranking, [&](const Candidate& c) { return c.effect->name() == effects.back(); });
+            if (own != ranking.end()) step.predicted_rms_mm = own->predicted_rms_mm;
+        }
+        StepError error{.rms_mm = fit.rms_mm, .whitened_rms = fit.whitened_rms};
+        error.relative = fit.rms_mm / rms_of(found.problem.displacement());
+        MeasurementSet unseen = held_out_;
+        if (!unseen.states.empty()) {
+            const RefitOptions& how = options_.diagnose.refit;
+            HeldOut predicted = predict(*body_, make_problem(unseen, found.noise), fit, how);
+            if (std::ranges::find(effects, "outliers") != effects.end()) {
+                const Outliers off = find_outliers(make_problem(unseen, found.noise), predicted.residual);
+                unseen = without_readings(unseen, off.readings);
+                predicted = predict(*body_, make_problem(unseen, found.noise), fit, how);
+            }
+            error.held_out_rms_mm = predicted.rms_mm;
+            error.held_out_whitened_rms = predicted.whitened_rms;
+        }
+        if (!body_is_skeleton_) step.reference = error;
+        result_.verdict = found.verdict;
+
+        // The skeleton with the same physics, fitted to what is left of the measurements.
+        const MeasurementSet part = understood(fitted_, step.effects, found.outliers.readings);
+        unseen = understood(unseen, step.effects, {});
+        step.model = fit_skeleton(step.effects, part);
+        const Comparison on_fitted = compare(step.model, part, options_.identify.threads);
+        step.skeleton = {.rms_mm = on_fitted.rms, .relative = on_fitted.relative};
+        if (!unseen.states.empty()) {
+            step.skeleton.held_out_rms_mm = compare(step.model, unseen, options_.identify.threads).rms;
+        }
+        step.set = understood(set_, step.effects, {});
+        step.comparison = compare(step.model, step.set, options_.identify.threads);
+        result_.steps.push_back(std::move(step));
+    }
+
+    static double rms_of(const Eigen::VectorXd& v) {
+        return std::sqrt(v.squaredNorm() / static_cast<double>(v.size()));
+    }
+
+    skeleton::Model with_effects(const std::vector<skeleton::Effect>& effects) const {
+        skeleton::Model model = model_;
+        model.effects = effects;
+        return model;
+    }
+
+    /// The most probable stiffnesses, without particles.
+    skeleton::Model fit_skeleton(const std::vector<skeleton::Effect>& effects, const MeasurementSet& set) const {
+        skeleton::Model model = with_effects(effects);
+        const Calibration found = calibrate(model, collect_readings(model, set), options_.identify, {});
+        model.law = found.domain.law();
+        skeleton::set_stiffness(model, found.domain.parameters().stiffness(found.fit.theta));
+        return model;
+    }
+
+    /// The last step once more, on all states and with particles: the model that is delivered.
+    void finish(const std::vector<std::string>& effects, const Diagnosis* diagnosis) {
+        report(progress_, "the model on all states", 0.9);
+        const Diagnosis whole = explain(set_, effects, diagnosis);
+        LadderStep& last = result_.steps.back();
+        last.effects = told(whole);
+        last.set = understood(set_, last.effects, whole.outliers.readings);
+        result_.identified = identify(with_effects(last.effects), last.set, options_.identify, progress_);
+        last.model = result_.identified.model;
+        last.comparison = compare(last.model, last.set, options_.identify.threads);
+    }
+
+    const skeleton::Model& model_;
+    const MeasurementSet& set_;
+    const LadderOptions& options_;
+    const Progress& progress_;
+    const BodyModel* body_ = nullptr;
+    std::unique_ptr<SkeletonBody> own_body_;
+    bool body_is_skeleton_ = false;
+    MeasurementSet fitted_, held_out_;
+    Ladder result_;
+};
+
+}  // namespace
+
+Ladder climb(const skeleton::Model& model, const BodyModel* reference, const MeasurementSet& set,
+             const std::vector<std::string>& effects, const LadderOptions& options, const Diagnosis* diagnosis,
+             const Progress& progress) {
+    for (const std::string& name : effects) find_effect(name);
+    return Climb(model, reference, set, options, progress).run(effects, diagnosis);
+}
+
+}  // namespace palpate::identify

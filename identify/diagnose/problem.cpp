@@ -1,0 +1,132 @@
+#include "identify/diagnose/problem.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "identify/set/loads.h"
+#include "mesh/errors.h"
+
+namespace palpate::identify {
+namespace {
+
+std::vector<mesh::Contact> acting(const LoadState& state) {
+    std::vector<mesh::Contact> contacts;
+    std::ranges::copy_if(state.contacts, std::back_inserter(contacts),
+                         [](const mesh::Contact& c) { return !c.force.isZero(0); });
+    return contacts;
+}
+
+bool same(const std::vector<mesh::Contact>& a, const std::vector<mesh::Contact>& b) {
+    return std::ranges::equal(a, b, [](const mesh::Contact& x, const mesh::Contact& y) {
+        return x.point == y.point && x.force == y.force && x.radius == y.radius;
+    });
+}
+
+bool counts(const Reading& reading) { return reading.marker >= 0 && !reading.position.array().isNaN().all(); }
+
+/// The action of a state: one that is there already, or a new one.
+int action_of(Problem& problem, const LoadState& state, const Vec3& gravity) {
+    const std::vector<mesh::Contact> contacts = acting(state);
+    const int probe = contacts.empty() ? -1 : state.probe;
+    for (std::size_t k = 0; k < problem.actions.size(); ++k) {
+        const Action& action = problem.actions[k];
+        if (problem.probe[k] == probe && action.gravity == gravity && same(action.contacts, contacts)) {
+            return static_cast<int>(k);
+        }
+    }
+    problem.actions.push_back({contacts, gravity});
+    problem.probe.push_back(probe);
+    return static_cast<int>(problem.actions.size()) - 1;
+}
+
+}  // namespace
+
+Problem make_problem(const MeasurementSet& set, double noise) {
+    Problem problem;
+    problem.force_noise = set.force_noise.value_or(0);
+    problem.rest.resize(static_cast<Eigen::Index>(set.markers.size()), 3);
+    for (std::size_t m = 0; m < set.markers.size(); ++m) {
+        problem.rest.row(static_cast<Eigen::Index>(m)) = set.markers[m].rest;
+    }
+    std::vector<double> measured, sigma;
+    int reading_number = 0;
+    for (std::size_t s = 0; s < set.states.size(); ++s) {
+        const LoadState& state = set.states[s];
+        if (std::ranges::none_of(state.readings, counts)) continue;
+        const int action = action_of(problem, state, known_gravity(set, state).value_or(Vec3::Zero()));
+        for (const Reading& reading : state.readings) {
+            if (!counts(reading)) continue;
+            for (int axis = 0; axis < 3; ++axis) {
+                if (std::isnan(reading.position[axis])) continue;
+                measured.push_back(reading.position[axis]);
+                sigma.push_back(std::isnan(reading.sigma) ? set.position_noise.value_or(noise) : reading.sigma);
+                problem.state.push_back(static_cast<int>(s));
+                problem.action.push_back(action);
+                problem.coordinate.push_back(3 * reading.marker + axis);
+                problem.reading.push_back(reading_number);
+            }
+            ++reading_number;
+        }
+    }
+    if (measured.empty()) {
+        throw InvalidInput(fmt::format(
+            "measurement set '{}' has no labelled reading; positions.csv needs rows that name a marker", set.name));
+    }
+    problem.measured = Eigen::Map<Eigen::VectorXd>(measured.data(), std::ssize(measured));
+    problem.sigma = Eigen::Map<Eigen::VectorXd>(sigma.data(), std::ssize(sigma));
+    return problem;
+}
+
+MeasurementSet without_readings(const MeasurementSet& set, const std::vector<int>& readings) {
+    MeasurementSet result = set;
+    int number = 0;
+    for (LoadState& state : result.states) {
+        std::erase_if(state.readings, [&](const Reading& reading) {
+            return counts(reading) && std::ranges::binary_search(readings, number++);
+        });
+    }
+    return result;
+}
+
+Eigen::VectorXd Problem::pick(const std::vector<Points>& positions) const {
+    Eigen::VectorXd result(rows());
+    for (Eigen::Index n = 0; n < rows(); ++n) {
+        result[n] = positions[action[n]](coordinate[n] / 3, coordinate[n] % 3);
+    }
+    return result;
+}
+
+Eigen::VectorXd Problem::displacement() const {
+    Eigen::VectorXd result = measured;
+    for (Eigen::Index n = 0; n < rows(); ++n) result[n] -= rest(coordinate[n] / 3, coordinate[n] % 3);
+    return result;
+}
+
+Problem Problem::with_rows(const std::vector<char>& keep) const {
+    Problem result;
+    result.actions = actions;
+    result.probe = probe;
+    result.rest = rest;
+    result.force_noise = force_noise;
+    std::vector<int> kept;
+    int last = -1, number = -1;
+    for (int n = 0; n < static_cast<int>(rows()); ++n) {
+        if (!keep[n]) continue;
+        if (reading[n] != last) ++number;
+        last = reading[n];
+        kept.push_back(n);
+        result.state.push_back(state[n]);
+        result.action.push_back(action[n]);
+        result.coordinate.push_back(coordinate[n]);
+        result.reading.push_back(number);
+    }
+    result.measured = measured(kept);
+    result.sigma = sigma(kept);
+    return result;
+}
+
+double Problem::rms_sigma() const { return std::sqrt(sigma.squaredNorm() / static_cast<double>(sigma.size())); }
+
+}  // namespace palpate::identify

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <vector>
+
+#include "identify/models/body_model.h"
+#include "identify/set/measurement_set.h"
+
+namespace palpate::identify {
+
+/// A set's readings as one long vector of coordinates, and what acted behind them. N rows: the coordinates that were
+/// measured; K actions: those that differ. States without load share one action; others do within a probe, when
+/// nothing else acts on the body (creep, repeats).
+struct Problem {
+    std::vector<Action> actions;      // (K)
+    std::vector<int> probe;           // of each action, as in the set; -1: nothing is known to act
+    Points rest;                      // of the set's markers (m x 3) [mm]
+    std::vector<int> state;           // of each row, in the set (N)
+    std::vector<int> action;          // of each row (N)
+    std::vector<int> coordinate;      // 3 marker + axis, of each row (N)
+    std::vector<int> reading;         // rows of one reading share a number (N)
+    Eigen::VectorXd measured, sigma;  // [mm] (N)
+    double force_noise = 0;           // 1 sigma of the forces [N]; 0: unknown
+
+    Eigen::Index rows() const { return measured.size(); }
+    int readings() const { return reading.empty() ? 0 : reading.back() + 1; }
+    bool loaded(int k) const { return probe[k] >= 0; }
+
+    /// Coordinates (N) out of each action's marker positions (K of m x 3).
+    Eigen::VectorXd pick(const std::vector<Points>& positions) const;
+    /// The same of displacements from rest, as they were measured [mm].
+    Eigen::VectorXd displacement() const;
+    /// The problem with only those rows that `keep` (N flags) holds for.
+    Problem with_rows(const std::vector<char>& keep) const;
+    double rms_sigma() const;
+};
+
+/// Labelled readings of the set; `noise` [mm] stands for a sigma that the set does not tell.
+/// @throws InvalidInput when there are none.
+Problem make_problem(const MeasurementSet& set, double noise);
+
+/// The set without some of the readings, numbered as make_problem numbers them (ascending).
+MeasurementSet without_readings(const MeasurementSet& set, const std::vector<int>& readings);
+
+}  // namespace palpate::identify

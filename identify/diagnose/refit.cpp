@@ -1,0 +1,231 @@
+#include "identify/diagnose/refit.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "mesh/errors.h"
+
+namespace palpate::identify {
+namespace {
+
+// A step that promises to lower half the chi^2 by less is none: nothing against an evidence of 1, or against what a fit
+// that explains little is off by anyway.
+double settled(double objective, Eigen::Index readings) {
+    return std::max(0.02, 1e-3 * (objective - 0.5 * static_cast<double>(readings)));
+}
+
+struct Priors {
+    Eigen::VectorXd mean, sd;
+};
+
+Priors priors_of(const BodyModel& model, const Explanation& explanation,
+                 const std::vector<std::vector<EffectNumber>>& numbers) {
+    std::vector<double> mean, sd;
+    for (const StiffnessParameter& p : model.parameters()) {
+        mean.push_back(p.prior_mean);
+        sd.push_back(p.prior_sd);
+    }
+    for (const auto& list : numbers) {
+        for (const EffectNumber& number : list) {
+            mean.push_back(number.prior_mean);
+            sd.push_back(number.prior_sd);
+        }
+    }
+    const Eigen::Index count = explanation.numbers();
+    return {Eigen::Map<Eigen::VectorXd>(mean.data(), count), Eigen::Map<Eigen::VectorXd>(sd.data(), count)};
+}
+
+/// Half of chi^2 and priors, to be lowered.
+double objective(const Whitening& V, const Eigen::VectorXd& d, const Priors& priors, const Eigen::VectorXd& x) {
+    return 0.5 * d.dot(V.apply(d).col(0)) + 0.5 * (x - priors.mean).cwiseQuotient(priors.sd).squaredNorm();
+}
+
+Eigen::VectorXd error_of(const Problem& problem, const Played& played) {
+    return (problem.measured - problem.pick(played.markers)).cwiseQuotient(problem.sigma);
+}
+
+/// A fit in progress, at fixed V.
+class Descent {
+public:
+    Descent(const BodyModel& model, const Problem& problem, const Priors& priors, int threads, Refit& at)
+        : model_(model), problem_(problem), priors_(priors), threads_(threads), at_(at) {}
+
+    void run(int most_steps) {
+        double now = objective(*at_.V, at_.error, priors_, at_.explanation.all());
+        linearise();
+        for (int step = 0; step < most_steps; ++step) {
+            const Eigen::MatrixXd VA = at_.V->apply(at_.columns);
+            Eigen::MatrixXd H = at_.columns.transpose() * VA;
+            H.diagonal() += priors_.sd.cwiseAbs2().cwiseInverse();
+            const Eigen::VectorXd x = at_.explanation.all();
+            const Eigen::VectorXd g =
+                VA.transpose() * at_.error - (x - priors_.mean).cwiseQuotient(priors_.sd.cwiseAbs2());
+            const Eigen::LLT<Eigen::MatrixXd> factor(H);
+            Eigen::VectorXd move = factor.solve(g);
+            at_.covariance = factor.solve(Eigen::MatrixXd::Identity(x.size(), x.size()));
+            at_.converged = 0.5 * g.dot(move) < settled(now, problem_.rows());
+            if (at_.converged) return;
+            // no number goes further than its prior's width at once, or than a factor of two
+            move *= std::min(1.0, 1 / move.cwiseQuotient(priors_.sd.cwiseMin(0.7)).cwiseAbs().maxCoeff());
+            ++at_.steps;
+            if (!advance(move, now)) return;
+            linearise();
+        }
+    }
+
+private:
+    /// Plays a step, shortened until the objective falls. False when none was found.
+    bool advance(const Eigen::VectorXd& move, double& now) {
+        const Eigen::VectorXd x = at_.explanation.all();
+        const Setting setting = at_.explanation.setting();
+        for (double share = 1; share > 0.01; share *= 0.4) {
+            Explanation trial = at_.explanation;
+            trial.set_all(x + share * move);
+            std::vector<Eigen::VectorXd> predicted = at_.played.q;
+            for (std::size_t k = 0; k < predicted.size(); ++k) {
+                if (steps_[k].size() > 0) {
+                    predicted[k] = model_.advance(predicted[k], steps_[k] * (share * move), setting);
+                }
+            }
+            try {
+                Played played = play(model_, problem_, trial, threads_, &predicted);
+                const Eigen::VectorXd error = error_of(problem_, played);
+                const double then = objective(*at_.V, error, priors_, trial.all());
+                if (!(then < now)) continue;
+                now = then;
+                at_.explanation = std::move(trial);
+                at_.played = std::move(played);
+                at_.error = error;
+                return true;
+            } catch (const SolverFailure&) {
+                continue;  // too soft to carry its load: no improvement
+            }
+        }
+        return false;
+    }
+
+    void linearise() {
+        at_.columns = answers(model_, problem_, at_.explanation, at_.played,
+                              {own_signatures(model_, problem_, at_.explanation)}, threads_, &steps_)
+                          .front() +
+                      seen_directly(problem_, at_.explanation, at_.played);
+    }
+
+    const BodyModel& model_;
+    const Problem& problem_;
+    const Priors& priors_;
+    int threads_;
+    Refit& at_;
+    std::vector<Eigen::MatrixXd> steps_;  // J^-1 times the signatures, of each action
+};
+
+/// Equilibria at the start; where there are none the body is made stiffer.
+void begin(const BodyModel& model, const Problem& problem, int threads, const Refit* start, Refit& at) {
+    constexpr int most = 10;
+    for (int attempt = 0;; ++attempt) {
+        try {
+            at.played = play(model, problem, at.explanation, threads, start ? &start->played.q : nullptr);
+            at.error = error_of(problem, at.played);
+            return;
+        } catch (const SolverFailure&) {
+            if (attempt == most) throw;
+            for (Eigen::Index p = 0; p < at.explanation.theta.size(); ++p) {
+                if (model.parameters()[p].stiffens) at.explanation.theta[p] += 0.3;
+            }
+        }
+    }
+}
+
+void take_nuisances(const BodyModel& model, const Problem& problem, const RefitOptions& options, Refit& at) {
+    at.nuisances = make_nuisances(model, problem, at.explanation, at.played, options.threads, options.nuisances);
+    at.V.emplace(contact_weights(model, problem, at.explanation, options.nuisances), at.nuisances.columns,
+                 at.nuisances.precisions);
+}
+
+void conclude(const Problem& problem, const Priors& priors, Refit& at) {
+    const auto N = static_cast<double>(problem.rows());
+    const Eigen::VectorXd x = at.explanation.all();
+    // ln Z = -(chi^2 + priors)/2 - ln |V| / 2 - sum ln sd + ln |covariance| / 2
+    const Eigen::LLT<Eigen::MatrixXd> factor(at.covariance);
+    at.log_evidence = -objective(*at.V, at.error, priors, x) - 0.5 * at.V->log_determinant() -
+                      priors.sd.array().log().sum() + factor.matrixLLT().diagonal().array().log().sum();
+    at.prior_mean = priors.mean;
+    at.prior_sd = priors.sd;
+    at.rms_mm = std::sqrt(at.error.cwiseProduct(problem.sigma).squaredNorm() / N);
+    at.whitened_rms = std::sqrt(at.error.dot(at.V->apply(at.error).col(0)) / N);
+    const Eigen::VectorXd strained = at.V->nuisances(at.error);
+    at.strain = strained.size() > 0 ? strained.cwiseAbs().maxCoeff() : 0;
+    at.residual = at.V->residual(at.error);
+}
+
+}  // namespace
+
+Refit refit(const BodyModel& model, const Problem& problem, const Explanation& explanation, const RefitOptions& options,
+            const Refit* start) {
+    Refit at;
+    at.explanation = explanation;
+    for (const auto& effect : explanation.effects) at.numbers.push_back(effect->numbers(model, problem));
+    const Priors priors = priors_of(model, explanation, at.numbers);
+    begin(model, problem, options.threads, start, at);
+
+    // A first round with the nuisances of the start, or none; a second with those of where it led, unless it led
+    // nowhere.
+    if (start && start->V) {
+        at.V = start->V;
+    } else {
+        at.V.emplace(contact_weights(model, problem, at.explanation, options.nuisances),
+                     Eigen::MatrixXd(problem.rows(), 0), Eigen::VectorXd(0));
+    }
+    Descent descent(model, problem, priors, options.threads, at);
+    descent.run(options.steps);
+    constexpr double hopeless = 2;  // rms left, whitened
+    const double left = std::sqrt(at.error.dot(at.V->apply(at.error).col(0)) / static_cast<double>(problem.rows()));
+    if (!(start && start->V) || left < hopeless) {
+        take_nuisances(model, problem, options, at);
+        descent.run(options.steps);
+    } else {
+        at.nuisances = start->nuisances;
+    }
+    conclude(problem, priors, at);
+    return at;
+}
+
+Explanation first_guess(const BodyModel& model, const Problem& problem, int law, int threads) {
+    Explanation guess;
+    guess.law = law;
+    guess.theta.resize(std::ssize(model.parameters()));
+    for (Eigen::Index p = 0; p < guess.theta.size(); ++p) guess.theta[p] = model.parameters()[p].start;
+
+    // Linear answers against measurements, both less the unloaded pose where there is one: what acts without load
+    // (weight, a moved frame) drops out.
+    Explanation linear = guess;
+    linear.law = 0;
+    const Played played = play(model, problem, linear, threads);
+    const Eigen::VectorXd measured = problem.displacement();
+    Eigen::VectorXd modelled = problem.pick(played.markers);
+    std::vector<double> sum(problem.rest.size(), 0.0);
+    std::vector<int> count(problem.rest.size(), 0);
+    for (Eigen::Index n = 0; n < problem.rows(); ++n) {
+        modelled[n] -= problem.rest(problem.coordinate[n] / 3, problem.coordinate[n] % 3);
+        if (problem.loaded(problem.action[n])) continue;
+        sum[problem.coordinate[n]] += measured[n];
+        ++count[problem.coordinate[n]];
+    }
+    double pm = 0, pp = 0;
+    for (Eigen::Index n = 0; n < problem.rows(); ++n) {
+        const int c = problem.coordinate[n];
+        if (!problem.loaded(problem.action[n])) continue;
+        const double unloaded = count[c] > 0 ? sum[c] / count[c] : 0;
+        const double w = 1 / (problem.sigma[n] * problem.sigma[n]);
+        pm += w * modelled[n] * (measured[n] - unloaded);
+        pp += w * modelled[n] * modelled[n];
+    }
+    if (pp > 0 && pm > 0.02 * pp) {
+        for (Eigen::Index p = 0; p < guess.theta.size(); ++p) {
+            if (model.parameters()[p].stiffens) guess.theta[p] -= std::log(pm / pp);
+        }
+    }
+    return guess;
+}
+
+}  // namespace palpate::identify

@@ -1,0 +1,49 @@
+#pragma once
+
+#include <optional>
+
+#include "identify/diagnose/fit.h"
+#include "identify/diagnose/nuisances.h"
+#include "identify/diagnose/whitening.h"
+
+namespace palpate::identify {
+
+/// An explanation fitted to a problem, with all that the statistics need.
+struct Refit {
+    Explanation explanation;
+    std::vector<std::vector<EffectNumber>> numbers;  // of each effect
+    Played played;
+    Eigen::VectorXd error;    // d = (measured - modelled) / sigma (N)
+    Eigen::MatrixXd columns;  // d modelled / d numbers, over sigma (N x numbers)
+    Nuisances nuisances;
+    std::optional<Whitening> V;            // of nuisances and weights
+    Eigen::VectorXd prior_mean, prior_sd;  // of all numbers
+    Eigen::MatrixXd covariance;            // of all numbers, posterior
+    double log_evidence = 0;               // less the constant that the readings share
+    int steps = 0;                         // Gauss-Newton's
+    bool converged = false;
+
+    double rms_mm = 0;         // over all measured coordinates
+    double whitened_rms = 0;   // in sigmas of noise and of what nobody can know: 1 is as good as it gets
+    double strain = 0;         // of the most strained nuisance, in its prior sd
+    Eigen::VectorXd residual;  // what the nuisances do not explain either, in sigmas (N)
+};
+
+struct RefitOptions {
+    int threads = 1;
+    int steps = 12;  // Gauss-Newton's in each of two rounds, at most
+    NuisanceOptions nuisances;
+};
+
+/// Gauss-Newton on half of d^T V^-1 d and the priors, d at the model's own equilibria with exact derivatives; the
+/// nuisances are taken at the fit itself, in two rounds. Evidence by Laplace's approximation.
+/// `start`: a fit nearby, whose configurations and nuisances serve to begin with.
+/// @throws SolverFailure when no equilibria are found at the start, not even with a body twenty times as stiff.
+Refit refit(const BodyModel& model, const Problem& problem, const Explanation& explanation, const RefitOptions& options,
+            const Refit* start = nullptr);
+
+/// Numbers that begin a fit under a law without effects: Young's modulus, or what stands for it, scaled so that the
+/// linear answers are as large as the measurements' differences to the unloaded state.
+Explanation first_guess(const BodyModel& model, const Problem& problem, int law, int threads);
+
+}  // namespace palpate::identify

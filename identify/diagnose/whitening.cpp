@@ -1,0 +1,90 @@
+#include "identify/diagnose/whitening.h"
+
+#include <cassert>
+#include <cmath>
+#include <map>
+#include <vector>
+
+namespace palpate::identify {
+namespace {
+
+double log_determinant_of(const Eigen::LLT<Eigen::MatrixXd>& factor) {
+    return 2 * factor.matrixLLT().diagonal().array().log().sum();
+}
+
+}  // namespace
+
+Whitening::Whitening(Eigen::VectorXd weights, const Eigen::MatrixXd& A, Eigen::VectorXd precisions)
+    : weights_(std::move(weights)), precisions_(std::move(precisions)), B_(weights_.asDiagonal() * A) {
+    assert(A.cols() == precisions_.size() && A.rows() == weights_.size());
+    Eigen::MatrixXd inner = precisions_.asDiagonal();
+    inner.selfadjointView<Eigen::Lower>().rankUpdate(B_.transpose());
+    inner_.compute(inner);
+    // |V| = |W^-2| |Lambda + B^T B| / |Lambda|
+    log_determinant_ = (B_.cols() > 0 ? log_determinant_of(inner_) : 0) - precisions_.array().log().sum() -
+                       2 * weights_.array().log().sum();
+}
+
+Eigen::MatrixXd Whitening::apply(const Eigen::MatrixXd& b) const {
+    Eigen::MatrixXd weighted = weights_.asDiagonal() * b;
+    if (B_.cols() > 0) weighted -= B_ * inner_.solve(B_.transpose() * weighted);
+    return weights_.asDiagonal() * weighted;
+}
+
+Eigen::VectorXd Whitening::nuisances(const Eigen::VectorXd& d) const {
+    if (B_.cols() == 0) return {};
+    return inner_.solve(B_.transpose() * weights_.cwiseProduct(d)).cwiseProduct(precisions_.cwiseSqrt());
+}
+
+Eigen::VectorXd Whitening::residual(const Eigen::VectorXd& d) const {
+    const Eigen::VectorXd weighted = weights_.cwiseProduct(d);
+    if (B_.cols() == 0) return weighted;
+    return weighted - B_ * inner_.solve(B_.transpose() * weighted);
+}
+
+Eigen::VectorXd Whitening::unsure() const {
+    // In sigmas: the nuisances' share A Lambda^-1 A^T, and what a weight below 1 stands for, W^-2 - 1.
+    const Eigen::VectorXd of_weights = weights_.array().square().inverse() - 1;
+    if (B_.cols() == 0) return of_weights.cwiseSqrt();
+    const Eigen::MatrixXd A = weights_.cwiseInverse().asDiagonal() * B_;
+    return ((A * precisions_.cwiseSqrt().cwiseInverse().asDiagonal()).rowwise().squaredNorm() + of_weights).cwiseSqrt();
+}
+
+ScreenResult screen(const Whitening& V, const Eigen::VectorXd& d, const Eigen::MatrixXd& b,
+                    const Eigen::VectorXd& tau) {
+    const Eigen::MatrixXd scaled = b * tau.asDiagonal();
+    const Eigen::MatrixXd Vb = V.apply(scaled);
+    const Eigen::MatrixXd M = scaled.transpose() * Vb;
+    const Eigen::LLT<Eigen::MatrixXd> inner(Eigen::MatrixXd::Identity(tau.size(), tau.size()) + M);
+    const Eigen::VectorXd s = Vb.transpose() * d;
+    const Eigen::VectorXd x = inner.solve(s);
+    const double all = (V.weights().asDiagonal() * scaled).squaredNorm();
+    return {
+        .log_bayes_factor = 0.5 * s.dot(x) - 0.5 * log_determinant_of(inner),
+        .value = x.cwiseProduct(tau),
+        .sd = inner.solve(Eigen::MatrixXd::Identity(tau.size(), tau.size())).diagonal().cwiseSqrt().cwiseProduct(tau),
+        .keep = all > 0 ? M.trace() / all : 0};
+}
+
+LeftOut leave_out(const Whitening& V, const Eigen::VectorXd& d, const std::vector<int>& group) {
+    const Eigen::VectorXd y = V.apply(d);
+    LeftOut result{Eigen::VectorXd::Zero(d.size()), Eigen::VectorXd::Zero(d.size())};
+    std::map<int, std::vector<Eigen::Index>> rows;
+    for (std::size_t n = 0; n < group.size(); ++n) rows[group[n]].push_back(static_cast<Eigen::Index>(n));
+    for (const auto& [id, own] : rows) {
+        Eigen::MatrixXd unit = Eigen::MatrixXd::Zero(d.size(), std::ssize(own));
+        for (Eigen::Index c = 0; c < std::ssize(own); ++c) unit(own[c], c) = 1;
+        const Eigen::MatrixXd precision = V.apply(unit)(own, Eigen::all);
+        // [V^-1]_gg = L L^T: the error is its inverse times y, whitened L^-1 y
+        const Eigen::LLT<Eigen::MatrixXd> factor(0.5 * (precision + precision.transpose()));
+        const Eigen::VectorXd own_y = y(own);
+        const Eigen::VectorXd error = factor.solve(own_y), whitened = factor.matrixL().solve(own_y);
+        for (Eigen::Index c = 0; c < std::ssize(own); ++c) {
+            result.error[own[c]] = error[c];
+            result.whitened[own[c]] = whitened[c];
+        }
+    }
+    return result;
+}
+
+}  // namespace palpate::identify

@@ -1,0 +1,52 @@
+#pragma once
+
+#include <Eigen/Cholesky>
+#include <Eigen/Core>
+#include <vector>
+
+namespace palpate::identify {
+
+/// What is left of errors, in sigmas, once everything that may always be wrong is taken into account:
+///   V = W^-2 + A Lambda^-1 A^T
+/// with W (N) the weights (below 1 where a coarse model is unsure), A (N x c) what each nuisance does, over sigma, and
+/// Lambda (c) their prior precisions. All by V^-1 = W (1 - B (B^T B + Lambda)^-1 B^T) W, B = W A. [Woodbury]
+class Whitening {
+public:
+    Whitening(Eigen::VectorXd weights, const Eigen::MatrixXd& A, Eigen::VectorXd precisions);
+
+    /// V^-1 b (N x p).
+    Eigen::MatrixXd apply(const Eigen::MatrixXd& b) const;
+    double log_determinant() const { return log_determinant_; }
+    /// The most probable nuisances behind errors d, in their prior standard deviations (c).
+    Eigen::VectorXd nuisances(const Eigen::VectorXd& d) const;
+    /// d less what the nuisances explain of it, weighted: with the right model, noise of 1 sigma (N).
+    Eigen::VectorXd residual(const Eigen::VectorXd& d) const;
+    const Eigen::VectorXd& weights() const { return weights_; }
+    /// Prior standard deviation of each error by what nobody can know (N), in sigmas of noise; noise itself not
+    /// counted.
+    Eigen::VectorXd unsure() const;
+
+private:
+    Eigen::VectorXd weights_, precisions_;
+    Eigen::MatrixXd B_;                  // W A
+    Eigen::LLT<Eigen::MatrixXd> inner_;  // B^T B + Lambda
+    double log_determinant_ = 0;
+};
+
+/// The evidence of columns b (N x p) with prior standard deviations tau (p), beside no such effect:
+///   s = b^T V^-1 d, M = b^T V^-1 b: ln BF = s^T (M + tau^-2)^-1 s / 2 - ln |1 + tau M tau| / 2.
+struct ScreenResult {
+    double log_bayes_factor = 0;
+    Eigen::VectorXd value, sd;  // expected numbers and their posterior standard deviations (p)
+    double keep = 0;            // b^T V^-1 b / b^T W^2 b: what the nuisances cannot swallow, [0, 1]
+};
+ScreenResult screen(const Whitening& V, const Eigen::VectorXd& d, const Eigen::MatrixXd& b, const Eigen::VectorXd& tau);
+
+/// Errors of each group of rows (ids >= 0, N) as predicted from all the others, and whitened: [V^-1]_gg^-1 [V^-1 d]_g.
+struct LeftOut {
+    Eigen::VectorXd error;     // (N), in sigmas of noise
+    Eigen::VectorXd whitened;  // (N)
+};
+LeftOut leave_out(const Whitening& V, const Eigen::VectorXd& d, const std::vector<int>& group);
+
+}  // namespace palpate::identify

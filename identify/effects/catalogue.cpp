@@ -1,0 +1,49 @@
+#include "identify/effects/catalogue.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <numeric>
+
+#include "mesh/errors.h"
+
+namespace palpate::identify {
+namespace {
+
+/// Number of letters to insert, drop or change between two words. [Levenshtein 1966]
+std::size_t edits_between(const std::string& a, const std::string& b) {
+    std::vector<std::size_t> row(b.size() + 1);
+    std::iota(row.begin(), row.end(), 0);
+    for (std::size_t i = 0; i < a.size(); ++i) {
+        std::size_t diagonal = row[0];
+        row[0] = i + 1;
+        for (std::size_t j = 0; j < b.size(); ++j) {
+            const std::size_t changed = diagonal + (a[i] == b[j] ? 0 : 1);
+            diagonal = row[j + 1];
+            row[j + 1] = std::min({changed, row[j] + 1, row[j + 1] + 1});
+        }
+    }
+    return row.back();
+}
+
+}  // namespace
+
+const std::vector<std::shared_ptr<const Effect>>& catalogue() {
+    static const std::vector<std::shared_ptr<const Effect>> all{
+        gravity_effect(), compliant_support_effect(), misalignment_effect(), force_gain_effect(), outliers_effect()};
+    return all;
+}
+
+std::shared_ptr<const Effect> find_effect(const std::string& name) {
+    std::string names;
+    for (const auto& effect : catalogue()) {
+        if (effect->name() == name) return effect;
+        names += (names.empty() ? "" : ", ") + effect->name();
+    }
+    const auto nearest = std::ranges::min_element(
+        catalogue(), {}, [&](const auto& effect) { return edits_between(name, effect->name()); });
+    throw InvalidInput(
+        fmt::format("there is no effect '{}'; did you mean '{}'? Known are: {}", name, (*nearest)->name(), names));
+}
+
+}  // namespace palpate::identify

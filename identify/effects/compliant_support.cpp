@@ -1,0 +1,114 @@
+#include "skeleton/effects/compliant_support.h"
+
+#include <fmt/format.h>
+#include <Eigen/Geometry>
+#include <Eigen/LU>
+
+#include <cmath>
+
+#include "identify/diagnose/fit.h"
+#include "identify/effects/catalogue.h"
+#include "skeleton/state.h"
+
+namespace palpate::identify {
+namespace {
+
+using skeleton::skew;
+
+/// A support that gives way, as if it stood on springs of stiffness k in all, spread evenly over what it holds.
+class CompliantSupportEffect : public Effect {
+public:
+    const EffectDescription& description() const override {
+        static const EffectDescription text{
+            .name = "compliant-support",
+            .kind = EffectKind::body,
+            .meaning = "What holds the body gives way: springs spread evenly over the supports.",
+            .parameters = {"stiffness [N/mm]: of all springs together"},
+            .reveals = "the body moves and turns at its base in proportion to the force there",
+            .confused_with = {"force-gain", "anisotropy"},
+            .separating_probe = "put markers on the base and load it there",
+            .next_probe = "load"};
+        return text;
+    }
+
+    std::vector<EffectNumber> numbers(const BodyModel&, const Problem& problem) const override {
+        const double k = typical_stiffness(problem);
+        if (!(k > 0)) return {};
+        return {{.name = "stiffness",
+                 .unit = "N/mm",
+                 .start = std::log(k),
+                 .prior_mean = std::log(k),
+                 .prior_sd = 2,
+                 .logarithm = true}};
+    }
+
+    std::shared_ptr<const fem::PointPotential> potential(const Eigen::VectorXd& values) const override {
+        return std::make_shared<skeleton::CompliantSupport>(std::exp(values[0]));
+    }
+
+    Eigen::MatrixXd force(const BodyModel& model, const Problem&, const Setting& setting, int, const Eigen::VectorXd& q,
+                          const Eigen::VectorXd& values) const override {
+        return model.effect_force(q, setting, *potential(values));
+    }
+
+    bool neutral_at_start() const override { return false; }
+
+    ScreenColumns screen_columns(const BodyModel& model, const Problem& problem, const Explanation& explanation,
+                                 const Played& played, int threads) const override {
+        // Compliance c = 1/k is neutral at 0. To first order the base moves as a rigid body by c K_1^-1 (F, M), with
+        // (F, M) what the body presses on it, and K_1 that of springs of 1 N/mm in all: 1 for moving, the second
+        // moment sum w (r^2 - r r^T) for turning.
+        const Vec3 centre = model.support_points().transpose() * model.support_shares();
+        Mat3 moment = Mat3::Zero();
+        for (Eigen::Index i = 0; i < model.support_points().rows(); ++i) {
+            const Mat3 arm = skew(model.support_points().row(i).transpose() - centre);
+            moment -= model.support_shares()[i] * arm * arm;
+        }
+        moment.diagonal().array() += 1e-6 * moment.trace();
+        const Eigen::MatrixXd base = model.support_motion(centre);
+        const Setting setting = explanation.setting();
+        const Signatures signature{
+            1, [&](int k, const Eigen::VectorXd& q) {
+                const Action action = explanation.act(problem, k);
+                Eigen::VectorXd motion = base.transpose() * model.residual(q, setting, action);
+                motion.tail<3>() = moment.inverse() * motion.tail<3>();
+                const Eigen::VectorXd moved = base * motion;
+                return Signatures::InAction{-model.tangent_times(q, setting, action, moved), moved, {0}};
+            }};
+        return {answers(model, problem, explanation, played, {signature}, threads).front(),
+                Eigen::VectorXd::Constant(1, 0.5 / typical_stiffness(problem))};
+    }
+
+    Eigen::VectorXd start_after_screen(const ScreenColumns& columns, const Eigen::VectorXd& screened) const override {
+        const double least = 0.1 * columns.prior_sd[0];  // compliance [mm/N]
+        return Eigen::VectorXd::Constant(1, -std::log(std::max(screened[0], least)));
+    }
+
+    std::string sentence(const skeleton::Effect& told) const override {
+        return fmt::format("The support gives way: it is as stiff as springs of {:.3g} N/mm in all.",
+                           told.parameters[0].value);
+    }
+
+private:
+    /// Forces over displacements of the set, rms [N/mm].
+    static double typical_stiffness(const Problem& problem) {
+        double forces = 0;
+        int loaded = 0;
+        for (std::size_t k = 0; k < problem.actions.size(); ++k) {
+            if (!problem.loaded(static_cast<int>(k))) continue;
+            Vec3 sum = Vec3::Zero();
+            for (const mesh::Contact& contact : problem.actions[k].contacts) sum += contact.force;
+            forces += sum.squaredNorm();
+            ++loaded;
+        }
+        const Eigen::VectorXd u = problem.displacement();
+        const double moved = std::sqrt(u.squaredNorm() / static_cast<double>(u.size()));
+        return loaded > 0 && moved > 0 ? std::sqrt(forces / loaded) / moved : 0;
+    }
+};
+
+}  // namespace
+
+std::shared_ptr<const Effect> compliant_support_effect() { return std::make_shared<CompliantSupportEffect>(); }
+
+}  // namespace palpate::identify

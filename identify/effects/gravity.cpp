@@ -1,0 +1,66 @@
+#include "skeleton/effects/gravity.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "identify/effects/catalogue.h"
+
+namespace palpate::identify {
+namespace {
+
+constexpr double g0 = 9810;  // [mm/s^2]; the fit's numbers are multiples of it
+
+/// The weight of the body. Direction and size are both free: a rig may be tilted, a phantom afloat. It is there in
+/// every state, loaded or not.
+class GravityEffect : public Effect {
+public:
+    const EffectDescription& description() const override {
+        static const EffectDescription text{
+            .name = "gravity",
+            .kind = EffectKind::body,
+            .meaning = "The body's own weight acts in every state, and the rest shape is the one without it.",
+            .parameters = {"gx, gy, gz [mm/s^2]: acceleration; 9810 is the earth's"},
+            .reveals = "an error that is there without any load, largest far from the supports",
+            .confused_with = {"prestress", "misalignment", "pressure"},
+            .separating_probe = "read the unloaded pose with the body turned into two or three orientations",
+            .next_probe = "orientation"};
+        return text;
+    }
+
+    std::vector<EffectNumber> numbers(const BodyModel&, const Problem&) const override {
+        std::vector<EffectNumber> result;
+        for (const char* axis : {"gx", "gy", "gz"}) result.push_back({.name = axis, .unit = "mm/s^2"});
+        return result;
+    }
+
+    std::shared_ptr<const fem::PointPotential> potential(const Eigen::VectorXd& values) const override {
+        return std::make_shared<skeleton::Gravity>(g0 * values.head<3>());
+    }
+
+    Eigen::MatrixXd force(const BodyModel& model, const Problem&, const Setting& setting, int, const Eigen::VectorXd& q,
+                          const Eigen::VectorXd& values) const override {
+        return g0 * model.effect_force(q, setting, *potential(values));
+    }
+
+    skeleton::Effect told(const std::vector<EffectNumber>& numbers, const Eigen::VectorXd& values) const override {
+        return Effect::told(numbers, g0 * values);
+    }
+
+    Eigen::VectorXd values(const std::vector<EffectNumber>& numbers, const skeleton::Effect& told) const override {
+        return Effect::values(numbers, told) / g0;
+    }
+
+    std::string sentence(const skeleton::Effect& told) const override {
+        const Vec3 g(told.parameters[0].value, told.parameters[1].value, told.parameters[2].value);
+        const Vec3 way = g.norm() > 0 ? Vec3(g.normalized()) : Vec3(Vec3::Zero());
+        return fmt::format("Gravity is missing: {:.2f} m/s^2 along ({:.2f}, {:.2f}, {:.2f}).", g.norm() / 1000, way.x(),
+                           way.y(), way.z());
+    }
+};
+
+}  // namespace
+
+std::shared_ptr<const Effect> gravity_effect() { return std::make_shared<GravityEffect>(); }
+
+}  // namespace palpate::identify

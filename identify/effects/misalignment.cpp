@@ -1,0 +1,73 @@
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "identify/effects/catalogue.h"
+#include "skeleton/state.h"
+
+namespace palpate::identify {
+namespace {
+
+/// The frame of the camera is not that of the model: readings are moved and turned as one, in every state,
+///   y = c + t + R(w) (x - c), c the centre of the markers at rest.
+class MisalignmentEffect : public Effect {
+public:
+    const EffectDescription& description() const override {
+        static const EffectDescription text{
+            .name = "misalignment",
+            .kind = EffectKind::measurement,
+            .meaning = "The readings' frame is moved and turned against the model's, alike in every state.",
+            .parameters = {"tx, ty, tz [mm]: shift of the markers' centre",
+                           "rx, ry, rz [rad]: rotation vector about it"},
+            .reveals = "the same rigid motion of all markers in every state, those next to the supports too",
+            .confused_with = {"gravity", "prestress"},
+            .separating_probe = "read fiducials that are fixed to the support",
+            .next_probe = "fiducials"};
+        return text;
+    }
+
+    std::vector<EffectNumber> numbers(const BodyModel& model, const Problem&) const override {
+        std::vector<EffectNumber> result;
+        for (const char* axis : {"tx", "ty", "tz"}) {
+            result.push_back({.name = axis, .unit = "mm", .prior_sd = 0.02 * model.size()});
+        }
+        for (const char* axis : {"rx", "ry", "rz"}) result.push_back({.name = axis, .unit = "rad", .prior_sd = 0.03});
+        return result;
+    }
+
+    Points see(const Problem& problem, const Points& markers, const Eigen::VectorXd& values) const override {
+        const Eigen::RowVector3d c = problem.rest.colwise().mean();
+        const Mat3 R = skeleton::rotation(values.tail<3>());
+        return ((markers.rowwise() - c) * R.transpose()).rowwise() + (c + values.head<3>().transpose());
+    }
+
+    std::string sentence(const skeleton::Effect& told) const override {
+        const auto& p = told.parameters;
+        const Vec3 t(p[0].value, p[1].value, p[2].value), w(p[3].value, p[4].value, p[5].value);
+        return fmt::format(
+            "The readings are misaligned: their frame is off by {:.2g} mm and {:.2g} degrees against the model's.",
+            t.norm(), w.norm() * 180 / M_PI);
+    }
+
+    MeasurementSet corrected(const MeasurementSet& set, const skeleton::Effect& told) const override {
+        // x = c + R^T (y - c - t)
+        const auto& p = told.parameters;
+        const Vec3 t(p[0].value, p[1].value, p[2].value), w(p[3].value, p[4].value, p[5].value);
+        Vec3 c = Vec3::Zero();
+        for (const Marker& marker : set.markers) c += marker.rest / static_cast<double>(set.markers.size());
+        const Mat3 R = skeleton::rotation(w);
+        MeasurementSet result = set;
+        for (LoadState& state : result.states) {
+            for (Reading& reading : state.readings) {
+                reading.position = c + R.transpose() * (reading.position - c - t);
+            }
+        }
+        return result;
+    }
+};
+
+}  // namespace
+
+std::shared_ptr<const Effect> misalignment_effect() { return std::make_shared<MisalignmentEffect>(); }
+
+}  // namespace palpate::identify

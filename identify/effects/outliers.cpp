@@ -1,0 +1,38 @@
+#include <fmt/format.h>
+
+#include "identify/effects/catalogue.h"
+
+namespace palpate::identify {
+namespace {
+
+/// Some readings are wrong by far more than the noise, each for itself. It has no force signature and no number of the
+/// fit: diagnose/outliers weighs it.
+class OutliersEffect : public Effect {
+public:
+    const EffectDescription& description() const override {
+        static const EffectDescription text{
+            .name = "outliers",
+            .kind = EffectKind::measurement,
+            .meaning = "Some readings are off by far more than the noise, one by one: lost or swapped markers.",
+            .parameters = {"share [-]: of the readings", "readings [-]: their number",
+                           "width [-]: how far they are off, over the noise"},
+            .reveals = "large errors at single readings whose neighbours are right",
+            .confused_with = {"inclusion"},
+            .separating_probe = "repeat the probes in which they stand",
+            .next_probe = "repeat"};
+        return text;
+    }
+
+    std::vector<EffectNumber> numbers(const BodyModel&, const Problem&) const override { return {}; }
+
+    std::string sentence(const skeleton::Effect& told) const override {
+        return fmt::format("Outliers: {:.1f} % of the readings ({:.0f}) are off by some {:.0f} times the noise.",
+                           100 * told.parameters[0].value, told.parameters[1].value, told.parameters[2].value);
+    }
+};
+
+}  // namespace
+
+std::shared_ptr<const Effect> outliers_effect() { return std::make_shared<OutliersEffect>(); }
+
+}  // namespace palpate::identify

@@ -1,0 +1,229 @@
+#include "identify/models/reference_body.h"
+
+#include <Eigen/Geometry>
+#include <cmath>
+#include <map>
+#include <mutex>
+#include <tuple>
+
+#include "fem/patch_load.h"
+#include "identify/models/marker_frames.h"
+#include "skeleton/state.h"
+
+namespace palpate::identify {
+namespace {
+
+constexpr int ln_young = 0, ln_compressibility = 1;  // places in theta
+
+class FemTangent : public Tangent {
+public:
+    explicit FemTangent(std::shared_ptr<const fem::BodyTangent> factor) : factor_(std::move(factor)) {}
+    Eigen::MatrixXd solve(const Eigen::MatrixXd& B) const override { return factor_->solve(B); }
+
+private:
+    std::shared_ptr<const fem::BodyTangent> factor_;
+};
+
+Points centres_of(const mesh::VolumeMesh& mesh) {
+    Points centres(mesh.tetrahedra.rows(), 3);
+    for (Eigen::Index e = 0; e < centres.rows(); ++e) {
+        centres.row(e).setZero();
+        for (int c = 0; c < 4; ++c) centres.row(e) += 0.25 * mesh.nodes.row(mesh.tetrahedra(e, c));
+    }
+    return centres;
+}
+
+/// Elements of which some nodes are held and some are not.
+std::vector<char> cut_by_support(const mesh::VolumeMesh& mesh, const std::vector<char>& held) {
+    std::vector<char> cut(mesh.tetrahedra.rows(), 0);
+    for (std::size_t e = 0; e < cut.size(); ++e) {
+        int count = 0;
+        for (const int node : mesh.tetrahedra.row(static_cast<Eigen::Index>(e))) count += held[node] ? 1 : 0;
+        cut[e] = count > 0 && count < mesh.tetrahedra.cols();
+    }
+    return cut;
+}
+
+}  // namespace
+
+struct ReferenceBody::Impl {
+    fem::HyperelasticBody body;
+    MarkerFrames frames;
+    double density, size;
+    std::vector<std::string> laws{"linear", "svk", "neo-hooke"};
+    std::vector<StiffnessParameter> parameters;
+    mesh::Surface surface;  // by the faces' corners
+    Points centres, support_points;
+    std::vector<char> cut;
+    Eigen::VectorXd support_shares;
+
+    // A contact's nodal forces per newton do not depend on the configuration: each is made once.
+    using Place = std::tuple<double, double, double, double>;
+    mutable std::mutex mutex;
+    mutable std::map<Place, Eigen::VectorXd> shares;  // (n)
+
+    fem::BodySetting setting(const Setting& s, const fem::Material& material) const {
+        return {static_cast<fem::Law>(s.law), material, s.effects};
+    }
+    /// Nodal shares of a contact (n), which add up to 1.
+    Eigen::VectorXd shares_of(const mesh::Contact& contact) const;
+    Eigen::VectorXd load(const Action& action) const;
+};
+
+ReferenceBody::ReferenceBody(const mesh::VolumeMesh& mesh, const std::vector<mesh::Region>& supports,
+                             const std::vector<Marker>& markers, const ReferenceBodyOptions& options) {
+    const std::vector<char> held = mesh::contains(supports, mesh.nodes);
+    impl_ = std::make_unique<Impl>(fem::HyperelasticBody(mesh, held, options.dilatation), MarkerFrames(mesh, markers),
+                                   options.density);
+    Impl& i = *impl_;
+    i.size = (mesh.nodes.colwise().maxCoeff() - mesh.nodes.colwise().minCoeff()).maxCoeff();
+    i.surface = {mesh.nodes, mesh.faces.leftCols(3)};
+    i.centres = centres_of(mesh);
+    i.cut = cut_by_support(mesh, held);
+    const fem::NodeWeights support = i.body.points(fem::ActsOn::support, i.density);
+    i.support_points = mesh.nodes(support.nodes, Eigen::all);
+    i.support_shares = support.weights;
+    const double start = std::log(options.young.value_or(0.1));
+    // Young's modulus to a factor of twenty; nu = .45, from about .13 to .49.
+    i.parameters = {{"young", start, start, 3}, {"compressibility", std::log(0.1), std::log(0.1), 1, false}};
+}
+
+ReferenceBody::~ReferenceBody() = default;
+
+Eigen::VectorXd ReferenceBody::Impl::shares_of(const mesh::Contact& contact) const {
+    const Place place{contact.point.x(), contact.point.y(), contact.point.z(), contact.radius};
+    {
+        const std::scoped_lock lock(mutex);
+        if (const auto found = shares.find(place); found != shares.end()) return found->second;
+    }
+    const Eigen::SparseMatrix<double> F =
+        fem::patch_loads(body.mesh(), {{contact.point, Vec3::UnitX(), contact.radius}}, size);
+    Eigen::VectorXd result = Eigen::VectorXd::Zero(body.mesh().nodes.rows());
+    for (Eigen::SparseMatrix<double>::InnerIterator it(F, 0); it; ++it) {
+        if (it.row() % 3 == 0) result[it.row() / 3] = it.value();
+    }
+    const std::scoped_lock lock(mutex);
+    shares.emplace(place, result);
+    return result;
+}
+
+Eigen::VectorXd ReferenceBody::Impl::load(const Action& action) const {
+    Eigen::VectorXd f = Eigen::VectorXd::Zero(body.mesh().nodes.size());
+    for (const mesh::Contact& contact : action.contacts) {
+        if (contact.force.isZero(0)) continue;
+        const Eigen::VectorXd share = shares_of(contact);
+        for (int a = 0; a < 3; ++a) f(Eigen::seq(a, Eigen::last, 3)) += contact.force[a] * share;
+    }
+    if (!action.gravity.isZero(0)) {
+        const fem::NodeWeights mass = body.points(fem::ActsOn::material, density);
+        for (std::size_t k = 0; k < mass.nodes.size(); ++k) {
+            f.segment<3>(Eigen::Index{3} * mass.nodes[k]) +=
+                mass.weights[static_cast<Eigen::Index>(k)] * action.gravity;
+        }
+    }
+    return f;
+}
+
+int ReferenceBody::dofs() const { return static_cast<int>(impl_->body.mesh().nodes.size()); }
+const std::vector<std::string>& ReferenceBody::laws() const { return impl_->laws; }
+const std::vector<StiffnessParameter>& ReferenceBody::parameters() const { return impl_->parameters; }
+double ReferenceBody::size() const { return impl_->size; }
+double ReferenceBody::young(const Setting& setting) const { return std::exp(setting.theta[ln_young]); }
+bool ReferenceBody::is_nonlinear(const Setting& setting) const {
+    return static_cast<fem::Law>(setting.law) != fem::Law::linear;
+}
+const fem::HyperelasticBody& ReferenceBody::body() const { return impl_->body; }
+
+fem::Material ReferenceBody::material(const Setting& setting) const {
+    // theta = (ln E, ln(1 - 2 nu))
+    return {.young = std::exp(setting.theta[ln_young]),
+            .poisson = 0.5 * (1 - std::exp(setting.theta[ln_compressibility])),
+            .density = impl_->density};
+}
+
+Eigen::VectorXd ReferenceBody::rest(const Setting&) const { return Eigen::VectorXd::Zero(dofs()); }
+
+Eigen::VectorXd ReferenceBody::equilibrium(const Setting& setting, const Action& action,
+                                           const Eigen::VectorXd* start) const {
+    // Next to a known state a load that cannot be put on at once is too much for a trial.
+    const fem::NewtonOptions options{.tolerance = 1e-7, .load_steps = start ? 1 : 16};
+    return impl_->body.equilibrium(impl_->setting(setting, material(setting)), impl_->load(action), options, start).u;
+}
+
+Eigen::VectorXd ReferenceBody::residual(const Eigen::VectorXd& q, const Setting& setting, const Action& action) const {
+    return impl_->body.residual(q, impl_->setting(setting, material(setting)), impl_->load(action));
+}
+
+std::shared_ptr<const Tangent> ReferenceBody::tangent(const Eigen::VectorXd& q, const Setting& setting,
+                                                      const Action&) const {
+    return std::make_shared<FemTangent>(impl_->body.factor(q, impl_->setting(setting, material(setting))));
+}
+
+Eigen::MatrixXd ReferenceBody::parameter_force(const Eigen::VectorXd& q, const Setting& setting) const {
+    // f = mu a + K b with mu = E / (2 (1 + nu)), K = E / (3 (1 - 2 nu)); t = ln(1 - 2 nu): d nu/dt = -(1 - 2 nu)/2,
+    // so d mu/dt = mu (1 - 2 nu) / (2 (1 + nu)) and dK/dt = -K. The residual is minus f.
+    const fem::Material m = material(setting);
+    const double mu = m.shear_modulus(), K = m.young / (3 * (1 - 2 * m.poisson));
+    const auto unit = impl_->body.modulus_forces(q, impl_->setting(setting, m));
+    Eigen::MatrixXd G(q.size(), 2);
+    G.col(ln_young) = -(mu * unit.col(0) + K * unit.col(1));
+    G.col(ln_compressibility) = -(mu * (1 - 2 * m.poisson) / (2 * (1 + m.poisson)) * unit.col(0) - K * unit.col(1));
+    return G;
+}
+
+Points ReferenceBody::observe(const Eigen::VectorXd& q, const Setting& setting) const {
+    return impl_->frames.positions(q, !is_nonlinear(setting));
+}
+
+Eigen::SparseMatrix<double> ReferenceBody::observation(const Eigen::VectorXd& q, const Setting& setting) const {
+    return impl_->frames.derivative(q, !is_nonlinear(setting));
+}
+
+Eigen::VectorXd ReferenceBody::advance(const Eigen::VectorXd& q, const Eigen::VectorXd& step, const Setting&) const {
+    return q + step;
+}
+
+Eigen::MatrixXd ReferenceBody::effect_force(const Eigen::VectorXd& q, const Setting& setting,
+                                            const fem::PointPotential& effect) const {
+    // By the linear law effects are linearised at rest; by their parameters they are linear there as well.
+    return impl_->body.effect_forces(q, effect, material(setting).density);
+}
+
+Eigen::VectorXd ReferenceBody::contact_force(const Eigen::VectorXd&, const Setting&,
+                                             const mesh::Contact& contact) const {
+    return impl_->load({.contacts = {contact}});
+}
+
+Vec3 ReferenceBody::normal_near(const Vec3& point, double radius) const {
+    return mesh::mean_normal(impl_->surface, point, radius);
+}
+
+const Points& ReferenceBody::pieces() const { return impl_->centres; }
+const std::vector<char>& ReferenceBody::pieces_at_support() const { return impl_->cut; }
+
+Eigen::MatrixXd ReferenceBody::piece_force(const Eigen::VectorXd& q, const Setting& setting,
+                                           const Eigen::MatrixXd& W) const {
+    return -impl_->body.element_forces(q, impl_->setting(setting, material(setting)), W);
+}
+
+const Points& ReferenceBody::support_points() const { return impl_->support_points; }
+const Eigen::VectorXd& ReferenceBody::support_shares() const { return impl_->support_shares; }
+
+Eigen::MatrixXd ReferenceBody::support_motion(const Vec3& centre) const {
+    Eigen::MatrixXd S = Eigen::MatrixXd::Zero(dofs(), 6);
+    for (std::size_t node = 0; node < impl_->body.held().size(); ++node) {
+        if (!impl_->body.held()[node]) continue;
+        const auto row = 3 * static_cast<Eigen::Index>(node);
+        const Vec3 arm = impl_->body.mesh().nodes.row(static_cast<Eigen::Index>(node)).transpose() - centre;
+        S.block<3, 3>(row, 0).setIdentity();
+        S.block<3, 3>(row, 3) = -skeleton::skew(arm);
+    }
+    return S;
+}
+
+Eigen::MatrixXd ReferenceBody::tangent_times(const Eigen::VectorXd& q, const Setting& setting, const Action&,
+                                             const Eigen::MatrixXd& steps) const {
+    return impl_->body.tangent(q, impl_->setting(setting, material(setting))) * steps;
+}
+
+}  // namespace palpate::identify

@@ -1,0 +1,67 @@
+#pragma once
+
+#include "fem/hyperelastic_body.h"
+#include "identify/models/body_model.h"
+#include "identify/set/measurement_set.h"
+
+namespace palpate::identify {
+
+struct ReferenceBodyOptions {
+    double density = 1e-9;        // [tonne/mm^3]
+    std::optional<double> young;  // a first guess [MPa]
+    fem::Dilatation dilatation = fem::Dilatation::mean;
+};
+
+/// The body of finite elements as a model: laws linear, svk, neo-hooke; parameters ln E and ln(1 - 2 nu).
+///
+/// Without the physics that it lacks it has next to no error of its own, so what it cannot explain is physics.
+/// A configuration is the displacement of the nodes (3n), and so is a step.
+class ReferenceBody : public BodyModel {
+public:
+    /// `mesh`: quadratic tetrahedra. @throws InvalidInput where the supports hold too little of it.
+    ReferenceBody(const mesh::VolumeMesh& mesh, const std::vector<mesh::Region>& supports,
+                  const std::vector<Marker>& markers, const ReferenceBodyOptions& options = {});
+    ~ReferenceBody() override;
+
+    int dofs() const override;
+    const std::vector<std::string>& laws() const override;
+    const std::vector<StiffnessParameter>& parameters() const override;
+    double size() const override;
+    double young(const Setting& setting) const override;
+    bool is_nonlinear(const Setting& setting) const override;
+    Eigen::VectorXd rest(const Setting& setting) const override;
+    Eigen::VectorXd equilibrium(const Setting& setting, const Action& action,
+                                const Eigen::VectorXd* start) const override;
+    Eigen::VectorXd residual(const Eigen::VectorXd& q, const Setting& setting, const Action& action) const override;
+    std::shared_ptr<const Tangent> tangent(const Eigen::VectorXd& q, const Setting& setting,
+                                           const Action& action) const override;
+    Eigen::MatrixXd parameter_force(const Eigen::VectorXd& q, const Setting& setting) const override;
+    Points observe(const Eigen::VectorXd& q, const Setting& setting) const override;
+    Eigen::SparseMatrix<double> observation(const Eigen::VectorXd& q, const Setting& setting) const override;
+    Eigen::VectorXd advance(const Eigen::VectorXd& q, const Eigen::VectorXd& step,
+                            const Setting& setting) const override;
+    Eigen::MatrixXd effect_force(const Eigen::VectorXd& q, const Setting& setting,
+                                 const fem::PointPotential& effect) const override;
+    Eigen::VectorXd contact_force(const Eigen::VectorXd& q, const Setting& setting,
+                                  const mesh::Contact& contact) const override;
+    Vec3 normal_near(const Vec3& point, double radius) const override;
+    const Points& pieces() const override;
+    const std::vector<char>& pieces_at_support() const override;
+    Eigen::MatrixXd piece_force(const Eigen::VectorXd& q, const Setting& setting,
+                                const Eigen::MatrixXd& W) const override;
+    const Points& support_points() const override;
+    const Eigen::VectorXd& support_shares() const override;
+    Eigen::MatrixXd support_motion(const Vec3& centre) const override;
+    Eigen::MatrixXd tangent_times(const Eigen::VectorXd& q, const Setting& setting, const Action& action,
+                                  const Eigen::MatrixXd& steps) const override;
+
+    const fem::HyperelasticBody& body() const;
+    /// Young's modulus and Poisson's ratio of a setting.
+    fem::Material material(const Setting& setting) const;
+
+private:
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace palpate::identify

@@ -1,0 +1,286 @@
+#include "identify/models/skeleton_body.h"
+
+#include <Eigen/Geometry>
+#include <cmath>
+#include <map>
+#include <mutex>
+#include <tuple>
+
+#include "identify/set/loads.h"
+#include "skeleton/effects/placed_effects.h"
+#include "skeleton/statics.h"
+
+namespace palpate::identify {
+namespace {
+
+using skeleton::Equilibrium;
+using skeleton::Law;
+using skeleton::State;
+
+Eigen::VectorXd pack(const State& state) {
+    const Eigen::Index N = state.x.rows();
+    Eigen::VectorXd q(12 * N);
+    for (Eigen::Index i = 0; i < N; ++i) {
+        q.segment<3>(3 * i) = state.x.row(i);
+        q.segment<9>(3 * N + 9 * i) = state.R[i].reshaped();
+    }
+    return q;
+}
+
+State unpack(const Eigen::VectorXd& q) {
+    const Eigen::Index N = q.size() / 12;
+    State state{Points(N, 3), std::vector<Mat3>(N)};
+    for (Eigen::Index i = 0; i < N; ++i) {
+        state.x.row(i) = q.segment<3>(3 * i);
+        state.R[i] = q.segment<9>(3 * N + 9 * i).reshaped(3, 3);
+    }
+    return state;
+}
+
+class SolverTangent : public Tangent {
+public:
+    SolverTangent(const skeleton::Model& model, const fem::Potentials& effects, const Eigen::VectorXd& k,
+                  const skeleton::Load& load, const Equilibrium& at)
+        : solver_(model, effects) {
+        solver_.factor_tangent(k, load, at);
+    }
+    Eigen::MatrixXd solve(const Eigen::MatrixXd& B) const override { return solver_.solve_tangent(B); }
+
+private:
+    skeleton::StaticsSolver solver_;
+};
+
+}  // namespace
+
+struct SkeletonBody::Impl {
+    std::array<skeleton::Model, 2> by_law;  // the same but for the law
+    std::vector<skeleton::Attachment> markers;
+    std::vector<std::string> laws;
+    std::vector<StiffnessParameter> parameters;
+    Eigen::VectorXd k0;  // (3L)
+    double young, size;
+    Points centres, support_points;
+    std::vector<char> at_support;
+    Eigen::VectorXd support_shares;
+    std::unique_ptr<ContactLoads> loads;
+
+    using Place = std::tuple<double, double, double, double>;
+    mutable std::mutex mutex;
+    mutable std::map<Place, skeleton::Load> shares;  // of a force of 1 N along x
+
+    const skeleton::Model& model(const Setting& setting) const { return by_law[setting.law]; }
+    skeleton::Load shares_of(const mesh::Contact& contact) const;
+    skeleton::Load load(const Action& action) const;
+    /// A configuration as the statics know it.
+    Equilibrium equilibrium_of(const Eigen::VectorXd& q, const Setting& setting) const {
+        Equilibrium at;
+        if (static_cast<Law>(setting.law) == Law::linear) {
+            at.step = q;
+            at.state = skeleton::advance(skeleton::rest_state(by_law[0]), q);
+        } else {
+            at.state = unpack(q);
+        }
+        return at;
+    }
+    State tangent_state(const Eigen::VectorXd& q, const Setting& setting) const {
+        return static_cast<Law>(setting.law) == Law::linear ? skeleton::rest_state(by_law[0]) : unpack(q);
+    }
+};
+
+SkeletonBody::SkeletonBody(const skeleton::Model& model, const std::vector<Marker>& markers, double young)
+    : impl_(std::make_unique<Impl>()) {
+    Impl& i = *impl_;
+    for (int law = 0; law < 2; ++law) {
+        i.by_law[law] = model;
+        i.by_law[law].effects.clear();
+        i.by_law[law].law = static_cast<Law>(law);
+        i.laws.emplace_back(skeleton::law_names[law]);
+    }
+    for (const Marker& marker : markers) {
+        i.markers.push_back(marker.anchor ? attach(model, *marker.anchor, marker.rest) : attach(model, marker.rest));
+    }
+    for (const char* name : skeleton::stiffness_names) i.parameters.push_back({name, 0, 0, 3});
+    i.k0 = skeleton::stiffness_vector(model);
+    i.young = young;
+    const Points& reach = model.surface.vertices;
+    Points spheres(std::ssize(model.spheres), 3);
+    for (std::size_t s = 0; s < model.spheres.size(); ++s) {
+        spheres.row(static_cast<Eigen::Index>(s)) = model.spheres[s].center;
+    }
+    const Points& extent = reach.rows() > 0 ? reach : spheres;
+    i.size = (extent.colwise().maxCoeff() - extent.colwise().minCoeff()).maxCoeff();
+
+    i.centres.resize(std::ssize(model.links), 3);
+    for (std::size_t l = 0; l < model.links.size(); ++l) {
+        const skeleton::Link& link = model.links[l];
+        i.centres.row(static_cast<Eigen::Index>(l)) =
+            0.5 * (model.spheres[link.a].center + model.spheres[link.b].center).transpose();
+        i.at_support.push_back(model.spheres[link.a].held != model.spheres[link.b].held);
+    }
+    const skeleton::PointSet support = skeleton::point_set(model, fem::ActsOn::support);
+    i.support_points.resize(std::ssize(support.at), 3);
+    for (std::size_t p = 0; p < support.at.size(); ++p) {
+        i.support_points.row(static_cast<Eigen::Index>(p)) = support.at[p].rest;
+    }
+    i.support_shares = support.weights;
+    i.loads = std::make_unique<ContactLoads>(i.by_law[0]);
+}
+
+SkeletonBody::~SkeletonBody() = default;
+
+skeleton::Load SkeletonBody::Impl::shares_of(const mesh::Contact& contact) const {
+    const Place place{contact.point.x(), contact.point.y(), contact.point.z(), contact.radius};
+    {
+        const std::scoped_lock lock(mutex);
+        if (const auto found = shares.find(place); found != shares.end()) return found->second;
+    }
+    skeleton::Load result = (*loads)({{contact.point, Vec3::UnitX(), contact.radius}});
+    const std::scoped_lock lock(mutex);
+    return shares.emplace(place, std::move(result)).first->second;
+}
+
+skeleton::Load SkeletonBody::Impl::load(const Action& action) const {
+    skeleton::Load result;
+    result.gravity = action.gravity;
+    for (const mesh::Contact& contact : action.contacts) {
+        if (contact.force.isZero(0)) continue;
+        for (const skeleton::PointForce& part : shares_of(contact).forces) {
+            result.forces.push_back({part.at, part.force.x() * contact.force});
+        }
+    }
+    return result;
+}
+
+int SkeletonBody::dofs() const { return impl_->by_law[0].dofs(); }
+const std::vector<std::string>& SkeletonBody::laws() const { return impl_->laws; }
+const std::vector<StiffnessParameter>& SkeletonBody::parameters() const { return impl_->parameters; }
+double SkeletonBody::size() const { return impl_->size; }
+double SkeletonBody::young(const Setting& setting) const { return impl_->young * std::exp(setting.theta.mean()); }
+bool SkeletonBody::is_nonlinear(const Setting& setting) const { return static_cast<Law>(setting.law) != Law::linear; }
+
+Eigen::VectorXd SkeletonBody::stiffness(const Setting& setting) const {
+    Eigen::VectorXd k = impl_->k0;
+    for (int kind = 0; kind < 3; ++kind) k(Eigen::seq(kind, Eigen::last, 3)) *= std::exp(setting.theta[kind]);
+    return k;
+}
+
+Eigen::VectorXd SkeletonBody::rest(const Setting& setting) const {
+    if (!is_nonlinear(setting)) return Eigen::VectorXd::Zero(dofs());
+    return pack(skeleton::rest_state(impl_->by_law[0]));
+}
+
+Eigen::VectorXd SkeletonBody::equilibrium(const Setting& setting, const Action& action,
+                                          const Eigen::VectorXd* start) const {
+    skeleton::StaticsSolver solver(impl_->model(setting), setting.effects);
+    const skeleton::Load load = impl_->load(action);
+    if (!is_nonlinear(setting)) return solver.solve(stiffness(setting), load).step;
+    std::optional<State> from;
+    if (start) from = unpack(*start);
+    return pack(solver.solve(stiffness(setting), load, {}, from ? &*from : nullptr).state);
+}
+
+Eigen::VectorXd SkeletonBody::residual(const Eigen::VectorXd& q, const Setting& setting, const Action& action) const {
+    const skeleton::Model& model = impl_->model(setting);
+    const Equilibrium at = impl_->equilibrium_of(q, setting);
+    const skeleton::PlacedEffects effects(model, setting.effects);
+    const bool linear = !is_nonlinear(setting);
+    Eigen::VectorXd net = skeleton::external_force(model, impl_->tangent_state(q, setting), impl_->load(action)) +
+                          skeleton::link_forces(model, at) * stiffness(setting);
+    if (!effects.empty()) net += linear ? effects.linear_force(q) : effects.force(at.state);
+    return net;
+}
+
+std::shared_ptr<const Tangent> SkeletonBody::tangent(const Eigen::VectorXd& q, const Setting& setting,
+                                                     const Action& action) const {
+    return std::make_shared<SolverTangent>(impl_->model(setting), setting.effects, stiffness(setting),
+                                           impl_->load(action), impl_->equilibrium_of(q, setting));
+}
+
+Eigen::MatrixXd SkeletonBody::parameter_force(const Eigen::VectorXd& q, const Setting& setting) const {
+    // by the logarithm of a multiplier: the force of that kind of stiffness itself
+    const Eigen::SparseMatrix<double> G =
+        skeleton::link_forces(impl_->model(setting), impl_->equilibrium_of(q, setting));
+    const Eigen::VectorXd k = stiffness(setting);
+    Eigen::MatrixXd result(dofs(), 3);
+    for (int kind = 0; kind < 3; ++kind) {
+        Eigen::VectorXd own = Eigen::VectorXd::Zero(k.size());
+        own(Eigen::seq(kind, Eigen::last, 3)) = k(Eigen::seq(kind, Eigen::last, 3));
+        result.col(kind) = G * own;
+    }
+    return result;
+}
+
+Points SkeletonBody::observe(const Eigen::VectorXd& q, const Setting& setting) const {
+    return skeleton::observe(impl_->model(setting), impl_->equilibrium_of(q, setting), impl_->markers);
+}
+
+Eigen::SparseMatrix<double> SkeletonBody::observation(const Eigen::VectorXd& q, const Setting& setting) const {
+    return skeleton::observation_jacobian(impl_->model(setting), impl_->equilibrium_of(q, setting), impl_->markers);
+}
+
+Eigen::VectorXd SkeletonBody::advance(const Eigen::VectorXd& q, const Eigen::VectorXd& step,
+                                      const Setting& setting) const {
+    return is_nonlinear(setting) ? pack(skeleton::advance(unpack(q), step)) : Eigen::VectorXd(q + step);
+}
+
+Eigen::MatrixXd SkeletonBody::effect_force(const Eigen::VectorXd& q, const Setting& setting,
+                                           const fem::PointPotential& effect) const {
+    return skeleton::effect_forces(impl_->model(setting), impl_->equilibrium_of(q, setting), effect);
+}
+
+Eigen::VectorXd SkeletonBody::contact_force(const Eigen::VectorXd& q, const Setting& setting,
+                                            const mesh::Contact& contact) const {
+    return skeleton::external_force(impl_->model(setting), impl_->tangent_state(q, setting),
+                                    impl_->load({.contacts = {contact}}));
+}
+
+Vec3 SkeletonBody::normal_near(const Vec3& point, double radius) const {
+    const mesh::Surface& skin = impl_->by_law[0].surface;
+    return skin.triangles.rows() > 0 ? mesh::mean_normal(skin, point, radius) : Vec3(Vec3::UnitZ());
+}
+
+const Points& SkeletonBody::pieces() const { return impl_->centres; }
+const std::vector<char>& SkeletonBody::pieces_at_support() const { return impl_->at_support; }
+
+Eigen::MatrixXd SkeletonBody::piece_force(const Eigen::VectorXd& q, const Setting& setting,
+                                          const Eigen::MatrixXd& W) const {
+    Eigen::MatrixXd weighted(impl_->k0.size(), W.cols());
+    const Eigen::VectorXd k = stiffness(setting);
+    for (Eigen::Index row = 0; row < weighted.rows(); ++row) weighted.row(row) = k[row] * W.row(row / 3);
+    return skeleton::link_forces(impl_->model(setting), impl_->equilibrium_of(q, setting)) * weighted;
+}
+
+const Points& SkeletonBody::support_points() const { return impl_->support_points; }
+const Eigen::VectorXd& SkeletonBody::support_shares() const { return impl_->support_shares; }
+
+Eigen::MatrixXd SkeletonBody::support_motion(const Vec3& centre) const {
+    Eigen::MatrixXd S = Eigen::MatrixXd::Zero(dofs(), 6);
+    for (std::size_t s = 0; s < impl_->by_law[0].spheres.size(); ++s) {
+        const skeleton::Sphere& sphere = impl_->by_law[0].spheres[s];
+        if (!sphere.held) continue;
+        const auto row = 6 * static_cast<Eigen::Index>(s);
+        S.block<6, 6>(row, 0).setIdentity();
+        S.block<3, 3>(row, 3) = -skeleton::skew(sphere.center - centre);
+    }
+    return S;
+}
+
+Eigen::MatrixXd SkeletonBody::tangent_times(const Eigen::VectorXd& q, const Setting& setting, const Action& action,
+                                            const Eigen::MatrixXd& steps) const {
+    skeleton::Model model = impl_->model(setting);
+    skeleton::set_stiffness(model, stiffness(setting));
+    const State state = impl_->tangent_state(q, setting);
+    const skeleton::Load load = is_nonlinear(setting) ? impl_->load(action) : skeleton::Load{};
+    Eigen::MatrixXd result = skeleton::tangent(model, state, load) * steps;
+
+    const skeleton::PlacedEffects effects(model, setting.effects);
+    const auto blocks = effects.curvature(state);
+    for (std::size_t p = 0; p < blocks.size(); ++p) {
+        const auto [a, b] = effects.pairs()[p];
+        result.middleRows<6>(6 * a) += blocks[p] * steps.middleRows<6>(6 * b);
+        if (a != b) result.middleRows<6>(6 * b) += blocks[p].transpose() * steps.middleRows<6>(6 * a);
+    }
+    return result;
+}
+
+}  // namespace palpate::identify

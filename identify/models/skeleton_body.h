@@ -1,0 +1,60 @@
+#pragma once
+
+#include "identify/models/body_model.h"
+#include "identify/set/measurement_set.h"
+#include "skeleton/model.h"
+
+namespace palpate::identify {
+
+/// The skeleton as a model: laws linear and large-rotation; a parameter for each kind of stiffness, the logarithm of a
+/// multiplier on all links. Effects come with the setting, not from the model.
+///
+/// A configuration by the linear law is a step from rest (6N); by the other the centres (N x 3), then the rotations
+/// (9 numbers each).
+class SkeletonBody : public BodyModel {
+public:
+    /// `young`: of the body that the skeleton stands for, as it comes [MPa]; for how deep a contact may dent.
+    SkeletonBody(const skeleton::Model& model, const std::vector<Marker>& markers, double young);
+    ~SkeletonBody() override;
+
+    int dofs() const override;
+    const std::vector<std::string>& laws() const override;
+    const std::vector<StiffnessParameter>& parameters() const override;
+    double size() const override;
+    double young(const Setting& setting) const override;
+    bool is_nonlinear(const Setting& setting) const override;
+    Eigen::VectorXd rest(const Setting& setting) const override;
+    Eigen::VectorXd equilibrium(const Setting& setting, const Action& action,
+                                const Eigen::VectorXd* start) const override;
+    Eigen::VectorXd residual(const Eigen::VectorXd& q, const Setting& setting, const Action& action) const override;
+    std::shared_ptr<const Tangent> tangent(const Eigen::VectorXd& q, const Setting& setting,
+                                           const Action& action) const override;
+    Eigen::MatrixXd parameter_force(const Eigen::VectorXd& q, const Setting& setting) const override;
+    Points observe(const Eigen::VectorXd& q, const Setting& setting) const override;
+    Eigen::SparseMatrix<double> observation(const Eigen::VectorXd& q, const Setting& setting) const override;
+    Eigen::VectorXd advance(const Eigen::VectorXd& q, const Eigen::VectorXd& step,
+                            const Setting& setting) const override;
+    Eigen::MatrixXd effect_force(const Eigen::VectorXd& q, const Setting& setting,
+                                 const fem::PointPotential& effect) const override;
+    Eigen::VectorXd contact_force(const Eigen::VectorXd& q, const Setting& setting,
+                                  const mesh::Contact& contact) const override;
+    Vec3 normal_near(const Vec3& point, double radius) const override;
+    const Points& pieces() const override;
+    const std::vector<char>& pieces_at_support() const override;
+    Eigen::MatrixXd piece_force(const Eigen::VectorXd& q, const Setting& setting,
+                                const Eigen::MatrixXd& W) const override;
+    const Points& support_points() const override;
+    const Eigen::VectorXd& support_shares() const override;
+    Eigen::MatrixXd support_motion(const Vec3& centre) const override;
+    Eigen::MatrixXd tangent_times(const Eigen::VectorXd& q, const Setting& setting, const Action& action,
+                                  const Eigen::MatrixXd& steps) const override;
+
+    /// Stiffnesses of a setting (3L).
+    Eigen::VectorXd stiffness(const Setting& setting) const;
+
+private:
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace palpate::identify

@@ -1,0 +1,105 @@
+#include "skeleton/effects/placed_effects.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "skeleton/effects/carried_point.h"
+
+namespace palpate::skeleton {
+
+PlacedEffects::PlacedEffects(const Model& model, const fem::Potentials& effects)
+    : rest_(rest_state(model)), supported_(model.spheres.size(), 0) {
+    std::map<std::array<int, 2>, int> place;
+    const auto pair = [&](int a, int b) {
+        const auto [at, fresh] = place.try_emplace({std::min(a, b), std::max(a, b)}, static_cast<int>(pairs_.size()));
+        if (fresh) pairs_.push_back(at->first);
+        return at->second;
+    };
+    for (const auto& potential : effects) {
+        const PointSet set = point_set(model, potential->acts_on());
+        Placed placed{potential, {}};
+        for (size_t i = 0; i < set.at.size(); ++i) {
+            const CarriedPoint point = carried(set.at[i], rest_, rest_);
+            const int first = point.of[0].sphere, last = point.of[point.shares - 1].sphere;
+            placed.points.push_back(
+                {set.at[i], set.weights[i], {pair(first, first), pair(last, last), pair(first, last)}});
+            if (potential->acts_on() == fem::ActsOn::support) supported_[first] = 1;
+        }
+        effects_.push_back(std::move(placed));
+    }
+}
+
+bool PlacedEffects::release_supports() const {
+    return std::ranges::any_of(supported_, [](char s) { return s != 0; });
+}
+
+// Calls visit(point, where it is, its terms, weight), the weight scaled.
+template <typename Visit>
+void PlacedEffects::for_each_point(const State& state, double share, const Visit& visit) const {
+    for (const Placed& effect : effects_) {
+        const double scale = effect.potential->acts_on() == fem::ActsOn::support ? 1 : share;
+        for (const Point& point : effect.points) {
+            const CarriedPoint at = carried(point.at, rest_, state);
+            visit(point, at, effect.potential->terms(point.at.rest, at.x, false), scale * point.weight);
+        }
+    }
+}
+
+PlacedEffects::Energy PlacedEffects::energy(const State& state, double share) const {
+    Energy energy;
+    for_each_point(state, share, [&](const Point&, const CarriedPoint&, const fem::PointTerms& terms, double weight) {
+        energy.sum += weight * terms.energy;
+        energy.size += std::abs(weight * terms.energy);
+    });
+    return energy;
+}
+
+Eigen::VectorXd PlacedEffects::force(const State& state, double share) const {
+    Eigen::VectorXd f = Eigen::VectorXd::Zero(6 * state.x.rows());
+    for_each_point(state, share,
+                   [&](const Point&, const CarriedPoint& at, const fem::PointTerms& terms, double weight) {
+                       for (int i = 0; i < at.shares; ++i) {
+                           const auto& [sphere, w, r] = at.of[i];
+                           const Vec3 pull = -(weight * w) * terms.gradient;
+                           f.segment<3>(Eigen::Index{6} * sphere) += pull;
+                           f.segment<3>(Eigen::Index{6} * sphere + 3) += r.cross(pull);
+                       }
+                   });
+    return f;
+}
+
+std::vector<PlacedEffects::Block> PlacedEffects::curvature(const State& state, double share) const {
+    std::vector<Block> blocks(pairs_.size(), Block::Zero());
+    for_each_point(state, share,
+                   [&](const Point& point, const CarriedPoint& at, const fem::PointTerms& terms, double weight) {
+                       // dp = J dstep with J = w [I, -[r]] for each sphere: J^T H J, and the gradient along the arms'
+                       // turning
+                       std::array<Eigen::Matrix<double, 3, 6>, 2> J;
+                       for (int i = 0; i < at.shares; ++i) {
+                           const auto& [sphere, w, r] = at.of[i];
+                           J[i] << w * Mat3::Identity(), -w * skew(r);
+                           Block& own = blocks[point.pairs[i]];
+                           own += J[i].transpose() * (weight * terms.hessian) * J[i];
+                           own.bottomRightCorner<3, 3>() += turning_curvature((weight * w) * terms.gradient, r);
+                       }
+                       if (at.shares < 2) return;
+                       const int row = at.of[0].sphere < at.of[1].sphere ? 0 : 1;
+                       blocks[point.pairs[2]] += J[row].transpose() * (weight * terms.hessian) * J[1 - row];
+                   });
+    return blocks;
+}
+
+Eigen::VectorXd PlacedEffects::linear_force(const Eigen::VectorXd& step) const {
+    Eigen::VectorXd f = force(rest_);
+    const std::vector<Block> blocks = curvature(rest_);
+    for (size_t p = 0; p < pairs_.size(); ++p) {
+        const Eigen::Index a = Eigen::Index{6} * pairs_[p][0], b = Eigen::Index{6} * pairs_[p][1];
+        f.segment<6>(a) -= blocks[p] * step.segment<6>(b);
+        if (a != b) f.segment<6>(b) -= blocks[p].transpose() * step.segment<6>(a);
+    }
+    return f;
+}
+
+}  // namespace palpate::skeleton

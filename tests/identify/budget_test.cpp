@@ -1,0 +1,42 @@
+// The error budget: shares that add up, whatever the numbers.
+
+#include "identify/budget.h"
+
+#include <gtest/gtest.h>
+
+namespace palpate::identify {
+namespace {
+
+constexpr double rounding = 1e-15;  // of sums of three shares
+
+TEST(ErrorBudget, SharesAddUp) {
+    for (const double error : {0.1, 1.0, 7.0}) {
+        for (const double noise : {0.0, 0.5, 3.0}) {
+            for (const double left : {0.0, 0.6, 20.0}) {
+                const ErrorBudget b = share_out_error(error, noise, left);
+                EXPECT_NEAR(b.noise + b.reduction + b.missing_physics, 1, rounding);
+                for (const double share : {b.noise, b.reduction, b.missing_physics}) {
+                    EXPECT_GE(share, -rounding);
+                    EXPECT_LE(share, 1 + rounding);
+                }
+            }
+        }
+    }
+}
+
+/// Noise 1, coarseness 3 and physics 6 of a mean square error of 10: variances of independent errors add.
+TEST(ErrorBudget, RecoversIndependentParts) {
+    const ErrorBudget b = share_out_error(10, 1, 1 + 6);
+    EXPECT_NEAR(b.noise, 0.1, rounding);
+    EXPECT_NEAR(b.missing_physics, 0.6, rounding);
+    EXPECT_NEAR(b.reduction, 0.3, rounding);
+}
+
+TEST(ErrorBudget, AnErrorBelowTheNoiseIsNoise) { EXPECT_EQ(share_out_error(0.9, 1, 5).noise, 1); }
+
+TEST(ErrorBudget, AReferenceAsGoodAsItsNoiseLacksNoPhysics) {
+    EXPECT_EQ(share_out_error(4, 1, 0.9).missing_physics, 0);
+}
+
+}  // namespace
+}  // namespace palpate::identify
