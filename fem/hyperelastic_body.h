@@ -29,7 +29,7 @@ struct BodySetting {
 struct NewtonOptions {
     double tolerance = 1e-8;  // of the residual's norm, as a share of the load's, > 0
     int iterations = 60;      // at one load, >= 1
-    int load_steps = 16;      // parts that the load may be put on in where it fails at once, >= 1
+    int load_steps = 16;      // parts that the load may be put on in where it fails at once; 0: from the start only
     void validate() const;    // @throws InvalidInput naming option, value and bound
 };
 

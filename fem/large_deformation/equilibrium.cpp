@@ -17,7 +17,7 @@ void NewtonOptions::validate() const {
             tolerance));
     }
     if (iterations < 1) throw InvalidInput(fmt::format("iterations is {}; allowed: 1 and more.", iterations));
-    if (load_steps < 1) throw InvalidInput(fmt::format("load_steps is {}; allowed: 1 and more.", load_steps));
+    if (load_steps < 0) throw InvalidInput(fmt::format("load_steps is {}; allowed: 0 and more.", load_steps));
 }
 
 BodyEquilibrium find_equilibrium(const BodyShape& body, const EliminationOrder& order, const BodySetting& setting,
@@ -54,8 +54,8 @@ BodyEquilibrium find_equilibrium(const BodyShape& body, const EliminationOrder& 
         }
         return true;
     };
-    const bool found = from_start() || in_steps(1) || (options.load_steps >= 4 && in_steps(4)) ||
-                       (options.load_steps > 4 && in_steps(options.load_steps));
+    bool found = from_start();
+    for (const int steps : {1, 4, 16}) found = found || (steps <= options.load_steps && in_steps(steps));
     result.iterations = newton.iterations();
     result.factorisations = newton.factorisations();
     result.residual = newton.residual();

@@ -107,9 +107,14 @@ private:
             add_known(start);
             // laws of large deformation differ little: from one fit it is not far to the next
             RefitOptions how = options_.refit;
-            if (neighbour && neighbour->explanation.law != 0) how.steps = std::min(how.steps, 4);
+            std::optional<Refit> near;
+            if (neighbour && neighbour->explanation.law != 0) {
+                how.steps = std::min(how.steps, 4);
+                near = *neighbour;
+                near->V.reset();
+            }
             try {
-                laws_[law].fit = refit(model_, result_.problem, start, how);
+                laws_[law].fit = refit(model_, result_.problem, start, how, near ? &*near : nullptr);
                 neighbour = &*laws_[law].fit;
             } catch (const SolverFailure& e) {
                 failure = e.what();

@@ -121,7 +121,7 @@ private:
 
 /// Equilibria at the start; where there are none the body is made stiffer.
 void begin(const BodyModel& model, const Problem& problem, int threads, const Refit* start, Refit& at) {
-    constexpr int most = 10;
+    const int most = start ? 1 : 6;  // next to a fit that stands there is nothing far to go
     for (int attempt = 0;; ++attempt) {
         try {
             at.played = play(model, problem, at.explanation, threads, start ? &start->played.q : nullptr);

@@ -30,7 +30,11 @@ public:
 
     std::vector<EffectNumber> numbers(const BodyModel&, const Problem&) const override {
         std::vector<EffectNumber> result;
-        for (const char* axis : {"gx", "gy", "gz"}) result.push_back({.name = axis, .unit = "mm/s^2"});
+        // 1 g in any direction: a third of its square falls to each component.
+        const double prior_sd = 1 / std::sqrt(3.0);
+        for (const char* axis : {"gx", "gy", "gz"}) {
+            result.push_back({.name = axis, .unit = "mm/s^2", .prior_sd = prior_sd});
+        }
         return result;
     }
 

@@ -1,6 +1,7 @@
 #include "identify/models/reference_body.h"
 
-#include <Eigen/Geometry>
+#include <fmt/format.h>
+
 #include <cmath>
 #include <map>
 #include <mutex>
@@ -8,12 +9,23 @@
 
 #include "fem/patch_load.h"
 #include "identify/models/marker_frames.h"
+#include "mesh/errors.h"
 #include "skeleton/state.h"
 
 namespace palpate::identify {
 namespace {
 
 constexpr int ln_young = 0, ln_compressibility = 1;  // places in theta
+
+/// ln(1 - 2 nu) may be tried where no material is.
+void require_material(const fem::Material& material) {
+    constexpr double least = -0.9, most = 0.49999;
+    if (material.poisson > least && material.poisson < most && std::isfinite(material.young)) return;
+    throw SolverFailure(
+        fmt::format("the fit asks for a Poisson's ratio of {:.3g} and a Young's modulus of {:.3g} MPa; "
+                    "allowed are ratios from {} to {}",
+                    material.poisson, material.young, least, most));
+}
 
 class FemTangent : public Tangent {
 public:
@@ -145,8 +157,9 @@ Eigen::VectorXd ReferenceBody::rest(const Setting&) const { return Eigen::Vector
 
 Eigen::VectorXd ReferenceBody::equilibrium(const Setting& setting, const Action& action,
                                            const Eigen::VectorXd* start) const {
-    // Next to a known state a load that cannot be put on at once is too much for a trial.
-    const fem::NewtonOptions options{.tolerance = 1e-7, .load_steps = start ? 1 : 16};
+    // What is not found soon next to a known state is no answer for a trial.
+    require_material(material(setting));
+    const fem::NewtonOptions options{.tolerance = 1e-7, .iterations = start ? 40 : 60, .load_steps = start ? 0 : 16};
     return impl_->body.equilibrium(impl_->setting(setting, material(setting)), impl_->load(action), options, start).u;
 }
 
@@ -156,6 +169,7 @@ Eigen::VectorXd ReferenceBody::residual(const Eigen::VectorXd& q, const Setting&
 
 std::shared_ptr<const Tangent> ReferenceBody::tangent(const Eigen::VectorXd& q, const Setting& setting,
                                                       const Action&) const {
+    require_material(material(setting));
     return std::make_shared<FemTangent>(impl_->body.factor(q, impl_->setting(setting, material(setting))));
 }
 

@@ -6,6 +6,8 @@
 #include <array>
 #include <cctype>
 
+#include "identify/diagnose/diagnose.h"
+#include "identify/effects/catalogue.h"
 #include "mesh/errors.h"
 #include "mesh/io/region_yaml.h"
 #include "mesh/io/yaml_fields.h"
@@ -78,6 +80,12 @@ void read_identify(const YamlFields& yaml, identify::IdentifyOptions& options) {
     yaml.finish();
 }
 
+void read_inquiry(const YamlFields& yaml, InquiryOptions& options) {
+    read_if(yaml, "reference", options.reference, [&](auto& key) { return yaml.boolean(key); });
+    if (yaml.has("without")) options.without = yaml.texts("without");
+    yaml.finish();
+}
+
 void read_expectation(const YamlFields& yaml, Expectation& expect) {
     read_if(yaml, "relative_at_most", expect.relative_at_most, [&](auto& key) { return yaml.number(key, 0, 1e9); });
     read_if(yaml, "held_out_at_most", expect.held_out_at_most, [&](auto& key) { return yaml.number(key, 0, 1e9); });
@@ -90,6 +98,11 @@ void read_expectation(const YamlFields& yaml, Expectation& expect) {
     }
     read_if(yaml, "spheres_at_least", expect.spheres_at_least,
             [&](auto& key) { return yaml.integer(key, 1, 1000000); });
+    if (yaml.has("verdict")) {
+        expect.verdict = yaml.choice("verdict", {identify::verdict_names.begin(), identify::verdict_names.end()});
+    }
+    if (yaml.has("explanation")) expect.explanation = yaml.texts("explanation");
+    read_if(yaml, "rms_at_most_mm", expect.rms_at_most_mm, [&](auto& key) { return yaml.number(key, 0, 1e9); });
     yaml.finish();
 }
 
@@ -120,6 +133,7 @@ Case read_case_file(const YamlFields& yaml) {
     if (yaml.has("skeleton")) read_skeleton(yaml.mapping("skeleton"), c);
     if (yaml.has("probing")) read_probing(yaml.mapping("probing"), c.probing);
     if (yaml.has("identify")) read_identify(yaml.mapping("identify"), c.identify);
+    if (yaml.has("diagnose")) read_inquiry(yaml.mapping("diagnose"), c.diagnose);
     if (yaml.has("expect")) read_expectation(yaml.mapping("expect"), c.expect);
     if (yaml.has("seed")) c.identify.seed = static_cast<std::uint64_t>(yaml.integer("seed", 0, 2'000'000'000));
     yaml.finish();
@@ -173,6 +187,7 @@ void override_case(Case& c, const CaseOverrides& say) {
     if (say.density) c.density = say.density;
     if (say.edge_length) c.edge_length = *say.edge_length;
     if (say.linear_elements) c.linear_elements = true;
+    if (say.no_reference) c.diagnose.reference = false;
     if (say.spheres) c.skeleton.spheres = *say.spheres;
     if (say.coverage) c.skeleton.coverage = *say.coverage;
     if (say.zones) c.skeleton.zones = *say.zones;
@@ -203,12 +218,17 @@ void ProbeOptions::validate() const {
     require(noise >= 0, "noise", noise, "0 mm or more");
 }
 
+void InquiryOptions::validate() const {
+    for (const std::string& name : without) identify::find_effect(name);
+}
+
 Case read_case(const std::filesystem::path& input, const CaseOverrides& overrides) {
     Case c = case_of_input(input);
     override_case(c, overrides);
     c.probing.validate();
     c.skeleton.validate();
     c.identify.validate();
+    c.diagnose.validate();
     require(c.longest >= 0, "longest", c.longest, "a length in mm above 0");
     require(c.edge_length >= 0, "edge_length", c.edge_length, "a length in mm above 0");
     fem::Material material;

@@ -37,6 +37,16 @@ struct Expectation {
     std::optional<double> relative_at_most;  // rms error over rms displacement, over all states
     std::optional<double> held_out_at_most;  // the same over states kept from the fit
     std::optional<int> spheres_at_least;
+    std::optional<std::string> verdict;                   // of the diagnosis
+    std::optional<std::vector<std::string>> explanation;  // the effects that it names, in any order
+    std::optional<double> rms_at_most_mm;                 // of the skeleton, once they are in [mm]
+};
+
+/// How a run asks what the model lacks.
+struct InquiryOptions {
+    bool reference = true;             // on the body in finite elements; false: it is not asked
+    std::vector<std::string> without;  // effects left out of the catalogue
+    void validate() const;
 };
 
 /// All settings of a run, in mm, N, MPa, s, tonne: what was asked for, and defaults for the rest.
@@ -50,11 +60,12 @@ struct Case {
     double longest = 0;                             // the mesh is scaled to this longest side [mm]; 0: not
     std::vector<mesh::Region> supports;             // empty: the set's, or the default clamp
     std::optional<double> young, poisson, density;  // [MPa], [-], [kg/m^3]; absent: the set's, or defaults
-    double edge_length = 0;                         // of the tetrahedra [mm]; 0: 6 % of the longest side
+    double edge_length = 0;  // of the tetrahedra [mm]; 0: 6 % of the longest side, 7 % where effects are looked for
     bool linear_elements = false;
     skeleton::BuildOptions skeleton;
     ProbeOptions probing{.probes = 60, .held_out = 12};
     identify::IdentifyOptions identify;
+    InquiryOptions diagnose;
     Expectation expect;
 };
 
@@ -65,7 +76,7 @@ struct CaseOverrides {
     std::optional<int> spheres, zones, probes, particles;
     std::string parameters, method;  // empty: not said
     std::optional<std::uint64_t> seed;
-    bool linear_elements = false;
+    bool linear_elements = false, no_reference = false;
 };
 
 /// A case from a case.yaml, a measurement set (folder or set.yaml) or a bare mesh, told apart by what they are.

@@ -18,10 +18,26 @@ std::string quoted(const std::string& text) {
     return "'" + escaped + "'";
 }
 
+std::string joined(const std::vector<std::string>& names) { return fmt::format("{}", fmt::join(names, ", ")); }
+
 std::string fixed_names(const identify::IdentifyOptions& options) {
     std::string names;
     for (const auto kind : options.fixed) names += (names.empty() ? "" : ", ") + name_of(stiffnesses, kind);
     return names;
+}
+
+std::string expectation_yaml(const Expectation& e) {
+    std::string text = optional_line("  relative_at_most: {}\n", e.relative_at_most) +
+                       optional_line("  held_out_at_most: {}\n", e.held_out_at_most);
+    if (!e.parameters.empty()) text += "  parameters:\n";
+    for (const auto& p : e.parameters) {
+        text += fmt::format("    - {{name: {}, value: {}, within: {}}}\n", quoted(p.name), p.value, p.within);
+    }
+    if (e.spheres_at_least) text += fmt::format("  spheres_at_least: {}\n", *e.spheres_at_least);
+    if (e.verdict) text += "  verdict: " + *e.verdict + "\n";
+    if (e.explanation) text += "  explanation: [" + joined(*e.explanation) + "]\n";
+    text += optional_line("  rms_at_most_mm: {}\n", e.rms_at_most_mm);
+    return text.empty() ? text : "expect:\n" + text;
 }
 
 std::string input_yaml(const Case& c) {
@@ -85,17 +101,12 @@ std::string to_yaml(const Case& c) {
         "seed: {}\n",
         name_of(scopes, i.scope), name_of(methods, i.method), name_of(law_choices, i.law), fixed_names(i), i.particles,
         i.iterations, i.search_low, i.search_high, i.seed);
-    const Expectation& e = c.expect;
-    if (e.relative_at_most || e.held_out_at_most || e.spheres_at_least || !e.parameters.empty()) {
-        text += "expect:\n" + optional_line("  relative_at_most: {}\n", e.relative_at_most) +
-                optional_line("  held_out_at_most: {}\n", e.held_out_at_most);
-        if (!e.parameters.empty()) text += "  parameters:\n";
-        for (const auto& p : e.parameters) {
-            text += fmt::format("    - {{name: {}, value: {}, within: {}}}\n", quoted(p.name), p.value, p.within);
-        }
-        if (e.spheres_at_least) text += fmt::format("  spheres_at_least: {}\n", *e.spheres_at_least);
-    }
-    return text;
+    text += fmt::format(
+        "diagnose:\n"
+        "  reference: {}        # ask the body in finite elements what is missing\n"
+        "  without: [{}]          # effects left out of the catalogue\n",
+        c.diagnose.reference, joined(c.diagnose.without));
+    return text + expectation_yaml(c.expect);
 }
 
 }  // namespace palpate::pipeline

@@ -1,6 +1,7 @@
 #include "pipeline/case/expectation.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -27,10 +28,25 @@ std::string broken_parameter(const Expectation::Parameter& expected,
                        row->mean, row->unit, expected.value, 100 * expected.within, 100 * off);
 }
 
+std::string broken_verdict(const std::string& expected, const json& diagnosis) {
+    if (diagnosis.is_null()) return fmt::format("there is no diagnosis, expected the verdict '{}'", expected);
+    const std::string verdict = diagnosis["verdict"];
+    return verdict == expected ? "" : fmt::format("the verdict is '{}', expected '{}'", verdict, expected);
+}
+
+std::string broken_explanation(std::vector<std::string> expected, const json& diagnosis) {
+    std::vector<std::string> named;
+    if (!diagnosis.is_null()) named = diagnosis["explanation"].get<std::vector<std::string>>();
+    std::ranges::sort(named);
+    std::ranges::sort(expected);
+    if (named == expected) return {};
+    return fmt::format("the explanation is [{}], expected [{}]", fmt::join(named, ", "), fmt::join(expected, ", "));
+}
+
 }  // namespace
 
-std::vector<std::string> broken_expectations(const Expectation& expect, const json& compare,
-                                             const std::vector<identify::PosteriorRow>& posterior, int spheres) {
+std::vector<std::string> broken_expectations(const Expectation& expect, const RunResults& results) {
+    const json& compare = results.compare;
     std::vector<std::string> broken;
     const auto at_most = [&](const std::optional<double>& bound, const json& value, const char* what) {
         if (bound && known(value) > *bound) {
@@ -40,12 +56,18 @@ std::vector<std::string> broken_expectations(const Expectation& expect, const js
     at_most(expect.relative_at_most, compare["error"]["relative"], "the relative error");
     at_most(expect.held_out_at_most, compare.contains("held_out") ? compare["held_out"]["relative"] : json(),
             "the relative error on held-out probes");
-    if (expect.spheres_at_least && spheres < *expect.spheres_at_least) {
-        broken.push_back(fmt::format("there are {} spheres, expected at least {}", spheres, *expect.spheres_at_least));
+    const json& last = results.ladder.is_null() ? compare["error"] : results.ladder["steps"].back();
+    at_most(expect.rms_at_most_mm, last["rms_mm"], "the error in mm rms, with all effects in,");
+    if (expect.spheres_at_least && results.spheres < *expect.spheres_at_least) {
+        broken.push_back(
+            fmt::format("there are {} spheres, expected at least {}", results.spheres, *expect.spheres_at_least));
     }
-    for (const auto& parameter : expect.parameters) {
-        if (const std::string line = broken_parameter(parameter, posterior); !line.empty()) broken.push_back(line);
-    }
+    const auto keep = [&](const std::string& line) {
+        if (!line.empty()) broken.push_back(line);
+    };
+    for (const auto& parameter : expect.parameters) keep(broken_parameter(parameter, results.posterior));
+    if (expect.verdict) keep(broken_verdict(*expect.verdict, results.diagnosis));
+    if (expect.explanation) keep(broken_explanation(*expect.explanation, results.diagnosis));
     return broken;
 }
 

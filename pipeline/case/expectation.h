@@ -9,8 +9,16 @@
 
 namespace palpate::pipeline {
 
-/// What a run promised and did not keep, a sentence each. `compare`: as in compare.json.
-std::vector<std::string> broken_expectations(const Expectation& expect, const nlohmann::json& compare,
-                                             const std::vector<identify::PosteriorRow>& posterior, int spheres);
+/// What a run came to.
+struct RunResults {
+    nlohmann::json compare;              // as in compare.json
+    nlohmann::json diagnosis = nullptr;  // as in diagnosis.json; null: it was not asked
+    nlohmann::json ladder = nullptr;     // as in ladder.json; null: likewise
+    std::vector<identify::PosteriorRow> posterior = {};
+    int spheres = 0, links = 0;
+};
+
+/// What a run promised and did not keep, a sentence each.
+std::vector<std::string> broken_expectations(const Expectation& expect, const RunResults& results);
 
 }  // namespace palpate::pipeline

@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "pipeline/case/case.h"
 #include "pipeline/console.h"
@@ -71,8 +72,31 @@ Outcome identify(const IdentifyCommandOptions& options, const Common& common);
 struct CompareOptions {
     std::filesystem::path model, set, output;
     std::optional<double> tolerance;  // [mm]
+    bool no_reference = false;        // the skeleton alone: fast, and without an error budget
+    CaseOverrides say = {};
 };
 Outcome compare(const CompareOptions& options, const Common& common);
+
+struct DiagnoseCommandOptions {
+    std::filesystem::path model, set, output;
+    std::vector<std::string> without = {};  // effects left out of the catalogue
+    std::string body = "reference";         // or "skeleton": what the errors are judged on
+    CaseOverrides say = {};
+};
+Outcome diagnose(const DiagnoseCommandOptions& options, const Common& common);
+
+struct ImproveCommandOptions {
+    std::filesystem::path model, set, output;
+    std::vector<std::string> add = {};  // effects, a rung each
+    bool automatic = false;             // what a diagnosis names, in place of those
+    CaseOverrides say = {};
+};
+Outcome improve(const ImproveCommandOptions& options, const Common& common);
+
+struct EffectsOptions {
+    std::string name;  // empty: all
+};
+Outcome effects(const EffectsOptions& options, const Common& common);
 
 struct SimulateOptions {
     std::filesystem::path model, probes, output;

@@ -3,12 +3,12 @@
 #include "identify/set/loads.h"
 #include "mesh/errors.h"
 #include "mesh/io/atomic_file.h"
-#include "mesh/io/region_yaml.h"
 #include "mesh/io/vtk_files.h"
 #include "pipeline/case/names.h"
-#include "pipeline/case/subject.h"
-#include "pipeline/commands/common.h"
+#include "pipeline/commands/bodies.h"
+#include "pipeline/results/compare_words.h"
 #include "pipeline/results/identification.h"
+#include "pipeline/results/reference_comparison.h"
 #include "pipeline/results/results.h"
 #include "pipeline/results/series.h"
 #include "skeleton/model_io.h"
@@ -20,12 +20,26 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Where a model and a set give different supports, the set's win.
-void take_supports(skeleton::Model& model, const identify::MeasurementSet& set) {
-    if (mesh::regions_to_yaml(model.supports) == mesh::regions_to_yaml(set.supports)) return;
-    Console::notice("The model and the set give different supports: the set's are taken.");
-    model.supports = set.supports;
-    for (skeleton::Sphere& sphere : model.spheres) sphere.held = mesh::contains(set.supports, sphere.center);
+/// What the body in finite elements says beside the skeleton; where there is none, why.
+void compare_reference(nlohmann::json& result, const CompareOptions& options, const Common& common,
+                       const ModelAndSet& given, const identify::Comparison& comparison) {
+    if (options.no_reference) {
+        add_no_reference(result, "it was not asked for");
+        return;
+    }
+    try {
+        const auto body = reference_of(given.set, options.say.edge_length.value_or(0));
+        identify::DiagnoseOptions how = diagnose_options(given.model, common);
+        how.screen = false;
+        add_reference(result, *body, identify::diagnose(*body, given.set, how, Console::progress()), given.set,
+                      comparison);
+    } catch (const InvalidInput& e) {
+        Console::warning(e.what());
+        add_no_reference(result, e.what());
+    } catch (const SolverFailure& e) {
+        Console::warning(e.what());
+        add_no_reference(result, e.what());
+    }
 }
 
 }  // namespace
@@ -33,9 +47,7 @@ void take_supports(skeleton::Model& model, const identify::MeasurementSet& set) 
 Outcome identify(const IdentifyCommandOptions& options, const Common& common) {
     const fs::path output = options.output.empty() ? fs::path("identified") : options.output;
     refuse_to_overwrite(output, common.force);
-    skeleton::Model model = skeleton::read_model(options.model);
-    const identify::MeasurementSet set = read_measurements(options.set);
-    take_supports(model, set);
+    const auto [model, set] = read_model_and_set(options.model, options.set);
 
     identify::IdentifyOptions how;
     if (!options.say.parameters.empty()) how.scope = parse(scopes, options.say.parameters, "--parameters");
@@ -65,14 +77,15 @@ Outcome identify(const IdentifyCommandOptions& options, const Common& common) {
 }
 
 Outcome compare(const CompareOptions& options, const Common& common) {
-    skeleton::Model model = skeleton::read_model(options.model);
-    const identify::MeasurementSet set = read_measurements(options.set);
-    take_supports(model, set);
+    const ModelAndSet given = read_model_and_set(options.model, options.set);
+    const skeleton::Model& model = given.model;
+    const identify::MeasurementSet set = understood(given.set, model.effects);
     const identify::Comparison comparison = identify::compare(model, set, common.threads);
 
     Outcome outcome;
     outcome.json = to_json(comparison, set);
-    outcome.text = in_words(outcome.json) + "\n";
+    compare_reference(outcome.json, options, common, given, comparison);
+    outcome.text = compare_in_words(outcome.json) + "\n";
     if (!options.output.empty()) {
         refuse_to_overwrite(options.output, common.force);
         write_marker_series(options.output, "markers", set, comparison);

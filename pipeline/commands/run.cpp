@@ -5,9 +5,8 @@
 #include "mesh/io/region_yaml.h"
 #include "mesh/io/vtk_files.h"
 #include "mesh/read_surface.h"
-#include "pipeline/case/expectation.h"
-#include "pipeline/case/subject.h"
-#include "pipeline/commands/common.h"
+#include "pipeline/commands/run_inquiry.h"
+#include "pipeline/commands/run_summary.h"
 #include "pipeline/reference/body.h"
 #include "pipeline/reference/held_out.h"
 #include "pipeline/reference/probing.h"
@@ -15,6 +14,7 @@
 #include "pipeline/report/view_script.h"
 #include "pipeline/results/identification.h"
 #include "pipeline/results/posterior_file.h"
+#include "pipeline/results/reference_comparison.h"
 #include "pipeline/results/results.h"
 #include "pipeline/results/series.h"
 #include "pipeline/run_folder/run_folder.h"
@@ -43,12 +43,16 @@ public:
         make_mesh();
         make_skeleton();
         make_measurements();
+        const skeleton::Model start = model_;
         calibrate();
-        const json result = compare_all();
+        RunResults results;
+        RunInquiry inquiry(folder_, subject_, set_, common_);
+        if (subject_.set) results.diagnosis = inquiry.diagnose(start);
+        results.compare = compare_all(inquiry);
+        if (subject_.set) results.ladder = inquiry.improve(start, results.diagnosis);
         write_view_script(folder_.path() / "view.py");
-        const fs::path page = folder_.path() / "report.html";
-        write_report(folder_.path(), page);
-        return conclude(result, page);
+        write_report(folder_.path(), folder_.path() / "report.html");
+        return conclude(results);
     }
 
 private:
@@ -129,16 +133,21 @@ private:
         });
         model_ = skeleton::read_model(folder_.path() / "skeleton/model.json");
         Console::notice(
-            fmt::format("skeleton   {} spheres, {} links, as given", model_.spheres.size(), model_.links.size()));
+            fmt::format("skeleton     {} spheres, {} links, as given", model_.spheres.size(), model_.links.size()));
     }
 
     void make_measurements() {
+        const Case& c = subject_.settings;
         if (subject_.set) {
             set_ = *subject_.set;
-            fit_ = set_;
+            if (!c.model) {  // the run's material counts, the set's own or not
+                set_.density = subject_.material.density;
+                if (!set_.material) set_.material.emplace();
+                set_.material->young = subject_.material.young;
+            }
+            fit_ = understood(set_, model_.effects);
             return;
         }
-        const Case& c = subject_.settings;
         const ProbeOptions& p = c.probing;
         const bool ran = folder_.stage(
             {"measurements",
@@ -172,7 +181,7 @@ private:
         fit_ = states_of(set_, [&](const identify::LoadState& s) { return !is_held_out(s.probe, p); });
         held_out_ = states_of(set_, [&](const identify::LoadState& s) { return is_held_out(s.probe, p); });
         tell(
-            "reference", ran,
+            "measurements", ran,
             fmt::format("{} states in small strain, {} of them held out", set_.states.size(), held_out_.states.size()));
     }
 
@@ -215,22 +224,29 @@ private:
                          folder_.record()["stages"]["identify"]["figures"].value("informed", 0)));
     }
 
-    json compare_all() {
+    json compare_all(RunInquiry& inquiry) {
         const fs::path folder = folder_.path() / "compare";
-        json result;
-        folder_.stage({"compare", {}, {}, {"identify"}, {"compare"}}, [&] {
-            const identify::Comparison comparison = identify::compare(model_, set_, common_.threads);
-            result = to_json(comparison, set_);
+        json settings = subject_.set ? inquiry.settings() : json{{"noise", subject_.settings.probing.noise}};
+        const bool ran = folder_.stage({"compare", settings, {}, {"identify"}, {"compare"}}, [&] {
+            const identify::MeasurementSet& set = subject_.set ? fit_ : set_;
+            const identify::Comparison comparison = identify::compare(model_, set, common_.threads);
+            json result = to_json(comparison, set);
             if (!held_out_.states.empty()) {
                 result["fitted"] = error_json(fit_);
                 result["held_out"] = error_json(held_out_);
             }
+            if (subject_.set) {
+                inquiry.compare_reference(result, model_, comparison);
+            } else {
+                add_own_reference(result, subject_.settings.probing.noise);
+            }
             mesh::write_text(folder / "compare.json", result.dump(2) + "\n");
-            write_marker_series(folder, "markers", set_, comparison);
-            write_skin_series(folder, "skin", model_, set_);
+            write_marker_series(folder, "markers", set, comparison);
+            write_skin_series(folder, "skin", model_, set);
             return json{{"relative", result["error"]["relative"]}};
         });
-        result = json::parse(mesh::read_text(folder / "compare.json"));
+        json result = json::parse(mesh::read_text(folder / "compare.json"));
+        tell("compare", ran, fmt::format("{:.3g} mm rms", result["error"]["rms_mm"].get<double>()));
         return result;
     }
 
@@ -238,31 +254,15 @@ private:
         return to_json(identify::compare(model_, part, common_.threads), part)["error"];
     }
 
-    Outcome conclude(json result, const fs::path& page) const {
-        Outcome outcome;
-        outcome.text = fmt::format("{}: {} spheres, {} links.\n", subject_.settings.name, model_.spheres.size(),
-                                   model_.links.size()) +
-                       in_words(result) +
-                       fmt::format("\nReport: {}\nParaView: paraview --script={}\n", page.string(),
-                                   (folder_.path() / "view.py").string());
-        outcome.json = {
-            {"run", folder_.path().string()}, {"report", page.string()}, {"spheres", model_.spheres.size()},
-            {"links", model_.links.size()},   {"compare", result},       {"stages", folder_.record()["stages"]}};
-        const std::vector<std::string> broken = broken_expectations(
-            subject_.settings.expect, result, read_posterior(folder_.path() / "identify/posterior.csv"),
-            static_cast<int>(model_.spheres.size()));
-        for (const std::string& line : broken) Console::error("expectation not met: " + line);
-        outcome.json["expectations_not_met"] = broken;
-        outcome.code = broken.empty() ? done : not_met;
-        return outcome;
+    Outcome conclude(RunResults results) const {
+        results.posterior = read_posterior(folder_.path() / "identify/posterior.csv");
+        results.spheres = static_cast<int>(model_.spheres.size());
+        results.links = static_cast<int>(model_.links.size());
+        return outcome_of(subject_, results, folder_);
     }
 
     void tell(const std::string& stage, bool ran, const std::string& what) const {
-        const json& record = folder_.record()["stages"][stage == "reference" ? "measurements" : stage];
-        Console::notice(fmt::format("{:<10} {} ({})", stage, what,
-                                    ran ? fmt::format("{:.1f} s, {:.0f} MB", record["seconds"].get<double>(),
-                                                      record["peak_memory_mb"].get<double>())
-                                        : "unchanged"));
+        tell_stage(folder_, stage, ran, what);
     }
 
     Common common_;

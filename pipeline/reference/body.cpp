@@ -13,6 +13,7 @@ Body make_body(const mesh::Surface& surface, const BodyOptions& options, const P
     Body body;
     report(progress, "repairing the surface", 0.0);
     const mesh::RepairResult repaired = mesh::repair_surface(surface);
+    body.repaired = repaired.surface;
     body.notes = repaired.steps;
 
     const double longest = mesh::bounding_box(repaired.surface.vertices).longest_side();
@@ -24,7 +25,7 @@ Body make_body(const mesh::Surface& surface, const BodyOptions& options, const P
                         edge, longest));
     }
     report(progress, "remeshing the surface", 0.3);
-    body.surface = mesh::remesh(repaired.surface, {.edge_length = edge});
+    body.surface = mesh::remesh(repaired.surface, {.edge_length = edge, .volume_change = options.volume_change});
     report(progress, "filling with tetrahedra", 0.6);
     const mesh::VolumeMesh linear = mesh::tetrahedralise(body.surface, {.edge_length = edge});
     body.volume = options.linear_elements ? linear : mesh::to_quadratic(linear);

@@ -13,11 +13,13 @@ namespace palpate::pipeline {
 struct BodyOptions {
     double edge_length = 0;  // of the tetrahedra [mm]; 0: 6 % of the longest side
     bool linear_elements = false;
+    double volume_change = 0.01;  // that remeshing may make, as a share: chords of a round body cut volume off
 };
 
 /// A body ready for finite elements.
 struct Body {
-    mesh::Surface surface;           // repaired and remeshed, closed
+    mesh::Surface repaired;          // as it came, made closed
+    mesh::Surface surface;           // that, remeshed
     mesh::VolumeMesh volume;         // quadratic, unless linear elements were asked for
     std::vector<std::string> notes;  // what was done to the surface, in words
 };

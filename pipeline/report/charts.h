@@ -14,6 +14,25 @@ struct Bar {
 /// Bars side by side with a value axis, as SVG.
 std::string bar_chart(const std::vector<Bar>& bars, const std::string& title, const std::string& unit);
 
+/// Bars that belong together, with a label below.
+struct BarGroup {
+    std::string label;
+    std::vector<Bar> bars;
+};
+
+/// Groups of bars with their values above, as SVG; "" without groups.
+std::string group_chart(const std::vector<BarGroup>& groups, const std::string& title, const std::string& unit);
+
+/// A part of a whole.
+struct Share {
+    std::string label;
+    double value;        // [0, 1]
+    std::string colour;  // as in CSS
+};
+
+/// One bar made of shares, with its key below, as SVG.
+std::string share_bar(const std::vector<Share>& shares, const std::string& title);
+
 /// A value known up to an interval, before and after measuring.
 struct Interval {
     std::string label;

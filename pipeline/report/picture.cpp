@@ -160,8 +160,9 @@ std::string dot_picture(const skeleton::Model& model, const std::vector<Dot>& do
     for (const Dot& dot : sorted) {
         const Vec3 c = view(dot.at);
         svg += fmt::format(
-            R"(<circle cx="{:.1f}" cy="{:.1f}" r="4.5" fill="{}" stroke="#fff" stroke-width=".8"><title>{:.3g} {}</title></circle>)",
-            c.x(), c.y(), colour(highest > 0 ? dot.value / highest : 0), dot.value, unit);
+            R"(<circle cx="{:.1f}" cy="{:.1f}" r="4.5" fill="{}" stroke="{}" stroke-width="{}"><title>{:.3g} {}</title></circle>)",
+            c.x(), c.y(), colour(highest > 0 ? dot.value / highest : 0), dot.strange ? "#c8741a" : "#fff",
+            dot.strange ? 2 : 0.8, dot.value, unit);
     }
     return svg + colour_bar(view, 0, highest, "rms error of each marker over all states [" + unit + "]") + "</svg>";
 }

@@ -11,6 +11,7 @@ namespace palpate::pipeline {
 struct Dot {
     Vec3 at;
     double value;
+    bool strange = false;  // gets a ring
 };
 
 /// The body seen from one side as SVG: its surface in grey, spheres, links coloured by elongation stiffness.

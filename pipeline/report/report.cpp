@@ -10,10 +10,12 @@
 #include "mesh/io/atomic_file.h"
 #include "pipeline/report/charts.h"
 #include "pipeline/report/escape.h"
+#include "pipeline/report/inquiry_sections.h"
 #include "pipeline/report/page.h"
 #include "pipeline/report/picture.h"
+#include "pipeline/results/compare_words.h"
+#include "pipeline/results/diagnosis_words.h"
 #include "pipeline/results/posterior_file.h"
-#include "pipeline/results/results.h"
 #include "skeleton/model_io.h"
 
 namespace palpate::pipeline {
@@ -25,6 +27,7 @@ using nlohmann::json;
 /// All that a page is made of, read from the run folder.
 struct RunFiles {
     json record, compare;
+    json diagnosis, ladder;  // null where the run did not ask
     std::string settings;
     std::vector<identify::PosteriorRow> posterior;
     skeleton::Model model;
@@ -38,9 +41,21 @@ json read_json(const fs::path& file) {
     }
 }
 
+json read_if_there(const fs::path& file) { return fs::exists(file) ? read_json(file) : json(); }
+
 RunFiles read_run(const fs::path& run) {
-    return {read_json(run / "run.json"), read_json(run / "compare/compare.json"), mesh::read_text(run / "case.yaml"),
-            read_posterior(run / "identify/posterior.csv"), skeleton::read_model(run / "identify/model.json")};
+    return {read_json(run / "run.json"),
+            read_json(run / "compare/compare.json"),
+            read_if_there(run / "diagnose/diagnosis.json"),
+            read_if_there(run / "improve/ladder.json"),
+            mesh::read_text(run / "case.yaml"),
+            read_posterior(run / "identify/posterior.csv"),
+            skeleton::read_model(run / "identify/model.json")};
+}
+
+/// The verdict, or where nobody asked for it how wrong the model is.
+std::string lead(const RunFiles& files) {
+    return files.diagnosis.is_null() ? compare_in_words(files.compare) : diagnosis_in_words(files.diagnosis);
 }
 
 std::string percent(const json& relative) {
@@ -57,6 +72,7 @@ std::string tiles(const RunFiles& files) {
     const auto informed =
         std::count_if(files.posterior.begin(), files.posterior.end(), [](auto& r) { return r.informed; });
     return "<div class=\"tiles\">" +
+           (files.diagnosis.is_null() ? "" : tile(files.diagnosis["verdict"].get<std::string>(), "verdict")) +
            tile(percent(files.compare["error"]["relative"]), "rms error over rms displacement") +
            tile(fmt::format("{:.3g} mm", files.compare["error"]["max_mm"].get<double>()), "largest error") +
            tile(fmt::format("{} + {}", files.model.spheres.size() - held, held), "spheres, free + held") +
@@ -70,13 +86,15 @@ std::string pictures(const RunFiles& files) {
     std::vector<Dot> dots;
     for (const json& m : files.compare["markers"]) {
         dots.push_back({{m["at"][0].get<double>(), m["at"][1].get<double>(), m["at"][2].get<double>()},
-                        m["rms_mm"].get<double>()});
+                        m["rms_mm"].get<double>(),
+                        m.value("strange", false)});
     }
+    const bool strange = std::ranges::any_of(dots, [](const Dot& dot) { return dot.strange; });
     return "<div class=\"pair\"><figure>" + skeleton_picture(files.model) +
            "<figcaption class=\"soft\">Spheres and links; spheres that are held in "
            "orange.</figcaption></figure><figure>" +
-           dot_picture(files.model, dots, "mm") +
-           "<figcaption class=\"soft\">Where the model is wrong.</figcaption></figure></div>";
+           dot_picture(files.model, dots, "mm") + "<figcaption class=\"soft\">Where the model is wrong." +
+           (strange ? " Orange rings: finite elements do not explain it either." : "") + "</figcaption></figure></div>";
 }
 
 std::string probe_chart(const RunFiles& files) {
@@ -116,7 +134,7 @@ std::string posterior_charts(const RunFiles& files) {
 
 std::string stage_table(const RunFiles& files) {
     std::string rows;
-    for (const char* stage : {"mesh", "skeleton", "measurements", "identify", "compare"}) {
+    for (const char* stage : {"mesh", "skeleton", "measurements", "identify", "diagnose", "compare", "improve"}) {
         if (!files.record["stages"].contains(stage)) continue;
         const json& s = files.record["stages"][stage];
         std::string figures;
@@ -140,6 +158,10 @@ std::string assumption_list(const RunFiles& files) {
     for (const json& n : files.record["stages"]["identify"]["figures"].value("notes", json::array())) {
         items += "<li>" + escape(n.get<std::string>()) + "</li>";
     }
+    for (const json* asked : {&files.diagnosis, &files.ladder}) {
+        if (asked->is_null()) continue;
+        for (const json& n : (*asked)["notes"]) items += "<li>" + escape(n.get<std::string>()) + "</li>";
+    }
     return items.empty() ? "" : "<h2>Assumed and noted</h2><ul>" + items + "</ul>";
 }
 
@@ -148,17 +170,20 @@ std::string assumption_list(const RunFiles& files) {
 void write_report(const fs::path& run, const fs::path& page) {
     const RunFiles files = read_run(run);
     const std::string name = escape(files.model.name.empty() ? run.filename().string() : files.model.name);
-    mesh::write_text(page,
-                     "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">"
-                     "<meta name=\"viewport\" content=\"width=device-width,initial-scale=1\">"
-                     "<meta name=\"generator\" content=\"palpate\"><title>" +
-                         name + "</title><style>" + page_style + "</style></head><body><h1>" + name +
-                         "</h1><p class=\"lead\">" + escape(in_words(files.compare)) + "</p>" + tiles(files) +
-                         "<h2>Model</h2>" + pictures(files) + "<h2>Error</h2>" + probe_chart(files) +
-                         "<h2>Stiffness</h2>" + posterior_charts(files) + assumption_list(files) + "<h2>Stages</h2>" +
-                         stage_table(files) + "<h2>Settings</h2><pre>" + escape(files.settings) +
-                         "</pre><p class=\"soft\">palpate " + escape(files.record.value("version", "")) +
-                         "</p></body></html>\n");
+    std::string html =
+        "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">"
+        "<meta name=\"viewport\" content=\"width=device-width,initial-scale=1\">"
+        "<meta name=\"generator\" content=\"palpate\"><title>" +
+        name + "</title><style>" + page_style + "</style></head><body><h1>" + name + "</h1><p class=\"lead\">" +
+        escape(lead(files)) + "</p>" + tiles(files);
+    html += missing_section(files.diagnosis) + ladder_section(files.ladder) + budget_section(files.compare);
+    html += "<h2>Model</h2>" + pictures(files);
+    html += "<h2>Error</h2><p>" + escape(compare_in_words(files.compare)) + "</p>" + probe_chart(files);
+    html += "<h2>Stiffness</h2>" + posterior_charts(files) + assumption_list(files);
+    html += "<h2>Stages</h2>" + stage_table(files);
+    html += "<h2>Settings</h2><pre>" + escape(files.settings) + "</pre><p class=\"soft\">palpate " +
+            escape(files.record.value("version", "")) + "</p></body></html>\n";
+    mesh::write_text(page, html);
 }
 
 }  // namespace palpate::pipeline

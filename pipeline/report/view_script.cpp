@@ -120,9 +120,28 @@ def error_view(view):
     return "Error at the markers"
 
 
+def ladder_view(view):
+    """Errors at the markers of all states, step by step of the ladder: play it to see them fall."""
+    surface = XMLPolyDataReader(FileName=[path("mesh", "surface.vtp")])
+    Show(surface, view).Opacity = 0.3
+    markers = PVDReader(FileName=path("improve", "ladder.pvd"))
+    show_largest_step(view, markers, "error [mm]")
+    arrows = Glyph(Input=markers, GlyphType="Arrow")
+    arrows.OrientationArray = ["POINTS", "error [mm]"]
+    arrows.ScaleArray = ["POINTS", "error [mm]"]
+    arrows.ScaleFactor = 1.0
+    arrows.GlyphMode = "All Points"
+    Show(arrows, view)
+    colour(view, arrows, "POINTS", "error [mm]")
+    return "Ladder: error at the markers, step by step"
+
+
+builders = [shape_view, skeleton_view, error_view]
+if os.path.exists(path("improve", "ladder.pvd")):
+    builders.append(ladder_view)
 layout = CreateLayout("palpate")
 views = []
-for number, build in enumerate((shape_view, skeleton_view, error_view)):
+for number, build in enumerate(builders):
     view = CreateView("RenderView")
     AssignViewToLayout(view=view, layout=layout, hint=0)
     view.Background = [1, 1, 1]
@@ -137,9 +156,9 @@ for number, build in enumerate((shape_view, skeleton_view, error_view)):
     camera.Elevation(-60)
     camera.Azimuth(20)
     views.append(view)
-    if build is not error_view:
-        layout.SplitHorizontal(layout.GetViewLocation(view), 0.5) if number == 0 else layout.SplitVertical(
-            layout.GetViewLocation(view), 0.5)
+    if build is not builders[-1]:
+        cell = layout.GetViewLocation(view)
+        layout.SplitHorizontal(cell, 0.5) if number == 0 else layout.SplitVertical(cell, 1 / (len(builders) - number))
 
 layout.SetSize(1800, 900)
 for view in views:

@@ -1,18 +1,13 @@
 #include "pipeline/results/results.h"
 
-#include <fmt/format.h>
-
 #include <cmath>
+
+#include "pipeline/results/json_values.h"
 
 namespace palpate::pipeline {
 namespace {
 
 using nlohmann::json;
-
-json numbers(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
-
-/// JSON has no NaN: what is unknown is null.
-json known(double value) { return std::isfinite(value) ? json(value) : json(nullptr); }
 
 /// Rms error of each marker over all states, with its place at rest.
 json marker_errors(const identify::Comparison& c, const identify::MeasurementSet& set) {
@@ -44,6 +39,7 @@ json marker_errors(const identify::Comparison& c, const identify::MeasurementSet
 
 json to_json(const identify::Comparison& c, const identify::MeasurementSet& set) {
     json result = {
+        {"format", "palpate-comparison/1"},
         {"error",
          {{"rms_mm", c.rms}, {"max_mm", c.max}, {"relative", known(c.relative)}, {"noise_mm", known(c.noise)}}},
         {"adequate", c.adequate},
@@ -119,32 +115,6 @@ json summary_json(const identify::IdentifyResult& result) {
             {"acceptance", known(result.acceptance)},
             {"equilibria", result.equilibria},
             {"notes", result.notes}};
-}
-
-std::string in_words(const json& compare) {
-    const auto share = [](const json& error) {
-        return error["relative"].is_number() ? fmt::format("{:.1f} %", 100 * error["relative"].get<double>())
-                                             : std::string("an unknown share");
-    };
-    const json& error = compare["error"];
-    std::string text =
-        fmt::format("The model is off by {:.3g} mm rms, {} of the displacement, and by {:.3g} mm at most.",
-                    error["rms_mm"].get<double>(), share(error), error["max_mm"].get<double>());
-    if (compare.contains("held_out")) {
-        text += fmt::format(" On the probes that were fitted it is off by {}, on those kept from the fit by {}.",
-                            share(compare["fitted"]), share(compare["held_out"]));
-    }
-    if (error["noise_mm"].is_number()) {
-        text += fmt::format(" The noise is {:.3g} mm: {}.", error["noise_mm"].get<double>(),
-                            compare["adequate"].get<bool>() ? "what is left is noise" : "the model lacks something");
-    }
-    if (compare.contains("load_exponent")) {
-        const json& exponent = compare["load_exponent"];
-        text += fmt::format(" The error goes with the load to the power {:.1f} +- {:.1f}: {}.",
-                            exponent["value"].get<double>(), exponent["sd"].get<double>(),
-                            exponent["words"].get<std::string>());
-    }
-    return text;
 }
 
 }  // namespace palpate::pipeline

@@ -16,7 +16,4 @@ nlohmann::json to_json(const identify::Comparison& comparison, const identify::M
 nlohmann::json to_json(const mesh::SurfaceReport& report);
 nlohmann::json summary_json(const identify::IdentifyResult& result);
 
-/// What compare.json says, in sentences.
-std::string in_words(const nlohmann::json& compare);
-
 }  // namespace palpate::pipeline

@@ -9,7 +9,6 @@
 #include "fem/interpolation.h"
 #include "identify/set/field.h"
 #include "identify/set/loads.h"
-#include "mesh/io/vtk_files.h"
 
 namespace palpate::pipeline {
 namespace {
@@ -37,32 +36,38 @@ std::vector<int> columns_of(const identify::IdentifyResult& result, const std::s
 
 }  // namespace
 
+MarkerState marker_state(const identify::MeasurementSet& set, const identify::Comparison& comparison,
+                         std::size_t state) {
+    const auto& readings = set.states[state].readings;
+    std::vector<int> labelled;
+    for (int r = 0; r < static_cast<int>(readings.size()); ++r) {
+        if (readings[r].marker >= 0 && readings[r].position.allFinite()) labelled.push_back(r);
+    }
+    const auto count = static_cast<Eigen::Index>(labelled.size());
+    Points measured(count, 3), rest(count, 3), predicted(count, 3);
+    Eigen::VectorXd ids(count);
+    for (Eigen::Index i = 0; i < count; ++i) {
+        const identify::Reading& reading = readings[labelled[i]];
+        const identify::Marker& marker = set.markers[reading.marker];
+        measured.row(i) = reading.position;
+        rest.row(i) = marker.rest;
+        predicted.row(i) = comparison.predicted[state].row(labelled[i]);
+        ids[i] = marker.id;
+    }
+    return {measured,
+            {.points = {{"error [mm]", measured - predicted},
+                        {"displacement [mm]", predicted - rest},
+                        {"measured [mm]", measured - rest},
+                        {"marker", ids}}}};
+}
+
 void write_marker_series(const fs::path& folder, const std::string& name, const identify::MeasurementSet& set,
                          const identify::Comparison& comparison) {
     std::vector<mesh::SeriesStep> steps;
     for (std::size_t s = 0; s < set.states.size(); ++s) {
-        const auto& readings = set.states[s].readings;
-        std::vector<int> labelled;
-        for (int r = 0; r < static_cast<int>(readings.size()); ++r) {
-            if (readings[r].marker >= 0 && readings[r].position.allFinite()) labelled.push_back(r);
-        }
-        const auto count = static_cast<Eigen::Index>(labelled.size());
-        Points measured(count, 3), rest(count, 3), predicted(count, 3);
-        Eigen::VectorXd ids(count);
-        for (Eigen::Index i = 0; i < count; ++i) {
-            const identify::Reading& reading = readings[labelled[i]];
-            const identify::Marker& marker = set.markers[reading.marker];
-            measured.row(i) = reading.position;
-            rest.row(i) = marker.rest;
-            predicted.row(i) = comparison.predicted[s].row(labelled[i]);
-            ids[i] = marker.id;
-        }
+        const MarkerState markers = marker_state(set, comparison, s);
         const fs::path file = folder / step_name(name, s);
-        mesh::write_vtp_lines(file, measured, {},
-                              {.points = {{"error [mm]", measured - predicted},
-                                          {"displacement [mm]", predicted - rest},
-                                          {"measured [mm]", measured - rest},
-                                          {"marker", ids}}});
+        mesh::write_vtp_lines(file, markers.measured, {}, markers.data);
         steps.push_back({static_cast<double>(s), file});
     }
     mesh::write_pvd(folder / (name + ".pvd"), steps);

@@ -5,13 +5,22 @@
 #include "identify/compare.h"
 #include "identify/identify.h"
 #include "identify/set/measurement_set.h"
+#include "mesh/io/vtk_files.h"
 #include "skeleton/equilibrium.h"
 #include "skeleton/model.h"
 
 namespace palpate::pipeline {
 
-/// Markers of every state as a series `<name>.pvd`, time = index of the state: points where they were measured, with
-/// the vectors "error [mm]" (from model to measurement), "displacement [mm]" (of the model) and "measured [mm]".
+/// The labelled markers of a state where they were measured, with their arrays "error [mm]" (from model to
+/// measurement), "displacement [mm]" (of the model), "measured [mm]" and "marker".
+struct MarkerState {
+    Points measured;  // (m x 3) [mm]
+    mesh::MeshData data;
+};
+MarkerState marker_state(const identify::MeasurementSet& set, const identify::Comparison& comparison,
+                         std::size_t state);
+
+/// Markers of every state as a series `<name>.pvd`, time = index of the state, as marker_state has them.
 void write_marker_series(const std::filesystem::path& folder, const std::string& name,
                          const identify::MeasurementSet& set, const identify::Comparison& comparison);
 

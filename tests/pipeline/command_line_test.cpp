@@ -35,6 +35,10 @@ TEST(CommandLine, ExitCodesTellWhatWentWrong) {
     EXPECT_EQ(palpate("").code, 2);
     EXPECT_EQ(palpate("rnu x").code, 2);
     EXPECT_EQ(palpate("run --spheres many x.stl").code, 2);
+    EXPECT_EQ(palpate("improve model.json set").code, 2);  // what is to be added?
+    EXPECT_EQ(palpate("improve model.json set --auto --add gravity").code, 2);
+    EXPECT_EQ(palpate("diagnose model.json set --body spheres").code, 2);
+    EXPECT_EQ(palpate("effects gravty").code, 3);
     EXPECT_EQ(palpate("check " + (scratch / "none.stl").string()).code, 3);
 }
 
@@ -46,6 +50,9 @@ TEST(CommandLine, JsonStandsAloneOnStandardOutput) {
     const auto result = nlohmann::json::parse(check.out);
     EXPECT_TRUE(result["surface"]["sound"].get<bool>());
     EXPECT_NEAR(result["surface"]["volume_mm3"].get<double>(), 40.0, 1e-4);  // STL holds single precision
+
+    EXPECT_TRUE(nlohmann::json::parse(palpate("effects --json").out)["effects"].is_array());
+    EXPECT_EQ(nlohmann::json::parse(palpate("effects gravity --json").out)["kind"], "body");
 
     const Finished failed = palpate("check --json " + (scratch / "none.stl").string());
     EXPECT_EQ(failed.code, 3);

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <filesystem>
+#include <memory>
+
+#include "identify/diagnose/diagnose.h"
+#include "identify/models/reference_body.h"
+#include "identify/set/measurement_set.h"
+#include "pipeline/commands/common.h"
+#include "skeleton/model.h"
+
+namespace palpate::pipeline::commands {
+
+struct ModelAndSet {
+    skeleton::Model model;
+    identify::MeasurementSet set;
+};
+
+/// A model and measurements, read; where they give different supports the set's win, said aloud.
+ModelAndSet read_model_and_set(const std::filesystem::path& model, const std::filesystem::path& set);
+
+/// The set as a model understands it: without the faults of the measurement that the model records.
+identify::MeasurementSet understood(const identify::MeasurementSet& set, const std::vector<skeleton::Effect>& effects);
+
+/// The set's body in finite elements; what it assumes is said aloud.
+/// @throws InvalidInput telling why there is none.
+std::unique_ptr<identify::ReferenceBody> reference_of(const identify::MeasurementSet& set, double edge_length);
+
+/// Options of a diagnosis of what a model lacks besides the effects that it has.
+identify::DiagnoseOptions diagnose_options(const skeleton::Model& model, const Common& common);
+
+}  // namespace palpate::pipeline::commands

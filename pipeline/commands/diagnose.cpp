@@ -1,0 +1,46 @@
+#include "identify/diagnose/diagnose.h"
+
+#include <fmt/format.h>
+
+#include "identify/effects/catalogue.h"
+#include "identify/models/skeleton_body.h"
+#include "mesh/io/atomic_file.h"
+#include "pipeline/commands/bodies.h"
+#include "pipeline/results/diagnosis_json.h"
+#include "pipeline/results/diagnosis_words.h"
+
+namespace palpate::pipeline::commands {
+namespace {
+
+constexpr double start_young = 0.1;  // [MPa], where the set has no guess
+
+std::unique_ptr<identify::BodyModel> body_to_judge(const DiagnoseCommandOptions& options, const ModelAndSet& given) {
+    if (options.body != "skeleton") return reference_of(given.set, options.say.edge_length.value_or(0));
+    const bool told = given.set.material && given.set.material->young > 0;
+    return std::make_unique<identify::SkeletonBody>(given.model, given.set.markers,
+                                                    told ? given.set.material->young : start_young);
+}
+
+}  // namespace
+
+Outcome diagnose(const DiagnoseCommandOptions& options, const Common& common) {
+    if (!options.output.empty()) refuse_to_overwrite(options.output, common.force);
+    for (const std::string& name : options.without) identify::find_effect(name);
+    const ModelAndSet given = read_model_and_set(options.model, options.set);
+    identify::DiagnoseOptions how = diagnose_options(given.model, common);
+    how.without = options.without;
+    const auto body = body_to_judge(options, given);
+    const identify::Diagnosis found = identify::diagnose(*body, given.set, how, Console::progress());
+
+    Outcome outcome;
+    outcome.json = to_json(found, *body, given.set);
+    outcome.text = diagnosis_in_words(outcome.json) + "\n";
+    for (const std::string& note : found.notes) outcome.text += "  " + note + "\n";
+    if (!options.output.empty()) {
+        mesh::write_text(options.output / "diagnosis.json", outcome.json.dump(2) + "\n");
+        outcome.text += fmt::format("Written: {}\n", (options.output / "diagnosis.json").string());
+    }
+    return outcome;
+}
+
+}  // namespace palpate::pipeline::commands

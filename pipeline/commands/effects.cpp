@@ -1,0 +1,52 @@
+#include <fmt/format.h>
+
+#include "identify/effects/catalogue.h"
+#include "pipeline/commands/common.h"
+
+namespace palpate::pipeline::commands {
+namespace {
+
+using nlohmann::json;
+
+std::string kind_of(const identify::Effect& effect) { return effect.is_of_body() ? "body" : "measurement"; }
+
+json to_json(const identify::Effect& effect) {
+    const identify::EffectDescription& text = effect.description();
+    return {{"effect", text.name},
+            {"kind", kind_of(effect)},
+            {"meaning", text.meaning},
+            {"parameters", text.parameters},
+            {"reveals", text.reveals},
+            {"confused_with", text.confused_with},
+            {"separating_probe", text.separating_probe},
+            {"next_probe", text.next_probe}};
+}
+
+std::string in_full(const identify::Effect& effect) {
+    const identify::EffectDescription& text = effect.description();
+    std::string parameters;
+    for (const std::string& parameter : text.parameters) parameters += "  " + parameter + "\n";
+    return fmt::format("{}: {}\n{}\n{}\nRevealed by {}.\nConfused with {}.\nTo tell them apart: {}.\n", text.name,
+                       effect.is_of_body() ? "a property of the body" : "a fault of the measurement", text.meaning,
+                       parameters, text.reveals, fmt::join(text.confused_with, ", "), text.separating_probe);
+}
+
+}  // namespace
+
+Outcome effects(const EffectsOptions& options, const Common&) {
+    if (!options.name.empty()) {
+        const auto effect = identify::find_effect(options.name);
+        return {.text = in_full(*effect), .json = to_json(*effect)};
+    }
+    Outcome outcome;
+    outcome.json = {{"effects", json::array()}};
+    for (const auto& effect : identify::catalogue()) {
+        outcome.text +=
+            fmt::format("{:<18} {:<12} {}\n", effect->name(), kind_of(*effect), effect->description().meaning);
+        outcome.json["effects"].push_back(to_json(*effect));
+    }
+    outcome.text += "\npalpate effects NAME tells one in full.\n";
+    return outcome;
+}
+
+}  // namespace palpate::pipeline::commands

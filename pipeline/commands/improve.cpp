@@ -1,0 +1,63 @@
+#include <fmt/format.h>
+
+#include "identify/diagnose/ladder.h"
+#include "identify/effects/catalogue.h"
+#include "pipeline/case/names.h"
+#include "pipeline/commands/bodies.h"
+#include "pipeline/results/diagnosis_json.h"
+#include "pipeline/results/diagnosis_words.h"
+#include "pipeline/results/ladder.h"
+
+namespace palpate::pipeline::commands {
+namespace {
+
+namespace fs = std::filesystem;
+
+identify::IdentifyOptions identify_options(const CaseOverrides& say, const Common& common) {
+    identify::IdentifyOptions how;
+    if (!say.parameters.empty()) how.scope = parse(scopes, say.parameters, "--parameters");
+    if (!say.method.empty()) how.method = parse(methods, say.method, "--method");
+    if (say.particles) how.particles = *say.particles;
+    how.seed = common.seed.value_or(how.seed);
+    how.threads = common.threads;
+    return how;
+}
+
+/// A diagnosis, said aloud.
+identify::Diagnosis diagnose_aloud(const identify::BodyModel& body, const identify::MeasurementSet& set,
+                                   const identify::DiagnoseOptions& how) {
+    identify::Diagnosis found = identify::diagnose(body, set, how, Console::progress());
+    Console::notice(diagnosis_in_words(to_json(found, body, set)));
+    if (found.explanation.empty()) Console::notice("Nothing is added.");
+    return found;
+}
+
+}  // namespace
+
+Outcome improve(const ImproveCommandOptions& options, const Common& common) {
+    const fs::path output = options.output.empty() ? fs::path("improved") : options.output;
+    refuse_to_overwrite(output, common.force);
+    for (const std::string& name : options.add) identify::find_effect(name);
+    const ModelAndSet given = read_model_and_set(options.model, options.set);
+    const identify::LadderOptions how{.identify = identify_options(options.say, common),
+                                      .diagnose = diagnose_options(given.model, common)};
+    how.identify.validate();
+    const auto reference = reference_of(given.set, options.say.edge_length.value_or(0));
+    std::optional<identify::Diagnosis> found;
+    if (options.automatic) found = diagnose_aloud(*reference, given.set, how.diagnose);
+    const std::vector<std::string>& effects = found ? found->explanation : options.add;
+    const identify::Ladder ladder = identify::climb(given.model, reference.get(), given.set, effects, how,
+                                                    found ? &*found : nullptr, Console::progress());
+    write_ladder(output, ladder);
+
+    Outcome outcome;
+    outcome.json = to_json(ladder);
+    outcome.json["model"] = (output / "model.json").string();
+    outcome.text = ladder_in_words(outcome.json);
+    for (const std::string& note : ladder.notes) outcome.text += "  " + note + "\n";
+    outcome.text +=
+        fmt::format("Model: {}\nParaView: {}\n", (output / "model.json").string(), (output / "ladder.pvd").string());
+    return outcome;
+}
+
+}  // namespace palpate::pipeline::commands

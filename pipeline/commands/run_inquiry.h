@@ -1,0 +1,44 @@
+#pragma once
+
+#include "identify/compare.h"
+#include "pipeline/case/subject.h"
+#include "pipeline/commands/bodies.h"
+#include "pipeline/run_folder/run_folder.h"
+
+namespace palpate::pipeline::commands {
+
+/// The stages of a run on measurements that ask what the model lacks: diagnose, compare, improve. A stage that was
+/// finished before is read back instead; the body in finite elements is made only when a stage needs it, and diagnosed
+/// once for all of them.
+class RunInquiry {
+public:
+    /// @param set the measurements as the run takes them: its supports, its material
+    RunInquiry(RunFolder& folder, const Subject& subject, const identify::MeasurementSet& set, const Common& common);
+
+    /// diagnosis.json; null where there is no reference body, or no diagnosis on it: why is said aloud.
+    nlohmann::json diagnose(const skeleton::Model& model);
+    /// What the reference body adds to compare.json.
+    void compare_reference(nlohmann::json& compare, const skeleton::Model& model,
+                           const identify::Comparison& comparison);
+    /// ladder.json of what the diagnosis names, added to the model as it was before identification; null without a
+    /// diagnosis.
+    nlohmann::json improve(const skeleton::Model& model, const nlohmann::json& diagnosis);
+
+    /// What the reference body depends on, for the stages' keys.
+    nlohmann::json settings() const;
+
+private:
+    const identify::ReferenceBody& reference();
+    const identify::Diagnosis& diagnosed(const skeleton::Model& model, bool screen);
+
+    RunFolder& folder_;
+    const Subject& subject_;
+    const identify::MeasurementSet& set_;
+    const Common& common_;
+    std::unique_ptr<identify::ReferenceBody> reference_;
+    std::optional<identify::Diagnosis> diagnosis_;
+    bool screened_ = false;  // is it more than a baseline?
+    std::string why_none_;
+};
+
+}  // namespace palpate::pipeline::commands

@@ -1,0 +1,56 @@
+#include "pipeline/reference/reference_body.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "fem/material.h"
+#include "mesh/errors.h"
+#include "mesh/smooth_surface.h"
+#include "pipeline/reference/body.h"
+
+namespace palpate::pipeline {
+namespace {
+
+constexpr double default_density = 1000;  // [kg/m^3]
+
+std::unique_ptr<identify::ReferenceBody> fill(const identify::MeasurementSet& set, double edge_length,
+                                              const Progress& progress) {
+    const double longest = mesh::bounding_box(set.rest_surface.vertices).longest_side();
+    const double volume = std::abs(mesh::signed_volume(set.rest_surface));
+    const double edge = edge_length > 0 ? edge_length : reference_edge_length(longest, volume);
+    // Curving the elements gives back what their chords cut off.
+    const Body body = make_body(set.rest_surface, {.edge_length = edge, .volume_change = 0.06}, progress);
+    identify::ReferenceBodyOptions options;
+    options.density = set.density.value_or(default_density * fem::tonne_per_mm3);
+    if (set.material && set.material->young > 0) options.young = set.material->young;
+    return std::make_unique<identify::ReferenceBody>(mesh::curve_to(body.volume, body.repaired), set.supports,
+                                                     set.markers, options);
+}
+
+}  // namespace
+
+double reference_edge_length(double longest_side, double volume) {
+    // A body of edge length h has about 13.5 V / h^3 nodes.
+    constexpr double nodes = 2500;
+    return std::clamp(std::cbrt(13.5 * volume / nodes), 0.07 * longest_side, 0.12 * longest_side);
+}
+
+Reference make_reference(const identify::MeasurementSet& set, double edge_length, const Progress& progress) {
+    Reference reference;
+    try {
+        reference.body = fill(set, edge_length, progress);
+    } catch (const InvalidInput& e) {
+        reference.why_none = e.what();
+    } catch (const SolverFailure& e) {
+        reference.why_none = e.what();
+    }
+    if (reference.body && !set.density) {
+        reference.notes.push_back(fmt::format(
+            "The density is taken to be {:g} kg/m^3 ('density' in set.yaml says otherwise).", default_density));
+    }
+    return reference;
+}
+
+}  // namespace palpate::pipeline

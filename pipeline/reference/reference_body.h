@@ -1,0 +1,29 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "identify/models/reference_body.h"
+#include "identify/set/measurement_set.h"
+#include "mesh/progress.h"
+
+namespace palpate::pipeline {
+
+/// Edge length of a reference body's elements by default [mm]: 7 % of the longest side, or, for a stout body, what
+/// makes some 2,500 nodes; finer ones change its answers by less than contacts are known. `volume` [mm^3].
+double reference_edge_length(double longest_side, double volume);
+
+/// The body of a measurement set in finite elements, or why there is none.
+struct Reference {
+    std::unique_ptr<identify::ReferenceBody> body;  // empty: it cannot be made
+    std::string why_none;                           // then
+    std::vector<std::string> notes;                 // what a user should know, in words
+};
+
+/// Repairs and remeshes the set's rest surface, fills it with quadratic tetrahedra, and curves them to the surface.
+/// Density and a first guess of Young's modulus are the set's.
+/// @param edge_length of the tetrahedra [mm]; 0: the default
+Reference make_reference(const identify::MeasurementSet& set, double edge_length, const Progress& progress = {});
+
+}  // namespace palpate::pipeline

@@ -1,0 +1,123 @@
+#include "pipeline/report/inquiry_sections.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "pipeline/report/charts.h"
+#include "pipeline/report/escape.h"
+#include "pipeline/results/ladder.h"
+#include "pipeline/results/words.h"
+
+namespace palpate::pipeline {
+namespace {
+
+using nlohmann::json;
+
+constexpr const char* left_aligned = " style=\"text-align:left\"";
+
+std::string cell(const std::string& text, const char* style = "") {
+    return fmt::format("<td{}>{}</td>", style, escape(text));
+}
+
+std::string number(const json& value, const char* format = "{:.3g}") {
+    return value.is_number() ? fmt::format(fmt::runtime(format), value.get<double>()) : "–";
+}
+
+/// So many digits, but all of those before the point.
+std::string few_digits(const json& value, int digits) {
+    if (!value.is_number()) return "–";
+    const double v = value.get<double>();
+    return std::abs(v) >= std::pow(10, digits) ? fmt::format("{:.0f}", v) : fmt::format("{:.{}g}", v, digits);
+}
+
+/// "gx 12 ± 3 mm/s^2, ..."
+std::string parameters(const json& told) {
+    std::string text;
+    for (const auto& [name, p] : told.items()) {
+        text += text.empty() ? "" : ", ";
+        text += name + " " + few_digits(p["value"], 4);
+        if (p["sd"].is_number()) text += " ± " + few_digits(p["sd"], 2);
+        if (const std::string unit = p["unit"]; unit != "1") text += " " + unit;
+    }
+    return text;
+}
+
+std::string ranking_table(const json& diagnosis) {
+    std::string rows;
+    for (const json& c : diagnosis["ranking"]) {
+        rows += "<tr>" + cell(c["effect"]) + cell(number(c["log_bayes_factor"], "{:.1f}")) +
+                cell(number(c["probability"], "{:.2f}")) + cell(number(c["rms_mm"])) +
+                cell(number(c["held_out_rms_mm"])) + cell(number(c["whitened_rms"])) +
+                cell(parameters(c["parameters"]), left_aligned) + "</tr>";
+    }
+    return "<table><tr><th>effect</th><th>ln Bayes factor</th><th>probability</th><th>error with it [mm rms]</th>"
+           "<th>on probes left out</th><th>over the noise</th><th style=\"text-align:left\">its numbers</th></tr>" +
+           rows + "</table>";
+}
+
+std::string baseline_line(const json& diagnosis) {
+    const json& b = diagnosis["baseline"];
+    std::string text = fmt::format("Without any of them: law {}, E = {:.3g} MPa", b["law"].get<std::string>(),
+                                   b["young_mpa"].get<double>());
+    if (b["poisson"].is_number())
+        text += fmt::format(", ν = {:.3f} ± {}", b["poisson"].get<double>(), number(b["poisson_sd"], "{:.2g}"));
+    return text + fmt::format("; {} mm rms, {} on probes left out, {} times the noise ({} mm, {}).",
+                              number(b["rms_mm"]), number(b["held_out_rms_mm"]), number(b["whitened_rms"]),
+                              number(diagnosis["noise_mm"]),
+                              diagnosis["noise_known"].get<bool>() ? "as told" : "estimated");
+}
+
+std::string in_lines(const std::string& text) {
+    std::string html;
+    for (const char c : escape(text)) html += c == '\n' ? std::string("<br>") : std::string(1, c);
+    return html;
+}
+
+/// A group of bars for each step: fitted, and held out where there is such.
+std::vector<BarGroup> groups_of(const json& ladder, bool reference) {
+    std::vector<BarGroup> groups;
+    for (const json& step : ladder["steps"]) {
+        const auto effects = step["effects"].get<std::vector<std::string>>();
+        const json& error = reference ? step["reference"] : step;
+        if (!error.is_object()) return {};
+        BarGroup group{effects.empty() ? "nothing added" : "with " + listed(effects), {}};
+        group.bars.push_back({"fitted", error["rms_mm"].get<double>(), false});
+        if (error["held_out_rms_mm"].is_number()) {
+            group.bars.push_back({"held out", error["held_out_rms_mm"].get<double>(), true});
+        }
+        groups.push_back(group);
+    }
+    return groups;
+}
+
+}  // namespace
+
+std::string missing_section(const json& diagnosis) {
+    if (diagnosis.is_null()) return {};
+    return "<h2>What is missing</h2>" + ranking_table(diagnosis) + "<p class=\"soft\">" +
+           escape(baseline_line(diagnosis)) + " Judged on the body in finite elements.</p>";
+}
+
+std::string ladder_section(const json& ladder) {
+    if (ladder.is_null()) return {};
+    std::string held_out;
+    for (const json& probe : ladder["held_out_probes"]) held_out += (held_out.empty() ? "" : ", ") + probe.dump();
+    return "<h2>Ladder</h2><p>" + in_lines(ladder_in_words(ladder)) + "</p><div class=\"pair\">" +
+           group_chart(groups_of(ladder, false), "Error of the skeleton", "mm rms") +
+           group_chart(groups_of(ladder, true), "Error of the body in finite elements", "mm rms") + "</div>" +
+           (held_out.empty() ? "" : "<p class=\"soft\">Orange: on probes kept from the fit (" + held_out + ").</p>");
+}
+
+std::string budget_section(const json& compare) {
+    const json budget = compare.value("budget", json());
+    if (!budget.is_object()) return {};
+    return "<h2>Error budget</h2>" +
+           share_bar({{"noise", budget["noise"].get<double>(), "#9aa5b1"},
+                      {"coarseness of the skeleton", budget["reduction"].get<double>(), "#2a6f97"},
+                      {"missing physics", budget["missing_physics"].get<double>(), "#c8741a"}},
+                     "Shares of the mean square error") +
+           "<p class=\"soft\">Shares of the mean square error before anything is added.</p>";
+}
+
+}  // namespace palpate::pipeline

@@ -1,0 +1,93 @@
+#include "pipeline/results/compare_words.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <vector>
+
+#include "pipeline/results/words.h"
+
+namespace palpate::pipeline {
+namespace {
+
+using nlohmann::json;
+
+std::string share(const json& error) {
+    return error["relative"].is_number() ? percent(error["relative"].get<double>()) : "an unknown share";
+}
+
+std::string noise_words(const json& compare) {
+    const json& error = compare["error"];
+    if (!error["noise_mm"].is_number()) return {};
+    const json budget = compare.value("budget", json());
+    std::string left = "the model lacks something";
+    if (compare["adequate"].get<bool>()) {
+        left = "what is left is noise";
+    } else if (budget.is_object() && budget["missing_physics"].get<double>() < budget["reduction"].get<double>()) {
+        left = "what is left beyond it is mostly the coarseness of the skeleton";
+    }
+    return fmt::format(" The noise is {:.3g} mm: {}.", error["noise_mm"].get<double>(), left);
+}
+
+std::string reference_words(const json& compare) {
+    const json baseline = compare.value("baseline", json()), reference = compare.value("reference", json());
+    if (!baseline.is_object() || !reference.is_object()) return {};
+    std::string material =
+        fmt::format("{}, E = {:.3g} MPa", baseline["law"].get<std::string>(), baseline["young_mpa"].get<double>());
+    if (baseline["poisson"].is_number()) {
+        material += fmt::format(", nu = {:.3f} +- {:.3f}", baseline["poisson"].get<double>(),
+                                baseline["poisson_sd"].get<double>());
+    }
+    return fmt::format(" The same body in finite elements ({}) is off by {:.3g} mm rms: {}.", material,
+                       reference["rms_mm"].get<double>(), in_sigmas(reference["whitened_rms"]));
+}
+
+std::string budget_words(const json& compare) {
+    const json budget = compare.value("budget", json());
+    if (!budget.is_object()) return {};
+    return fmt::format(
+        " Of the mean square error {} is noise, {} the coarseness of the skeleton, {} physics that it lacks.",
+        percent(budget["noise"].get<double>()), percent(budget["reduction"].get<double>()),
+        percent(budget["missing_physics"].get<double>()));
+}
+
+/// The regions that noise does not explain, worst first.
+std::string region_words(const json& compare) {
+    constexpr std::size_t most = 3;
+    std::vector<json> strange;
+    for (const json& region : compare.value("regions", json::array())) {
+        if (region["strange"].get<bool>()) strange.push_back(region);
+    }
+    if (strange.empty() || compare["regions"].size() < 2) return {};
+    std::ranges::stable_sort(strange, std::greater{}, [](const json& r) { return r["whitened_rms"].get<double>(); });
+    std::string places;
+    for (std::size_t i = 0; i < std::min(most, strange.size()); ++i) {
+        places += fmt::format("{}{} ({:.3g} sigma)", i > 0 ? ", " : "", place(strange[i]["at"]),
+                              strange[i]["whitened_rms"].get<double>());
+    }
+    return fmt::format(" It fails in {} of {} regions, worst round {}.", strange.size(), compare["regions"].size(),
+                       places);
+}
+
+}  // namespace
+
+std::string compare_in_words(const json& compare) {
+    const json& error = compare["error"];
+    std::string text =
+        fmt::format("The model is off by {:.3g} mm rms, {} of the displacement, and by {:.3g} mm at most.",
+                    error["rms_mm"].get<double>(), share(error), error["max_mm"].get<double>());
+    if (compare.contains("held_out")) {
+        text += fmt::format(" On the probes that were fitted it is off by {}, on those kept from the fit by {}.",
+                            share(compare["fitted"]), share(compare["held_out"]));
+    }
+    text += noise_words(compare);
+    if (compare.contains("load_exponent")) {
+        const json& exponent = compare["load_exponent"];
+        text += fmt::format(" The error goes with the load to the power {:.1f} +- {:.1f}: {}.",
+                            exponent["value"].get<double>(), exponent["sd"].get<double>(),
+                            exponent["words"].get<std::string>());
+    }
+    return text + reference_words(compare) + budget_words(compare) + region_words(compare);
+}
+
+}  // namespace palpate::pipeline

@@ -1,0 +1,94 @@
+#include "pipeline/verbs/flags.h"
+#include "pipeline/verbs/verbs.h"
+
+// Verbs that work on a model and measurements.
+
+namespace palpate::pipeline {
+
+void Verbs::add_identify(CLI::App& app) {
+    auto* sub = verb(app, "identify", "Stiffness per link by particle filter.",
+                     "  palpate identify model.json set/ -o fitted --parameters zones\n",
+                     [this] { return commands::identify(identify, common); });
+    sub->add_option("MODEL", identify.model, "model.json")->required();
+    sub->add_option("SET", identify.set, "The measurements")->required();
+    sub->add_option("-o,--output", identify.output,
+                    "Folder for model.json, posterior.csv, history.pvd; identified by default");
+    add_identify_flags(sub, identify.say);
+    sub->add_option("--law", identify.law, "Law of equilibrium; by fit by default")
+        ->check(CLI::IsMember({"automatic", "linear", "large-rotation"}))
+        ->group("Identification");
+    sub->add_option("--search-low", identify.search_low, "burion2008: lower end of the box, in start stiffnesses")
+        ->group("Identification");
+    sub->add_option("--search-high", identify.search_high, "burion2008: upper end of the box")->group("Identification");
+}
+
+void Verbs::add_compare(CLI::App& app) {
+    auto* sub = verb(
+        app, "compare", "Model against measurements: how wrong, where, under which probe.",
+        "  palpate compare model.json set/\n  palpate compare model.json set/ --tolerance 0.5 && echo good enough\n"
+        "  palpate compare model.json set/ --no-reference     # the skeleton alone: fast\n",
+        [this] { return commands::compare(compare, common); });
+    sub->add_option("MODEL", compare.model, "model.json")->required();
+    sub->add_option("SET", compare.set, "The measurements")->required();
+    sub->add_option("-o,--output", compare.output, "Folder for compare.json and the .vtp series");
+    sub->add_option("--tolerance", compare.tolerance, "Exit code 5 where the rms error is larger [mm]")
+        ->check(CLI::NonNegativeNumber);
+    sub->add_flag("--no-reference", compare.no_reference,
+                  "Leave the body in finite elements out: fast, but without an error budget");
+    add_edge_length(sub, compare.say);
+}
+
+void Verbs::add_diagnose(CLI::App& app) {
+    auto* sub = verb(app, "diagnose", "Which physical effect the model lacks, with the evidence.",
+                     "  palpate diagnose model.json set/\n"
+                     "  palpate diagnose model.json set/ --without gravity     # what else would explain it?\n",
+                     [this] { return commands::diagnose(diagnose, common); });
+    sub->add_option("MODEL", diagnose.model, "model.json")->required();
+    sub->add_option("SET", diagnose.set, "The measurements")->required();
+    sub->add_option("-o,--output", diagnose.output, "Folder for diagnosis.json");
+    sub->add_option("--without", diagnose.without, "An effect to leave out of the catalogue; repeatable")
+        ->expected(1)
+        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+    sub->add_option("--body", diagnose.body,
+                    "What the errors are judged on: reference (finite elements, by default) or skeleton, whose\n"
+                    "coarseness may be taken for physics")
+        ->check(CLI::IsMember({"reference", "skeleton"}));
+    add_edge_length(sub, diagnose.say);
+}
+
+void Verbs::add_improve(CLI::App& app) {
+    auto* sub = verb(app, "improve", "Adds an effect, fits anew, and shows the error before and after.",
+                     "  palpate improve model.json set/ --auto -o improved\n"
+                     "  palpate improve model.json set/ --add gravity --add misalignment -o improved\n",
+                     [this] { return commands::improve(improve, common); });
+    sub->add_option("MODEL", improve.model, "model.json")->required();
+    sub->add_option("SET", improve.set, "The measurements")->required();
+    sub->add_option("-o,--output", improve.output,
+                    "Folder for model.json, ladder.json, ladder.pvd; improved by default");
+    auto* what = sub->add_option_group("What to add", "one of these");
+    what->add_option("--add", improve.add, "An effect ('palpate effects' lists them); repeatable, a step each")
+        ->expected(1)
+        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+    what->add_flag("--auto", improve.automatic, "What a diagnosis names");
+    what->require_option(1);
+    add_identify_flags(sub, improve.say);
+    add_edge_length(sub, improve.say);
+}
+
+void Verbs::add_effects(CLI::App& app) {
+    auto* sub =
+        verb(app, "effects", "The catalogue of effects that a model may lack.",
+             "  palpate effects\n  palpate effects gravity\n", [this] { return commands::effects(effects, common); });
+    sub->add_option("NAME", effects.name, "One effect in full");
+}
+
+void Verbs::add_simulate(CLI::App& app) {
+    auto* sub = verb(app, "simulate", "Plays the model: equilibria under given contacts.",
+                     "  palpate simulate model.json --probes set/probes.csv -o played\n",
+                     [this] { return commands::simulate(simulate, common); });
+    sub->add_option("MODEL", simulate.model, "model.json")->required();
+    sub->add_option("--probes", simulate.probes, "probes.csv: probe,time,x,y,z,fx,fy,fz,radius [mm, N]")->required();
+    sub->add_option("-o,--output", simulate.output, "Folder for simulation.pvd; simulation by default");
+}
+
+}  // namespace palpate::pipeline

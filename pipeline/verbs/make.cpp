@@ -1,0 +1,79 @@
+#include "pipeline/verbs/flags.h"
+#include "pipeline/verbs/verbs.h"
+
+// Verbs that make something from a mesh or a set.
+
+namespace palpate::pipeline {
+
+void Verbs::add_run(CLI::App& app) {
+    auto* sub = verb(
+        app, "run", "The whole pipeline: mesh, skeleton, identification, comparison, diagnosis, improvement, report.",
+        "  palpate run liver.stl --longest 200\n"
+        "  palpate run my-measurements/ -o result\n"
+        "  palpate run case.yaml\n",
+        [this] {
+            if (run.output.empty()) {
+                run.output =
+                    std::filesystem::path(std::filesystem::weakly_canonical(run.input).stem().string() + "-run");
+            }
+            run.say.seed = common.seed;
+            return commands::run(run, common);
+        });
+    sub->add_option("INPUT", run.input, "A case.yaml, a measurement set (folder or set.yaml), or a mesh")->required();
+    sub->add_option("-o,--output", run.output, "The run folder; <input>-run by default");
+    add_body_flags(sub, run.say);
+    add_skeleton_flags(sub, run.say);
+    add_probing_flags(sub, run.say);
+    add_identify_flags(sub, run.say);
+    sub->add_flag("--no-reference", run.say.no_reference, "Do not ask what the model lacks: fast")->group("Diagnosis");
+}
+
+void Verbs::add_check(CLI::App& app) {
+    auto* sub = verb(app, "check", "Reads everything, repairs nothing, says what is wrong.",
+                     "  palpate check liver.stl\n  palpate check my-measurements/ --json\n",
+                     [this] { return commands::check(check, common); });
+    sub->add_option("INPUT", check.input, "A case.yaml, a measurement set, or a mesh")->required();
+    add_body_flags(sub, check.say);
+}
+
+void Verbs::add_mesh(CLI::App& app) {
+    auto* sub = verb(app, "mesh", "Repairs, remeshes and fills a surface with tetrahedra.",
+                     "  palpate mesh liver.stl -o body.vtu --edge-length 8\n",
+                     [this] { return commands::mesh_body(mesh, common); });
+    sub->add_option("SURFACE", mesh.input, "STL, OBJ, PLY, OFF or VTP")->required();
+    sub->add_option("-o,--output", mesh.output, "The volume mesh; body.vtu by default");
+    add_body_flags(sub, mesh.say);
+}
+
+void Verbs::add_skeleton(CLI::App& app) {
+    auto* sub = verb(app, "skeleton", "Medial axis, spheres, links and skin, with start stiffness from the sections.",
+                     "  palpate skeleton liver.stl -o model.json\n  palpate skeleton finger.stl --spheres 12\n",
+                     [this] { return commands::skeleton(skeleton, common); });
+    sub->add_option("INPUT", skeleton.input, "A mesh, a case.yaml, or a measurement set")->required();
+    sub->add_option("-o,--output", skeleton.output, "The model; model.json by default");
+    add_body_flags(sub, skeleton.say);
+    add_skeleton_flags(sub, skeleton.say);
+}
+
+void Verbs::add_probe(CLI::App& app) {
+    auto* sub = verb(app, "probe", "Reference deformations under probing forces, as a measurement set.",
+                     "  palpate probe liver.stl -o set --noise 0.05\n"
+                     "  palpate probe model.json -o twin        # the skeleton itself is the hidden truth\n",
+                     [this] {
+                         probe.say.seed = common.seed;
+                         return commands::probe(probe, common);
+                     });
+    sub->add_option("INPUT", probe.input, "A mesh, a case.yaml, a measurement set, or a model.json")->required();
+    sub->add_option("-o,--output", probe.output, "The set's folder; measurements by default");
+    add_body_flags(sub, probe.say);
+    add_probing_flags(sub, probe.say);
+}
+
+void Verbs::add_report(CLI::App& app) {
+    auto* sub = verb(app, "report", "A run as one self-contained page.", "  palpate report liver-run -o report.html\n",
+                     [this] { return commands::report(report, common); });
+    sub->add_option("RUN", report.run, "The run folder")->required();
+    sub->add_option("-o,--output", report.output, "The page; report.html in the run folder by default");
+}
+
+}  // namespace palpate::pipeline

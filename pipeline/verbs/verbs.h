@@ -1,0 +1,50 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <functional>
+#include <string>
+
+#include "pipeline/commands/common.h"
+
+namespace palpate::pipeline {
+
+/// All verbs with their options, as CLI11 fills them in.
+struct Verbs {
+    commands::Common common;
+    std::function<commands::Outcome()> command;  // that was asked for
+
+    commands::RunOptions run;
+    commands::CheckOptions check;
+    commands::MeshOptions mesh;
+    commands::SkeletonOptions skeleton;
+    commands::ProbeCommandOptions probe;
+    commands::IdentifyCommandOptions identify;
+    commands::CompareOptions compare;
+    commands::DiagnoseCommandOptions diagnose;
+    commands::ImproveCommandOptions improve;
+    commands::EffectsOptions effects;
+    commands::SimulateOptions simulate;
+    commands::ReportOptions report;
+
+    // What makes something from a mesh or a set, in make.cpp.
+    void add_run(CLI::App& app);
+    void add_check(CLI::App& app);
+    void add_mesh(CLI::App& app);
+    void add_skeleton(CLI::App& app);
+    void add_probe(CLI::App& app);
+    void add_report(CLI::App& app);
+
+    // What works on a model and measurements, in fit.cpp.
+    void add_identify(CLI::App& app);
+    void add_compare(CLI::App& app);
+    void add_diagnose(CLI::App& app);
+    void add_improve(CLI::App& app);
+    void add_effects(CLI::App& app);
+    void add_simulate(CLI::App& app);
+
+    /// A verb whose help begins with examples.
+    CLI::App* verb(CLI::App& app, const std::string& name, const std::string& what, const std::string& examples,
+                   const std::function<commands::Outcome()>& action);
+};
+
+}  // namespace palpate::pipeline

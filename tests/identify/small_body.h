@@ -1,0 +1,134 @@
+#pragma once
+
+#include <cmath>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "identify/diagnose/fit.h"
+#include "identify/models/reference_body.h"
+#include "identify/models/skeleton_body.h"
+#include "identify/particles/random.h"
+#include "mesh/volume_mesh.h"
+#include "skeleton/model.h"
+
+namespace palpate::identify {
+
+/// A bar of 40 x 10 x 10 mm, held at the face x = 0, as both models see it, with markers and probes: small enough that
+/// a fit takes a fraction of a second. E = 0.3 MPa, nu = 0.45: its end yields by some 80 mm/N.
+struct SmallBody {
+    mesh::VolumeMesh mesh = mesh::to_quadratic(mesh::make_bar(Vec3::Zero(), Vec3(40, 10, 10), {5, 1, 1}));
+    std::vector<mesh::Region> supports{mesh::BoxRegion{Vec3(-1, -1, -1), Vec3(0.1, 11, 11)}};
+    std::vector<Marker> markers = on_surface();
+
+    static constexpr double young = 0.3;  // [MPa]
+
+    /// Four rows along the bar and four markers on its end.
+    static std::vector<Marker> on_surface() {
+        std::vector<Vec3> at;
+        for (const double x : {6.0, 14.0, 22.0, 30.0, 37.0}) {
+            for (const auto& [y, z] : {std::pair{0, 4}, {6, 0}, {10, 6}, {4, 10}}) at.emplace_back(x, y, z);
+        }
+        for (const auto& [y, z] : {std::pair{2, 2}, {8, 3}, {3, 8}, {7, 7}}) at.emplace_back(40, y, z);
+        std::vector<Marker> markers;
+        for (const Vec3& x : at) markers.push_back({static_cast<int>(markers.size()), x, {}});
+        return markers;
+    }
+    /// Besides, two that stand 6 mm off: on the end and on the side.
+    static std::vector<Marker> with_pins() {
+        std::vector<Marker> markers = on_surface();
+        markers.push_back({24, Vec3(46, 5, 5), Vec3(40, 5, 5)});
+        markers.push_back({25, Vec3(19, 16, 5), Vec3(19, 10, 5)});
+        return markers;
+    }
+
+    std::unique_ptr<ReferenceBody> reference() const {
+        return std::make_unique<ReferenceBody>(mesh, supports, markers, ReferenceBodyOptions{.young = 0.1});
+    }
+
+    /// Five spheres along the axis; stiffnesses of the section: EA/L, 2 EI/L at both ends, GJ/L.
+    skeleton::Model chain() const {
+        skeleton::Model model;
+        model.name = "bar";
+        model.surface = mesh::boundary_surface(mesh);
+        model.supports = supports;
+        for (int i = 0; i < 5; ++i) {
+            skeleton::Sphere sphere;
+            sphere.center = Vec3(10.0 * i, 5, 5);
+            sphere.radius = 5;
+            sphere.mass = i == 0 || i == 4 ? 5e-7 : 1e-6;
+            sphere.inertia = 17 * sphere.mass * Mat3::Identity();
+            sphere.held = i == 0;
+            model.spheres.push_back(sphere);
+            if (i > 0) model.links.push_back({i - 1, i, 10, Vec3(3, 50, 15), 0});
+        }
+        for (const auto& vertex : model.surface.vertices.rowwise()) model.skin.push_back(attach(model, vertex));
+        return model;
+    }
+    std::unique_ptr<SkeletonBody> skeleton() const { return std::make_unique<SkeletonBody>(chain(), markers, young); }
+
+    /// The unloaded state, then pushes and pulls on all sides along the bar: `count` of them, up to 8.
+    static std::vector<LoadState> probes(double force = 0.03, int count = 8) {
+        const std::vector<mesh::Contact> all{
+            {Vec3(36, 5, 10), Vec3(0, 0.1, -1), 3},    {Vec3(20, 5, 10), Vec3(0, 0, -2), 3},
+            {Vec3(34, 0, 5), Vec3(0.2, 1, 0), 3},      {Vec3(24, 10, 5), Vec3(0, -1.5, 0.2), 3},
+            {Vec3(40, 5, 5), Vec3(-3, 0.3, 0), 3},     {Vec3(30, 5, 0), Vec3(0.3, 0, 1.2), 3},
+            {Vec3(37, 10, 3), Vec3(0, 0.3, 0.9), 2.5}, {Vec3(14, 0, 5), Vec3(0.5, 3, 0), 3}};
+        std::vector<LoadState> states{LoadState{.probe = 0}};
+        for (int i = 0; i < count; ++i) {
+            LoadState state{.probe = i + 1, .time = 1, .contacts = {all[i]}};
+            state.contacts[0].force *= force;
+            states.push_back(state);
+        }
+        return states;
+    }
+
+    /// States with a reading of every marker, each at rest.
+    MeasurementSet set(std::vector<LoadState> states) const {
+        MeasurementSet set;
+        set.name = "bar";
+        set.rest_surface = mesh::boundary_surface(mesh);
+        set.supports = supports;
+        set.markers = markers;
+        set.states = std::move(states);
+        for (LoadState& state : set.states) {
+            for (int m = 0; m < static_cast<int>(markers.size()); ++m) state.readings.push_back({m, markers[m].rest});
+        }
+        return set;
+    }
+};
+
+/// The bar's stiffness: E = 0.3 MPa, nu = 0.45 for the reference body; the chain's own for the skeleton.
+inline Explanation bare_truth(const BodyModel& model, int law) {
+    Explanation truth;
+    truth.law = law;
+    truth.theta = Eigen::VectorXd::Zero(std::ssize(model.parameters()));
+    if (truth.theta.size() == 2) truth.theta << std::log(SmallBody::young), std::log(0.1);
+    return truth;
+}
+
+inline Explanation with(Explanation truth, std::shared_ptr<const Effect> effect, const Eigen::VectorXd& values) {
+    truth.effects.push_back(std::move(effect));
+    truth.values.push_back(values);
+    return truth;
+}
+
+/// A twin: what a model shows in all states, read with noise [mm] that the set tells.
+inline MeasurementSet make_twin(const BodyModel& model, MeasurementSet set, const Explanation& truth, double noise,
+                                std::uint64_t seed = 1) {
+    const Problem problem = make_problem(set, 1);
+    const Played played = play(model, problem, truth, 1);
+    RandomStream random(seed, 0, 0);
+    Eigen::Index n = 0;
+    for (LoadState& state : set.states) {
+        for (Reading& reading : state.readings) {
+            reading.position = played.markers[problem.action[n]].row(reading.marker).transpose();
+            reading.position += noise * Vec3(random.normals(3));
+            n += 3;
+        }
+    }
+    if (noise > 0) set.position_noise = noise;
+    return set;
+}
+
+}  // namespace palpate::identify
