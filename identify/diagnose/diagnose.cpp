@@ -48,8 +48,7 @@ public:
     Diagnosis run() {
         fit_baselines();
         if (!result_.noise_known) estimate_noise();
-        // Next to a missing effect anything looks rough: outliers are sought where little else is left to explain.
-        if (!options_.screen || bulk_is_noise(baseline())) set_outliers_aside(baseline());
+        set_plain_outliers_aside();
         if (options_.screen) {
             screen_all();
             confirm();
@@ -173,13 +172,16 @@ private:
         return true;
     }
 
-    /// Is most of what is left noise, whatever a few readings say?
-    static bool bulk_is_noise(const Refit& fit) {
-        std::vector<double> sizes(fit.residual.size());
-        for (std::size_t n = 0; n < sizes.size(); ++n) sizes[n] = std::abs(fit.residual[static_cast<Eigen::Index>(n)]);
-        const auto middle = sizes.begin() + std::ssize(sizes) / 2;
-        std::ranges::nth_element(sizes, middle);
-        return *middle <= 1.3 * 0.6745;  // the median of |N(0, 1)|
+    /// Next to a missing effect anything looks rough: before one is sought, readings are set aside only where little
+    /// else is left to explain then.
+    void set_plain_outliers_aside() {
+        const Problem whole = result_.problem;
+        const std::vector<UnderLaw> laws = laws_;
+        if (!set_outliers_aside(baseline()) || !options_.screen || is_enough(baseline())) return;
+        result_.problem = whole;
+        result_.outliers = {};
+        result_.notes.pop_back();
+        laws_ = laws;
     }
 
     bool outliers_wanted() const { return std::ranges::find(options_.without, "outliers") == options_.without.end(); }

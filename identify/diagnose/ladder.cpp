@@ -19,18 +19,27 @@ bool is_loaded(const LoadState& state) {
     return std::ranges::any_of(state.contacts, [](const mesh::Contact& c) { return !c.force.isZero(0); });
 }
 
-/// A quarter of the loaded probes, spread evenly; none where there are fewer than three.
-std::vector<int> probes_to_hold_out(const MeasurementSet& set) {
-    std::set<int> loaded;
+/// Which probes are held out, in turn.
+///
+/// A quarter of the loaded ones, spread evenly, where there are more than eight; the rungs are fitted to the others.
+/// Of fewer none can be spared: every third probe is held out in turn, and the rungs are fitted to all.
+std::vector<std::vector<int>> folds_of(const MeasurementSet& set) {
+    std::set<int> loaded, all;
     for (const LoadState& state : set.states) {
         if (is_loaded(state)) loaded.insert(state.probe);
+        if (!state.readings.empty()) all.insert(state.probe);
     }
-    const std::vector<int> probes(loaded.begin(), loaded.end());
-    if (probes.size() < 3) return {};
-    const std::size_t count = std::max<std::size_t>(1, probes.size() / 4);
-    std::vector<int> held_out;
-    for (std::size_t i = 0; i < count; ++i) held_out.push_back(probes[(2 * i + 1) * probes.size() / (2 * count)]);
-    return held_out;
+    if (loaded.size() < 3) return {};
+    if (loaded.size() > 8) {
+        const std::vector<int> probes(loaded.begin(), loaded.end());
+        const std::size_t count = probes.size() / 4;
+        std::vector<int> held_out;
+        for (std::size_t i = 0; i < count; ++i) held_out.push_back(probes[(2 * i + 1) * probes.size() / (2 * count)]);
+        return {held_out};
+    }
+    std::vector<std::vector<int>> folds(3);
+    for (std::size_t i = 0; const int probe : all) folds[i++ % folds.size()].push_back(probe);
+    return folds;
 }
 
 MeasurementSet part_of(const MeasurementSet& set, const std::vector<int>& probes, bool of_them) {
@@ -75,9 +84,12 @@ public:
         } else {
             body_ = reference;
         }
-        result_.held_out_probes = probes_to_hold_out(set);
-        fitted_ = part_of(set, result_.held_out_probes, false);
-        held_out_ = part_of(set, result_.held_out_probes, true);
+        for (const std::vector<int>& fold : folds_of(set)) {
+            folds_.push_back({part_of(set, fold, false), part_of(set, fold, true)});
+            result_.held_out_probes.insert(result_.held_out_probes.end(), fold.begin(), fold.end());
+        }
+        std::ranges::sort(result_.held_out_probes);
+        fitted_ = folds_.size() == 1 ? folds_.front().fitted : set;
     }
 
     Ladder run(const std::vector<std::string>& effects, const Diagnosis* diagnosis) {
@@ -123,35 +135,71 @@ private:
                 std::ranges::find_if(ranking, [&](const Candidate& c) { return c.effect->name() == effects.back(); });
             if (own != ranking.end()) step.predicted_rms_mm = own->predicted_rms_mm;
         }
-        StepError error{.rms_mm = fit.rms_mm, .whitened_rms = fit.whitened_rms};
-        error.relative = fit.rms_mm / rms_of(found.problem.displacement());
-        MeasurementSet unseen = held_out_;
-        if (!unseen.states.empty()) {
-            const RefitOptions& how = options_.diagnose.refit;
-            HeldOut predicted = predict(*body_, make_problem(unseen, found.noise), fit, how);
-            if (std::ranges::find(effects, "outliers") != effects.end()) {
-                const Outliers off = find_outliers(make_problem(unseen, found.noise), predicted.residual);
-                unseen = without_readings(unseen, off.readings);
-                predicted = predict(*body_, make_problem(unseen, found.noise), fit, how);
-            }
-            error.held_out_rms_mm = predicted.rms_mm;
-            error.held_out_whitened_rms = predicted.whitened_rms;
-        }
-        if (!body_is_skeleton_) step.reference = error;
+        StepError body{.rms_mm = fit.rms_mm, .whitened_rms = fit.whitened_rms};
+        body.relative = fit.rms_mm / rms_of(found.problem.displacement());
         result_.verdict = found.verdict;
 
         // The skeleton with the same physics, fitted to what is left of the measurements.
         const MeasurementSet part = understood(fitted_, step.effects, found.outliers.readings);
-        unseen = understood(unseen, step.effects, {});
         step.model = fit_skeleton(step.effects, part);
         const Comparison on_fitted = compare(step.model, part, options_.identify.threads);
         step.skeleton = {.rms_mm = on_fitted.rms, .relative = on_fitted.relative};
-        if (!unseen.states.empty()) {
-            step.skeleton.held_out_rms_mm = compare(step.model, unseen, options_.identify.threads).rms;
-        }
+        hold_out(effects, found, step, body);
+        if (!body_is_skeleton_) step.reference = body;
         step.set = understood(set_, step.effects, {});
         step.comparison = compare(step.model, step.set, options_.identify.threads);
         result_.steps.push_back(std::move(step));
+    }
+
+    /// Errors on what is held out, pooled over the folds. `found`, `step`: as fitted to `fitted_`.
+    void hold_out(const std::vector<std::string>& effects, const Diagnosis& found, LadderStep& step,
+                  StepError& body) const {
+        double squares = 0, whitened = 0, skeleton_squares = 0, rows = 0;
+        for (const Fold& fold : folds_) {
+            const bool is_fitted = folds_.size() == 1;
+            const Diagnosis own = is_fitted ? found : explain_again(fold.fitted, found);
+            const auto [unseen, predicted] = predict_unseen(effects, fold.held_out, own);
+            const auto N = static_cast<double>(make_problem(unseen, own.noise).rows());
+            squares += N * predicted.rms_mm * predicted.rms_mm;
+            whitened += N * predicted.whitened_rms * predicted.whitened_rms;
+            rows += N;
+
+            const std::vector<skeleton::Effect> said = told(own);
+            const MeasurementSet part = understood(fold.fitted, said, own.outliers.readings);
+            const skeleton::Model model = is_fitted ? step.model : fit_skeleton(said, part);
+            const double rms = compare(model, understood(unseen, said, {}), options_.identify.threads).rms;
+            skeleton_squares += N * rms * rms;
+        }
+        if (folds_.empty()) return;
+        body.held_out_rms_mm = std::sqrt(squares / rows);
+        body.held_out_whitened_rms = std::sqrt(whitened / rows);
+        step.skeleton.held_out_rms_mm = std::sqrt(skeleton_squares / rows);
+    }
+
+    /// The same explanation fitted to another part of the set, under its law.
+    Diagnosis explain_again(const MeasurementSet& part, const Diagnosis& found) const {
+        DiagnoseOptions options = options_.diagnose;
+        options.screen = false;
+        options.law = found.law;
+        options.known = told(found);
+        if (found.outliers.readings.empty()) options.without.emplace_back("outliers");
+        return diagnose(*body_, part, options);
+    }
+
+    struct Unseen {
+        MeasurementSet set;  // without outliers, where these are among the effects
+        HeldOut predicted;
+    };
+    Unseen predict_unseen(const std::vector<std::string>& effects, const MeasurementSet& held_out,
+                          const Diagnosis& found) const {
+        const RefitOptions& how = options_.diagnose.refit;
+        const Refit& fit = found.best();
+        Unseen result{held_out, predict(*body_, make_problem(held_out, found.noise), fit, how)};
+        if (std::ranges::find(effects, "outliers") == effects.end()) return result;
+        const Outliers off = find_outliers(make_problem(held_out, found.noise), result.predicted.residual);
+        result.set = without_readings(held_out, off.readings);
+        result.predicted = predict(*body_, make_problem(result.set, found.noise), fit, how);
+        return result;
     }
 
     static double rms_of(const Eigen::VectorXd& v) {
@@ -192,7 +240,11 @@ private:
     const BodyModel* body_ = nullptr;
     std::unique_ptr<SkeletonBody> own_body_;
     bool body_is_skeleton_ = false;
-    MeasurementSet fitted_, held_out_;
+    struct Fold {
+        MeasurementSet fitted, held_out;
+    };
+    std::vector<Fold> folds_;
+    MeasurementSet fitted_;  // what the rungs are fitted to
     Ladder result_;
 };
 
