@@ -46,6 +46,7 @@ public:
     }
 
     Diagnosis run() {
+        leave_out_what_crushes();
         fit_baselines();
         if (!result_.noise_known) estimate_noise();
         set_plain_outliers_aside();
@@ -92,6 +93,38 @@ private:
     const Refit& baseline() const { return *std::ranges::max_element(laws_, {}, &UnderLaw::evidence)->fit; }
 
     void tell(const std::string& what, double share) const { report(progress_, what, share); }
+
+    /// A pressure near Young's modulus may press the body flat: where it has no equilibrium the probe says nothing.
+    void leave_out_what_crushes() {
+        const int last = static_cast<int>(model_.laws().size()) - 1;
+        if (options_.law && *options_.law == 0) return;
+        const Explanation guess = first_guess(model_, result_.problem, 0, options_.refit.threads);
+        Setting setting = guess.setting();
+        const double E = model_.young(setting);
+        setting.law = last;
+        std::vector<char> crushed(result_.problem.actions.size(), 0);
+        for (std::size_t k = 0; k < crushed.size(); ++k) {
+            const Action& action = result_.problem.actions[k];
+            double pressure = 0;
+            for (const mesh::Contact& contact : action.contacts) {
+                const double r = effective_radius(model_, contact);
+                pressure = std::max(pressure, contact.force.norm() / (M_PI * r * r));
+            }
+            if (pressure < E) continue;
+            try {
+                model_.equilibrium(setting, action);
+            } catch (const SolverFailure&) {
+                crushed[k] = 1;
+                result_.notes.push_back(
+                    fmt::format("Probe {} presses with {:.3g} MPa on a body of about {:.3g} MPa and has no equilibrium "
+                                "there: it is "
+                                "left out.",
+                                result_.problem.probe[k], pressure, E));
+            }
+        }
+        const auto count = std::ranges::count(crushed, 1);
+        if (count > 0 && count < std::ssize(crushed)) result_.problem = result_.problem.without_actions(crushed);
+    }
 
     void fit_baselines() {
         std::string failure;
@@ -303,7 +336,8 @@ private:
         std::vector<const Candidate*> alike;  // of those that explain enough, within the lead
         for (const Candidate* c : likely) {
             const double behind = likely.front()->log_bayes_factor - c->log_bayes_factor;
-            if (is_enough(*c->refit) && behind < options_.least_lead) alike.push_back(c);
+            const bool predicts = c->held_out->whitened_rms <= options_.most_left_held_out;
+            if (is_enough(*c->refit) && predicts && behind < options_.least_lead) alike.push_back(c);
         }
         if (alike.size() > 1) {
             result_.verdict = Verdict::ambiguous;

@@ -127,6 +127,23 @@ Problem Problem::with_rows(const std::vector<char>& keep) const {
     return result;
 }
 
+Problem Problem::without_actions(const std::vector<char>& drop) const {
+    std::vector<char> keep(rows());
+    for (Eigen::Index n = 0; n < rows(); ++n) keep[n] = !drop[action[n]];
+    Problem result = with_rows(keep);
+    result.actions.clear();
+    result.probe.clear();
+    std::vector<int> number(actions.size(), -1);
+    for (std::size_t k = 0; k < actions.size(); ++k) {
+        if (drop[k]) continue;
+        number[k] = static_cast<int>(result.actions.size());
+        result.actions.push_back(actions[k]);
+        result.probe.push_back(probe[k]);
+    }
+    for (int& k : result.action) k = number[k];
+    return result;
+}
+
 double Problem::rms_sigma() const { return std::sqrt(sigma.squaredNorm() / static_cast<double>(sigma.size())); }
 
 }  // namespace palpate::identify

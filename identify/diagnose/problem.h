@@ -31,6 +31,8 @@ struct Problem {
     Eigen::VectorXd displacement() const;
     /// The problem with only those rows that `keep` (N flags) holds for.
     Problem with_rows(const std::vector<char>& keep) const;
+    /// The problem without some of the actions (K flags), renumbered, and without their rows.
+    Problem without_actions(const std::vector<char>& drop) const;
     double rms_sigma() const;
 };
 

@@ -106,7 +106,9 @@ std::string ladder_section(const json& ladder) {
     return "<h2>Ladder</h2><p>" + in_lines(ladder_in_words(ladder)) + "</p><div class=\"pair\">" +
            group_chart(groups_of(ladder, false), "Error of the skeleton", "mm rms") +
            group_chart(groups_of(ladder, true), "Error of the body in finite elements", "mm rms") + "</div>" +
-           (held_out.empty() ? "" : "<p class=\"soft\">Orange: on probes kept from the fit (" + held_out + ").</p>");
+           (held_out.empty()
+                ? ""
+                : "<p class=\"soft\">Orange: on probes held out (" + held_out + "), at once or in turn.</p>");
 }
 
 std::string budget_section(const json& compare) {
