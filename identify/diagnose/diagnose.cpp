@@ -14,6 +14,7 @@ namespace palpate::identify {
 namespace {
 
 constexpr double none = -INFINITY;
+constexpr const char* noise_note = "The set does not tell its noise: ";
 
 /// A refit from another's configurations, nuisances made anew: the readings are others.
 Refit refit_again(const BodyModel& model, const Problem& problem, const Refit& before, const RefitOptions& options) {
@@ -51,14 +52,12 @@ public:
         if (!result_.noise_known) estimate_noise();
         set_plain_outliers_aside();
         if (options_.screen) {
-            screen_all();
-            confirm();
-            const bool explained = !result_.ranking.empty() && is_likely(result_.ranking.front());
-            if (set_outliers_aside(explained ? *result_.ranking.front().refit : baseline())) {
-                result_.ranking.clear();
-                screen_all();
-                confirm();
+            inquire();
+            if (!result_.noise_known && explained()) {
+                estimate_noise();
+                inquire();
             }
+            set_outliers_aside_next_to_effect();
         }
         judge();
         return std::move(result_);
@@ -122,8 +121,15 @@ private:
                                 result_.problem.probe[k], pressure, E));
             }
         }
-        const auto count = std::ranges::count(crushed, 1);
-        if (count > 0 && count < std::ssize(crushed)) result_.problem = result_.problem.without_actions(crushed);
+        if (std::ranges::count(crushed, 1) == 0) return;
+        result_.problem = result_.problem.without_actions(crushed);
+        for (std::size_t k = 0; k < result_.problem.actions.size(); ++k) {
+            if (result_.problem.loaded(static_cast<int>(k))) return;
+        }
+        throw SolverFailure(fmt::format(
+            "no probe leaves the body an equilibrium: every force presses harder than its stiffness of about {:.3g} "
+            "MPa bears. Check the unit of the forces and the radii of the contacts.",
+            E));
     }
 
     void fit_baselines() {
@@ -182,13 +188,27 @@ private:
 
     void estimate_noise() {
         // What is rough in the errors is noise: a missing effect is smooth from marker to marker.
-        const Eigen::VectorXd error_mm = baseline().residual.cwiseProduct(result_.problem.sigma);
-        const double noise = std::max(noise_by_roughness(result_.problem, error_mm), 1e-12);
-        result_.problem.sigma.setConstant(noise);
-        result_.notes.push_back(fmt::format(
-            "The set does not tell its noise: {:.3g} mm, from how errors differ between neighbouring markers.", noise));
+        Problem& problem = result_.problem;
+        const Eigen::VectorXd error_mm = leading().residual.cwiseProduct(problem.sigma);
+        const double noise = std::max(noise_by_roughness(problem, error_mm), 1e-12);
+        for (Eigen::Index n = 0; n < problem.rows(); ++n) {
+            if (problem.is_guessed[n]) problem.sigma[n] = noise;
+        }
+        std::erase_if(result_.notes, [](const std::string& note) { return note.starts_with(noise_note); });
+        result_.notes.push_back(
+            fmt::format("{}{:.3g} mm, from how errors differ between neighbouring markers.", noise_note, noise));
         refit_baselines();
     }
+
+    /// Screens and confirms the catalogue anew.
+    void inquire() {
+        result_.ranking.clear();
+        screen_all();
+        confirm();
+    }
+
+    bool explained() const { return !result_.ranking.empty() && is_likely(result_.ranking.front()); }
+    const Refit& leading() const { return explained() ? *result_.ranking.front().refit : baseline(); }
 
     /// Readings that are off by themselves, as a fit sees them; true where some were set aside.
     bool set_outliers_aside(const Refit& fit) {
@@ -197,8 +217,15 @@ private:
         const Outliers found = find_outliers(result_.problem, fit.residual);
         if (found.log_bayes_factor < options_.least_evidence) return false;
         result_.outliers = found;
+        result_.outliers.readings.clear();
         const int before = result_.problem.readings();
-        result_.problem = result_.problem.with_rows(rows_without(result_.problem, found.readings));
+        const std::vector<char> keep = rows_without(result_.problem, found.readings);
+        for (std::size_t n = 0; n < keep.size(); ++n) {
+            const int number = result_.problem.set_reading[n];
+            std::vector<int>& numbers = result_.outliers.readings;
+            if (!keep[n] && (numbers.empty() || numbers.back() != number)) numbers.push_back(number);
+        }
+        result_.problem = result_.problem.with_rows(keep);
         result_.notes.push_back(
             fmt::format("{} of {} readings are off by themselves and were set aside.", found.readings.size(), before));
         refit_baselines();
@@ -208,12 +235,21 @@ private:
     /// Next to a missing effect anything looks rough: before one is sought, readings are set aside only where little
     /// else is left to explain then.
     void set_plain_outliers_aside() {
-        const Problem whole = result_.problem;
+        const Diagnosis before = result_;
         const std::vector<UnderLaw> laws = laws_;
         if (!set_outliers_aside(baseline()) || !options_.screen || is_enough(baseline())) return;
-        result_.problem = whole;
-        result_.outliers = {};
-        result_.notes.pop_back();
+        result_ = before;
+        laws_ = laws;
+    }
+
+    /// Once an effect explains the rest, or nothing does, the same; undone where it does not leave mere noise.
+    void set_outliers_aside_next_to_effect() {
+        const Diagnosis before = result_;
+        const std::vector<UnderLaw> laws = laws_;
+        if (!set_outliers_aside(leading())) return;
+        inquire();
+        if (is_enough(leading())) return;
+        result_ = before;
         laws_ = laws;
     }
 
@@ -387,8 +423,14 @@ private:
 
 void DiagnoseOptions::validate() const {
     for (const std::string& name : without) find_effect(name);
+    const auto above = [](const char* name, double value) {
+        if (!(value > 0)) throw InvalidInput(fmt::format("{} is {}; it must be above 0", name, value));
+    };
+    above("most_left", most_left);
+    above("most_left_held_out", most_left_held_out);
+    above("most_strain", most_strain);
+    if (refit.steps < 1) throw InvalidInput(fmt::format("refit.steps is {}; allowed: 1 and more", refit.steps));
     if (refits < 1) throw InvalidInput(fmt::format("refits is {}; allowed: 1 and more", refits));
-    if (!(most_left > 0)) throw InvalidInput(fmt::format("most_left is {}; it must be above 0", most_left));
 }
 
 const Refit& Diagnosis::best() const {
@@ -401,6 +443,10 @@ const Refit& Diagnosis::best() const {
 Diagnosis diagnose(const BodyModel& model, const MeasurementSet& set, const DiagnoseOptions& options,
                    const Progress& progress) {
     options.validate();
+    const auto laws = static_cast<int>(model.laws().size());
+    if (options.law && (*options.law < 0 || *options.law >= laws)) {
+        throw InvalidInput(fmt::format("law is {}; allowed: 0 to {}", *options.law, laws - 1));
+    }
     return Inquiry(model, set, options, progress).run();
 }
 

@@ -65,8 +65,8 @@ struct Diagnosis {
     HeldOut baseline_held_out;
     int law = 0;                       // of the explanation
     std::vector<double> law_evidence;  // of each law without effects, less the best; -inf: no equilibria
-    Outliers outliers;
-    Problem problem;  // without the outliers
+    Outliers outliers;                 // readings as the set numbers them
+    Problem problem;                   // without the outliers
     std::optional<NextProbe> next_probe;
     bool noise_known = true;
     double noise = 0;                // 1 sigma, told or estimated, rms [mm]

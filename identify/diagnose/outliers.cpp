@@ -58,6 +58,9 @@ Vec3 median_of_neighbours(const Problem& problem, const std::vector<ReadingError
 /// Median length of a vector of c independent normal numbers of sd 1: the chi distribution's.
 constexpr double chi_median[] = {0, 0.6745, 1.1774, 1.5382};
 
+/// Scale of the roughness that noise of 1 has: the median of six is itself noisy, with a variance of about pi / 12.
+double noise_roughness() { return std::sqrt(1 + M_PI / (2 * neighbours)); }
+
 }  // namespace
 
 Roughness roughness(const Problem& problem, const Eigen::VectorXd& residual) {
@@ -81,13 +84,12 @@ Roughness roughness(const Problem& problem, const Eigen::VectorXd& residual) {
 }
 
 double noise_by_roughness(const Problem& problem, const Eigen::VectorXd& error_mm) {
-    // The median of six is itself noisy, with a variance of about pi / 12 of theirs.
-    return roughness(problem, error_mm).scale / std::sqrt(1 + M_PI / (2 * neighbours));
+    return roughness(problem, error_mm).scale / noise_roughness();
 }
 
 Outliers find_outliers(const Problem& problem, const Eigen::VectorXd& residual) {
     const Roughness rough_ones = roughness(problem, residual);
-    const double scale = std::max(rough_ones.scale, 1e-300);
+    const double scale = std::max(rough_ones.scale, noise_roughness());
     Outliers result;
     std::vector<double> squares;
     for (std::size_t i = 0; i < rough_ones.size.size(); ++i) {

@@ -25,8 +25,9 @@ struct Outliers {
     double share = 0, width = 0;  // the most probable: of the readings, over the noise
 };
 
-/// Readings rougher than 5 scales, if they are no more than a tenth of all; more is no matter of single readings.
-/// The evidence is that of a mixture, averaged over shares of .3 to 10 % and widths of 4 to 60.
+/// Readings rougher than 5 scales, or 5 times what noise of 1 sigma makes, if they are no more than a tenth of all;
+/// more is no matter of single readings. The evidence is that of a mixture, averaged over shares of .3 to 10 % and
+/// widths of 4 to 60. `residual` (N), in sigmas.
 Outliers find_outliers(const Problem& problem, const Eigen::VectorXd& residual);
 
 /// Flags of the rows that belong to none of the readings (N).

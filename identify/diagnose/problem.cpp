@@ -62,6 +62,7 @@ Problem make_problem(const MeasurementSet& set, double noise) {
                 if (std::isnan(reading.position[axis])) continue;
                 measured.push_back(reading.position[axis]);
                 sigma.push_back(std::isnan(reading.sigma) ? set.position_noise.value_or(noise) : reading.sigma);
+                problem.is_guessed.push_back(std::isnan(reading.sigma) && !set.position_noise);
                 problem.state.push_back(static_cast<int>(s));
                 problem.action.push_back(action);
                 problem.coordinate.push_back(3 * reading.marker + axis);
@@ -74,6 +75,7 @@ Problem make_problem(const MeasurementSet& set, double noise) {
         throw InvalidInput(fmt::format(
             "measurement set '{}' has no labelled reading; positions.csv needs rows that name a marker", set.name));
     }
+    problem.set_reading = problem.reading;
     problem.measured = Eigen::Map<Eigen::VectorXd>(measured.data(), std::ssize(measured));
     problem.sigma = Eigen::Map<Eigen::VectorXd>(sigma.data(), std::ssize(sigma));
     return problem;
@@ -121,6 +123,8 @@ Problem Problem::with_rows(const std::vector<char>& keep) const {
         result.action.push_back(action[n]);
         result.coordinate.push_back(coordinate[n]);
         result.reading.push_back(number);
+        result.set_reading.push_back(set_reading[n]);
+        result.is_guessed.push_back(is_guessed[n]);
     }
     result.measured = measured(kept);
     result.sigma = sigma(kept);

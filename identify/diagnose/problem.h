@@ -18,6 +18,8 @@ struct Problem {
     std::vector<int> action;          // of each row (N)
     std::vector<int> coordinate;      // 3 marker + axis, of each row (N)
     std::vector<int> reading;         // rows of one reading share a number (N)
+    std::vector<int> set_reading;     // the same, as the whole set numbers its readings (N)
+    std::vector<char> is_guessed;     // rows whose sigma nobody told (N)
     Eigen::VectorXd measured, sigma;  // [mm] (N)
     double force_noise = 0;           // 1 sigma of the forces [N]; 0: unknown
 

@@ -67,7 +67,8 @@ struct SmallBody {
     }
     std::unique_ptr<SkeletonBody> skeleton() const { return std::make_unique<SkeletonBody>(chain(), markers, young); }
 
-    /// The unloaded state, then pushes and pulls on all sides along the bar: `count` of them, up to 8.
+    /// The unloaded state, then pushes and pulls on all sides along the bar, `count` of them; beyond 8 the same places
+    /// again, the other way and weaker.
     static std::vector<LoadState> probes(double force = 0.03, int count = 8) {
         const std::vector<mesh::Contact> all{
             {Vec3(36, 5, 10), Vec3(0, 0.1, -1), 3},    {Vec3(20, 5, 10), Vec3(0, 0, -2), 3},
@@ -76,8 +77,8 @@ struct SmallBody {
             {Vec3(37, 10, 3), Vec3(0, 0.3, 0.9), 2.5}, {Vec3(14, 0, 5), Vec3(0.5, 3, 0), 3}};
         std::vector<LoadState> states{LoadState{.probe = 0}};
         for (int i = 0; i < count; ++i) {
-            LoadState state{.probe = i + 1, .time = 1, .contacts = {all[i]}};
-            state.contacts[0].force *= force;
+            LoadState state{.probe = i + 1, .time = 1, .contacts = {all[i % 8]}};
+            state.contacts[0].force *= i < 8 ? force : -0.7 * force;
             states.push_back(state);
         }
         return states;

@@ -1,0 +1,68 @@
+#include "identify/diagnose/held_out.h"
+
+#include <cmath>
+#include <functional>
+
+#include "diagnosed.h"
+
+// Predictions of what was not seen.
+
+namespace palpate::identify {
+namespace {
+
+TEST_F(Diagnosed, LeavingProbesOutWhitensToOne) {
+    double sum = 0;
+    for (const std::uint64_t seed : {1, 2, 3, 4}) {
+        DiagnoseOptions options;
+        options.law = neo_hooke;
+        options.screen = false;
+        const Diagnosis found = diagnose(twin(truth(), sigma, seed), options);
+        EXPECT_NEAR(found.baseline_held_out.rms_mm, sigma, 0.5 * sigma);  // in a twin contacts are as they are told
+        sum += std::pow(found.baseline_held_out.whitened_rms, 2);
+    }
+    // 4 sigma of 4 x 648 rows, and 6 % that the nuisances' priors, wider than a twin needs, take
+    EXPECT_NEAR(sum / 4, 0.97, 4 * std::sqrt(2 / (4 * 648.0)) + 0.03);
+}
+
+class HeldOutProbes : public Diagnosed {
+protected:
+    /// Errors on probes 3 and 7, of a fit to the others.
+    HeldOut predicted(const Explanation& hidden, const std::vector<skeleton::Effect>& known) const {
+        MeasurementSet fitted = twin(hidden), unseen = fitted;
+        const auto is_unseen = [](const LoadState& state) { return state.probe == 3 || state.probe == 7; };
+        std::erase_if(fitted.states, is_unseen);
+        std::erase_if(unseen.states, std::not_fn(is_unseen));
+        DiagnoseOptions options;
+        options.law = neo_hooke;
+        options.screen = false;
+        options.known = known;
+        return predict(*model_, make_problem(unseen, sigma), diagnose(fitted, options).best(), options.refit);
+    }
+};
+
+TEST_F(HeldOutProbes, OfANullArePredictedToTheNoise) {
+    const HeldOut found = predicted(truth(), {});
+    EXPECT_NEAR(found.whitened_rms, 1, 4 / std::sqrt(2 * 144.0));  // 4 sigma of 144 rows
+    EXPECT_LT(found.rms_mm, 0.1);                                  // contacts unknown, of displacements of some 1 mm
+    EXPECT_EQ(found.residual.size(), 144);
+}
+
+TEST_F(HeldOutProbes, ArePredictedOnceTheEffectIsIn) {
+    const Explanation hidden = truth("gravity", half_g);
+    const HeldOut without = predicted(hidden, {}), with_gravity = predicted(hidden, {{"gravity", {}}});
+    EXPECT_GT(without.whitened_rms, 2);
+    EXPECT_NEAR(with_gravity.whitened_rms, 1, 4 / std::sqrt(2 * 144.0));  // 4 sigma
+    EXPECT_LT(with_gravity.rms_mm, 0.2 * without.rms_mm);
+}
+
+TEST_F(HeldOutProbes, HaveGainsThatNobodyKnows) {
+    // The sensor's gain at a probe that was not fitted counts as unknown: its error is large, and expected.
+    const Explanation hidden = truth("force-gain", numbers({0.1, -0.1, 0.45, -0.1, 0.1, 0.1, -0.45, -0.1}));
+    const HeldOut unknown = predicted(hidden, {{"force-gain", {}}}), taken_as_one = predicted(hidden, {});
+    EXPECT_GT(unknown.rms_mm, 3 * sigma);
+    EXPECT_LT(unknown.whitened_rms, 1.5);  // gains of 1.5 prior sd, linearised
+    EXPECT_GT(taken_as_one.whitened_rms, 1.5 * unknown.whitened_rms);
+}
+
+}  // namespace
+}  // namespace palpate::identify
