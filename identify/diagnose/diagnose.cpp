@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "identify/diagnose/next_probe.h"
+#include "identify/diagnose/baselines.h"
+#include "identify/diagnose/crushing.h"
+#include "identify/diagnose/judge.h"
 #include "identify/diagnose/screen.h"
 #include "identify/effects/catalogue.h"
 #include "mesh/errors.h"
@@ -13,15 +15,7 @@
 namespace palpate::identify {
 namespace {
 
-constexpr double none = -INFINITY;
 constexpr const char* noise_note = "The set does not tell its noise: ";
-
-/// A refit from another's configurations, nuisances made anew: the readings are others.
-Refit refit_again(const BodyModel& model, const Problem& problem, const Refit& before, const RefitOptions& options) {
-    Refit start = before;
-    start.V.reset();
-    return refit(model, problem, before.explanation, options, &start);
-}
 
 Explanation with_effect(const Explanation& base, const Screened& screened) {
     Explanation result = base;
@@ -30,11 +24,11 @@ Explanation with_effect(const Explanation& base, const Screened& screened) {
     return result;
 }
 
-/// The diagnosis in progress: what is known under each law.
+/// The diagnosis in progress.
 class Inquiry {
 public:
     Inquiry(const BodyModel& model, const MeasurementSet& set, const DiagnoseOptions& options, const Progress& progress)
-        : model_(model), options_(options), progress_(progress) {
+        : model_(model), options_(options), progress_(progress), baselines_(model, options) {
         result_.noise_known = all_noise_known(set);
         result_.problem = make_problem(set, first_noise(set));
         for (const auto& effect : catalogue()) {
@@ -43,12 +37,13 @@ public:
                 std::ranges::find(options.known, effect->name(), &skeleton::Effect::name) != options.known.end();
             if (!left_out && !known) effects_.push_back(effect);
         }
-        laws_.resize(model.laws().size());
     }
 
     Diagnosis run() {
-        leave_out_what_crushes();
-        fit_baselines();
+        if (!options_.law || *options_.law != 0) {
+            result_.problem = without_crushing_probes(model_, result_.problem, options_.refit.threads, result_.notes);
+        }
+        baselines_.fit(result_.problem, result_.notes, progress_);
         if (!result_.noise_known) estimate_noise();
         set_plain_outliers_aside();
         if (options_.screen) {
@@ -59,20 +54,17 @@ public:
             }
             set_outliers_aside_next_to_effect();
         }
-        judge();
+        result_.baseline = baseline();
+        result_.baseline_held_out = leave_probes_out(result_.problem, result_.baseline);
+        result_.noise = result_.problem.rms_sigma();
+        for (int law = 0; law < baselines_.laws(); ++law) {
+            result_.law_evidence.push_back(baselines_.evidence(law) - baseline().log_evidence);
+        }
+        judge(model_, options_, result_);
         return std::move(result_);
     }
 
 private:
-    struct UnderLaw {
-        std::optional<Refit> fit;        // nothing added
-        std::vector<Screened> screened;  // by evidence, most first
-        double evidence() const { return fit ? fit->log_evidence : none; }
-        double promise() const {
-            return evidence() + (screened.empty() ? 0 : std::max(0.0, screened.front().log_bayes_factor));
-        }
-    };
-
     static bool all_noise_known(const MeasurementSet& set) {
         return set.position_noise || std::ranges::all_of(set.states, [](const LoadState& state) {
                    return std::ranges::none_of(state.readings, [](const Reading& r) { return std::isnan(r.sigma); });
@@ -85,106 +77,22 @@ private:
         return std::max(0.01 * std::sqrt(u.squaredNorm() / static_cast<double>(u.size())), 1e-12);
     }
 
-    int best_law() const {
-        const auto best = std::ranges::max_element(laws_, {}, &UnderLaw::promise);
-        return static_cast<int>(best - laws_.begin());
+    /// The law under which the best effect, by the screen, promises most.
+    int most_promising_law() const {
+        int best = 0;
+        double most = -INFINITY;
+        for (int law = 0; law < baselines_.laws(); ++law) {
+            const double more = screened_[law].empty() ? 0 : std::max(0.0, screened_[law].front().log_bayes_factor);
+            if (baselines_.evidence(law) + more > most) {
+                most = baselines_.evidence(law) + more;
+                best = law;
+            }
+        }
+        return best;
     }
-    const Refit& baseline() const { return *std::ranges::max_element(laws_, {}, &UnderLaw::evidence)->fit; }
+    const Refit& baseline() const { return baselines_.best(); }
 
     void tell(const std::string& what, double share) const { report(progress_, what, share); }
-
-    /// A pressure near Young's modulus may press the body flat: where it has no equilibrium the probe says nothing.
-    void leave_out_what_crushes() {
-        const int last = static_cast<int>(model_.laws().size()) - 1;
-        if (options_.law && *options_.law == 0) return;
-        const Explanation guess = first_guess(model_, result_.problem, 0, options_.refit.threads);
-        Setting setting = guess.setting();
-        const double E = model_.young(setting);
-        setting.law = last;
-        std::vector<char> crushed(result_.problem.actions.size(), 0);
-        for (std::size_t k = 0; k < crushed.size(); ++k) {
-            const Action& action = result_.problem.actions[k];
-            double pressure = 0;
-            for (const mesh::Contact& contact : action.contacts) {
-                const double r = effective_radius(model_, contact);
-                pressure = std::max(pressure, contact.force.norm() / (M_PI * r * r));
-            }
-            if (pressure < E) continue;
-            try {
-                model_.equilibrium(setting, action);
-            } catch (const SolverFailure&) {
-                crushed[k] = 1;
-                result_.notes.push_back(
-                    fmt::format("Probe {} presses with {:.3g} MPa on a body of about {:.3g} MPa and has no equilibrium "
-                                "there: it is "
-                                "left out.",
-                                result_.problem.probe[k], pressure, E));
-            }
-        }
-        if (std::ranges::count(crushed, 1) == 0) return;
-        result_.problem = result_.problem.without_actions(crushed);
-        for (std::size_t k = 0; k < result_.problem.actions.size(); ++k) {
-            if (result_.problem.loaded(static_cast<int>(k))) return;
-        }
-        throw SolverFailure(fmt::format(
-            "no probe leaves the body an equilibrium: every force presses harder than its stiffness of about {:.3g} "
-            "MPa bears. Check the unit of the forces and the radii of the contacts.",
-            E));
-    }
-
-    void fit_baselines() {
-        std::string failure;
-        const Refit* neighbour = nullptr;
-        // The linear one first, then from the last, which is the best behaved of the others.
-        for (std::size_t i = 0; i < laws_.size(); ++i) {
-            const std::size_t law = i == 0 ? 0 : laws_.size() - i;
-            if (options_.law && *options_.law != static_cast<int>(law)) continue;
-            tell("baseline, law " + model_.laws()[law], 0.1 + 0.1 * static_cast<double>(i));
-            Explanation start = first_guess(model_, result_.problem, static_cast<int>(law), options_.refit.threads);
-            if (neighbour && neighbour->explanation.law != 0) start.theta = neighbour->explanation.theta;
-            add_known(start);
-            // laws of large deformation differ little: from one fit it is not far to the next
-            RefitOptions how = options_.refit;
-            std::optional<Refit> near;
-            if (neighbour && neighbour->explanation.law != 0) {
-                how.steps = std::min(how.steps, 4);
-                near = *neighbour;
-                near->V.reset();
-            }
-            try {
-                laws_[law].fit = refit(model_, result_.problem, start, how, near ? &*near : nullptr);
-                neighbour = &*laws_[law].fit;
-            } catch (const SolverFailure& e) {
-                failure = e.what();
-                result_.notes.push_back(
-                    fmt::format("Under the law {} the body has no equilibrium: {}", model_.laws()[law], failure));
-            }
-        }
-        if (std::ranges::none_of(laws_, [](const UnderLaw& law) { return law.fit.has_value(); })) {
-            throw SolverFailure("no law finds an equilibrium in every state: " + failure);
-        }
-    }
-
-    void add_known(Explanation& explanation) const {
-        for (const skeleton::Effect& known : options_.known) {
-            const auto effect = find_effect(known.name);
-            const auto numbers = effect->numbers(model_, result_.problem);
-            if (numbers.empty()) continue;
-            explanation.effects.push_back(effect);
-            explanation.values.push_back(effect->values(numbers, known));
-        }
-    }
-
-    void refit_baselines() {
-        for (UnderLaw& law : laws_) {
-            if (!law.fit) continue;
-            try {
-                law.fit = refit_again(model_, result_.problem, *law.fit, options_.refit);
-            } catch (const SolverFailure&) {
-                law.fit.reset();
-            }
-        }
-    }
 
     void estimate_noise() {
         // What is rough in the errors is noise: a missing effect is smooth from marker to marker.
@@ -197,7 +105,7 @@ private:
         std::erase_if(result_.notes, [](const std::string& note) { return note.starts_with(noise_note); });
         result_.notes.push_back(
             fmt::format("{}{:.3g} mm, from how errors differ between neighbouring markers.", noise_note, noise));
-        refit_baselines();
+        baselines_.refit(result_.problem);
     }
 
     /// Screens and confirms the catalogue anew.
@@ -207,7 +115,7 @@ private:
         confirm();
     }
 
-    bool explained() const { return !result_.ranking.empty() && is_likely(result_.ranking.front()); }
+    bool explained() const { return !result_.ranking.empty() && is_likely(result_.ranking.front(), options_); }
     const Refit& leading() const { return explained() ? *result_.ranking.front().refit : baseline(); }
 
     /// Readings that are off by themselves, as a fit sees them; true where some were set aside.
@@ -228,7 +136,7 @@ private:
         result_.problem = result_.problem.with_rows(keep);
         result_.notes.push_back(
             fmt::format("{} of {} readings are off by themselves and were set aside.", found.readings.size(), before));
-        refit_baselines();
+        baselines_.refit(result_.problem);
         return true;
     }
 
@@ -236,39 +144,40 @@ private:
     /// else is left to explain then.
     void set_plain_outliers_aside() {
         const Diagnosis before = result_;
-        const std::vector<UnderLaw> laws = laws_;
-        if (!set_outliers_aside(baseline()) || !options_.screen || is_enough(baseline())) return;
+        const Baselines baselines = baselines_;
+        if (!set_outliers_aside(baseline()) || !options_.screen || is_enough(baseline(), options_)) return;
         result_ = before;
-        laws_ = laws;
+        baselines_ = baselines;
     }
 
     /// Once an effect explains the rest, or nothing does, the same; undone where it does not leave mere noise.
     void set_outliers_aside_next_to_effect() {
         const Diagnosis before = result_;
-        const std::vector<UnderLaw> laws = laws_;
+        const Baselines baselines = baselines_;
         if (!set_outliers_aside(leading())) return;
         inquire();
-        if (is_enough(leading())) return;
+        if (is_enough(leading(), options_)) return;
         result_ = before;
-        laws_ = laws;
+        baselines_ = baselines;
     }
 
     bool outliers_wanted() const { return std::ranges::find(options_.without, "outliers") == options_.without.end(); }
 
     void screen_all() {
-        for (std::size_t law = 0; law < laws_.size(); ++law) {
-            if (!laws_[law].fit) continue;
-            tell("screen, law " + model_.laws()[law], 0.45 + 0.05 * static_cast<double>(law));
-            laws_[law].screened =
-                screen_effects(model_, result_.problem, *laws_[law].fit, effects_, options_.refit.threads);
-            std::ranges::stable_sort(laws_[law].screened, std::greater{}, &Screened::log_bayes_factor);
+        screened_.assign(baselines_.laws(), {});
+        for (int law = 0; law < baselines_.laws(); ++law) {
+            if (!baselines_.under(law)) continue;
+            tell("screen, law " + model_.laws()[law], 0.45 + 0.05 * law);
+            screened_[law] =
+                screen_effects(model_, result_.problem, *baselines_.under(law), effects_, options_.refit.threads);
+            std::ranges::stable_sort(screened_[law], std::greater{}, &Screened::log_bayes_factor);
         }
     }
 
     /// Refits an effect under a law; nothing where there is no equilibrium.
     std::optional<Refit> try_refit(int law, const Screened& screened) const {
         try {
-            const Refit& base = *laws_[law].fit;
+            const Refit& base = *baselines_.under(law);
             return refit(model_, result_.problem, with_effect(base.explanation, screened), options_.refit, &base);
         } catch (const SolverFailure&) {
             return std::nullopt;
@@ -276,15 +185,15 @@ private:
     }
 
     void confirm() {
-        const int law = best_law();
+        const int law = most_promising_law();
         const double nothing = baseline().log_evidence;
-        for (const Screened& screened : laws_[law].screened) {
+        for (const Screened& screened : screened_[law]) {
             Candidate candidate{.effect = screened.effect,
                                 .screened = screened.log_bayes_factor,
                                 .log_bayes_factor = screened.log_bayes_factor,
                                 .keep = screened.keep,
                                 .predicted_rms_mm = screened.predicted_rms_mm};
-            const double least = std::max(options_.least_screen, 0.2 * laws_[law].screened.front().log_bayes_factor);
+            const double least = std::max(options_.least_screen, 0.2 * screened_[law].front().log_bayes_factor);
             if (std::ssize(result_.ranking) < options_.refits && screened.log_bayes_factor >= least) {
                 tell("refit with " + screened.effect->name(), 0.6 + 0.08 * static_cast<double>(result_.ranking.size()));
                 candidate.refit = try_refit(law, screened);
@@ -303,11 +212,11 @@ private:
 
     void try_other_laws(Candidate& candidate, int tried) const {
         const double nothing = baseline().log_evidence;
-        for (std::size_t law = 0; law < laws_.size(); ++law) {
-            if (static_cast<int>(law) == tried || !laws_[law].fit) continue;
-            const auto screened = std::ranges::find(laws_[law].screened, candidate.effect, &Screened::effect);
+        for (int law = 0; law < baselines_.laws(); ++law) {
+            if (law == tried || !baselines_.under(law)) continue;
+            const auto screened = std::ranges::find(screened_[law], candidate.effect, &Screened::effect);
             tell("refit with " + candidate.effect->name() + ", law " + model_.laws()[law], 0.9);
-            const auto other = try_refit(static_cast<int>(law), *screened);
+            const auto other = try_refit(law, *screened);
             if (!other || other->log_evidence <= candidate.refit->log_evidence) continue;
             candidate.refit = other;
             candidate.log_bayes_factor = other->log_evidence - nothing;
@@ -332,90 +241,12 @@ private:
         }
     }
 
-    void add_outliers() {
-        if (!outliers_wanted()) return;
-        Candidate candidate{.effect = find_effect("outliers"),
-                            .screened = result_.outliers.log_bayes_factor,
-                            .log_bayes_factor = result_.outliers.log_bayes_factor};
-        if (!result_.outliers.readings.empty()) {
-            const auto count = static_cast<double>(result_.outliers.readings.size());
-            candidate.told = {"outliers",
-                              {{"share", count / (count + result_.problem.readings()), "1"},
-                               {"readings", count, "1"},
-                               {"width", result_.outliers.width, "1"}}};
-            candidate.sd = {std::sqrt(count) / (count + result_.problem.readings()), 0, 0};
-            candidate.predicted_rms_mm = baseline().rms_mm;
-            candidate.held_out = leave_probes_out(result_.problem, baseline());
-        }
-        result_.ranking.push_back(std::move(candidate));
-    }
-
-    // The four conditions of a claim.
-    bool is_likely(const Candidate& c) const { return c.refit && c.log_bayes_factor >= options_.least_evidence; }
-    bool is_enough(const Refit& fit) const {
-        return fit.whitened_rms <= options_.most_left && fit.strain <= options_.most_strain;
-    }
-
-    void judge() {
-        add_outliers();
-        result_.baseline = baseline();
-        result_.baseline_held_out = leave_probes_out(result_.problem, result_.baseline);
-        result_.noise = result_.problem.rms_sigma();
-        result_.law = result_.baseline.explanation.law;
-        for (const UnderLaw& law : laws_) result_.law_evidence.push_back(law.evidence() - baseline().log_evidence);
-        const bool outliers = !result_.outliers.readings.empty();
-
-        std::vector<const Candidate*> likely;
-        for (const Candidate& c : result_.ranking) {
-            if (is_likely(c)) likely.push_back(&c);
-        }
-        std::vector<const Candidate*> alike;  // of those that explain enough, within the lead
-        for (const Candidate* c : likely) {
-            const double behind = likely.front()->log_bayes_factor - c->log_bayes_factor;
-            const bool predicts = c->held_out->whitened_rms <= options_.most_left_held_out;
-            if (is_enough(*c->refit) && predicts && behind < options_.least_lead) alike.push_back(c);
-        }
-        if (alike.size() > 1) {
-            result_.verdict = Verdict::ambiguous;
-        } else if (alike.size() == 1) {
-            result_.verdict = Verdict::missing_effect;
-        } else if (is_enough(result_.baseline)) {
-            result_.verdict = outliers ? Verdict::missing_effect : Verdict::adequate;
-        } else {
-            result_.verdict = Verdict::unexplained;
-        }
-        if (!alike.empty()) {
-            result_.explanation.push_back(alike.front()->effect->name());
-            result_.law = alike.front()->refit->explanation.law;
-        }
-        if (outliers && result_.verdict != Verdict::unexplained) result_.explanation.emplace_back("outliers");
-        if (result_.verdict == Verdict::ambiguous) {
-            result_.next_probe = separate(model_, result_.problem, *alike[0], *alike[1], options_.refit.threads);
-        }
-        share_out_probability();
-        // With an explanation its first effect leads the ranking.
-        std::ranges::stable_sort(result_.ranking, std::greater{}, &Candidate::log_bayes_factor);
-        if (!result_.explanation.empty()) {
-            const auto first = std::ranges::find_if(
-                result_.ranking, [&](const Candidate& c) { return c.effect->name() == result_.explanation.front(); });
-            std::rotate(result_.ranking.begin(), first, first + 1);
-        }
-    }
-
-    /// Each against the others and against nothing, all equally likely before.
-    void share_out_probability() {
-        double top = 0;
-        for (const Candidate& c : result_.ranking) top = std::max(top, c.log_bayes_factor);
-        double sum = std::exp(-top);
-        for (const Candidate& c : result_.ranking) sum += std::exp(c.log_bayes_factor - top);
-        for (Candidate& c : result_.ranking) c.probability = std::exp(c.log_bayes_factor - top) / sum;
-    }
-
     const BodyModel& model_;
     const DiagnoseOptions& options_;
     const Progress& progress_;
     std::vector<std::shared_ptr<const Effect>> effects_;
-    std::vector<UnderLaw> laws_;
+    Baselines baselines_;
+    std::vector<std::vector<Screened>> screened_;  // under each law, by evidence, most first
     Diagnosis result_;
 };
 

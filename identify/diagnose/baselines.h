@@ -1,0 +1,33 @@
+#pragma once
+
+#include "identify/diagnose/diagnose.h"
+
+namespace palpate::identify {
+
+/// A problem fitted under each law of a model, with no effects but those that are known.
+class Baselines {
+public:
+    /// Keeps references to model and options.
+    Baselines(const BodyModel& model, const DiagnoseOptions& options)
+        : model_(&model), options_(&options), fits_(model.laws().size()) {}
+
+    /// Laws without equilibria are left out, each told in `notes`. @throws SolverFailure when none is left.
+    void fit(const Problem& problem, std::vector<std::string>& notes, const Progress& progress);
+    /// The same once the readings are others, or their sigmas.
+    void refit(const Problem& problem);
+
+    int laws() const { return static_cast<int>(fits_.size()); }
+    const std::optional<Refit>& under(int law) const { return fits_[law]; }
+    double evidence(int law) const { return fits_[law] ? fits_[law]->log_evidence : -INFINITY; }
+    /// Under the law that explains most.
+    const Refit& best() const;
+
+private:
+    Explanation start(const Problem& problem, int law, const Refit* neighbour) const;
+
+    const BodyModel* model_;
+    const DiagnoseOptions* options_;
+    std::vector<std::optional<Refit>> fits_;
+};
+
+}  // namespace palpate::identify
