@@ -41,6 +41,7 @@ PlaceError error_at(std::vector<int> markers, const Points& rest, const std::vec
 
 void correct(std::vector<PlaceError>& places) {
     std::vector<double> p_values;
+    p_values.reserve(places.size());
     for (const PlaceError& place : places) p_values.push_back(place.p_value);
     p_values = holm(p_values);
     for (std::size_t i = 0; i < places.size(); ++i) {

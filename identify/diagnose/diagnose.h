@@ -43,6 +43,7 @@ struct Candidate {
     double screened = 0;          // ln Bayes factor without refitting
     double log_bayes_factor = 0;  // after the refit where there was one
     double keep = 1;              // how much of its signature the rest cannot swallow
+    std::string objection = {};   // why it is no claim, whatever its evidence; empty: nothing speaks against it
     double probability = 0;       // among all candidates and none
     double predicted_rms_mm = 0;  // what the screen expects to be left
     std::optional<Refit> refit = std::nullopt;

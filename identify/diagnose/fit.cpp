@@ -104,6 +104,7 @@ std::vector<Eigen::MatrixXd> answers(const BodyModel& model, const Problem& prob
     const Setting setting = explanation.setting();
     const auto count = static_cast<int>(problem.actions.size());
     std::vector<Eigen::MatrixXd> result;
+    result.reserve(signatures.size());
     for (const Signatures& s : signatures) result.emplace_back(Eigen::MatrixXd::Zero(problem.rows(), s.width));
     if (steps_of_first) steps_of_first->assign(count, {});
     std::vector<std::vector<Eigen::Index>> rows(count);

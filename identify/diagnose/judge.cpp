@@ -34,7 +34,7 @@ std::vector<const Candidate*> explain_alike(const std::vector<Candidate>& rankin
         most = std::max(most, c.log_bayes_factor);
         const bool predicts = c.held_out->whitened_rms <= options.most_left_held_out;
         const bool leads = most - c.log_bayes_factor < options.least_lead;
-        if (is_enough(*c.refit, options) && predicts && leads) alike.push_back(&c);
+        if (is_enough(*c.refit, options) && predicts && leads && c.objection.empty()) alike.push_back(&c);
     }
     return alike;
 }
@@ -60,6 +60,13 @@ bool is_enough(const Refit& fit, const DiagnoseOptions& options) {
 
 void judge(const BodyModel& model, const DiagnoseOptions& options, Diagnosis& diagnosis) {
     const bool outliers = !diagnosis.outliers.readings.empty();
+    const bool enough = is_enough(diagnosis.baseline, options);
+    bool something = false;  // is there evidence for more than what is claimed?
+    for (Candidate& c : diagnosis.ranking) {
+        if (!is_likely(c, options)) continue;
+        c.objection = c.effect->objection(diagnosis.problem, c.refit->explanation.values.back(), enough);
+        something = true;
+    }
     const std::vector<const Candidate*> alike = explain_alike(diagnosis.ranking, options);
     diagnosis.law = diagnosis.baseline.explanation.law;
     if (alike.size() > 1) {
@@ -67,7 +74,7 @@ void judge(const BodyModel& model, const DiagnoseOptions& options, Diagnosis& di
         diagnosis.next_probe = separate(model, diagnosis.problem, *alike[0], *alike[1], options.refit.threads);
     } else if (alike.size() == 1) {
         diagnosis.verdict = Verdict::missing_effect;
-    } else if (is_enough(diagnosis.baseline, options)) {
+    } else if (enough && !something) {
         diagnosis.verdict = outliers ? Verdict::missing_effect : Verdict::adequate;
     } else {
         diagnosis.verdict = Verdict::unexplained;

@@ -39,6 +39,7 @@ double median(std::vector<double> values) {
 Vec3 median_of_neighbours(const Problem& problem, const std::vector<ReadingError>& all, const std::vector<int>& state,
                           int reading) {
     std::vector<std::pair<double, int>> near;
+    near.reserve(state.size());
     for (const int other : state) {
         if (other == reading) continue;
         near.emplace_back((problem.rest.row(all[other].marker) - problem.rest.row(all[reading].marker)).squaredNorm(),

@@ -41,6 +41,8 @@ Eigen::VectorXd Effect::start_after_screen(const ScreenColumns&, const Eigen::Ve
     return Eigen::VectorXd::Zero(screened.size());
 }
 
+std::string Effect::objection(const Problem&, const Eigen::VectorXd&, bool) const { return {}; }
+
 skeleton::Effect Effect::told(const std::vector<EffectNumber>& numbers, const Eigen::VectorXd& values) const {
     assert(std::ssize(numbers) == values.size());
     skeleton::Effect result{name(), {}};

@@ -75,6 +75,10 @@ public:
     /// Start values for a refit, out of what the screen expects of those columns.
     virtual Eigen::VectorXd start_after_screen(const ScreenColumns& columns, const Eigen::VectorXd& screened) const;
 
+    /// Why a fit with it is no claim, in words; empty: nothing speaks against it. `enough_without`: what is left
+    /// without it is noise already.
+    virtual std::string objection(const Problem& problem, const Eigen::VectorXd& values, bool enough_without) const;
+
     /// For the model file: names, values and units as they are told.
     virtual skeleton::Effect told(const std::vector<EffectNumber>& numbers, const Eigen::VectorXd& values) const;
     /// The fit's numbers behind what was told; what was not told starts as a fit does.

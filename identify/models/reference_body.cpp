@@ -59,9 +59,12 @@ std::vector<char> cut_by_support(const mesh::VolumeMesh& mesh, const std::vector
 }  // namespace
 
 struct ReferenceBody::Impl {
+    Impl(fem::HyperelasticBody the_body, MarkerFrames the_frames, double the_density)
+        : body(std::move(the_body)), frames(std::move(the_frames)), density(the_density) {}
+
     fem::HyperelasticBody body;
     MarkerFrames frames;
-    double density, size;
+    double density, size = 0;
     std::vector<std::string> laws{"linear", "svk", "neo-hooke"};
     std::vector<StiffnessParameter> parameters;
     mesh::Surface surface;  // by the faces' corners

@@ -33,8 +33,7 @@ Edges edges_of(const Surface& surface) {
     for (const auto& t : surface.triangles.rowwise())
         for (int i = 0; i < 3; ++i) edges.ends.push_back(ordered(t[i], t[(i + 1) % 3]));
     std::ranges::sort(edges.ends);
-    const auto repeated = std::ranges::unique(edges.ends);
-    edges.ends.erase(repeated.begin(), repeated.end());
+    edges.ends.erase(std::unique(edges.ends.begin(), edges.ends.end()), edges.ends.end());
 
     edges.triangles.resize(edges.ends.size());
     edges.of_triangle.resize(static_cast<std::size_t>(surface.triangles.rows()));

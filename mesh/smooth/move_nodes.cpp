@@ -34,6 +34,7 @@ Gradient gradient_at(const Corners& l) {
 /// Where elements are looked at: corners, midsides, the four points of quadrature of degree 2.
 std::vector<Gradient> gradients() {
     std::vector<Gradient> result;
+    result.reserve(14);
     for (int i = 0; i < 4; ++i) result.push_back(gradient_at(Corners::Unit(i)));
     for (const auto& [i, j] : edges) result.push_back(gradient_at((Corners::Unit(i) + Corners::Unit(j)) / 2));
     const double rest = (5 - std::sqrt(5.0)) / 20;

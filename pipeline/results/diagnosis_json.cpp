@@ -43,6 +43,7 @@ json to_json(const identify::Candidate& candidate, const identify::BodyModel& mo
         result["held_out_rms_mm"] = known(candidate.held_out->rms_mm);
         result["held_out_whitened_rms"] = known(candidate.held_out->whitened_rms);
     }
+    if (!candidate.objection.empty()) result["objection"] = candidate.objection;
     if (!candidate.told.parameters.empty()) result["sentence"] = candidate.effect->sentence(candidate.told);
     return result;
 }

@@ -101,9 +101,12 @@ std::string unexplained(const json& diagnosis) {
     text += ".";
     const json& ranking = diagnosis["ranking"];
     if (ranking.empty() || !ranking[0]["whitened_rms"].is_number()) return text;
-    return text + fmt::format(" The nearest is {}, which leaves {:.3g} mm rms, {}.",
-                              ranking[0]["effect"].get<std::string>(), ranking[0]["rms_mm"].get<double>(),
-                              in_sigmas(ranking[0]["whitened_rms"]));
+    text += fmt::format(" The nearest is {}, which leaves {:.3g} mm rms, {}.", ranking[0]["effect"].get<std::string>(),
+                        ranking[0]["rms_mm"].get<double>(), in_sigmas(ranking[0]["whitened_rms"]));
+    if (ranking[0].contains("objection")) {
+        text += " It is no claim: " + ranking[0]["objection"].get<std::string>() + ".";
+    }
+    return text;
 }
 
 std::string adequate(const json& diagnosis) {

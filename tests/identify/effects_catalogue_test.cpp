@@ -143,6 +143,29 @@ INSTANTIATE_TEST_SUITE_P(Catalogue, EveryEffect, testing::ValuesIn(catalogue()),
     return name;
 });
 
+/// Six probes, each with twice the load of the one before.
+Problem doubling_loads() {
+    Problem problem;
+    for (int k = 0; k < 6; ++k) {
+        problem.actions.push_back({.contacts = {{.force = Vec3(0, 0, -std::pow(2.0, k)), .radius = 1}}});
+        problem.probe.push_back(k + 1);
+    }
+    return problem;
+}
+
+TEST(ForceGain, IsObjectedToWhereTheBodyStiffens) {
+    // effective force F^0.8: gains that fall with the load in one line
+    const Eigen::VectorXd falling = -0.2 * std::log(2.0) * Eigen::VectorXd::LinSpaced(6, 0, 5);
+    EXPECT_THAT(find_effect("force-gain")->objection(doubling_loads(), falling, false), HasSubstr("stiffens"));
+}
+
+TEST(ForceGain, IsAClaimWhereGainsComeAndGo) {
+    Eigen::VectorXd alternating(6);
+    alternating << 0.2, -0.2, 0.2, -0.2, 0.2, -0.2;
+    EXPECT_EQ(find_effect("force-gain")->objection(doubling_loads(), alternating, false), "");
+    EXPECT_THAT(find_effect("force-gain")->objection(doubling_loads(), alternating, true), HasSubstr("noise already"));
+}
+
 TEST(Catalogue, NamesAreAllDifferent) {
     std::set<std::string> names;
     for (const auto& effect : catalogue()) EXPECT_TRUE(names.insert(effect->name()).second) << effect->name();
