@@ -1,6 +1,7 @@
 #include "identify/diagnose/outliers.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 
@@ -48,8 +49,8 @@ Vec3 median_of_neighbours(const Problem& problem, const std::vector<ReadingError
     std::ranges::partial_sort(near, near.begin() + neighbours);
     Vec3 result;
     for (int axis = 0; axis < 3; ++axis) {
-        std::vector<double> values;
-        for (int i = 0; i < neighbours; ++i) values.push_back(all[near[i].second].error[axis]);
+        std::array<double, neighbours> values{};
+        for (int i = 0; i < neighbours; ++i) values[i] = all[near[i].second].error[axis];
         std::ranges::sort(values);
         result[axis] = 0.5 * (values[neighbours / 2 - 1] + values[neighbours / 2]);
     }
