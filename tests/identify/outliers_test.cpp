@@ -109,12 +109,18 @@ TEST_F(Grid, MoreThanATenthAreNoMatterOfSingleReadings) {
     EXPECT_EQ(find_outliers(problem_, planted(noise(1), off, 20)).readings, off);
 }
 
-TEST_F(Grid, UnitsDoNotMatter) {
+TEST_F(Grid, WhatIsSmallAgainstTheNoiseIsNoOutlier) {
+    // Errors much smaller than the noise that is told, with two readings that stick out of them but not of the noise.
     const std::vector<int> off{3, 77};
     const Eigen::VectorXd errors = planted(noise(4), off, 10);
-    const Outliers one = find_outliers(problem_, errors), other = find_outliers(problem_, 1e-3 * errors);
-    EXPECT_EQ(one.readings, other.readings);
-    EXPECT_NEAR(one.log_bayes_factor, other.log_bayes_factor, 1e-9 * one.log_bayes_factor);  // rounding
+    EXPECT_EQ(find_outliers(problem_, errors).readings, off);
+    EXPECT_TRUE(find_outliers(problem_, 0.1 * errors).readings.empty());
+}
+
+TEST_F(Grid, NoiseByRoughnessIsInTheUnitOfTheErrors) {
+    const Eigen::VectorXd errors = noise(4);
+    const double one = noise_by_roughness(problem_, errors);
+    EXPECT_NEAR(noise_by_roughness(problem_, 1e-3 * errors), 1e-3 * one, 1e-12 * one);  // rounding
 }
 
 TEST_F(Grid, ReadingsWithoutACoordinateCountAsTheyAre) {
