@@ -17,9 +17,11 @@ double log_determinant_of(const Eigen::LLT<Eigen::MatrixXd>& factor) {
 Whitening::Whitening(Eigen::VectorXd weights, const Eigen::MatrixXd& A, Eigen::VectorXd precisions)
     : weights_(std::move(weights)), precisions_(std::move(precisions)), B_(weights_.asDiagonal() * A) {
     assert(A.cols() == precisions_.size() && A.rows() == weights_.size());
-    Eigen::MatrixXd inner = precisions_.asDiagonal();
-    inner.selfadjointView<Eigen::Lower>().rankUpdate(B_.transpose());
-    inner_.compute(inner);
+    if (B_.cols() > 0) {
+        Eigen::MatrixXd inner = precisions_.asDiagonal();
+        inner.selfadjointView<Eigen::Lower>().rankUpdate(B_.transpose());
+        inner_.compute(inner);
+    }
     // |V| = |W^-2| |Lambda + B^T B| / |Lambda|
     log_determinant_ = (B_.cols() > 0 ? log_determinant_of(inner_) : 0) - precisions_.array().log().sum() -
                        2 * weights_.array().log().sum();
