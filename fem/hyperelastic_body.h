@@ -4,8 +4,8 @@
 #include <memory>
 #include <vector>
 
+#include "fem/effects.h"
 #include "fem/material.h"
-#include "fem/point_potential.h"
 #include "fem/stiffness.h"
 #include "mesh/volume_mesh.h"
 
@@ -23,7 +23,7 @@ enum class Law {
 struct BodySetting {
     Law law = Law::neo_hooke;
     Material material;
-    Potentials effects;
+    Effects effects;
 };
 
 struct NewtonOptions {
@@ -47,6 +47,9 @@ public:
     /// J^-1 B (3n x p); rows of held nodes are ignored in B and zero in the result. Safe from several threads.
     virtual Eigen::MatrixXd solve(const Eigen::MatrixXd& B) const = 0;
 };
+
+/// How far a yielding material has flowed, point by point; made by HyperelasticBody::plastic_state.
+struct PlasticState;
 
 /// Points that an effect acts on: nodes of the mesh, and their weights.
 struct NodeWeights {
@@ -72,28 +75,43 @@ public:
 
     /// Elastic energy and effects less the work of the dead load f (3n) [N mm]; infinite where an element is inside
     /// out.
-    double potential(const Eigen::VectorXd& u, const BodySetting& setting, const Eigen::VectorXd& f) const;
+    /// `before`, here and below: how far a yielding material had flowed, under the same law; none: it is virgin. While
+    /// it flows forces are no potential's gradient, and this one is near the truth.
+    double potential(const Eigen::VectorXd& u, const BodySetting& setting, const Eigen::VectorXd& f,
+                     const PlasticState* before = nullptr) const;
     /// Net force f - d(energy)/du on every node (3n) [N]; at held nodes minus the support's reaction.
     /// @throws SolverFailure where an element is inside out.
-    Eigen::VectorXd residual(const Eigen::VectorXd& u, const BodySetting& setting, const Eigen::VectorXd& f) const;
-    /// J of all nodes, held ones too (3n x 3n), symmetric, both halves [N/mm].
-    Eigen::SparseMatrix<double> tangent(const Eigen::VectorXd& u, const BodySetting& setting) const;
+    Eigen::VectorXd residual(const Eigen::VectorXd& u, const BodySetting& setting, const Eigen::VectorXd& f,
+                             const PlasticState* before = nullptr) const;
+    /// J of all nodes, held ones too (3n x 3n), symmetric, both halves [N/mm]. Where the body flows, the
+    /// consistent tangent's symmetric part.
+    Eigen::SparseMatrix<double> tangent(const Eigen::VectorXd& u, const BodySetting& setting,
+                                        const PlasticState* before = nullptr) const;
     /// @throws SolverFailure when J is not positive definite on the free nodes.
-    std::shared_ptr<const BodyTangent> factor(const Eigen::VectorXd& u, const BodySetting& setting) const;
+    std::shared_ptr<const BodyTangent> factor(const Eigen::VectorXd& u, const BodySetting& setting,
+                                              const PlasticState* before = nullptr) const;
+    /// How far the material has flowed once it stood in u; null without plasticity. @throws as residual.
+    std::shared_ptr<const PlasticState> plastic_state(const Eigen::VectorXd& u, const BodySetting& setting,
+                                                      const PlasticState* before) const;
 
-    /// Internal forces at unit moduli (3n x 2): the internal force is mu * column 0 + K * column 1.
-    Eigen::Matrix<double, Eigen::Dynamic, 2> modulus_forces(const Eigen::VectorXd& u, const BodySetting& setting) const;
+    /// Internal forces at unit moduli (3n x 2): the internal force is mu * column 0 + K * column 1. Effects in the
+    /// material are shares of mu, and in column 0.
+    Eigen::Matrix<double, Eigen::Dynamic, 2> modulus_forces(const Eigen::VectorXd& u, const BodySetting& setting,
+                                                            const PlasticState* before = nullptr) const;
     /// Internal forces of weighted elements (3n x c): column j is sum_e W(e, j) f_e; W (elements x c).
-    Eigen::MatrixXd element_forces(const Eigen::VectorXd& u, const BodySetting& setting,
-                                   const Eigen::MatrixXd& W) const;
-    /// d residual / d parameters of one effect (3n x P).
-    Eigen::MatrixXd effect_forces(const Eigen::VectorXd& u, const PointPotential& effect, double density) const;
+    Eigen::MatrixXd element_forces(const Eigen::VectorXd& u, const BodySetting& setting, const Eigen::MatrixXd& W,
+                                   const PlasticState* before = nullptr) const;
 
     /// The displacement in which the net force vanishes at the free nodes: Newton's method on the potential with line
     /// search, started from the linear answer or a neighbouring state `start`, factors reused while they serve;
     /// load stepping when it fails at once. @throws SolverFailure with iterations and residual when none was found.
     BodyEquilibrium equilibrium(const BodySetting& setting, const Eigen::VectorXd& f, const NewtonOptions& options = {},
-                                const Eigen::VectorXd* start = nullptr) const;
+                                const Eigen::VectorXd* start = nullptr, const PlasticState* before = nullptr) const;
+
+    /// Does the boundary close in cavities within the body, which can be under pressure?
+    bool has_cavities() const;
+    /// Volume of all cavities together in the displacement u [mm^3]; 0 where there are none.
+    double cavity_volume(const Eigen::VectorXd& u) const;
 
 private:
     struct Impl;

@@ -1,9 +1,5 @@
 #pragma once
 
-#include <memory>
-#include <string>
-#include <vector>
-
 #include "mesh/types.h"
 
 namespace palpate::fem {
@@ -17,10 +13,9 @@ enum class ActsOn {
 
 /// A potential at one point, at unit weight, and its derivatives by where the point stands.
 struct PointTerms {
-    double energy = 0;              // [N mm per unit weight]
-    Vec3 gradient = Vec3::Zero();   // d energy / d x
-    Mat3 hessian = Mat3::Zero();    // d^2 energy / d x^2
-    Eigen::Matrix3Xd by_parameter;  // d gradient / d parameter (3 x P); filled on demand
+    double energy = 0;             // [N mm per unit weight]
+    Vec3 gradient = Vec3::Zero();  // d energy / d x
+    Mat3 hessian = Mat3::Zero();   // d^2 energy / d x^2
 };
 
 /// A physical effect as a potential on points of a body:
@@ -31,17 +26,10 @@ class PointPotential {
 public:
     virtual ~PointPotential() = default;
     virtual ActsOn acts_on() const = 0;
-    virtual PointTerms terms(const Vec3& X, const Vec3& x, bool with_parameters) const = 0;
+    virtual PointTerms terms(const Vec3& X, const Vec3& x) const = 0;
+    /// Does it act on one side only, as a wall does? Then small strain does not make it linear: a law that takes
+    /// effects as they are at rest, to second order, takes this one as it stands.
+    virtual bool is_one_sided() const { return false; }
 };
-
-using Potentials = std::vector<std::shared_ptr<const PointPotential>>;
-
-/// Does one of them take the place of the supports?
-inline bool release_supports(const Potentials& effects) {
-    for (const auto& effect : effects) {
-        if (effect->acts_on() == ActsOn::support) return true;
-    }
-    return false;
-}
 
 }  // namespace palpate::fem

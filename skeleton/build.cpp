@@ -101,7 +101,9 @@ void thicken_extras(const std::vector<Site>& sites, std::vector<Section>& sectio
 std::vector<Link> make_links(const std::vector<Section>& sections, const fem::Material& material) {
     std::vector<Link> links;
     links.reserve(sections.size());
-    for (const Section& s : sections) links.push_back({s.a, s.b, s.length, start_stiffness(s, material), 0});
+    for (const Section& s : sections) {
+        links.push_back({s.a, s.b, s.length, start_stiffness(s, material), 0, radius_of_gyration(s)});
+    }
 
     // No link is softer than a thousandth of the median one: slivers must not make the model singular.
     for (int k = 0; k < 3; ++k) {

@@ -4,6 +4,7 @@
 #include <memory>
 #include <vector>
 
+#include "skeleton/links/plastic_fibre.h"
 #include "skeleton/load.h"
 
 namespace palpate::skeleton {
@@ -19,16 +20,22 @@ struct Equilibrium {
     int iterations = 0;
     double residual = 0;   // largest force left [N], torques over the mean link length
     Eigen::VectorXd step;  // from rest (6N); law linear: the answer itself, linear in the load
+    FibreStates before{};  // how far the links' fibres had flowed in the states before (7L); empty: not at all
 };
 
 /// The configuration in which all net forces vanish, by the model's law: one linear step from rest, or Newton on the
 /// potential, globalised so that it ends in a stable equilibrium; load stepping when it fails at once. The model's
 /// effects are in force; the linear law takes them as they are at rest, to first order.
-/// `start`: a neighbouring state, rest by default.
+/// `start`: a neighbouring state, rest by default. `before`: how far a yielding material had flowed before.
 /// @throws SolverFailure with iterations and residual when none was found, or naming the sphere that nothing keeps
 /// from moving; InvalidInput when no sphere is held or some hang on no held one.
 Equilibrium equilibrium(const Model& model, const Load& load, const EquilibriumOptions& options = {},
-                        const State* start = nullptr);
+                        const State* start = nullptr, const FibreStates& before = {});
+
+/// How far the fibres of the links have flowed after an equilibrium, `before` the next one (7L). The linear law takes
+/// the material as it is at rest: in it nothing flows. Empty when nothing yields. `extra`, here and below: effects in
+/// force beyond the model's own.
+FibreStates flowed(const Model& model, const Equilibrium& equilibrium, const fem::Effects& extra = {});
 
 /// Positions of attached points in an equilibrium, by the model's law (m x 3) [mm]: linear in the step for the
 /// linear law, as they are for the other.
@@ -38,22 +45,18 @@ Points observe(const Model& model, const Equilibrium& equilibrium, const std::ve
 Eigen::SparseMatrix<double> observation_jacobian(const Model& model, const Equilibrium& equilibrium,
                                                  const std::vector<Attachment>& points);
 
-/// Force signatures in an equilibrium, by the model's law (6N x 3L): d residual / d stiffness. With P and the
-/// tangent's inverse, d observe / d k = P J^-1 link_forces.
-Eigen::SparseMatrix<double> link_forces(const Model& model, const Equilibrium& equilibrium);
-
-/// Force signatures of an effect in an equilibrium, by the model's law (6N x P): d residual / d its parameters, at held
-/// spheres too. The effect need not be in force. By the linear law it is what the effect's force, linearised at rest,
-/// changes by. @throws InvalidInput when the model has nothing that the effect acts on.
-Eigen::MatrixXd effect_forces(const Model& model, const Equilibrium& equilibrium, const fem::PointPotential& effect);
+/// Force signatures in an equilibrium, by the model's law (6N x 3L): d residual / d stiffness, effects in the links
+/// included. With P and the tangent's inverse, d observe / d k = P J^-1 link_forces.
+Eigen::SparseMatrix<double> link_forces(const Model& model, const Equilibrium& equilibrium,
+                                        const fem::Effects& extra = {});
 
 /// Solves for equilibria of one model again and again, with other stiffnesses k (3L, ordered as stiffness_vector) and
 /// loads: keeps ordering, symbolic factorisation and work space. Not for several threads at once: one each.
 class StaticsSolver {
 public:
     /// Keeps what it needs of the model. `extra`: effects in force beyond the model's own.
-    /// @throws InvalidInput when no sphere is held or some hang on no held one, or as potentials_of.
-    explicit StaticsSolver(const Model& model, const fem::Potentials& extra = {});
+    /// @throws InvalidInput when no sphere is held or some hang on no held one, or as physics_of.
+    explicit StaticsSolver(const Model& model, const fem::Effects& extra = {});
     ~StaticsSolver();
     StaticsSolver(StaticsSolver&&) noexcept;
     StaticsSolver& operator=(StaticsSolver&&) noexcept;
@@ -61,14 +64,14 @@ public:
     /// As the free function, which wraps it; leaves the tangent factored, as factor_tangent does. `start` matters to
     /// the large-rotation law only.
     Equilibrium solve(const Eigen::VectorXd& k, const Load& load, const EquilibriumOptions& options = {},
-                      const State* start = nullptr);
+                      const State* start = nullptr, const FibreStates& before = {});
     Equilibrium solve(const Eigen::VectorXd& k, const Load& load, const EquilibriumOptions& options,
                       const Equilibrium* start) {
         return solve(k, load, options, start ? &start->state : nullptr);
     }
 
     /// Linear steps from rest (6N x p) under generalized forces F (6N x p): one factorisation, whatever the law. The
-    /// effects' stiffness at rest takes part, their forces there are for F to tell.
+    /// effects' stiffness at rest takes part, their forces there are for F to tell, those in the links as well.
     Eigen::MatrixXd linear_steps(const Eigen::VectorXd& k, const Eigen::MatrixXd& F);
 
     /// Factors the tangent J in an equilibrium, by the model's law (linear: at rest). @throws SolverFailure when it

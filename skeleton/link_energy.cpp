@@ -24,28 +24,11 @@ void add_stretch_block(const Mat3& B, Mat12& H) {
     H.block<3, 3>(dx_b, dx_a) -= B;
 }
 
-// The link as it stands: x_b - x_a = l n.
-struct Axis {
-    double l;
-    Vec3 n;
-};
-
-Axis axis(double length, const Vec3& x_a, const Vec3& x_b) {
-    const Vec3 dx = x_b - x_a;
-    const double l = dx.norm();
-    if (!(l > 1e-9 * length))
-        throw SolverFailure(
-            fmt::format("the ends of a link of rest length {:.6g} mm came to lie on one another; "
-                        "a smaller load or a stiffer link would keep them apart",
-                        length));
-    return {l, dx / l};
-}
-
 // Elongation e = 1/2 (l - L)^2: by dx its gradient is (l - L) n, and as dn = (I - n n^T) d(dx) / l, its second
 // derivative n n^T + (1 - L / l) (I - n n^T).
 class Elongation {
 public:
-    Elongation(const Axis& axis, double length) : axis_(axis), stretch_(axis.l - length) {}
+    Elongation(const LinkAxis& axis, double length) : axis_(axis), stretch_(axis.l - length) {}
 
     double energy() const { return 0.5 * stretch_ * stretch_; }
 
@@ -62,7 +45,7 @@ public:
     }
 
 private:
-    const Axis& axis_;
+    const LinkAxis& axis_;
     double stretch_;
 };
 
@@ -78,7 +61,7 @@ private:
 // and those of e: phi' c_i, phi'' c_i c_j + phi' c_ij.
 class Flexion {
 public:
-    Flexion(const Axis& axis, const Vec3& d, int w) : axis_(axis), d_(d), w_(w), c_(axis.n.dot(d)) {
+    Flexion(const LinkAxis& axis, const Vec3& d, int w) : axis_(axis), d_(d), w_(w), c_(axis.n.dot(d)) {
         turn_ = d.cross(axis.n);
         const double sine = turn_.norm();
         theta_ = std::atan2(sine, c_);
@@ -132,7 +115,7 @@ private:
         return (sine - theta_ * c_) / (sine * sine * sine);
     }
 
-    const Axis& axis_;
+    const LinkAxis& axis_;
     const Vec3& d_;  // R d0
     int w_;          // place of the end's rotation in the step
     double c_;
@@ -187,9 +170,20 @@ private:
 
 }  // namespace
 
+LinkAxis link_axis(double length, const Vec3& x_a, const Vec3& x_b) {
+    const Vec3 dx = x_b - x_a;
+    const double l = dx.norm();
+    if (!(l > 1e-9 * length))
+        throw SolverFailure(
+            fmt::format("the ends of a link of rest length {:.6g} mm came to lie on one another; "
+                        "a smaller load or a stiffer link would keep them apart",
+                        length));
+    return {l, dx / l};
+}
+
 LinkTerms link_terms(double length, const Vec3& rest_direction, const Vec3& x_a, const Mat3& R_a, const Vec3& x_b,
                      const Mat3& R_b, bool with_hessian) {
-    const Axis link = axis(length, x_a, x_b);
+    const LinkAxis link = link_axis(length, x_a, x_b);
     const Vec3 d_a = R_a * rest_direction, d_b = R_b * rest_direction;
     const Elongation elongation(link, length);
     const Flexion flexion_a(link, d_a, w_a), flexion_b(link, d_b, w_b);
@@ -214,7 +208,7 @@ LinkTerms link_terms(double length, const Vec3& rest_direction, const Vec3& x_a,
 
 Mat12 link_hessian(const Vec3& stiffness, double length, const Vec3& rest_direction, const Vec3& x_a, const Mat3& R_a,
                    const Vec3& x_b, const Mat3& R_b) {
-    const Axis link = axis(length, x_a, x_b);
+    const LinkAxis link = link_axis(length, x_a, x_b);
     const Vec3 d_a = R_a * rest_direction, d_b = R_b * rest_direction;
     Mat12 H = Mat12::Zero();
     Elongation(link, length).add_hessian(stiffness[0], H);

@@ -9,6 +9,14 @@ namespace palpate::skeleton {
 using Vec12 = Eigen::Matrix<double, 12, 1>;
 using Mat12 = Eigen::Matrix<double, 12, 12>;
 
+/// A link as it stands: x_b - x_a = l n.
+struct LinkAxis {
+    double l;  // [mm]
+    Vec3 n;    // unit
+};
+/// @throws SolverFailure when the ends coincide; `length`: at rest [mm].
+LinkAxis link_axis(double length, const Vec3& x_a, const Vec3& x_b);
+
 /// A link's energies at unit stiffness, and their derivatives by the step of its two ends (dx_a, w_a, dx_b, w_b):
 ///   elongation  1/2 (|x_b - x_a| - L)^2
 ///   flexion     1/2 (theta_a^2 + theta_b^2), theta: angle between the link and the direction that an end carries

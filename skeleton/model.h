@@ -31,7 +31,8 @@ struct Link {
     int a = 0, b = 0;                          // spheres, a < b
     double length = 0;                         // at rest [mm]
     Eigen::Vector3d stiffness = Vec3::Zero();  // kE [N/mm], kF [N mm/rad], kT [N mm/rad]
-    int zone = 0;  // links of a zone share their stiffness multipliers when identified by zones
+    int zone = 0;         // links of a zone share their stiffness multipliers when identified by zones
+    double gyration = 0;  // radius of gyration of its section [mm]; 0: as flexion and elongation have it
 };
 
 /// Where a point of the body hangs: on the nearest sphere (a == b, or t = 0, 1) or link. It follows

@@ -7,8 +7,8 @@
 namespace palpate::skeleton {
 
 /// Reads model.json (palpate-model/1). A model edited by hand is a valid model: what can be derived (length, inertia,
-/// skin, zone) may be missing; skeleton/model.schema.json tells the rest. @throws IoError, InvalidInput naming file,
-/// element and field.
+/// skin, zone, gyration) may be missing; skeleton/model.schema.json tells the rest. @throws IoError, InvalidInput
+/// naming file, element and field.
 Model read_model(const std::filesystem::path& file);
 
 /// Writes model.json, whole or not at all.

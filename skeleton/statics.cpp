@@ -6,7 +6,7 @@
 
 #include "mesh/errors.h"
 #include "skeleton/effects/placed_effects.h"
-#include "skeleton/link_energy.h"
+#include "skeleton/links/placed_links.h"
 
 namespace palpate::skeleton {
 
@@ -14,12 +14,12 @@ namespace {
 
 using Triplets = std::vector<Eigen::Triplet<double>>;
 
-LinkTerms terms_of(const Model& model, const State& state, const Link& link) {
-    return link_terms(link.length, rest_direction(model, link), state.x.row(link.a).transpose(), state.R[link.a],
-                      state.x.row(link.b).transpose(), state.R[link.b], false);
+PlacedEffects effects_of(const Model& model, const fem::Effects& extra) {
+    return {model, physics_of(model.effects, extra)};
 }
-
-PlacedEffects effects_of(const Model& model) { return {model, potentials_of(model.effects)}; }
+PlacedLinks links_of(const Model& model, const fem::Effects& extra) {
+    return {model, physics_of(model.effects, extra)};
+}
 
 // Row of entry i of a link's twelve.
 int row_of(const Link& link, int i) { return i < 6 ? 6 * link.a + i : 6 * link.b + i - 6; }
@@ -38,19 +38,8 @@ Vec3 rest_direction(const Model& model, const Link& link) {
     return dx / distance;
 }
 
-Eigen::SparseMatrix<double> link_forces(const Model& model, const State& state) {
-    Triplets entries;
-    entries.reserve(36 * model.links.size());
-    for (size_t l = 0; l < model.links.size(); ++l) {
-        const Link& link = model.links[l];
-        const LinkTerms terms = terms_of(model, state, link);
-        for (int s = 0; s < 3; ++s)
-            for (int i = 0; i < 12; ++i)
-                entries.emplace_back(row_of(link, i), 3 * static_cast<int>(l) + s, -terms.gradient(i, s));
-    }
-    Eigen::SparseMatrix<double> G(model.dofs(), 3 * static_cast<Eigen::Index>(model.links.size()));
-    G.setFromTriplets(entries.begin(), entries.end());
-    return G;
+Eigen::SparseMatrix<double> link_forces(const Model& model, const State& state, const fem::Effects& extra) {
+    return links_of(model, extra).forces(state);
 }
 
 Eigen::VectorXd stiffness_vector(const Model& model) {
@@ -61,34 +50,44 @@ Eigen::VectorXd stiffness_vector(const Model& model) {
 
 void set_stiffness(Model& model, const Eigen::VectorXd& k) {
     assert(k.size() == 3 * static_cast<Eigen::Index>(model.links.size()));
-    for (size_t l = 0; l < model.links.size(); ++l) model.links[l].stiffness = k.segment<3>(3 * l);
+    for (size_t l = 0; l < model.links.size(); ++l) {
+        model.links[l].gyration = radius_of_gyration(model.links[l]);
+        model.links[l].stiffness = k.segment<3>(3 * l);
+    }
 }
 
-Eigen::VectorXd effect_force(const Model& model, const State& state) { return effects_of(model).force(state); }
+Eigen::VectorXd effect_force(const Model& model, const State& state, const fem::Effects& extra) {
+    return effects_of(model, extra).force(state);
+}
 
-double potential(const Model& model, const State& state, const Load& load) {
-    double energy = effects_of(model).energy(state).sum - external_work(model, state, load);
-    for (const Link& link : model.links) energy += link.stiffness.dot(terms_of(model, state, link).energy);
+double potential(const Model& model, const State& state, const Load& load, const fem::Effects& extra) {
+    double energy = effects_of(model, extra).energy(state).sum - external_work(model, state, load);
+    const PlacedLinks links = links_of(model, extra);
+    for (size_t l = 0; l < model.links.size(); ++l)
+        energy += model.links[l].stiffness.dot(links.terms(l, state, false).energy);
     return energy;
 }
 
-Eigen::VectorXd residual(const Model& model, const State& state, const Load& load) {
-    Eigen::VectorXd r = external_force(model, state, load) + effect_force(model, state);
-    for (const Link& link : model.links) {
-        const Vec12 g = terms_of(model, state, link).gradient * link.stiffness;
+Eigen::VectorXd residual(const Model& model, const State& state, const Load& load, const fem::Effects& extra) {
+    Eigen::VectorXd r = external_force(model, state, load) + effect_force(model, state, extra);
+    const PlacedLinks links = links_of(model, extra);
+    for (size_t l = 0; l < model.links.size(); ++l) {
+        const Link& link = model.links[l];
+        const Vec12 g = links.terms(l, state, false).gradient * link.stiffness;
         r.segment<6>(Eigen::Index{6} * link.a) -= g.head<6>();
         r.segment<6>(Eigen::Index{6} * link.b) -= g.tail<6>();
     }
     return r;
 }
 
-Eigen::SparseMatrix<double> tangent(const Model& model, const State& state, const Load& load) {
+Eigen::SparseMatrix<double> tangent(const Model& model, const State& state, const Load& load, const fem::Effects& extra,
+                                    const FibreStates& before) {
     Triplets entries;
     entries.reserve(144 * model.links.size() + 9 * model.spheres.size());
-    for (const Link& link : model.links) {
-        const Mat12 H =
-            link_hessian(link.stiffness, link.length, rest_direction(model, link), state.x.row(link.a).transpose(),
-                         state.R[link.a], state.x.row(link.b).transpose(), state.R[link.b]);
+    const PlacedLinks links = links_of(model, extra);
+    for (size_t l = 0; l < model.links.size(); ++l) {
+        const Link& link = model.links[l];
+        const Mat12 H = links.hessian(l, link.stiffness, state, before);
         for (int j = 0; j < 12; ++j)
             for (int i = 0; i < 12; ++i) entries.emplace_back(row_of(link, i), row_of(link, j), H(i, j));
     }
@@ -97,7 +96,7 @@ Eigen::SparseMatrix<double> tangent(const Model& model, const State& state, cons
         for (int j = 0; j < 3; ++j)
             for (int i = 0; i < 3; ++i)
                 entries.emplace_back(6 * sphere + 3 + i, 6 * sphere + 3 + j, -curvature[sphere](i, j));
-    const PlacedEffects effects = effects_of(model);
+    const PlacedEffects effects = effects_of(model, extra);
     const std::vector<PlacedEffects::Block> blocks = effects.curvature(state);
     for (size_t p = 0; p < blocks.size(); ++p) {
         const auto [a, b] = effects.pairs()[p];

@@ -1,12 +1,41 @@
 #include "fem/large_deformation/element_kernel.h"
 
 #include <limits>
+#include <type_traits>
 
 #include "fem/large_deformation/point_law.h"
 
 namespace palpate::fem {
 
 namespace {
+
+/// F = I + sum_i u_i dN_i/dX
+Mat3 gradient(const ElementShape& shape, const NodeVectors& u, int q) {
+    Mat3 F = u.lazyProduct(shape.gradients(q).transpose());
+    F.diagonal().array() += 1;
+    return F;
+}
+
+/// An element without effects in its material.
+struct Bare {
+    static constexpr bool adds = false;
+    static constexpr double s(int) { return 1; }
+    static constexpr double mean_s() { return 1; }
+};
+
+/// An element whose stiffness differs from place to place.
+struct Scaled : Bare {
+    const ElementEffects& effects;
+    explicit Scaled(const ElementEffects& all) : effects(all) {}
+    double s(int q) const { return effects.s(q); }
+    double mean_s() const { return effects.mean_s; }
+};
+
+/// An element whose law they add to besides.
+struct Extended : Scaled {
+    using Scaled::Scaled;
+    static constexpr bool adds = true;
+};
 
 /// The law at an element's quadrature points, and the mean of its volume measure v.
 template <Law law>
@@ -21,51 +50,70 @@ public:
 
     const PointLaw<law>& operator[](int q) const { return at_[q]; }
     /// Derivative of the volume's energy density by v at a point.
-    double pressure(int q) const { return local_ * at_[q].v + on_mean_ * mean_; }
+    template <class Effects>
+    double pressure(int q, const Effects& effects) const {
+        return effects.s(q) * local_ * at_[q].v + effects.mean_s() * on_mean_ * mean_;
+    }
     double mean() const { return mean_; }
     bool inside_out() const {
         return at_[0].inside_out() || at_[1].inside_out() || at_[2].inside_out() || at_[3].inside_out();
     }
 
 private:
-    /// F = I + sum_i u_i dN_i/dX
     static PointLaw<law> at(const ElementShape& shape, const NodeVectors& u, int q) {
-        Mat3 F = u.lazyProduct(shape.gradients(q).transpose());
-        F.diagonal().array() += 1;
-        return PointLaw<law>(F);
+        return PointLaw<law>(gradient(shape, u, q));
     }
 
     std::array<PointLaw<law>, element_points> at_;
     double mean_ = 0, local_, on_mean_;
 };
 
-template <Law law>
-double force_of(const ElementShape& shape, const ElementModel& model, const NodeVectors& u, NodeVectors& f) {
+template <Law law, class Effects>
+double force_of(const ElementShape& shape, const ElementModel& model, const Effects& effects, const NodeVectors& u,
+                NodeVectors& f) {
     const Points<law> points(shape, model, u);
     if (points.inside_out()) return std::numeric_limits<double>::infinity();
     const double local = model.local_bulk();
-    double energy = (model.K - local) / 2 * shape.w.sum() * points.mean() * points.mean();
+    double energy = effects.mean_s() * (model.K - local) / 2 * shape.w.sum() * points.mean() * points.mean();
     f.setZero();
     for (int q = 0; q < element_points; ++q) {
-        energy += shape.w(q) * (model.mu * points[q].D + local / 2 * points[q].v * points[q].v);
-        const Mat3 P = shape.w(q) * (model.mu * points[q].dD + points.pressure(q) * points[q].dv);
+        const double mu = effects.s(q) * model.mu;
+        energy += shape.w(q) * (mu * points[q].D + effects.s(q) * local / 2 * points[q].v * points[q].v);
+        const Mat3 P = shape.w(q) * (mu * points[q].dD + points.pressure(q, effects) * points[q].dv);
         f += P.lazyProduct(shape.gradients(q));
+    }
+    if constexpr (Effects::adds) {
+        for (int q = 0; q < element_points; ++q) {
+            const MaterialTerms added = effects.effects.added(law, q, gradient(shape, u, q), false);
+            const double weight = shape.w(q) * effects.s(q) * model.mu;
+            energy += weight * added.w;
+            f += (weight * added.first).eval().lazyProduct(shape.gradients(q));
+        }
     }
     return energy;
 }
 
-template <Law law>
-void tangent_of(const ElementShape& shape, const ElementModel& model, const NodeVectors& u, ElementTangent& K) {
+template <Law law, class Effects>
+void tangent_of(const ElementShape& shape, const ElementModel& model, const Effects& effects, const NodeVectors& u,
+                ElementTangent& K) {
     const Points<law> points(shape, model, u);
     const double local = model.local_bulk();
+    std::array<MaterialTerms, Effects::adds ? element_points : 0> added;
+    if constexpr (Effects::adds) {
+        for (int q = 0; q < element_points; ++q) added[q] = effects.effects.added(law, q, gradient(shape, u, q), true);
+    }
 
     // Sum over the points of dN^T A dN, where A is the second derivative of W by F.
     for (int c = 0; c < 3; ++c) {
         for (int d = c; d < 3; ++d) {
             Eigen::Matrix<double, 3 * element_points, element_nodes, Eigen::RowMajor> A_dN;
             for (int q = 0; q < element_points; ++q) {
-                Mat3 A = points[q].second(c, d, model.mu, points.pressure(q));
-                A += local * points[q].dv.row(c).transpose() * points[q].dv.row(d);
+                const double mu = effects.s(q) * model.mu;
+                Mat3 A = points[q].second(c, d, mu, points.pressure(q, effects));
+                A += effects.s(q) * local * points[q].dv.row(c).transpose() * points[q].dv.row(d);
+                if constexpr (Effects::adds) {
+                    A += mu * added[q].second.template block<3, 3>(Eigen::Index{3} * c, Eigen::Index{3} * d);
+                }
                 A_dN.template middleRows<3>(3 * q) = (shape.w(q) * A).eval().lazyProduct(shape.gradients(q));
             }
             K.blocks[ElementTangent::block_of(c, d)].noalias() = shape.dN.transpose().lazyProduct(A_dN);
@@ -78,11 +126,29 @@ void tangent_of(const ElementShape& shape, const ElementModel& model, const Node
     for (int q = 0; q < element_points; ++q) {
         g += (shape.w(q) * points[q].dv).eval().lazyProduct(shape.gradients(q));
     }
-    const double factor = (model.K - local) / shape.w.sum();
+    const double factor = effects.mean_s() * (model.K - local) / shape.w.sum();
     for (int c = 0; c < 3; ++c) {
         for (int d = c; d < 3; ++d) {
             K.blocks[ElementTangent::block_of(c, d)] += (factor * g.row(c)).transpose() * g.row(d);
         }
+    }
+}
+
+/// Calls work(law, effects) with what an element is made of.
+template <class Work>
+auto dispatch(Law law, const ElementEffects* effects, Work&& work) {
+    const auto by_effects = [&]<Law known>(std::integral_constant<Law, known> which) {
+        if (!effects) return work(which, Bare{});
+        if (effects->is_scale()) return work(which, Scaled(*effects));
+        return work(which, Extended(*effects));
+    };
+    switch (law) {
+        case Law::linear:
+            return by_effects(std::integral_constant<Law, Law::linear>{});
+        case Law::svk:
+            return by_effects(std::integral_constant<Law, Law::svk>{});
+        default:
+            return by_effects(std::integral_constant<Law, Law::neo_hooke>{});
     }
 }
 
@@ -94,26 +160,15 @@ ElementModel::ElementModel(const BodySetting& setting, Dilatation kept)
       K(setting.material.young / (3 * (1 - 2 * setting.material.poisson))),
       dilatation(kept) {}
 
-double element_force(const ElementShape& shape, const ElementModel& model, const NodeVectors& u, NodeVectors& f) {
-    switch (model.law) {
-        case Law::linear:
-            return force_of<Law::linear>(shape, model, u, f);
-        case Law::svk:
-            return force_of<Law::svk>(shape, model, u, f);
-        default:
-            return force_of<Law::neo_hooke>(shape, model, u, f);
-    }
+double element_force(const ElementShape& shape, const ElementModel& model, const ElementEffects* effects,
+                     const NodeVectors& u, NodeVectors& f) {
+    return dispatch(model.law, effects,
+                    [&](auto law, const auto& of) { return force_of<law()>(shape, model, of, u, f); });
 }
 
-void element_tangent(const ElementShape& shape, const ElementModel& model, const NodeVectors& u, ElementTangent& K) {
-    switch (model.law) {
-        case Law::linear:
-            return tangent_of<Law::linear>(shape, model, u, K);
-        case Law::svk:
-            return tangent_of<Law::svk>(shape, model, u, K);
-        default:
-            return tangent_of<Law::neo_hooke>(shape, model, u, K);
-    }
+void element_tangent(const ElementShape& shape, const ElementModel& model, const ElementEffects* effects,
+                     const NodeVectors& u, ElementTangent& K) {
+    dispatch(model.law, effects, [&](auto law, const auto& of) { tangent_of<law()>(shape, model, of, u, K); });
 }
 
 }  // namespace palpate::fem

@@ -3,7 +3,7 @@
 #include <array>
 
 #include "fem/hyperelastic_body.h"
-#include "fem/large_deformation/element_shape.h"
+#include "fem/large_deformation/element_effects.h"
 
 namespace palpate::fem {
 
@@ -36,10 +36,13 @@ struct ElementTangent {
 };
 
 /// An element's energy by its nodes' displacements, and the internal forces, its gradient. Infinite, and no forces,
-/// when it is inside out.
-double element_force(const ElementShape& shape, const ElementModel& model, const NodeVectors& u, NodeVectors& f);
+/// when it is inside out. `effects`: in its material, nullptr: none. With them the energy is
+///   sum_q w_q s_q (mu (D + w) + local/2 v^2) + mean s V (K - local)/2 (mean v)^2.
+double element_force(const ElementShape& shape, const ElementModel& model, const ElementEffects* effects,
+                     const NodeVectors& u, NodeVectors& f);
 
 /// The second derivative. @pre the element is not inside out.
-void element_tangent(const ElementShape& shape, const ElementModel& model, const NodeVectors& u, ElementTangent& K);
+void element_tangent(const ElementShape& shape, const ElementModel& model, const ElementEffects* effects,
+                     const NodeVectors& u, ElementTangent& K);
 
 }  // namespace palpate::fem

@@ -9,6 +9,9 @@ namespace palpate::fem {
 inline constexpr int element_nodes = 10;  // quadratic tetrahedra
 inline constexpr int element_points = 4;  // of the quadrature rule, exact to degree 2
 
+/// Where an element's quadrature points are, a row each (points x 3) [mm].
+using PointPositions = Eigen::Matrix<double, element_points, 3, Eigen::RowMajor>;
+
 /// A quadratic element at rest, straight or curved: all that integrals over it need.
 struct ElementShape {
     /// dN_i/dX_a at quadrature point q is entry (3 q + a, i) [1/mm].

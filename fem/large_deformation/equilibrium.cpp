@@ -21,13 +21,14 @@ void NewtonOptions::validate() const {
 }
 
 BodyEquilibrium find_equilibrium(const BodyShape& body, const EliminationOrder& order, const BodySetting& setting,
-                                 const Eigen::VectorXd& f, const NewtonOptions& options, const Eigen::VectorXd* start) {
+                                 const Eigen::VectorXd& f, const NewtonOptions& options, const Eigen::VectorXd* start,
+                                 const PlasticState* before) {
     const Unknowns& unknowns = order.unknowns;
     assert(f.size() == body.mesh.nodes.size());
     BodyEquilibrium result;
     result.u.setZero(f.size());
 
-    const LoadedBody loaded(body, setting, f);
+    const LoadedBody loaded(body, setting, f, before);
     const double load = unknowns.gather(loaded.net_force(result.u)).norm();  // at rest nothing else pulls
     if (load == 0) return result;
 
@@ -35,21 +36,30 @@ BodyEquilibrium find_equilibrium(const BodyShape& body, const EliminationOrder& 
     const auto tolerance = [&](double share) { return std::max(share * load, rounding); };
     Newton newton(order, options.iterations);
     Eigen::VectorXd& u = result.u;
+    const double rough = std::max(options.tolerance, 1e-3);
+    // A body that flows sets out from where it would stand if it did not, unless it is near its answer.
+    const auto elastically = [&](double share) {
+        return loaded.conservative() ||
+               newton.minimise(LoadedBody(body, setting, f, before, share, false), tolerance(rough), u);
+    };
     const auto from_start = [&] {
         if (!start) return false;
         u = unknowns.scatter(unknowns.gather(*start));
-        return loaded.admits(u) && newton.minimise(loaded, tolerance(options.tolerance), u);
+        if (!loaded.admits(u)) return false;
+        const bool near = loaded.conservative() || unknowns.gather(loaded.net_force(u)).norm() < 0.2 * load;
+        return (near || elastically(1)) && newton.minimise(loaded, tolerance(options.tolerance), u);
     };
     // Each step starts where the last two point to; only the last has to be exact.
     const auto in_steps = [&](int steps) {
         Eigen::VectorXd last = Eigen::VectorXd::Zero(f.size());
         u = last;
         for (int k = 1; k <= steps; ++k) {
-            const LoadedBody part(body, setting, f, static_cast<double>(k) / steps);
+            const LoadedBody part(body, setting, f, before, static_cast<double>(k) / steps);
             const Eigen::VectorXd ahead = 2 * u - last;
             last = u;
             if (part.admits(ahead)) u = ahead;
-            const double share = k == steps ? options.tolerance : std::max(options.tolerance, 1e-3);
+            const double share = k == steps ? options.tolerance : rough;
+            if (k == 1 && !elastically(1.0 / steps)) return false;
             if (!newton.minimise(part, tolerance(share), u)) return false;
         }
         return true;

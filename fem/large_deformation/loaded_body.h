@@ -1,28 +1,9 @@
 #pragma once
 
-#include "fem/large_deformation/node_integrals.h"
+#include "fem/large_deformation/body_material.h"
 #include "fem/large_deformation/unknowns.h"
 
 namespace palpate::fem {
-
-/// What a body is, whatever it is made of.
-struct BodyShape {
-    mesh::VolumeMesh mesh;
-    std::vector<char> held;
-    Dilatation dilatation;
-    std::vector<ElementShape> elements;
-    NodeIntegrals integrals;
-
-    NodeWeights points(ActsOn what, double density) const;
-    /// Displacements of an element's nodes.
-    NodeVectors displacements(const Eigen::VectorXd& u, std::size_t element) const;
-    /// Adds forces on an element's nodes to those on all.
-    void add(const NodeVectors& f, std::size_t element, Eigen::Ref<Eigen::VectorXd> forces) const;
-};
-
-/// The forces of one element on its nodes. @throws SolverFailure when it is inside out.
-NodeVectors internal_force(const BodyShape& body, const ElementModel& model, const Eigen::VectorXd& u,
-                           std::size_t element);
 
 /// The potential at one displacement.
 struct Potential {
@@ -34,7 +15,12 @@ struct Potential {
 /// body and are always there in full. The linear law takes effects as they are at rest, to second order.
 class LoadedBody {
 public:
-    LoadedBody(const BodyShape& body, const BodySetting& setting, const Eigen::VectorXd& f, double share = 1);
+    /// `before`, `flows`: as BodyMaterial takes them. @pre body, setting and `before` outlive it.
+    LoadedBody(const BodyShape& body, const BodySetting& setting, const Eigen::VectorXd& f,
+               const PlasticState* before = nullptr, double share = 1, bool flows = true);
+
+    /// Are its forces the gradient of a potential?
+    bool conservative() const { return material_.conservative(); }
 
     /// `net`: force on every node, minus the potential's gradient (3n). The value is infinite, and `net` not set, where
     /// an element is inside out.
@@ -44,7 +30,7 @@ public:
     /// @throws SolverFailure where an element is inside out.
     Eigen::VectorXd net_force(const Eigen::VectorXd& u) const;
     /// About the norm of what rounding leaves of forces that balance [N].
-    double rounding() const;
+    double rounding() const { return material_.rounding(); }
     /// Adds the potential's second derivative. @pre no element is inside out.
     void add_tangent(const Eigen::VectorXd& u, const Unknowns& unknowns, LowerMatrix& K) const;
 
@@ -56,9 +42,10 @@ private:
     PointTerms terms(const Effect& effect, std::size_t k, const Eigen::VectorXd& u) const;  // at its point k
 
     const BodyShape& body_;
-    ElementModel model_;
+    BodyMaterial material_;
     std::vector<Effect> effects_;
     Eigen::VectorXd f_;
+    double pressure_;  // in cavities [MPa]
 };
 
 }  // namespace palpate::fem

@@ -79,7 +79,8 @@ Eigen::VectorXd Newton::direction(const Eigen::VectorXd& force) const {
     return q;
 }
 
-/// Shortens the step until the potential falls; the share of it taken, 0: none.
+/// Shortens the step until the potential falls; the share of it taken, 0: none. That of a body that flows is but near
+/// the truth: far from balance it guides well, and close to it the net force does.
 double Newton::search(const LoadedBody& body, const State& from, const Eigen::VectorXd& step, State& to) const {
     const Eigen::VectorXd whole = order_.unknowns.scatter(step);
     const double slope = from.r.dot(step);  // the decrease promised for length 1
@@ -90,11 +91,15 @@ double Newton::search(const LoadedBody& body, const State& from, const Eigen::Ve
             length /= 4;
             continue;
         }
-        // Where differences of energy drown in rounding the slope stands for them. [Hager & Zhang 2005]
         const double end_slope = to.r.dot(step), change = to.potential.value - from.potential.value;
-        const double rounding = 1e-13 * to.potential.scale;
         if (change <= -armijo * length * slope) return length;
-        if (change <= rounding && end_slope >= -(1 - 2 * armijo) * slope) return length;
+        if (body.conservative()) {
+            // Where differences of energy drown in rounding the slope stands for them. [Hager & Zhang 2005]
+            const double rounding = 1e-13 * to.potential.scale;
+            if (change <= rounding && end_slope >= -(1 - 2 * armijo) * slope) return length;
+        } else if (to.r.norm() <= (1 - armijo * length) * from.r.norm()) {
+            return length;
+        }
         // Where a parabola through both slopes has its least value.
         length *= std::clamp(slope / (slope - end_slope), 0.1, 0.5);
     }
@@ -152,7 +157,7 @@ bool Newton::minimise(const LoadedBody& body, double tolerance, Eigen::VectorXd&
             factored = false;
             continue;
         }
-        if (fresh && shift_ == 0 && length < 1) {
+        if (fresh && shift_ == 0 && length < 1 && body.conservative()) {
             factored = leap(body, here, step, next);
         } else {
             remember(here, next);

@@ -6,7 +6,7 @@
 
 namespace palpate::fem {
 
-/// Finds where a loaded body's potential is least, over some unknowns.
+/// Finds where a loaded body's potential is least, over some unknowns; of one that flows, where its forces balance.
 ///
 /// Newton's method with line search. A factor of the tangent serves for further steps, mended by BFGS updates with the
 /// changes of force that they bring [Matthies & Strang 1979], as long as they bring enough. A tangent that is not

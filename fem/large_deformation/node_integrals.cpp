@@ -7,32 +7,6 @@
 
 namespace palpate::fem {
 
-namespace {
-
-/// A point of a quadrature rule on the triangle; weights add up to 1.
-struct TrianglePoint {
-    Vec3 l;
-    double weight;
-};
-
-/// Exact to degree 5, as many as curved faces ask for. [Radon 1948]
-std::array<TrianglePoint, 7> triangle_rule() {
-    const double root = std::sqrt(15.0);
-    std::array<TrianglePoint, 7> rule;
-    rule[0] = {Vec3::Constant(1.0 / 3), 9.0 / 40};
-    for (int k = 0; k < 3; ++k) {
-        for (const int sign : {-1, 1}) {
-            const double a = (6 + sign * root) / 21;
-            TrianglePoint& point = rule[sign < 0 ? 1 + k : 4 + k];
-            point = {Vec3::Constant(a), (155 + sign * root) / 1200};
-            point.l(k) = 1 - 2 * a;
-        }
-    }
-    return rule;
-}
-
-}  // namespace
-
 NodeIntegrals node_integrals(const mesh::VolumeMesh& mesh, const std::vector<char>& held) {
     const Eigen::Index n = mesh.nodes.rows();
     NodeIntegrals result{Eigen::VectorXd::Zero(n), Eigen::VectorXd::Zero(n), Eigen::VectorXd::Zero(n)};
@@ -53,7 +27,7 @@ NodeIntegrals node_integrals(const mesh::VolumeMesh& mesh, const std::vector<cha
     }
     result.support /= result.support.sum();
 
-    const auto face_rule = triangle_rule();
+    const auto face_rule = triangle_quadrature_5();
     for (Eigen::Index f = 0; f < mesh.faces.rows(); ++f) {
         const auto face = mesh.faces.row(f);
         const auto X = node_positions<6>(mesh.nodes, face);

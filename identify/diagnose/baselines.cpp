@@ -30,6 +30,10 @@ void Baselines::fit(const Problem& problem, std::vector<std::string>& notes, con
     for (int i = 0; i < laws(); ++i) {
         const int law = i == 0 ? 0 : laws() - i;
         if (options_->law && *options_->law != law) continue;
+        // Where more than this is left, whitened, other things matter than which of the laws of large deformation it
+        // is.
+        constexpr double much = 3;
+        if (neighbour && neighbour->whitened_rms > much) continue;
         const std::string& name = model_->laws()[law];
         report(progress, "baseline, law " + name, 0.1 + 0.1 * i);
         RefitOptions how = options_->refit;
@@ -50,9 +54,10 @@ void Baselines::fit(const Problem& problem, std::vector<std::string>& notes, con
     }
 }
 
-void Baselines::refit(const Problem& problem) {
+void Baselines::refit(const Problem& problem, bool best_only) {
+    const Refit* leading = &best();
     for (std::optional<Refit>& found : fits_) {
-        if (!found) continue;
+        if (!found || (best_only && &*found != leading)) continue;
         try {
             // from where it stands; the nuisances are made anew
             found->V.reset();

@@ -13,8 +13,8 @@ public:
 
     /// Laws without equilibria are left out, each told in `notes`. @throws SolverFailure when none is left.
     void fit(const Problem& problem, std::vector<std::string>& notes, const Progress& progress);
-    /// The same once the readings are others, or their sigmas.
-    void refit(const Problem& problem);
+    /// The same once the readings are others, or their sigmas: under all laws, or only the one that explains most.
+    void refit(const Problem& problem, bool best_only = false);
 
     int laws() const { return static_cast<int>(fits_.size()); }
     const std::optional<Refit>& under(int law) const { return fits_[law]; }

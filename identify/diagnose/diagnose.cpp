@@ -8,7 +8,7 @@
 #include "identify/diagnose/baselines.h"
 #include "identify/diagnose/crushing.h"
 #include "identify/diagnose/judge.h"
-#include "identify/diagnose/screen.h"
+#include "identify/diagnose/search.h"
 #include "identify/effects/catalogue.h"
 #include "mesh/errors.h"
 
@@ -16,13 +16,6 @@ namespace palpate::identify {
 namespace {
 
 constexpr const char* noise_note = "The set does not tell its noise: ";
-
-Explanation with_effect(const Explanation& base, const Screened& screened) {
-    Explanation result = base;
-    result.effects.push_back(screened.effect);
-    result.values.push_back(screened.start);
-    return result;
-}
 
 /// The diagnosis in progress.
 class Inquiry {
@@ -36,6 +29,9 @@ public:
             const bool known =
                 std::ranges::find(options.known, effect->name(), &skeleton::Effect::name) != options.known.end();
             if (!left_out && !known) effects_.push_back(effect);
+            if (known && effect->has_memory() && !result_.problem.by_stage) {
+                result_.problem = result_.problem.stage_by_stage();
+            }
         }
     }
 
@@ -77,19 +73,6 @@ private:
         return std::max(0.01 * std::sqrt(u.squaredNorm() / static_cast<double>(u.size())), 1e-12);
     }
 
-    /// The law under which the best effect, by the screen, promises most.
-    int most_promising_law() const {
-        int best = 0;
-        double most = -INFINITY;
-        for (int law = 0; law < baselines_.laws(); ++law) {
-            const double more = screened_[law].empty() ? 0 : std::max(0.0, screened_[law].front().log_bayes_factor);
-            if (baselines_.evidence(law) + more > most) {
-                most = baselines_.evidence(law) + more;
-                best = law;
-            }
-        }
-        return best;
-    }
     const Refit& baseline() const { return baselines_.best(); }
 
     void tell(const std::string& what, double share) const { report(progress_, what, share); }
@@ -110,13 +93,18 @@ private:
 
     /// Screens and confirms the catalogue anew.
     void inquire() {
-        result_.ranking.clear();
-        screen_all();
-        confirm();
+        Search search(model_, result_.problem, baselines_, effects_, options_, progress_);
+        search.run();
+        result_.ranking = search.ranking();
+        result_.tried = search.tried();
     }
 
-    bool explained() const { return !result_.ranking.empty() && is_likely(result_.ranking.front(), options_); }
-    const Refit& leading() const { return explained() ? *result_.ranking.front().refit : baseline(); }
+    const Explained* leader() const {
+        const auto found = std::ranges::max_element(result_.tried, {}, &Explained::log_bayes_factor);
+        return found == result_.tried.end() || !is_likely(*found, options_) ? nullptr : &*found;
+    }
+    bool explained() const { return leader() != nullptr; }
+    const Refit& leading() const { return explained() ? leader()->fit : baseline(); }
 
     /// Readings that are off by themselves, as a fit sees them; true where some were set aside.
     bool set_outliers_aside(const Refit& fit) {
@@ -136,7 +124,6 @@ private:
         result_.problem = result_.problem.with_rows(keep);
         result_.notes.push_back(
             fmt::format("{} of {} readings are off by themselves and were set aside.", found.readings.size(), before));
-        baselines_.refit(result_.problem);
         return true;
     }
 
@@ -145,108 +132,45 @@ private:
     void set_plain_outliers_aside() {
         const Diagnosis before = result_;
         const Baselines baselines = baselines_;
-        if (!set_outliers_aside(baseline()) || !options_.screen || is_enough(baseline(), options_)) return;
-        result_ = before;
-        baselines_ = baselines;
+        if (!set_outliers_aside(baseline())) return;
+        baselines_.refit(result_.problem, true);
+        if (!options_.screen || is_enough(baseline(), options_)) {
+            baselines_.refit(result_.problem);
+        } else {
+            result_ = before;
+            baselines_ = baselines;
+        }
     }
 
-    /// Once an effect explains the rest, or nothing does, the same; undone where it does not leave mere noise.
+    /// Once an effect explains the rest, or nothing does, the same; only where noise is left then.
     void set_outliers_aside_next_to_effect() {
         const Diagnosis before = result_;
-        const Baselines baselines = baselines_;
-        if (!set_outliers_aside(leading())) return;
+        const Refit leads = leading();
+        if (!set_outliers_aside(leads)) return;
+        if (!is_enough(without_them(leads), options_)) {
+            result_ = before;
+            return;
+        }
+        baselines_.refit(result_.problem);
         inquire();
-        if (is_enough(leading(), options_)) return;
-        result_ = before;
-        baselines_ = baselines;
+    }
+
+    /// A fit once more, to the readings that are left.
+    Refit without_them(const Refit& fit) const {
+        Refit start = fit;
+        start.V.reset();
+        const bool in_stages = fit.explanation.has_memory() && !result_.problem.by_stage;
+        return refit(model_, in_stages ? result_.problem.stage_by_stage() : result_.problem, fit.explanation,
+                     options_.refit, &start);
     }
 
     bool outliers_wanted() const { return std::ranges::find(options_.without, "outliers") == options_.without.end(); }
-
-    void screen_all() {
-        screened_.assign(baselines_.laws(), {});
-        for (int law = 0; law < baselines_.laws(); ++law) {
-            if (!baselines_.under(law)) continue;
-            tell("screen, law " + model_.laws()[law], 0.45 + 0.05 * law);
-            screened_[law] =
-                screen_effects(model_, result_.problem, *baselines_.under(law), effects_, options_.refit.threads);
-            std::ranges::stable_sort(screened_[law], std::greater{}, &Screened::log_bayes_factor);
-        }
-    }
-
-    /// Refits an effect under a law; nothing where there is no equilibrium.
-    std::optional<Refit> try_refit(int law, const Screened& screened) const {
-        try {
-            const Refit& base = *baselines_.under(law);
-            return refit(model_, result_.problem, with_effect(base.explanation, screened), options_.refit, &base);
-        } catch (const SolverFailure&) {
-            return std::nullopt;
-        }
-    }
-
-    void confirm() {
-        const int law = most_promising_law();
-        const double nothing = baseline().log_evidence;
-        for (const Screened& screened : screened_[law]) {
-            Candidate candidate{.effect = screened.effect,
-                                .screened = screened.log_bayes_factor,
-                                .log_bayes_factor = screened.log_bayes_factor,
-                                .keep = screened.keep,
-                                .predicted_rms_mm = screened.predicted_rms_mm};
-            const double least = std::max(options_.least_screen, 0.2 * screened_[law].front().log_bayes_factor);
-            if (std::ssize(result_.ranking) < options_.refits && screened.log_bayes_factor >= least) {
-                tell("refit with " + screened.effect->name(), 0.6 + 0.08 * static_cast<double>(result_.ranking.size()));
-                candidate.refit = try_refit(law, screened);
-                if (candidate.refit) candidate.log_bayes_factor = candidate.refit->log_evidence - nothing;
-            }
-            result_.ranking.push_back(std::move(candidate));
-        }
-        std::ranges::stable_sort(result_.ranking, std::greater{}, &Candidate::log_bayes_factor);
-        // The law goes with the effect: the two that lead are tried under the others too.
-        for (std::size_t c = 0; c < std::min<std::size_t>(2, result_.ranking.size()); ++c) {
-            if (result_.ranking[c].refit) try_other_laws(result_.ranking[c], law);
-        }
-        std::ranges::stable_sort(result_.ranking, std::greater{}, &Candidate::log_bayes_factor);
-        for (Candidate& candidate : result_.ranking) conclude(candidate);
-    }
-
-    void try_other_laws(Candidate& candidate, int tried) const {
-        const double nothing = baseline().log_evidence;
-        for (int law = 0; law < baselines_.laws(); ++law) {
-            if (law == tried || !baselines_.under(law)) continue;
-            const auto screened = std::ranges::find(screened_[law], candidate.effect, &Screened::effect);
-            tell("refit with " + candidate.effect->name() + ", law " + model_.laws()[law], 0.9);
-            const auto other = try_refit(law, *screened);
-            if (!other || other->log_evidence <= candidate.refit->log_evidence) continue;
-            candidate.refit = other;
-            candidate.log_bayes_factor = other->log_evidence - nothing;
-            candidate.predicted_rms_mm = screened->predicted_rms_mm;
-            candidate.keep = screened->keep;
-        }
-    }
-
-    void conclude(Candidate& candidate) const {
-        if (!candidate.refit) return;
-        const Refit& fit = *candidate.refit;
-        candidate.held_out = leave_probes_out(result_.problem, fit);
-        const Eigen::VectorXd& v = fit.explanation.values.back();
-        candidate.told = candidate.effect->told(fit.numbers.back(), v);
-        // told(v) is a number by number map: its slope carries the fit's sd over
-        const Eigen::VectorXd sd = fit.covariance.diagonal().tail(v.size()).cwiseSqrt();
-        constexpr double h = 1e-6;
-        const skeleton::Effect ahead = candidate.effect->told(fit.numbers.back(), v.array() + h);
-        for (std::size_t j = 0; j < candidate.told.parameters.size(); ++j) {
-            const double slope = (ahead.parameters[j].value - candidate.told.parameters[j].value) / h;
-            candidate.sd.push_back(std::abs(slope) * sd[static_cast<Eigen::Index>(j)]);
-        }
-    }
 
     const BodyModel& model_;
     const DiagnoseOptions& options_;
     const Progress& progress_;
     std::vector<std::shared_ptr<const Effect>> effects_;
     Baselines baselines_;
-    std::vector<std::vector<Screened>> screened_;  // under each law, by evidence, most first
     Diagnosis result_;
 };
 
@@ -262,14 +186,43 @@ void DiagnoseOptions::validate() const {
     above("most_strain", most_strain);
     if (refit.steps < 1) throw InvalidInput(fmt::format("refit.steps is {}; allowed: 1 and more", refit.steps));
     if (refits < 1) throw InvalidInput(fmt::format("refits is {}; allowed: 1 and more", refits));
+    if (together < 1) throw InvalidInput(fmt::format("together is {}; allowed: 1 and more", together));
 }
 
-const Refit& Diagnosis::best() const {
-    if (verdict == Verdict::missing_effect || verdict == Verdict::ambiguous) {
-        if (ranking.front().refit) return *ranking.front().refit;
-    }
-    return baseline;
+bool Explained::has(const std::string& name) const {
+    return std::ranges::any_of(effects, [&](const auto& effect) { return effect->name() == name; });
 }
+
+Told Explained::told(const std::string& name) const {
+    const Explanation& all = fit.explanation;
+    Eigen::Index at = all.theta.size();
+    for (std::size_t e = 0; e < all.effects.size(); ++e) {
+        const Eigen::VectorXd& v = all.values[e];
+        if (all.effects[e]->name() != name) {
+            at += v.size();
+            continue;
+        }
+        Told result{all.effects[e]->told(fit.numbers[e], v), {}};
+        // told(v) as a map of the fit's numbers: its slopes carry their covariance over
+        const auto count = std::ssize(result.effect.parameters);
+        Eigen::MatrixXd slopes(count, v.size());
+        for (Eigen::Index j = 0; j < v.size(); ++j) {
+            constexpr double h = 1e-6;
+            const skeleton::Effect ahead =
+                all.effects[e]->told(fit.numbers[e], v + h * Eigen::VectorXd::Unit(v.size(), j));
+            for (Eigen::Index p = 0; p < count; ++p) {
+                slopes(p, j) = (ahead.parameters[p].value - result.effect.parameters[p].value) / h;
+            }
+        }
+        const Eigen::MatrixXd covariance =
+            slopes * fit.covariance.block(at, at, v.size(), v.size()) * slopes.transpose();
+        for (Eigen::Index p = 0; p < count; ++p) result.sd.push_back(std::sqrt(std::max(covariance(p, p), 0.0)));
+        return result;
+    }
+    return {};
+}
+
+const Refit& Diagnosis::best() const { return explained ? explained->fit : baseline; }
 
 Diagnosis diagnose(const BodyModel& model, const MeasurementSet& set, const DiagnoseOptions& options,
                    const Progress& progress) {

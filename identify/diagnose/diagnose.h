@@ -1,7 +1,6 @@
 #pragma once
 
 #include <array>
-#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -27,6 +26,7 @@ struct DiagnoseOptions {
     std::optional<int> law;               // the only one to be tried; absent: the one that explains most
     bool screen = true;                   // false: the baseline alone, for a comparison
     int refits = 4;                       // candidates that are confirmed by a refit, at most
+    int together = 4;                     // effects in one explanation, at most; 1: single ones only
     double least_screen = 3;              // ln Bayes factor of the screen below which none is refitted
     double least_evidence = 10;           // ln Bayes factor of the refit, to claim an effect
     double least_lead = 5;                // over the runner-up
@@ -37,19 +37,37 @@ struct DiagnoseOptions {
     void validate() const;  // @throws InvalidInput naming option, value and bound
 };
 
-/// One effect as an explanation.
+/// An effect's numbers as they are told, each with its standard deviation.
+struct Told {
+    skeleton::Effect effect = {};
+    std::vector<double> sd = {};
+};
+
+/// Effects in force together, fitted: an explanation that was tried.
+struct Explained {
+    std::vector<std::shared_ptr<const Effect>> effects;  // beyond those that are known, in the order of the fit
+    Refit fit;
+    double log_bayes_factor = 0;  // over nothing
+    HeldOut held_out = {};
+    std::string objection = {};  // why it is no claim, whatever its evidence; empty: nothing speaks against it
+
+    bool has(const std::string& name) const;
+    /// The numbers of one of its effects.
+    Told told(const std::string& name) const;
+};
+
+/// One effect by itself.
 struct Candidate {
     std::shared_ptr<const Effect> effect;
     double screened = 0;          // ln Bayes factor without refitting
     double log_bayes_factor = 0;  // after the refit where there was one
     double keep = 1;              // how much of its signature the rest cannot swallow
-    std::string objection = {};   // why it is no claim, whatever its evidence; empty: nothing speaks against it
+    std::string objection = {};   // of its refit
     double probability = 0;       // among all candidates and none
     double predicted_rms_mm = 0;  // what the screen expects to be left
     std::optional<Refit> refit = std::nullopt;
     std::optional<HeldOut> held_out = std::nullopt;
-    skeleton::Effect told = {};   // its numbers
-    std::vector<double> sd = {};  // of them
+    Told told = {};  // its numbers; in an explanation of several those that it has there
 };
 
 struct NextProbe {
@@ -61,8 +79,10 @@ struct NextProbe {
 struct Diagnosis {
     Verdict verdict = Verdict::adequate;
     std::vector<std::string> explanation;
-    std::vector<Candidate> ranking;  // by evidence, most first
-    Refit baseline;                  // nothing added, under the law that explains most
+    std::vector<Candidate> ranking;      // by evidence, most first
+    std::vector<Explained> tried;        // all that were fitted, single ones and several together
+    std::optional<Explained> explained;  // what the explanation comes from, outliers apart
+    Refit baseline;                      // nothing added, under the law that explains most
     HeldOut baseline_held_out;
     int law = 0;                       // of the explanation
     std::vector<double> law_evidence;  // of each law without effects, less the best; -inf: no equilibria
@@ -73,7 +93,7 @@ struct Diagnosis {
     double noise = 0;                // 1 sigma, told or estimated, rms [mm]
     std::vector<std::string> notes;  // what a user should know, in words
 
-    /// The fit that explains most: the leading candidate's where it is claimed, else the baseline.
+    /// The fit that explains most: that of the explanation where there is one, else the baseline.
     const Refit& best() const;
 };
 

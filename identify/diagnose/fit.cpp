@@ -1,5 +1,9 @@
 #include "identify/diagnose/fit.h"
 
+#include <algorithm>
+#include <array>
+#include <cmath>
+
 #include "identify/parallel.h"
 
 namespace palpate::identify {
@@ -7,7 +11,104 @@ namespace {
 
 /// Nothing that an unloaded state could show: no contact, no gravity, no effect that moves it.
 bool at_rest(const Setting& setting, const Action& action) {
-    return action.contacts.empty() && action.gravity.isZero(0) && setting.effects.empty();
+    return action.contacts.empty() && action.gravity.isZero(0) && action.pressure == 0 && setting.effects.empty();
+}
+
+/// An explanation with one number of one effect moved to both sides.
+struct Sides {
+    double h;
+    Explanation ahead, behind;
+};
+
+Sides about(const Explanation& explanation, std::size_t effect, Eigen::Index number) {
+    Sides sides{1e-5 * std::max(1.0, std::abs(explanation.values[effect][number])), explanation, explanation};
+    sides.ahead.values[effect][number] += sides.h;
+    sides.behind.values[effect][number] -= sides.h;
+    return sides;
+}
+
+bool same_forces(const Action& a, const Action& b) {
+    return std::ranges::equal(a.contacts, b.contacts,
+                              [](const mesh::Contact& x, const mesh::Contact& y) { return x.force == y.force; });
+}
+
+/// d net force / d numbers of an effect (dofs x numbers), by central differences.
+Eigen::MatrixXd effect_forces(const BodyModel& model, const Problem& problem, const Explanation& explanation,
+                              std::size_t effect, const Played& played, int k, const Eigen::VectorXd& q) {
+    const Eigen::VectorXd& values = explanation.values[effect];
+    Eigen::MatrixXd forces = Eigen::MatrixXd::Zero(model.dofs(), values.size());
+    Setting setting = explanation.setting();
+    const bool enforced = explanation.effects[effect]->enforce(values, setting);
+    for (Eigen::Index j = 0; j < values.size(); ++j) {
+        const Sides sides = about(explanation, effect, j);
+        Action ahead = sides.ahead.act(problem, k), behind = sides.behind.act(problem, k);
+        if (!enforced && same_forces(ahead, behind)) continue;
+        ahead.memory = behind.memory = played.actions[k].memory;
+        forces.col(j) =
+            (model.residual(q, sides.ahead.setting(), ahead) - model.residual(q, sides.behind.setting(), behind)) /
+            (2 * sides.h);
+    }
+    return forces;
+}
+
+/// Without the columns that are zero.
+Signatures::InAction as_signatures(const Eigen::MatrixXd& forces) {
+    Signatures::InAction result;
+    for (int c = 0; c < forces.cols(); ++c) {
+        if (!forces.col(c).isZero(0)) result.columns.push_back(c);
+    }
+    result.forces = forces(Eigen::all, result.columns);
+    return result;
+}
+
+/// d net force / d all numbers in every action of a body that yields (K of dofs x numbers). What it remembers depends
+/// on the numbers too: for each number two lives are led beside its own, one with a little more and one with less.
+std::vector<Eigen::MatrixXd> yielding_forces(const BodyModel& model, const Problem& problem,
+                                             const Explanation& explanation, const Played& played) {
+    struct Life {
+        Setting setting;
+        Explanation explanation;
+        double h;
+        std::vector<std::shared_ptr<const Memory>> after;  // each action
+    };
+    const auto count = static_cast<int>(problem.actions.size());
+    const Eigen::Index numbers = explanation.numbers();
+    const Eigen::VectorXd x = explanation.all();
+    std::vector<std::array<Life, 2>> lives(numbers);
+    for (Eigen::Index j = 0; j < numbers; ++j) {
+        for (int side = 0; side < 2; ++side) {
+            Life& life = lives[j][side];
+            life.h = (side == 0 ? 1e-4 : -1e-4) * std::max(1.0, std::abs(x[j]));
+            life.explanation = explanation;
+            life.explanation.set_all(x + life.h * Eigen::VectorXd::Unit(numbers, j));
+            life.setting = life.explanation.setting();
+            life.after.resize(count);
+        }
+    }
+    const Setting setting = explanation.setting();
+    std::vector<Eigen::MatrixXd> forces(count, Eigen::MatrixXd(model.dofs(), numbers));
+    for (int k = 0; k < count; ++k) {
+        const int before = problem.before(k);
+        const auto action_of = [&](const Life& life) {
+            Action action = life.explanation.act(problem, k);
+            action.memory = before < 0 ? nullptr : life.after[before];
+            return action;
+        };
+        for (Eigen::Index j = 0; j < numbers; ++j) {
+            const auto& [more, less] = lives[j];
+            forces[k].col(j) = (model.residual(played.q[k], more.setting, action_of(more)) -
+                                model.residual(played.q[k], less.setting, action_of(less))) /
+                               (more.h - less.h);
+        }
+        const Eigen::MatrixXd steps = model.tangent(played.q[k], setting, played.actions[k])->solve(forces[k]);
+        for (Eigen::Index j = 0; j < numbers; ++j) {
+            for (Life& life : lives[j]) {
+                const Eigen::VectorXd q = model.advance(played.q[k], life.h * steps.col(j), life.setting);
+                life.after[k] = model.remember(q, life.setting, action_of(life));
+            }
+        }
+    }
+    return forces;
 }
 
 /// What is seen of marker displacements (3m x c) at some positions: differences of an affine map.
@@ -44,6 +145,10 @@ Eigen::VectorXd Explanation::all() const {
     return result;
 }
 
+bool Explanation::has_memory() const {
+    return std::ranges::any_of(effects, [](const auto& effect) { return effect->has_memory(); });
+}
+
 void Explanation::set_all(const Eigen::VectorXd& all) {
     theta = all.head(theta.size()).eval();
     Eigen::Index at = theta.size();
@@ -55,9 +160,7 @@ void Explanation::set_all(const Eigen::VectorXd& all) {
 
 Setting Explanation::setting() const {
     Setting result{law, theta, {}};
-    for (std::size_t e = 0; e < effects.size(); ++e) {
-        if (auto potential = effects[e]->potential(values[e])) result.effects.push_back(std::move(potential));
-    }
+    for (std::size_t e = 0; e < effects.size(); ++e) effects[e]->enforce(values[e], result);
     return result;
 }
 
@@ -77,14 +180,19 @@ Played play(const BodyModel& model, const Problem& problem, const Explanation& e
             const std::vector<Eigen::VectorXd>* start) {
     const Setting setting = explanation.setting();
     const auto count = static_cast<int>(problem.actions.size());
-    Played result{std::vector<Eigen::VectorXd>(count), std::vector<Points>(count), std::vector<Points>(count)};
+    Played result{std::vector<Action>(count), std::vector<Eigen::VectorXd>(count), std::vector<Points>(count),
+                  std::vector<Points>(count)};
     const Eigen::VectorXd rest = model.rest(setting);
 
     // A linear law: one factorisation, one step from rest.
     std::shared_ptr<const Tangent> linear;
     if (!model.is_nonlinear(setting)) linear = model.tangent(rest, setting, {});
-    for_each_in_parallel(count, threads, [&](int k) {
-        const Action action = explanation.act(problem, k);
+    const bool yields = setting.effects.plasticity.has_value();
+    std::vector<std::shared_ptr<const Memory>> after(count);
+    for_each_in_parallel(count, yields ? 1 : threads, [&](int k) {
+        Action& action = result.actions[k];
+        action = explanation.act(problem, k);
+        if (yields && problem.before(k) >= 0) action.memory = after[problem.before(k)];
         if (at_rest(setting, action)) {
             result.q[k] = rest;
         } else if (linear) {
@@ -92,6 +200,7 @@ Played play(const BodyModel& model, const Problem& problem, const Explanation& e
         } else {
             result.q[k] = model.equilibrium(setting, action, start ? &(*start)[k] : nullptr);
         }
+        if (yields) after[k] = model.remember(result.q[k], setting, action);
         result.stand[k] = model.observe(result.q[k], setting);
         result.markers[k] = explanation.see(problem, result.stand[k]);
     });
@@ -126,54 +235,57 @@ std::vector<Eigen::MatrixXd> answers(const BodyModel& model, const Problem& prob
             if (part.forces.cols() > 0) G.middleCols(at, part.forces.cols()) = part.forces;
             at += part.forces.cols();
         }
-        const auto tangent = linear ? linear : model.tangent(played.q[k], setting, explanation.act(problem, k));
-        Eigen::MatrixXd X = tangent->solve(G);
-        at = 0;
-        for (const auto& part : parts) {
-            if (part.steps.size() > 0) X.middleCols(at, part.steps.cols()) += part.steps;
-            at += part.forces.cols();
-        }
-        if (steps_of_first) {
-            (*steps_of_first)[k] = Eigen::MatrixXd::Zero(model.dofs(), signatures.front().width);
-            (*steps_of_first)[k](Eigen::all, parts.front().columns) = X.leftCols(parts.front().forces.cols());
-        }
-        const Eigen::MatrixXd Y =
-            seen_difference(problem, explanation, played.stand[k], model.observation(played.q[k], setting) * X);
+        const auto tangent = linear ? linear : model.tangent(played.q[k], setting, played.actions[k]);
+        const Eigen::MatrixXd X = tangent->solve(G);
+        const Eigen::SparseMatrix<double> P = model.observation(played.q[k], setting);
         at = 0;
         for (std::size_t p = 0; p < parts.size(); ++p) {
+            Eigen::MatrixXd steps = X.middleCols(at, parts[p].forces.cols());
+            at += parts[p].forces.cols();
+            if (parts[p].steps.size() > 0) steps += parts[p].steps;
+            if (parts[p].combine) steps = parts[p].combine(steps);
+            if (p == 0 && steps_of_first) {
+                (*steps_of_first)[k] = Eigen::MatrixXd::Zero(model.dofs(), signatures.front().width);
+                (*steps_of_first)[k](Eigen::all, parts[p].columns) = steps;
+            }
+            const Eigen::MatrixXd Y = seen_difference(problem, explanation, played.stand[k], P * steps);
             for (std::size_t c = 0; c < parts[p].columns.size(); ++c) {
                 for (const Eigen::Index n : rows[k]) {
                     result[p](n, parts[p].columns[c]) =
-                        Y(problem.coordinate[n], at + static_cast<Eigen::Index>(c)) / problem.sigma[n];
+                        Y(problem.coordinate[n], static_cast<Eigen::Index>(c)) / problem.sigma[n];
                 }
             }
-            at += parts[p].forces.cols();
         }
     });
     return result;
 }
 
-Signatures own_signatures(const BodyModel& model, const Problem& problem, const Explanation& explanation) {
+Signatures own_signatures(const BodyModel& model, const Problem& problem, const Explanation& explanation,
+                          const Played& played) {
     const Setting setting = explanation.setting();
-    return {explanation.numbers(), [&model, &problem, explanation, setting](int k, const Eigen::VectorXd& q) {
+    std::vector<Eigen::MatrixXd> all;
+    if (setting.effects.plasticity) all = yielding_forces(model, problem, explanation, played);
+    return {explanation.numbers(),
+            [&model, &problem, explanation, setting, &played, all](int k, const Eigen::VectorXd& q) {
+                if (!all.empty()) return as_signatures(all[k]);
                 Eigen::MatrixXd forces(model.dofs(), explanation.numbers());
-                forces.leftCols(explanation.theta.size()) = model.parameter_force(q, setting);
+                forces.leftCols(explanation.theta.size()) = model.parameter_force(q, setting, played.actions[k]);
                 Eigen::Index at = explanation.theta.size();
                 for (std::size_t e = 0; e < explanation.effects.size(); ++e) {
-                    const Eigen::VectorXd& v = explanation.values[e];
-                    if (v.size() > 0) {
-                        forces.middleCols(at, v.size()) =
-                            explanation.effects[e]->force(model, problem, setting, k, q, v);
+                    const Eigen::Index count = explanation.values[e].size();
+                    if (count > 0) {
+                        forces.middleCols(at, count) = effect_forces(model, problem, explanation, e, played, k, q);
                     }
-                    at += v.size();
+                    at += count;
                 }
-                Signatures::InAction result;
-                for (int c = 0; c < forces.cols(); ++c) {
-                    if (!forces.col(c).isZero(0)) result.columns.push_back(c);
-                }
-                result.forces = forces(Eigen::all, result.columns);
-                return result;
+                return as_signatures(forces);
             }};
+}
+
+Signatures::InAction signatures_of_last_effect(const BodyModel& model, const Problem& problem,
+                                               const Explanation& explanation, const Played& played, int k,
+                                               const Eigen::VectorXd& q) {
+    return as_signatures(effect_forces(model, problem, explanation, explanation.effects.size() - 1, played, k, q));
 }
 
 Eigen::MatrixXd seen_directly(const Problem& problem, const Explanation& explanation, const Played& played) {

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <functional>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -18,6 +17,8 @@ struct Explanation {
     std::vector<Eigen::VectorXd> values;  // of each effect
 
     Eigen::Index numbers() const;
+    /// Does what happened before matter? Then it explains problems stage by stage only.
+    bool has_memory() const;
     /// All numbers one after the other: stiffness, then the effects'.
     Eigen::VectorXd all() const;
     void set_all(const Eigen::VectorXd& all);
@@ -29,26 +30,16 @@ struct Explanation {
 
 /// A model in all actions of a problem, as an explanation has it.
 struct Played {
+    std::vector<Action> actions;     // as the effects make them, with what the body remembers (K)
     std::vector<Eigen::VectorXd> q;  // configurations (K)
     std::vector<Points> stand;       // where the markers stand (K of m x 3) [mm]
     std::vector<Points> markers;     // as they are seen
 };
 
+/// @pre the problem is stage by stage where the explanation has a memory.
 /// @throws SolverFailure where an action has no equilibrium. `start`: of a neighbouring explanation.
 Played play(const BodyModel& model, const Problem& problem, const Explanation& explanation, int threads,
             const std::vector<Eigen::VectorXd>* start = nullptr);
-
-/// Force signatures that differ from action to action: columns of a wide matrix that most actions know nothing of.
-struct Signatures {
-    Eigen::Index width = 0;  // columns in all
-    /// What it is in an action.
-    struct InAction {
-        Eigen::MatrixXd forces;      // (dofs x c) [N]
-        Eigen::MatrixXd steps = {};  // that what is held makes besides (dofs x c), or empty
-        std::vector<int> columns;    // of the wide matrix (c)
-    };
-    std::function<InAction(int k, const Eigen::VectorXd& q)> in_action;
-};
 
 /// How the coordinates answer to signatures at the played configurations, over sigma: P (J^-1 forces + steps), seen
 /// through the explanation (N x width each). One factorisation an action serves all.
@@ -57,8 +48,15 @@ std::vector<Eigen::MatrixXd> answers(const BodyModel& model, const Problem& prob
                                      const Played& played, const std::vector<Signatures>& signatures, int threads,
                                      std::vector<Eigen::MatrixXd>* steps_of_first = nullptr);
 
-/// The signatures of all of an explanation's numbers.
-Signatures own_signatures(const BodyModel& model, const Problem& problem, const Explanation& explanation);
+/// The signatures of all of an explanation's numbers, an effect's by central differences of the net force; where the
+/// body yields, with all that it remembers by then.
+Signatures own_signatures(const BodyModel& model, const Problem& problem, const Explanation& explanation,
+                          const Played& played);
+
+/// The same of its last effect alone, which need not be in force.
+Signatures::InAction signatures_of_last_effect(const BodyModel& model, const Problem& problem,
+                                               const Explanation& explanation, const Played& played, int k,
+                                               const Eigen::VectorXd& q);
 
 /// What the explanation's numbers do to what is seen without moving the body, over sigma (N x numbers).
 Eigen::MatrixXd seen_directly(const Problem& problem, const Explanation& explanation, const Played& played);

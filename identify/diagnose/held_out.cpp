@@ -64,15 +64,17 @@ Carried carry(const BodyModel& model, const Problem& unseen, const Refit& fit) {
 
 }  // namespace
 
-HeldOut predict(const BodyModel& model, const Problem& unseen, const Refit& fit, const RefitOptions& options) {
+HeldOut predict(const BodyModel& model, const Problem& merged, const Refit& fit, const RefitOptions& options) {
+    const bool in_stages = fit.explanation.has_memory() && !merged.by_stage;
+    const Problem unseen = in_stages ? merged.stage_by_stage() : merged;
     const auto [explanation, covariance] = carry(model, unseen, fit);
     const Played played = play(model, unseen, explanation, options.threads);
     const Eigen::VectorXd error = (unseen.measured - unseen.pick(played.markers)).cwiseQuotient(unseen.sigma);
     const Nuisances nuisances = make_nuisances(model, unseen, explanation, played, options.threads, options.nuisances);
-    const Eigen::MatrixXd own =
-        answers(model, unseen, explanation, played, {own_signatures(model, unseen, explanation)}, options.threads)
-            .front() +
-        seen_directly(unseen, explanation, played);
+    const Eigen::MatrixXd own = answers(model, unseen, explanation, played,
+                                        {own_signatures(model, unseen, explanation, played)}, options.threads)
+                                    .front() +
+                                seen_directly(unseen, explanation, played);
 
     const Eigen::MatrixXd spread = covariance.llt().matrixL();
     Eigen::MatrixXd A(unseen.rows(), own.cols() + nuisances.columns.cols());

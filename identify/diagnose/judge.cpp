@@ -17,24 +17,47 @@ Candidate outlier_candidate(const Diagnosis& diagnosis) {
     if (diagnosis.outliers.readings.empty()) return candidate;
     const auto count = static_cast<double>(diagnosis.outliers.readings.size());
     const double all = count + diagnosis.problem.readings();
-    candidate.told = {
+    candidate.told.effect = {
         "outliers", {{"share", count / all, "1"}, {"readings", count, "1"}, {"width", diagnosis.outliers.width, "1"}}};
-    candidate.sd = {std::sqrt(count) / all, 0, 0};
+    candidate.told.sd = {std::sqrt(count) / all, 0, 0};
     candidate.predicted_rms_mm = diagnosis.baseline.rms_mm;
     candidate.held_out = diagnosis.baseline_held_out;
     return candidate;
 }
 
-/// Likely candidates that explain enough and do not fall behind the likeliest, by evidence.
-std::vector<const Candidate*> explain_alike(const std::vector<Candidate>& ranking, const DiagnoseOptions& options) {
-    std::vector<const Candidate*> alike;
+/// Is there an explanation among those tried that does without one of the effects, and is enough?
+bool enough_without(const Diagnosis& diagnosis, const Explained& all, const std::string& name,
+                    const DiagnoseOptions& options) {
+    if (all.effects.size() == 1) return is_enough(diagnosis.baseline, options);
+    return std::ranges::any_of(diagnosis.tried, [&](const Explained& other) {
+        const bool is_rest = other.effects.size() + 1 == all.effects.size() && !other.has(name) &&
+                             std::ranges::all_of(other.effects, [&](const auto& e) { return all.has(e->name()); });
+        return is_rest && is_enough(other.fit, options);
+    });
+}
+
+std::string objection_to(const Diagnosis& diagnosis, const Explained& explained, const DiagnoseOptions& options) {
+    const auto& all = explained.fit.explanation;
+    for (std::size_t e = 0; e < all.effects.size(); ++e) {
+        if (!explained.has(all.effects[e]->name())) continue;  // known: no claim
+        const bool enough = enough_without(diagnosis, explained, all.effects[e]->name(), options);
+        std::string objection = all.effects[e]->objection(diagnosis.problem, all.values[e], enough);
+        if (!objection.empty()) return objection;
+    }
+    return {};
+}
+
+/// Likely explanations that explain enough and do not fall behind the likeliest, by evidence.
+std::vector<const Explained*> explain_alike(const std::vector<const Explained*>& by_evidence,
+                                            const DiagnoseOptions& options) {
+    std::vector<const Explained*> alike;
     double most = -INFINITY;
-    for (const Candidate& c : ranking) {
-        if (!is_likely(c, options)) continue;
-        most = std::max(most, c.log_bayes_factor);
-        const bool predicts = c.held_out->whitened_rms <= options.most_left_held_out;
-        const bool leads = most - c.log_bayes_factor < options.least_lead;
-        if (is_enough(*c.refit, options) && predicts && leads && c.objection.empty()) alike.push_back(&c);
+    for (const Explained* one : by_evidence) {
+        if (!is_likely(*one, options)) continue;
+        most = std::max(most, one->log_bayes_factor);
+        const bool predicts = one->held_out.whitened_rms <= options.most_left_held_out;
+        const bool leads = most - one->log_bayes_factor < options.least_lead;
+        if (is_enough(one->fit, options) && predicts && leads && one->objection.empty()) alike.push_back(one);
     }
     return alike;
 }
@@ -48,10 +71,19 @@ void share_out_probability(std::vector<Candidate>& ranking) {
     for (Candidate& c : ranking) c.probability = std::exp(c.log_bayes_factor - top) / sum;
 }
 
+/// The explanation's effects, those first that say most by themselves; their numbers are those that they have together.
+void name_effects(Diagnosis& diagnosis) {
+    for (Candidate& c : diagnosis.ranking) {
+        if (!diagnosis.explained->has(c.effect->name())) continue;
+        diagnosis.explanation.push_back(c.effect->name());
+        c.told = diagnosis.explained->told(c.effect->name());
+    }
+}
+
 }  // namespace
 
-bool is_likely(const Candidate& candidate, const DiagnoseOptions& options) {
-    return candidate.refit && candidate.log_bayes_factor >= options.least_evidence;
+bool is_likely(const Explained& explained, const DiagnoseOptions& options) {
+    return explained.log_bayes_factor >= options.least_evidence;
 }
 
 bool is_enough(const Refit& fit, const DiagnoseOptions& options) {
@@ -61,14 +93,19 @@ bool is_enough(const Refit& fit, const DiagnoseOptions& options) {
 void judge(const BodyModel& model, const DiagnoseOptions& options, Diagnosis& diagnosis) {
     const bool outliers = !diagnosis.outliers.readings.empty();
     const bool enough = is_enough(diagnosis.baseline, options);
-    bool something = false;  // is there evidence for more than what is claimed?
-    for (Candidate& c : diagnosis.ranking) {
-        if (!is_likely(c, options)) continue;
-        c.objection = c.effect->objection(diagnosis.problem, c.refit->explanation.values.back(), enough);
-        something = true;
+    std::vector<const Explained*> by_evidence;
+    for (Explained& one : diagnosis.tried) {
+        one.objection = objection_to(diagnosis, one, options);
+        by_evidence.push_back(&one);
+        if (one.effects.size() > 1) continue;
+        const auto own = std::ranges::find(diagnosis.ranking, one.effects.front(), &Candidate::effect);
+        if (own != diagnosis.ranking.end()) own->objection = one.objection;
     }
-    const std::vector<const Candidate*> alike = explain_alike(diagnosis.ranking, options);
-    diagnosis.law = diagnosis.baseline.explanation.law;
+    std::ranges::stable_sort(by_evidence, std::greater{}, &Explained::log_bayes_factor);
+    // is there evidence for more than what is claimed?
+    const bool something =
+        std::ranges::any_of(by_evidence, [&](const Explained* one) { return is_likely(*one, options); });
+    const std::vector<const Explained*> alike = explain_alike(by_evidence, options);
     if (alike.size() > 1) {
         diagnosis.verdict = Verdict::ambiguous;
         diagnosis.next_probe = separate(model, diagnosis.problem, *alike[0], *alike[1], options.refit.threads);
@@ -79,11 +116,8 @@ void judge(const BodyModel& model, const DiagnoseOptions& options, Diagnosis& di
     } else {
         diagnosis.verdict = Verdict::unexplained;
     }
-    if (!alike.empty()) {
-        diagnosis.explanation.push_back(alike.front()->effect->name());
-        diagnosis.law = alike.front()->refit->explanation.law;
-    }
-    if (outliers && diagnosis.verdict != Verdict::unexplained) diagnosis.explanation.emplace_back("outliers");
+    if (!alike.empty()) diagnosis.explained = *alike.front();
+    diagnosis.law = diagnosis.best().explanation.law;
 
     // By evidence; with an explanation its first effect leads.
     std::vector<Candidate>& ranking = diagnosis.ranking;
@@ -91,6 +125,8 @@ void judge(const BodyModel& model, const DiagnoseOptions& options, Diagnosis& di
     if (!outliers_left_out) ranking.push_back(outlier_candidate(diagnosis));
     share_out_probability(ranking);
     std::ranges::stable_sort(ranking, std::greater{}, &Candidate::log_bayes_factor);
+    if (diagnosis.explained) name_effects(diagnosis);
+    if (outliers && diagnosis.verdict != Verdict::unexplained) diagnosis.explanation.emplace_back("outliers");
     if (diagnosis.explanation.empty()) return;
     const auto first = std::ranges::find_if(
         ranking, [&](const Candidate& c) { return c.effect->name() == diagnosis.explanation.front(); });

@@ -43,10 +43,17 @@ std::vector<std::vector<int>> folds_of(const MeasurementSet& set) {
 }
 
 MeasurementSet part_of(const MeasurementSet& set, const std::vector<int>& probes, bool of_them) {
-    MeasurementSet part = set;
-    std::erase_if(part.states, [&](const LoadState& state) {
+    const auto is_other = [&](const LoadState& state) {
         return (std::ranges::find(probes, state.probe) != probes.end()) != of_them;
-    });
+    };
+    MeasurementSet part = set;
+    if (set.continuous) {  // the body went through all states, whoever reads them
+        for (LoadState& state : part.states) {
+            if (is_other(state)) state.readings.clear();
+        }
+    } else {
+        std::erase_if(part.states, is_other);
+    }
     return part;
 }
 
@@ -59,7 +66,7 @@ std::vector<skeleton::Effect> told(const Diagnosis& diagnosis) {
     }
     for (const Candidate& candidate : diagnosis.ranking) {
         const bool set_aside = candidate.effect->name() == "outliers" && !diagnosis.outliers.readings.empty();
-        if (set_aside) result.push_back(candidate.told);
+        if (set_aside) result.push_back(candidate.told.effect);
     }
     return result;
 }
@@ -117,7 +124,9 @@ private:
     static skeleton::Effect start_of(const std::string& name, const Diagnosis* diagnosis) {
         if (diagnosis) {
             for (const Candidate& candidate : diagnosis->ranking) {
-                if (candidate.effect->name() == name && !candidate.told.name.empty()) return candidate.told;
+                if (candidate.effect->name() == name && !candidate.told.effect.name.empty()) {
+                    return candidate.told.effect;
+                }
             }
         }
         return {name, {}};

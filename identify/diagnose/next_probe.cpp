@@ -45,19 +45,25 @@ std::optional<Points> play_one(const BodyModel& model, const Problem& problem, c
 
 }  // namespace
 
-NextProbe separate(const BodyModel& model, const Problem& problem, const Candidate& a, const Candidate& b,
+NextProbe separate(const BodyModel& model, const Problem& problem, const Explained& a, const Explained& b,
                    int threads) {
-    const EffectDescription& text = a.effect->description();
+    // what one has and the other has not
+    const auto own = [](const Explained& of, const Explained& other) {
+        const auto found =
+            std::ranges::find_if(of.effects, [&](const auto& effect) { return !other.has(effect->name()); });
+        return found == of.effects.end() ? of.effects.front() : *found;
+    };
+    const EffectDescription& text = own(a, b)->description();
     NextProbe result{
         .kind = text.next_probe,
-        .why = fmt::format("separates {} from {}: {}", text.name, b.effect->name(), text.separating_probe)};
+        .why = fmt::format("separates {} from {}: {}", text.name, own(b, a)->name(), text.separating_probe)};
     if (result.kind != "load") return result;
 
     const std::vector<Action> actions = loads_to_try(model, problem);
     std::vector<double> apart(actions.size(), 0.0);
     for_each_in_parallel(static_cast<int>(actions.size()), threads, [&](int i) {
-        const auto one = play_one(model, problem, a.refit->explanation, actions[i]);
-        const auto other = play_one(model, problem, b.refit->explanation, actions[i]);
+        const auto one = play_one(model, problem, a.fit.explanation, actions[i]);
+        const auto other = play_one(model, problem, b.fit.explanation, actions[i]);
         if (one && other) apart[i] = (*one - *other).norm();
     });
     if (actions.empty()) return result;

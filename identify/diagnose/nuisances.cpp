@@ -21,7 +21,10 @@ public:
         std::vector<int> columns;
     };
 
+    /// The number of a nuisance, which actions may share.
     int add(const std::string& name, double sd) {
+        const auto found = std::ranges::find(names, name);
+        if (found != names.end()) return static_cast<int>(found - names.begin());
         names.push_back(name);
         precisions.push_back(1 / (sd * sd));
         return static_cast<int>(names.size()) - 1;
@@ -33,10 +36,11 @@ public:
 };
 
 void add_contact(Collector& all, const BodyModel& model, const Setting& setting, const Problem& problem, int k,
-                 const mesh::Contact& contact, const NuisanceOptions& options) {
+                 const Action& action, const mesh::Contact& contact, const NuisanceOptions& options) {
     const double r = effective_radius(model, contact);
     const Vec3 normal = model.normal_near(contact.point, 1.2 * r), a = normal.unitOrthogonal(), b = normal.cross(a);
-    const std::string where = fmt::format("of probe {}", problem.probe[k]);
+    const std::string where = fmt::format("of probe {} at ({:.4g}, {:.4g}, {:.4g})", problem.probe[k],
+                                          contact.point.x(), contact.point.y(), contact.point.z());
 
     // Shifts and radius, each a difference over the radius.
     std::vector<int> columns{all.add("contact " + where + " shifted", options.shift),
@@ -66,10 +70,11 @@ void add_contact(Collector& all, const BodyModel& model, const Setting& setting,
     Eigen::Index nearest = 0;
     distance.minCoeff(&nearest);
     weight[nearest] = 1;
-    all.own.push_back(
-        {k,
-         [&model, setting, weight](const Eigen::VectorXd& q) { return model.piece_force(q, setting, weight); },
-         {all.add("softness round the contact " + where, options.softness)}});
+    all.own.push_back({k,
+                       [&model, setting, action, weight](const Eigen::VectorXd& q) {
+                           return model.piece_force(q, setting, action, weight);
+                       },
+                       {all.add("softness round the contact " + where, options.softness)}});
 
     // Next to a support most of the force goes straight into it.
     const double gap = (model.support_points().rowwise() - contact.point.transpose()).rowwise().norm().minCoeff();
@@ -114,8 +119,8 @@ Nuisances make_nuisances(const BodyModel& model, const Problem& problem, const E
     const Setting setting = explanation.setting();
     Collector all;
     for (int k = 0; k < static_cast<int>(problem.actions.size()); ++k) {
-        for (const mesh::Contact& contact : explanation.act(problem, k).contacts) {
-            add_contact(all, model, setting, problem, k, contact, options);
+        for (const mesh::Contact& contact : played.actions[k].contacts) {
+            add_contact(all, model, setting, problem, k, played.actions[k], contact, options);
         }
     }
     const Eigen::MatrixXd sectors = clamp_sectors(model, options.clamp_sectors);
@@ -128,7 +133,7 @@ Nuisances make_nuisances(const BodyModel& model, const Problem& problem, const E
                               Signatures::InAction result;
                               std::vector<Eigen::MatrixXd> parts;
                               if (sectors.cols() > 0) {
-                                  parts.push_back(model.piece_force(q, setting, sectors));
+                                  parts.push_back(model.piece_force(q, setting, played.actions[k], sectors));
                                   result.columns = sector_columns;
                               }
                               for (const Collector::Own& own : all.own) {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "identify/set/loads.h"
 #include "mesh/errors.h"
@@ -18,34 +19,42 @@ std::vector<mesh::Contact> acting(const LoadState& state) {
     return contacts;
 }
 
-bool same(const std::vector<mesh::Contact>& a, const std::vector<mesh::Contact>& b) {
-    return std::ranges::equal(a, b, [](const mesh::Contact& x, const mesh::Contact& y) {
+bool same(const Action& a, const Action& b) {
+    const auto same_contact = [](const mesh::Contact& x, const mesh::Contact& y) {
         return x.point == y.point && x.force == y.force && x.radius == y.radius;
-    });
+    };
+    return a.gravity == b.gravity && a.pressure == b.pressure &&
+           std::ranges::equal(a.contacts, b.contacts, same_contact);
 }
 
 bool counts(const Reading& reading) { return reading.marker >= 0 && !reading.position.array().isNaN().all(); }
 
 /// The action of a state: one that is there already, or a new one.
-int action_of(Problem& problem, const LoadState& state, const Vec3& gravity) {
-    const std::vector<mesh::Contact> contacts = acting(state);
-    const int probe = contacts.empty() ? -1 : state.probe;
+int action_of(Problem& problem, const Stage& stage) {
+    const int probe = stage.action.contacts.empty() ? -1 : stage.probe;
     for (std::size_t k = 0; k < problem.actions.size(); ++k) {
-        const Action& action = problem.actions[k];
-        if (problem.probe[k] == probe && action.gravity == gravity && same(action.contacts, contacts)) {
-            return static_cast<int>(k);
-        }
+        if (problem.probe[k] == probe && same(problem.actions[k], stage.action)) return static_cast<int>(k);
     }
-    problem.actions.push_back({contacts, gravity});
+    problem.actions.push_back(stage.action);
     problem.probe.push_back(probe);
     return static_cast<int>(problem.actions.size()) - 1;
+}
+
+Stage stage_of(const MeasurementSet& set, const LoadState& state) {
+    return {state.probe,
+            state.time,
+            {.contacts = acting(state),
+             .gravity = known_gravity(set, state).value_or(Vec3::Zero()),
+             .pressure = std::isnan(state.pressure) ? 0 : state.pressure}};
 }
 
 }  // namespace
 
 Problem make_problem(const MeasurementSet& set, double noise) {
     Problem problem;
-    problem.force_noise = set.force_noise.value_or(0);
+    problem.continuous = set.continuous;
+    if (set.material) problem.declared_poisson = set.material->poisson;
+    for (const LoadState& state : set.states) problem.stages.push_back(stage_of(set, state));
     problem.rest.resize(static_cast<Eigen::Index>(set.markers.size()), 3);
     for (std::size_t m = 0; m < set.markers.size(); ++m) {
         problem.rest.row(static_cast<Eigen::Index>(m)) = set.markers[m].rest;
@@ -55,7 +64,7 @@ Problem make_problem(const MeasurementSet& set, double noise) {
     for (std::size_t s = 0; s < set.states.size(); ++s) {
         const LoadState& state = set.states[s];
         if (std::ranges::none_of(state.readings, counts)) continue;
-        const int action = action_of(problem, state, known_gravity(set, state).value_or(Vec3::Zero()));
+        const int action = action_of(problem, problem.stages[s]);
         for (const Reading& reading : state.readings) {
             if (!counts(reading)) continue;
             for (int axis = 0; axis < 3; ++axis) {
@@ -110,8 +119,11 @@ Problem Problem::with_rows(const std::vector<char>& keep) const {
     Problem result;
     result.actions = actions;
     result.probe = probe;
+    result.stages = stages;
+    result.continuous = continuous;
+    result.by_stage = by_stage;
+    result.declared_poisson = declared_poisson;
     result.rest = rest;
-    result.force_noise = force_noise;
     std::vector<int> kept;
     int last = -1, number = -1;
     for (int n = 0; n < static_cast<int>(rows()); ++n) {
@@ -145,7 +157,43 @@ Problem Problem::without_actions(const std::vector<char>& drop) const {
         result.probe.push_back(probe[k]);
     }
     for (int& k : result.action) k = number[k];
+    for (Eigen::Index n = 0; n < rows(); ++n) {
+        if (!keep[n]) result.stages[state[n]].action.contacts.clear();
+    }
     return result;
+}
+
+int Problem::before(int k) const {
+    if (k == 0) return -1;
+    return continuous || stages[k].probe == stages[k - 1].probe ? k - 1 : -1;
+}
+
+Problem Problem::stage_by_stage() const {
+    Problem result = *this;
+    result.by_stage = true;
+    result.action = state;
+    result.actions.clear();
+    result.probe.clear();
+    std::set<int> loaded_probes;
+    for (const Stage& stage : stages) {
+        if (!stage.action.contacts.empty()) loaded_probes.insert(stage.probe);
+    }
+    for (const Stage& stage : stages) {
+        result.actions.push_back(stage.action);
+        result.probe.push_back(loaded_probes.contains(stage.probe) ? stage.probe : -1);
+    }
+    return result;
+}
+
+int Problem::action_in(const Problem& merged, int k) const {
+    for (std::size_t n = 0; n < action.size(); ++n) {
+        if (action[n] == k) return merged.action[n];
+    }
+    // nobody read this stage: any action like it
+    for (std::size_t other = 0; other < merged.actions.size(); ++other) {
+        if (same(merged.actions[other], actions[k])) return static_cast<int>(other);
+    }
+    return -1;
 }
 
 double Problem::rms_sigma() const { return std::sqrt(sigma.squaredNorm() / static_cast<double>(sigma.size())); }

@@ -7,12 +7,22 @@
 
 namespace palpate::identify {
 
+/// A state of the set as it came, whether it was read or not: what a body with a memory goes through.
+struct Stage {
+    int probe = 0;    // as in the set
+    double time = 0;  // [s]
+    Action action;
+};
+
 /// A set's readings as one long vector of coordinates, and what acted behind them. N rows: the coordinates that were
 /// measured; K actions: those that differ. States without load share one action; others do within a probe, when
-/// nothing else acts on the body (creep, repeats).
+/// nothing else acts on the body (creep, repeats). For a body with a memory `stage_by_stage` tells all states apart.
 struct Problem {
     std::vector<Action> actions;      // (K)
-    std::vector<int> probe;           // of each action, as in the set; -1: nothing is known to act
+    std::vector<int> probe;           // of each action, as in the set; -1: one without load, which probes share
+    std::vector<Stage> stages;        // all states, in order
+    bool continuous = false;          // one body goes through all stages; else each probe finds it as new
+    bool by_stage = false;            // the actions are the stages
     Points rest;                      // of the set's markers (m x 3) [mm]
     std::vector<int> state;           // of each row, in the set (N)
     std::vector<int> action;          // of each row (N)
@@ -21,11 +31,17 @@ struct Problem {
     std::vector<int> set_reading;     // the same, as the whole set numbers its readings (N)
     std::vector<char> is_guessed;     // rows whose sigma nobody told (N)
     Eigen::VectorXd measured, sigma;  // [mm] (N)
-    double force_noise = 0;           // 1 sigma of the forces [N]; 0: unknown
+    double declared_poisson = missing;
 
     Eigen::Index rows() const { return measured.size(); }
     int readings() const { return reading.empty() ? 0 : reading.back() + 1; }
-    bool loaded(int k) const { return probe[k] >= 0; }
+    bool loaded(int k) const { return !actions[k].contacts.empty(); }
+    /// The stage before action k in the life of the body; -1: the body is new. @pre by_stage
+    int before(int k) const;
+    /// The same problem with an action for each stage: its rows are the same.
+    Problem stage_by_stage() const;
+    /// The action of `merged`, of which this is the problem stage by stage, that an action of this one is.
+    int action_in(const Problem& merged, int k) const;
 
     /// Coordinates (N) out of each action's marker positions (K of m x 3).
     Eigen::VectorXd pick(const std::vector<Points>& positions) const;
@@ -33,7 +49,7 @@ struct Problem {
     Eigen::VectorXd displacement() const;
     /// The problem with only those rows that `keep` (N flags) holds for.
     Problem with_rows(const std::vector<char>& keep) const;
-    /// The problem without some of the actions (K flags), renumbered, and without their rows.
+    /// The problem without some of the actions (K flags), renumbered, and without their rows; as if nothing had acted.
     Problem without_actions(const std::vector<char>& drop) const;
     double rms_sigma() const;
 };

@@ -16,23 +16,31 @@ double settled(double objective, Eigen::Index readings) {
 
 struct Priors {
     Eigen::VectorXd mean, sd;
+    Eigen::VectorXd
+        step;  // how far a number may go at once: its prior's width, a logarithm no more than a factor of two
 };
 
 Priors priors_of(const BodyModel& model, const Explanation& explanation,
                  const std::vector<std::vector<EffectNumber>>& numbers) {
-    std::vector<double> mean, sd;
+    const Eigen::VectorXd start = explanation.all();
+    constexpr double factor_of_two = 0.7;
+    std::vector<double> mean, sd, step;
     for (const StiffnessParameter& p : model.parameters()) {
         mean.push_back(p.prior_mean);
         sd.push_back(p.prior_sd);
+        step.push_back(std::min(p.prior_sd, factor_of_two));
     }
     for (const auto& list : numbers) {
         for (const EffectNumber& number : list) {
-            mean.push_back(number.prior_mean);
+            mean.push_back(number.prior_at_start ? start[std::ssize(mean)] : number.prior_mean);
             sd.push_back(number.prior_sd);
+            step.push_back(number.logarithm ? std::min(number.prior_sd, factor_of_two) : number.prior_sd);
         }
     }
-    const Eigen::Index count = explanation.numbers();
-    return {Eigen::Map<Eigen::VectorXd>(mean.data(), count), Eigen::Map<Eigen::VectorXd>(sd.data(), count)};
+    const auto vector = [](std::vector<double>& values) {
+        return Eigen::VectorXd(Eigen::Map<Eigen::VectorXd>(values.data(), std::ssize(values)));
+    };
+    return {vector(mean), vector(sd), vector(step)};
 }
 
 /// Half of chi^2 and priors, to be lowered.
@@ -65,8 +73,7 @@ public:
             at_.covariance = factor.solve(Eigen::MatrixXd::Identity(x.size(), x.size()));
             at_.converged = 0.5 * g.dot(move) < settled(now, problem_.rows());
             if (at_.converged) return;
-            // no number goes further than its prior's width at once, or than a factor of two
-            move *= std::min(1.0, 1 / move.cwiseQuotient(priors_.sd.cwiseMin(0.7)).cwiseAbs().maxCoeff());
+            move *= std::min(1.0, 1 / move.cwiseQuotient(priors_.step).cwiseAbs().maxCoeff());
             ++at_.steps;
             if (!advance(move, now)) return;
             linearise();
@@ -106,7 +113,7 @@ private:
 
     void linearise() {
         at_.columns = answers(model_, problem_, at_.explanation, at_.played,
-                              {own_signatures(model_, problem_, at_.explanation)}, threads_, &steps_)
+                              {own_signatures(model_, problem_, at_.explanation, at_.played)}, threads_, &steps_)
                           .front() +
                       seen_directly(problem_, at_.explanation, at_.played);
     }
@@ -119,14 +126,23 @@ private:
     std::vector<Eigen::MatrixXd> steps_;  // J^-1 times the signatures, of each action
 };
 
-/// Equilibria at the start; where there are none the body is made stiffer.
+/// Equilibria at the start, from the neighbour's configurations, else from rest; where there are none the body is made
+/// stiffer.
 void begin(const BodyModel& model, const Problem& problem, int threads, const Refit* start, Refit& at) {
-    const int most = start ? 1 : 6;  // next to a fit that stands there is nothing far to go
+    const auto stands = [&](const std::vector<Eigen::VectorXd>* from) {
+        at.played = play(model, problem, at.explanation, threads, from);
+        at.error = error_of(problem, at.played);
+    };
+    if (start) {
+        try {
+            return stands(&start->played.q);
+        } catch (const SolverFailure&) {  // too far from there
+        }
+    }
+    const int most = start ? 2 : 6;  // times
     for (int attempt = 0;; ++attempt) {
         try {
-            at.played = play(model, problem, at.explanation, threads, start ? &start->played.q : nullptr);
-            at.error = error_of(problem, at.played);
-            return;
+            return stands(nullptr);
         } catch (const SolverFailure&) {
             if (attempt == most) throw;
             for (Eigen::Index p = 0; p < at.explanation.theta.size(); ++p) {

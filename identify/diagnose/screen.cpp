@@ -21,35 +21,120 @@ struct Stack {
     }
 };
 
+/// What a fit leaves, with its own numbers among what may always be wrong: d about their priors' means.
+struct Leftover {
+    const Refit& fit;
+    Stack always;
+    Eigen::VectorXd off_mean, d;
+    Whitening V;
+
+    explicit Leftover(const Refit& from)
+        : fit(from),
+          always(stack_of(from)),
+          off_mean(from.explanation.all() - from.prior_mean),
+          d(from.error + from.columns * off_mean),
+          V(from.V->weights(), always.columns, always.precisions) {}
+
+    static Stack stack_of(const Refit& fit) {
+        Stack stack;
+        stack.add(fit.columns, fit.prior_sd.cwiseAbs2().cwiseInverse());
+        stack.add(fit.nuisances.columns, fit.nuisances.precisions);
+        return stack;
+    }
+
+    /// What is left once columns are in, contacts as they are told: the fit's numbers and the effect's move, no
+    /// nuisance [mm].
+    double predicted_rms(const Problem& problem, const Eigen::MatrixXd& columns, const Eigen::VectorXd& sd) const {
+        Stack with = always;
+        with.add(columns, sd.cwiseAbs2().cwiseInverse());
+        const Eigen::VectorXd moved = Whitening(fit.V->weights(), with.columns, with.precisions)
+                                          .nuisances(d)
+                                          .cwiseQuotient(with.precisions.cwiseSqrt());
+        const Eigen::VectorXd left =
+            fit.error - fit.columns * (moved.head(off_mean.size()) - off_mean) - columns * moved.tail(columns.cols());
+        return std::sqrt(left.cwiseProduct(problem.sigma).squaredNorm() / static_cast<double>(d.size()));
+    }
+};
+
+Screened judge_columns(const Problem& problem, const Leftover& leftover, const ScreenColumns& b,
+                       const ScreenPlan& plan) {
+    const Eigen::Index p = b.prior_sd.size();
+    const std::vector<ScreenResult> all = screen_alternatives(leftover.V, leftover.d, b.columns, b.prior_sd);
+    Screened result{.effect = nullptr, .log_bayes_factor = -INFINITY, .keep = 0, .predicted_rms_mm = 0, .start = {}};
+    std::size_t best = 0;
+    std::vector<double> evidence;
+    for (const ScreenResult& one : all) {
+        // half of the prior lies where the numbers mean nothing
+        constexpr double impossible = -50;
+        const double own = !b.one_sided          ? one.log_bayes_factor
+                           : one.value.sum() > 0 ? one.log_bayes_factor + std::log(2.0)
+                                                 : impossible;
+        evidence.push_back(own);
+        if (own > evidence[best]) best = evidence.size() - 1;
+    }
+    double mean = 0;
+    for (const double one : evidence) mean += std::exp(one - evidence[best]) / static_cast<double>(evidence.size());
+    result.log_bayes_factor = evidence[best] + std::log(mean);
+    result.keep = all[best].keep;
+    const auto columns = b.columns.middleCols(static_cast<Eigen::Index>(best) * p, p);
+    result.predicted_rms_mm = leftover.predicted_rms(problem, columns, b.prior_sd);
+    result.start = plan.start(static_cast<Eigen::Index>(best), all[best].value);
+    return result;
+}
+
 }  // namespace
 
 std::vector<Screened> screen_effects(const BodyModel& model, const Problem& problem, const Refit& fit,
                                      const std::vector<std::shared_ptr<const Effect>>& effects, int threads) {
-    // The fit's own numbers join the nuisances: d about their priors' means.
-    Stack always;
-    always.add(fit.columns, fit.prior_sd.cwiseAbs2().cwiseInverse());
-    always.add(fit.nuisances.columns, fit.nuisances.precisions);
-    const Eigen::VectorXd off_mean = fit.explanation.all() - fit.prior_mean;
-    const Eigen::VectorXd d = fit.error + fit.columns * off_mean;
-    const Whitening V(fit.V->weights(), always.columns, always.precisions);
+    // Effects with a memory ask stage by stage.
+    const Problem stages = problem.by_stage ? problem : problem.stage_by_stage();
+    const Refit in_stages = problem.by_stage ? fit : spread_over_stages(model, fit, problem, stages);
+    const Leftover leftover(fit);
 
-    std::vector<Screened> result;
-    for (const auto& effect : effects) {
-        if (effect->numbers(model, problem).empty()) continue;
-        const Effect::ScreenColumns b = effect->screen_columns(model, problem, fit.explanation, fit.played, threads);
-        const ScreenResult said = screen(V, d, b.columns, b.prior_sd);
+    std::vector<Screened> result(effects.size());
+    for (const bool memory : {false, true}) {
+        const Problem& asked = memory ? stages : problem;
+        const Refit& at = memory ? in_stages : fit;
+        std::vector<std::size_t> places;
+        std::vector<ScreenPlan> plans;
+        std::vector<Signatures> signatures;
+        for (std::size_t e = 0; e < effects.size(); ++e) {
+            if (effects[e]->has_memory() != memory || effects[e]->numbers(model, problem).empty()) continue;
+            places.push_back(e);
+            plans.push_back(effects[e]->screen_plan(model, asked, at.explanation, at.played));
+            signatures.push_back(plans.back().signatures);
+        }
+        if (plans.empty()) continue;
+        const std::vector<Eigen::MatrixXd> answered =
+            answers(model, asked, at.explanation, at.played, signatures, threads);
+        for (std::size_t i = 0; i < plans.size(); ++i) {
+            const ScreenColumns b = plans[i].columns(answered[i]);
+            if (b.alternatives() == 0) continue;
+            result[places[i]] = judge_columns(problem, leftover, b, plans[i]);
+            result[places[i]].effect = effects[places[i]];
+        }
+    }
+    std::erase_if(result, [](const Screened& screened) { return !screened.effect; });
+    return result;
+}
 
-        // What is left once it is in, contacts as they are told: the fit's numbers and the effect's move, no nuisance.
-        Stack with = always;
-        with.add(b.columns, b.prior_sd.cwiseAbs2().cwiseInverse());
-        const Eigen::VectorXd moved = Whitening(fit.V->weights(), with.columns, with.precisions)
-                                          .nuisances(d)
-                                          .cwiseQuotient(with.precisions.cwiseSqrt());
-        const Eigen::VectorXd left = fit.error - fit.columns * (moved.head(off_mean.size()) - off_mean) -
-                                     b.columns * moved.tail(b.columns.cols());
-        result.push_back({effect, said.log_bayes_factor, said.keep,
-                          std::sqrt(left.cwiseProduct(problem.sigma).squaredNorm() / static_cast<double>(d.size())),
-                          effect->start_after_screen(b, said.value)});
+Refit spread_over_stages(const BodyModel& model, const Refit& fit, const Problem& merged, const Problem& stages) {
+    const Setting setting = fit.explanation.setting();
+    Refit result = fit;
+    const auto count = stages.actions.size();
+    result.played = {stages.actions, std::vector<Eigen::VectorXd>(count), std::vector<Points>(count),
+                     std::vector<Points>(count)};
+    for (std::size_t k = 0; k < count; ++k) {
+        const int own = stages.action_in(merged, static_cast<int>(k));
+        if (own < 0) {  // nobody read it
+            result.played.q[k] = model.rest(setting);
+            result.played.stand[k] = result.played.markers[k] = model.observe(result.played.q[k], setting);
+            continue;
+        }
+        result.played.actions[k] = fit.played.actions[own];
+        result.played.q[k] = fit.played.q[own];
+        result.played.stand[k] = fit.played.stand[own];
+        result.played.markers[k] = fit.played.markers[own];
     }
     return result;
 }

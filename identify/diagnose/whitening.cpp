@@ -54,18 +54,30 @@ Eigen::VectorXd Whitening::unsure() const {
 
 ScreenResult screen(const Whitening& V, const Eigen::VectorXd& d, const Eigen::MatrixXd& b,
                     const Eigen::VectorXd& tau) {
-    const Eigen::MatrixXd scaled = b * tau.asDiagonal();
+    return screen_alternatives(V, d, b, tau).front();
+}
+
+std::vector<ScreenResult> screen_alternatives(const Whitening& V, const Eigen::VectorXd& d, const Eigen::MatrixXd& b,
+                                              const Eigen::VectorXd& tau) {
+    const Eigen::Index p = tau.size(), count = b.cols() / p;
+    const Eigen::MatrixXd scaled = b * tau.replicate(count, 1).asDiagonal();
     const Eigen::MatrixXd Vb = V.apply(scaled);
-    const Eigen::MatrixXd M = scaled.transpose() * Vb;
-    const Eigen::LLT<Eigen::MatrixXd> inner(Eigen::MatrixXd::Identity(tau.size(), tau.size()) + M);
-    const Eigen::VectorXd s = Vb.transpose() * d;
-    const Eigen::VectorXd x = inner.solve(s);
-    const double all = (V.weights().asDiagonal() * scaled).squaredNorm();
-    return {
-        .log_bayes_factor = 0.5 * s.dot(x) - 0.5 * log_determinant_of(inner),
-        .value = x.cwiseProduct(tau),
-        .sd = inner.solve(Eigen::MatrixXd::Identity(tau.size(), tau.size())).diagonal().cwiseSqrt().cwiseProduct(tau),
-        .keep = all > 0 ? M.trace() / all : 0};
+    const Eigen::VectorXd all_s = Vb.transpose() * d;
+    const Eigen::VectorXd alone = (V.weights().asDiagonal() * scaled).colwise().squaredNorm();
+    const Eigen::MatrixXd one = Eigen::MatrixXd::Identity(p, p);
+    std::vector<ScreenResult> results;
+    results.reserve(count);
+    for (Eigen::Index a = 0; a < count; ++a) {
+        const Eigen::MatrixXd M = scaled.middleCols(a * p, p).transpose() * Vb.middleCols(a * p, p);
+        const Eigen::LLT<Eigen::MatrixXd> inner(one + M);
+        const Eigen::VectorXd s = all_s.segment(a * p, p), x = inner.solve(s);
+        const double all = alone.segment(a * p, p).sum();
+        results.push_back({.log_bayes_factor = 0.5 * s.dot(x) - 0.5 * log_determinant_of(inner),
+                           .value = x.cwiseProduct(tau),
+                           .sd = inner.solve(one).diagonal().cwiseSqrt().cwiseProduct(tau),
+                           .keep = all > 0 ? M.trace() / all : 0});
+    }
+    return results;
 }
 
 LeftOut leave_out(const Whitening& V, const Eigen::VectorXd& d, const std::vector<int>& group) {

@@ -42,6 +42,10 @@ struct ScreenResult {
 };
 ScreenResult screen(const Whitening& V, const Eigen::VectorXd& d, const Eigen::MatrixXd& b, const Eigen::VectorXd& tau);
 
+/// The same for alternatives, each a group of p columns side by side (N x alternatives p), all at once.
+std::vector<ScreenResult> screen_alternatives(const Whitening& V, const Eigen::VectorXd& d, const Eigen::MatrixXd& b,
+                                              const Eigen::VectorXd& tau);
+
 /// Errors of each group of rows (ids >= 0, N) as predicted from all the others, and whitened: [V^-1]_gg^-1 [V^-1 d]_g.
 struct LeftOut {
     Eigen::VectorXd error;     // (N), in sigmas of noise

@@ -26,12 +26,26 @@ std::size_t edits_between(const std::string& a, const std::string& b) {
     return row.back();
 }
 
+std::vector<std::shared_ptr<const Effect>>& registry() {
+    static std::vector<std::shared_ptr<const Effect>> all{
+        gravity_effect(),    stiffening_effect(),   anisotropy_effect(), inclusion_effect(),
+        volume_effect(),     torsion_effect(),      shear_effect(),      compliant_support_effect(),
+        contact_effect(),    pressure_effect(),     prestress_effect(),  viscosity_effect(),
+        plasticity_effect(), misalignment_effect(), force_gain_effect(), outliers_effect()};
+    return all;
+}
+
 }  // namespace
 
-const std::vector<std::shared_ptr<const Effect>>& catalogue() {
-    static const std::vector<std::shared_ptr<const Effect>> all{
-        gravity_effect(), compliant_support_effect(), misalignment_effect(), force_gain_effect(), outliers_effect()};
-    return all;
+const std::vector<std::shared_ptr<const Effect>>& catalogue() { return registry(); }
+
+bool register_effect(std::shared_ptr<const Effect> effect) {
+    const auto same = [&](const auto& other) { return other->name() == effect->name(); };
+    if (std::ranges::any_of(registry(), same)) {
+        throw InvalidInput(fmt::format("there is an effect '{}' already; give yours another name", effect->name()));
+    }
+    registry().push_back(std::move(effect));
+    return true;
 }
 
 std::shared_ptr<const Effect> find_effect(const std::string& name) {

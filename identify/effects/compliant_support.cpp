@@ -42,19 +42,13 @@ public:
                  .logarithm = true}};
     }
 
-    std::shared_ptr<const fem::PointPotential> potential(const Eigen::VectorXd& values) const override {
-        return std::make_shared<skeleton::CompliantSupport>(std::exp(values[0]));
+    bool enforce(const Eigen::VectorXd& values, Setting& setting) const override {
+        setting.effects.points.push_back(std::make_shared<skeleton::CompliantSupport>(std::exp(values[0])));
+        return true;
     }
 
-    Eigen::MatrixXd force(const BodyModel& model, const Problem&, const Setting& setting, int, const Eigen::VectorXd& q,
-                          const Eigen::VectorXd& values) const override {
-        return model.effect_force(q, setting, *potential(values));
-    }
-
-    bool neutral_at_start() const override { return false; }
-
-    ScreenColumns screen_columns(const BodyModel& model, const Problem& problem, const Explanation& explanation,
-                                 const Played& played, int threads) const override {
+    ScreenPlan screen_plan(const BodyModel& model, const Problem& problem, const Explanation& explanation,
+                           const Played& played) const override {
         // Compliance c = 1/k is neutral at 0. To first order the base moves as a rigid body by c K_1^-1 (F, M), with
         // (F, M) what the body presses on it, and K_1 that of springs of 1 N/mm in all: 1 for moving, the second
         // moment sum w (r^2 - r r^T) for turning.
@@ -67,21 +61,25 @@ public:
         moment.diagonal().array() += 1e-6 * moment.trace();
         const Eigen::MatrixXd base = model.support_motion(centre);
         const Setting setting = explanation.setting();
-        const Signatures signature{
-            1, [&](int k, const Eigen::VectorXd& q) {
-                const Action action = explanation.act(problem, k);
-                Eigen::VectorXd motion = base.transpose() * model.residual(q, setting, action);
-                motion.tail<3>() = moment.inverse() * motion.tail<3>();
-                const Eigen::VectorXd moved = base * motion;
-                return Signatures::InAction{-model.tangent_times(q, setting, action, moved), moved, {0}};
-            }};
-        return {answers(model, problem, explanation, played, {signature}, threads).front(),
-                Eigen::VectorXd::Constant(1, 0.5 / typical_stiffness(problem))};
-    }
+        const double prior_sd = 0.5 / typical_stiffness(problem);  // of the compliance [mm/N]
 
-    Eigen::VectorXd start_after_screen(const ScreenColumns& columns, const Eigen::VectorXd& screened) const override {
-        const double least = 0.1 * columns.prior_sd[0];  // compliance [mm/N]
-        return Eigen::VectorXd::Constant(1, -std::log(std::max(screened[0], least)));
+        ScreenPlan plan;
+        plan.signatures = {1, [&model, &played, base, moment, setting](int k, const Eigen::VectorXd& q) {
+                               const Action& action = played.actions[k];
+                               Eigen::VectorXd motion = base.transpose() * model.residual(q, setting, action);
+                               motion.tail<3>() = moment.inverse() * motion.tail<3>();
+                               const Eigen::VectorXd moved = base * motion;
+                               return Signatures::InAction{.forces = -model.tangent_times(q, setting, action, moved),
+                                                           .steps = moved,
+                                                           .columns = {0}};
+                           }};
+        plan.columns = [prior_sd](const Eigen::MatrixXd& answers) {
+            return ScreenColumns{answers, Eigen::VectorXd::Constant(1, prior_sd), true};
+        };
+        plan.start = [prior_sd](Eigen::Index, const Eigen::VectorXd& compliance) {
+            return Eigen::VectorXd::Constant(1, -std::log(std::max(compliance[0], 0.1 * prior_sd)));
+        };
+        return plan;
     }
 
     std::string sentence(const skeleton::Effect& told) const override {

@@ -8,20 +8,14 @@
 
 namespace palpate::identify {
 
-std::shared_ptr<const fem::PointPotential> Effect::potential(const Eigen::VectorXd&) const { return nullptr; }
+bool Effect::enforce(const Eigen::VectorXd&, Setting&) const { return false; }
 
 Action Effect::act(const Problem&, int, Action action, const Eigen::VectorXd&) const { return action; }
 
 Points Effect::see(const Problem&, const Points& markers, const Eigen::VectorXd&) const { return markers; }
 
-Eigen::MatrixXd Effect::force(const BodyModel& model, const Problem&, const Setting&, int, const Eigen::VectorXd&,
-                              const Eigen::VectorXd& values) const {
-    return Eigen::MatrixXd::Zero(model.dofs(), values.size());
-}
-
-Effect::ScreenColumns Effect::screen_columns(const BodyModel& model, const Problem& problem,
-                                             const Explanation& explanation, const Played& played, int threads) const {
-    // The signature of the numbers at their neutral start, as if they were in force.
+ScreenPlan Effect::screen_plan(const BodyModel& model, const Problem& problem, const Explanation& explanation,
+                               const Played& played) const {
     const std::vector<EffectNumber> own = numbers(model, problem);
     Explanation with = explanation;
     with.effects.push_back(std::shared_ptr<const Effect>(std::shared_ptr<void>(), this));
@@ -31,14 +25,18 @@ Effect::ScreenColumns Effect::screen_columns(const BodyModel& model, const Probl
         prior_sd[static_cast<Eigen::Index>(j)] = own[j].prior_sd;
     }
     with.values.push_back(start);
-    const Eigen::MatrixXd all =
-        answers(model, problem, with, played, {own_signatures(model, problem, with)}, threads).front() +
-        seen_directly(problem, with, played);
-    return {all.rightCols(std::ssize(own)), prior_sd};
-}
 
-Eigen::VectorXd Effect::start_after_screen(const ScreenColumns&, const Eigen::VectorXd& screened) const {
-    return Eigen::VectorXd::Zero(screened.size());
+    // Forces of its own numbers only, and what they change of what is seen.
+    const Eigen::Index count = std::ssize(own);
+    ScreenPlan plan;
+    plan.signatures = {count, [&model, &problem, with, &played](int k, const Eigen::VectorXd& q) {
+                           return signatures_of_last_effect(model, problem, with, played, k, q);
+                       }};
+    plan.columns = [&problem, with, &played, prior_sd, count](const Eigen::MatrixXd& answers) {
+        return ScreenColumns{answers + seen_directly(problem, with, played).rightCols(count), prior_sd};
+    };
+    plan.start = [start](Eigen::Index, const Eigen::VectorXd&) { return start; };
+    return plan;
 }
 
 std::string Effect::objection(const Problem&, const Eigen::VectorXd&, bool) const { return {}; }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -11,6 +12,20 @@ namespace palpate::identify {
 
 struct Explanation;
 struct Played;
+
+/// Force signatures that differ from action to action: columns of a wide matrix that most actions know nothing of.
+struct Signatures {
+    Eigen::Index width = 0;  // columns in all
+    /// What it is in an action.
+    struct InAction {
+        Eigen::MatrixXd forces = {};    // (dofs x c) [N]
+        Eigen::MatrixXd steps = {};     // that what is held makes besides (dofs x c), or empty
+        std::vector<int> columns = {};  // of the wide matrix (c, or those that `combine` makes)
+        /// Makes other steps (dofs x ...) out of J^-1 forces; absent: they are what counts.
+        std::function<Eigen::MatrixXd(const Eigen::MatrixXd& steps)> combine = {};
+    };
+    std::function<InAction(int k, const Eigen::VectorXd& q)> in_action;
+};
 
 enum class EffectKind {
     body,         // the body has it: it goes into the model
@@ -34,7 +49,25 @@ struct EffectNumber {
     std::string name, unit;  // as they are told
     double start = 0;        // neutral, or where a fit begins
     double prior_mean = 0, prior_sd = 1;
-    bool logarithm = false;  // the fit's number is its logarithm
+    bool logarithm = false;       // the fit's number is its logarithm
+    bool prior_at_start = false;  // its prior is centred where the fit begins: a direction, which a scan has found
+};
+
+/// What a weak effect does to a model that lacks it, one way or another: groups of columns over sigma, as many numbers
+/// wide as `prior_sd` is long, each group an alternative (other places, other directions).
+struct ScreenColumns {
+    Eigen::MatrixXd columns;   // (N x alternatives p)
+    Eigen::VectorXd prior_sd;  // (p)
+    bool one_sided = false;    // numbers below 0 have no meaning
+    Eigen::Index alternatives() const { return prior_sd.size() > 0 ? columns.cols() / prior_sd.size() : 0; }
+};
+
+/// How an effect is screened: what it asks in every action, what follows from the answers, and where a refit begins.
+struct ScreenPlan {
+    Signatures signatures;  // nothing: width 0
+    std::function<ScreenColumns(const Eigen::MatrixXd& answers)> columns;
+    /// Start values out of the best alternative and what the screen expects of its numbers.
+    std::function<Eigen::VectorXd(Eigen::Index alternative, const Eigen::VectorXd& screened)> start;
 };
 
 /// A physical effect, or a fault of a measurement, that a model may lack: a candidate of the diagnosis. One file each.
@@ -52,28 +85,24 @@ public:
 
     // How it is in force; what it does not override it leaves as it is.
 
-    virtual std::shared_ptr<const fem::PointPotential> potential(const Eigen::VectorXd& values) const;
+    /// Puts it in force on the body; false: it does not act there.
+    virtual bool enforce(const Eigen::VectorXd& values, Setting& setting) const;
+    /// Changes what acts.
     virtual Action act(const Problem& problem, int k, Action action, const Eigen::VectorXd& values) const;
     /// Marker positions as they are read; an affine map of each.
     virtual Points see(const Problem& problem, const Points& markers, const Eigen::VectorXd& values) const;
 
-    /// What its numbers add to the net force in an action (dofs x numbers); none by default.
-    virtual Eigen::MatrixXd force(const BodyModel& model, const Problem& problem, const Setting& setting, int k,
-                                  const Eigen::VectorXd& q, const Eigen::VectorXd& values) const;
+    /// Does it matter what happened before? Then problems are told stage by stage.
+    virtual bool has_memory() const { return false; }
 
-    /// Is it neutral at the start values, so that the screen may take its signature there? If not, `screen_columns`
-    /// gives one in its place.
-    virtual bool neutral_at_start() const { return true; }
-    /// Columns over sigma (N x p) with their prior standard deviations (p): what a weak effect does to a model that
-    /// lacks it. @pre not neutral_at_start.
-    struct ScreenColumns {
-        Eigen::MatrixXd columns;
-        Eigen::VectorXd prior_sd;
-    };
-    virtual ScreenColumns screen_columns(const BodyModel& model, const Problem& problem, const Explanation& explanation,
-                                         const Played& played, int threads) const;
-    /// Start values for a refit, out of what the screen expects of those columns.
-    virtual Eigen::VectorXd start_after_screen(const ScreenColumns& columns, const Eigen::VectorXd& screened) const;
+    /// Is it so far from linear that its screen may mislead? Then a refit is tried whatever the screen says, where
+    /// nothing else explains the readings.
+    virtual bool outwits_screen() const { return false; }
+
+    /// By default the signatures of all numbers at their start, which must be neutral, and the start itself as the
+    /// beginning of a refit. Keeps references to the arguments.
+    virtual ScreenPlan screen_plan(const BodyModel& model, const Problem& problem, const Explanation& explanation,
+                                   const Played& played) const;
 
     /// Why a fit with it is no claim, in words; empty: nothing speaks against it. `enough_without`: what is left
     /// without it is noise already.

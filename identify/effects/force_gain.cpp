@@ -41,16 +41,6 @@ public:
         return action;
     }
 
-    Eigen::MatrixXd force(const BodyModel& model, const Problem& problem, const Setting& setting, int k,
-                          const Eigen::VectorXd& q, const Eigen::VectorXd& values) const override {
-        Eigen::MatrixXd G = Eigen::MatrixXd::Zero(model.dofs(), values.size());
-        if (!problem.loaded(k)) return G;
-        for (const mesh::Contact& contact : act(problem, k, problem.actions[k], values).contacts) {
-            G.col(place_of(problem, k)) += model.contact_force(q, setting, contact);
-        }
-        return G;
-    }
-
     /// A number for every probe explains whatever differs from probe to probe. So it has to be needed, and sensors do
     /// not know how hard the body is pressed: gains that fall as the load grows are a body that stiffens.
     std::string objection(const Problem& problem, const Eigen::VectorXd& values, bool enough_without) const override {

@@ -38,13 +38,9 @@ public:
         return result;
     }
 
-    std::shared_ptr<const fem::PointPotential> potential(const Eigen::VectorXd& values) const override {
-        return std::make_shared<skeleton::Gravity>(g0 * values.head<3>());
-    }
-
-    Eigen::MatrixXd force(const BodyModel& model, const Problem&, const Setting& setting, int, const Eigen::VectorXd& q,
-                          const Eigen::VectorXd& values) const override {
-        return g0 * model.effect_force(q, setting, *potential(values));
+    bool enforce(const Eigen::VectorXd& values, Setting& setting) const override {
+        setting.effects.points.push_back(std::make_shared<skeleton::Gravity>(g0 * values.head<3>()));
+        return true;
     }
 
     skeleton::Effect told(const std::vector<EffectNumber>& numbers, const Eigen::VectorXd& values) const override {

@@ -60,7 +60,7 @@ std::shared_ptr<const skeleton::Model> with_law(const skeleton::Model& model, sk
 
 /// Do effects withstand displacements at rest, as a soft support does?
 bool effects_have_stiffness(const skeleton::Model& model) {
-    const skeleton::PlacedEffects effects(model, skeleton::potentials_of(model.effects));
+    const skeleton::PlacedEffects effects(model, skeleton::physics_of(model.effects));
     return !std::ranges::all_of(effects.curvature(effects.rest()), [](const auto& block) { return block.isZero(0); });
 }
 
@@ -76,6 +76,7 @@ PositionDomain::PositionDomain(const skeleton::Model& model, skeleton::Law law, 
 
     const skeleton::State rest = rest_state(*model_);
     const Eigen::VectorXd effects = skeleton::effect_force(*model_, rest);
+    G_rest_ = skeleton::link_forces(*model_, rest);
     goes_as_inverse_ = !effects_have_stiffness(*model_);
     F_.resize(model_->dofs(), static_cast<Eigen::Index>(states_.size()));
     std::vector<double> displacements;
@@ -135,13 +136,13 @@ double PositionDomain::estimate_model_error(const Prediction& prediction) const 
 
 Prediction PositionDomain::predict_linear(const Eigen::VectorXd& k) const {
     const SolverPool::Loan solver(*solvers_);
-    const Eigen::MatrixXd U = solver->linear_steps(k, F_);
+    const Eigen::MatrixXd U = solver->linear_steps(k, F_.colwise() + G_rest_ * k);
     Prediction prediction;
     for (int s = 0; s < static_cast<int>(states_.size()); ++s) {
         const Eigen::VectorXd moved = P_[s] * U.col(s);
         prediction.markers.emplace_back(states_[s].rest + offsets_[s] +
                                         moved.reshaped<Eigen::RowMajor>(moved.size() / 3, 3));
-        prediction.equilibria.push_back({{}, 1, 0, U.col(s)});
+        prediction.equilibria.push_back({.state = {}, .iterations = 1, .step = U.col(s)});
     }
     return prediction;
 }
@@ -254,14 +255,18 @@ NormalEquations PositionDomain::normal_equations(const Eigen::VectorXd& theta, c
 double PositionDomain::common_factor(const Eigen::VectorXd& theta) const {
     if (!goes_as_inverse_) return 0;
 
-    // measured displacement = scale x modelled one, weighted least squares
+    // measured displacement = what links pull at rest + scale x that of the loads, weighted least squares
     const SolverPool::Loan solver(*solvers_);
-    const Eigen::MatrixXd U = solver->linear_steps(parameters_.stiffness(theta), F_);
+    const Eigen::VectorXd k = parameters_.stiffness(theta);
+    Eigen::MatrixXd F(F_.rows(), F_.cols() + 1);
+    F << F_, G_rest_ * k;
+    const Eigen::MatrixXd U = solver->linear_steps(k, F);
     double up = 0, down = 0;
     for (int s = 0; s < static_cast<int>(states_.size()); ++s) {
-        const Eigen::VectorXd modelled = P_[s] * U.col(s);
+        const Eigen::VectorXd modelled = P_[s] * U.col(s), pulled = P_[s] * U.rightCols<1>();
         const Eigen::VectorXd weighted = weights_[s].cwiseProduct(modelled);
-        up += weighted.dot(errors_of(states_[s], states_[s].rest));
+        const Points rest = states_[s].rest + pulled.reshaped<Eigen::RowMajor>(pulled.size() / 3, 3);
+        up += weighted.dot(errors_of(states_[s], rest));
         down += weighted.dot(modelled);
     }
     return up > 0 ? std::log(down / up) : 0;

@@ -24,9 +24,10 @@ struct NormalEquations {
 
 /// Errors of the markers at the model's own equilibria, and their derivatives by theta, the log multipliers.
 ///
-/// In equilibrium r(x, k) = f_ext + G k = 0, so dx/dk = T^-1 G with the tangent T = -dr/dx, and a marker moves by
-/// P T^-1 G: exact derivatives for one factorisation a state (linear law: one in all), through P T^-1 G dk/dtheta
-/// from the right where parameters are few, through (T^-1 P^T)^T from the left where readings are.
+/// In equilibrium r(x, k) = f_ext + G k = 0, effects in the links (G) and others (f_ext) included, so dx/dk = T^-1 G
+/// with the tangent T = -dr/dx, and a marker moves by P T^-1 G: exact derivatives for one factorisation a state (linear
+/// law: one in all), through P T^-1 G dk/dtheta from the right where parameters are few, through (T^-1 P^T)^T from the
+/// left where readings are.
 ///
 /// A reading's sigma. A coarse model errs by more than the noise, and alike for neighbouring markers: a thousand
 /// vertices must not count as a thousand independent readings. So a state's readings together count as about six
@@ -91,6 +92,7 @@ private:
     std::vector<Points> offsets_;                 // added to the modelled markers (m x 3) [mm]
     std::vector<Eigen::SparseMatrix<double>> P_;  // of each state at rest (3m x 6N)
     Eigen::MatrixXd F_;                           // loads and effects at rest (6N x states)
+    Eigen::SparseMatrix<double> G_rest_;          // those of the links, of each stiffness (6N x 3L)
     std::vector<Eigen::VectorXd> weights_;        // 1 / sigma^2, 0 for a missing coordinate, of each state (3m)
     bool goes_as_inverse_ = true;                 // displacement, with a factor on all stiffnesses
     double typical_displacement_ = 0;             // u_0 [mm]

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "fem/point_potential.h"
+#include "fem/effects.h"
 #include "mesh/contact.h"
 #include "mesh/types.h"
 
@@ -21,15 +21,23 @@ struct StiffnessParameter {
 
 /// What a model is told to be.
 struct Setting {
-    int law = 0;              // index in BodyModel::laws
-    Eigen::VectorXd theta;    // stiffness parameters (P)
-    fem::Potentials effects;  // in force beyond the model's own
+    int law = 0;            // index in BodyModel::laws
+    Eigen::VectorXd theta;  // stiffness parameters (P)
+    fem::Effects effects;   // in force beyond the model's own
+};
+
+/// What a body keeps of what it went through; each model has its own kind.
+class Memory {
+public:
+    virtual ~Memory() = default;
 };
 
 /// What acts in a state and is known.
 struct Action {
     std::vector<mesh::Contact> contacts;
-    Vec3 gravity = Vec3::Zero();  // [mm/s^2]
+    Vec3 gravity = Vec3::Zero();                     // [mm/s^2]
+    double pressure = 0;                             // in closed cavities [MPa]
+    std::shared_ptr<const Memory> memory = nullptr;  // of what the body went through before; none: it is virgin
 };
 
 /// J = -d residual / d step in some configuration, factored.
@@ -72,7 +80,8 @@ public:
     virtual std::shared_ptr<const Tangent> tangent(const Eigen::VectorXd& q, const Setting& setting,
                                                    const Action& action) const = 0;
     /// d residual / d theta (dofs x P): the force signatures of the stiffness parameters.
-    virtual Eigen::MatrixXd parameter_force(const Eigen::VectorXd& q, const Setting& setting) const = 0;
+    virtual Eigen::MatrixXd parameter_force(const Eigen::VectorXd& q, const Setting& setting,
+                                            const Action& action) const = 0;
     /// Positions of the markers (m x 3) [mm].
     virtual Points observe(const Eigen::VectorXd& q, const Setting& setting) const = 0;
     /// P = d observe / d step (3m x dofs).
@@ -82,9 +91,10 @@ public:
 
     virtual Eigen::VectorXd advance(const Eigen::VectorXd& q, const Eigen::VectorXd& step,
                                     const Setting& setting) const = 0;
-    /// d residual / d parameters of an effect (dofs x its parameters); it need not be in force.
-    virtual Eigen::MatrixXd effect_force(const Eigen::VectorXd& q, const Setting& setting,
-                                         const fem::PointPotential& effect) const = 0;
+    /// What the body keeps of an equilibrium, and of what it remembered in it; nothing where its material does not
+    /// yield.
+    virtual std::shared_ptr<const Memory> remember(const Eigen::VectorXd& q, const Setting& setting,
+                                                   const Action& action) const = 0;
     /// The generalized force of one contact (dofs).
     virtual Eigen::VectorXd contact_force(const Eigen::VectorXd& q, const Setting& setting,
                                           const mesh::Contact& contact) const = 0;
@@ -96,8 +106,18 @@ public:
     /// Pieces that a support's border cuts (p flags).
     virtual const std::vector<char>& pieces_at_support() const = 0;
     /// d residual / d ln stiffness of weighted pieces (dofs x c); W (p x c).
-    virtual Eigen::MatrixXd piece_force(const Eigen::VectorXd& q, const Setting& setting,
+    virtual Eigen::MatrixXd piece_force(const Eigen::VectorXd& q, const Setting& setting, const Action& action,
                                         const Eigen::MatrixXd& W) const = 0;
+
+    /// Points of the surface at rest (s x 3) [mm], and the area that each stands for (s) [mm^2].
+    virtual const Points& skin() const = 0;
+    virtual const Eigen::VectorXd& skin_areas() const = 0;
+    /// Where they stand (s x 3).
+    virtual Points skin_positions(const Eigen::VectorXd& q, const Setting& setting) const = 0;
+    /// d skin_positions / d step (3s x dofs).
+    virtual Eigen::SparseMatrix<double> skin_motion(const Eigen::VectorXd& q, const Setting& setting) const = 0;
+    /// Does the body close in cavities, which can be under pressure?
+    virtual bool has_cavities() const = 0;
 
     /// Points that the supports hold (s x 3) and their shares (s), which add up to 1.
     virtual const Points& support_points() const = 0;

@@ -36,6 +36,19 @@ private:
     std::shared_ptr<const fem::BodyTangent> factor_;
 };
 
+bool in_small_strain(const Setting& setting) { return static_cast<fem::Law>(setting.law) == fem::Law::linear; }
+
+class FemMemory : public Memory {
+public:
+    explicit FemMemory(std::shared_ptr<const fem::PlasticState> the_state) : state(std::move(the_state)) {}
+    std::shared_ptr<const fem::PlasticState> state;
+};
+
+const fem::PlasticState* memory_of(const Action& action) {
+    const auto* own = dynamic_cast<const FemMemory*>(action.memory.get());
+    return own ? own->state.get() : nullptr;
+}
+
 Points centres_of(const mesh::VolumeMesh& mesh) {
     Points centres(mesh.tetrahedra.rows(), 3);
     for (Eigen::Index e = 0; e < centres.rows(); ++e) {
@@ -71,14 +84,19 @@ struct ReferenceBody::Impl {
     Points centres, support_points;
     std::vector<char> cut;
     Eigen::VectorXd support_shares;
+    std::vector<int> skin_nodes;
+    Points skin;
+    Eigen::VectorXd skin_areas;
 
     // A contact's nodal forces per newton do not depend on the configuration: each is made once.
     using Place = std::tuple<double, double, double, double>;
     mutable std::mutex mutex;
     mutable std::map<Place, Eigen::VectorXd> shares;  // (n)
 
-    fem::BodySetting setting(const Setting& s, const fem::Material& material) const {
-        return {static_cast<fem::Law>(s.law), material, s.effects};
+    fem::BodySetting setting(const Setting& s, const fem::Material& material, const Action& action) const {
+        fem::BodySetting result{static_cast<fem::Law>(s.law), material, s.effects};
+        result.effects.pressure += action.pressure;
+        return result;
     }
     /// Nodal shares of a contact (n), which add up to 1.
     Eigen::VectorXd shares_of(const mesh::Contact& contact) const;
@@ -98,6 +116,10 @@ ReferenceBody::ReferenceBody(const mesh::VolumeMesh& mesh, const std::vector<mes
     const fem::NodeWeights support = i.body.points(fem::ActsOn::support, i.density);
     i.support_points = mesh.nodes(support.nodes, Eigen::all);
     i.support_shares = support.weights;
+    const fem::NodeWeights skin = i.body.points(fem::ActsOn::surface, i.density);
+    i.skin_nodes = skin.nodes;
+    i.skin = mesh.nodes(skin.nodes, Eigen::all);
+    i.skin_areas = skin.weights;
     const double start = std::log(options.young.value_or(0.1));
     // Young's modulus to a factor of twenty; nu = .45, from about .13 to .49.
     i.parameters = {{"young", start, start, 3}, {"compressibility", std::log(0.1), std::log(0.1), 1, false}};
@@ -145,7 +167,7 @@ const std::vector<StiffnessParameter>& ReferenceBody::parameters() const { retur
 double ReferenceBody::size() const { return impl_->size; }
 double ReferenceBody::young(const Setting& setting) const { return std::exp(setting.theta[ln_young]); }
 bool ReferenceBody::is_nonlinear(const Setting& setting) const {
-    return static_cast<fem::Law>(setting.law) != fem::Law::linear;
+    return static_cast<fem::Law>(setting.law) != fem::Law::linear || setting.effects.plasticity;
 }
 const fem::HyperelasticBody& ReferenceBody::body() const { return impl_->body; }
 
@@ -163,25 +185,31 @@ Eigen::VectorXd ReferenceBody::equilibrium(const Setting& setting, const Action&
     // What is not found soon next to a known state is no answer for a trial.
     require_material(material(setting));
     const fem::NewtonOptions options{.tolerance = 1e-7, .iterations = start ? 40 : 60, .load_steps = start ? 0 : 16};
-    return impl_->body.equilibrium(impl_->setting(setting, material(setting)), impl_->load(action), options, start).u;
+    return impl_->body
+        .equilibrium(impl_->setting(setting, material(setting), action), impl_->load(action), options, start,
+                     memory_of(action))
+        .u;
 }
 
 Eigen::VectorXd ReferenceBody::residual(const Eigen::VectorXd& q, const Setting& setting, const Action& action) const {
-    return impl_->body.residual(q, impl_->setting(setting, material(setting)), impl_->load(action));
+    return impl_->body.residual(q, impl_->setting(setting, material(setting), action), impl_->load(action),
+                                memory_of(action));
 }
 
 std::shared_ptr<const Tangent> ReferenceBody::tangent(const Eigen::VectorXd& q, const Setting& setting,
-                                                      const Action&) const {
+                                                      const Action& action) const {
     require_material(material(setting));
-    return std::make_shared<FemTangent>(impl_->body.factor(q, impl_->setting(setting, material(setting))));
+    return std::make_shared<FemTangent>(
+        impl_->body.factor(q, impl_->setting(setting, material(setting), action), memory_of(action)));
 }
 
-Eigen::MatrixXd ReferenceBody::parameter_force(const Eigen::VectorXd& q, const Setting& setting) const {
+Eigen::MatrixXd ReferenceBody::parameter_force(const Eigen::VectorXd& q, const Setting& setting,
+                                               const Action& action) const {
     // f = mu a + K b with mu = E / (2 (1 + nu)), K = E / (3 (1 - 2 nu)); t = ln(1 - 2 nu): d nu/dt = -(1 - 2 nu)/2,
     // so d mu/dt = mu (1 - 2 nu) / (2 (1 + nu)) and dK/dt = -K. The residual is minus f.
     const fem::Material m = material(setting);
     const double mu = m.shear_modulus(), K = m.young / (3 * (1 - 2 * m.poisson));
-    const auto unit = impl_->body.modulus_forces(q, impl_->setting(setting, m));
+    const auto unit = impl_->body.modulus_forces(q, impl_->setting(setting, m, action), memory_of(action));
     Eigen::MatrixXd G(q.size(), 2);
     G.col(ln_young) = -(mu * unit.col(0) + K * unit.col(1));
     G.col(ln_compressibility) = -(mu * (1 - 2 * m.poisson) / (2 * (1 + m.poisson)) * unit.col(0) - K * unit.col(1));
@@ -189,21 +217,22 @@ Eigen::MatrixXd ReferenceBody::parameter_force(const Eigen::VectorXd& q, const S
 }
 
 Points ReferenceBody::observe(const Eigen::VectorXd& q, const Setting& setting) const {
-    return impl_->frames.positions(q, !is_nonlinear(setting));
+    return impl_->frames.positions(q, in_small_strain(setting));
 }
 
 Eigen::SparseMatrix<double> ReferenceBody::observation(const Eigen::VectorXd& q, const Setting& setting) const {
-    return impl_->frames.derivative(q, !is_nonlinear(setting));
+    return impl_->frames.derivative(q, in_small_strain(setting));
 }
 
 Eigen::VectorXd ReferenceBody::advance(const Eigen::VectorXd& q, const Eigen::VectorXd& step, const Setting&) const {
     return q + step;
 }
 
-Eigen::MatrixXd ReferenceBody::effect_force(const Eigen::VectorXd& q, const Setting& setting,
-                                            const fem::PointPotential& effect) const {
-    // By the linear law effects are linearised at rest; by their parameters they are linear there as well.
-    return impl_->body.effect_forces(q, effect, material(setting).density);
+std::shared_ptr<const Memory> ReferenceBody::remember(const Eigen::VectorXd& q, const Setting& setting,
+                                                      const Action& action) const {
+    if (!setting.effects.plasticity) return nullptr;
+    return std::make_shared<FemMemory>(
+        impl_->body.plastic_state(q, impl_->setting(setting, material(setting), action), memory_of(action)));
 }
 
 Eigen::VectorXd ReferenceBody::contact_force(const Eigen::VectorXd&, const Setting&,
@@ -218,10 +247,31 @@ Vec3 ReferenceBody::normal_near(const Vec3& point, double radius) const {
 const Points& ReferenceBody::pieces() const { return impl_->centres; }
 const std::vector<char>& ReferenceBody::pieces_at_support() const { return impl_->cut; }
 
-Eigen::MatrixXd ReferenceBody::piece_force(const Eigen::VectorXd& q, const Setting& setting,
+Eigen::MatrixXd ReferenceBody::piece_force(const Eigen::VectorXd& q, const Setting& setting, const Action& action,
                                            const Eigen::MatrixXd& W) const {
-    return -impl_->body.element_forces(q, impl_->setting(setting, material(setting)), W);
+    return -impl_->body.element_forces(q, impl_->setting(setting, material(setting), action), W, memory_of(action));
 }
+
+const Points& ReferenceBody::skin() const { return impl_->skin; }
+const Eigen::VectorXd& ReferenceBody::skin_areas() const { return impl_->skin_areas; }
+
+Points ReferenceBody::skin_positions(const Eigen::VectorXd& q, const Setting&) const {
+    const Eigen::Map<const Points> u(q.data(), q.size() / 3, 3);
+    return impl_->skin + Points(u(impl_->skin_nodes, Eigen::all));
+}
+
+Eigen::SparseMatrix<double> ReferenceBody::skin_motion(const Eigen::VectorXd&, const Setting&) const {
+    std::vector<Eigen::Triplet<double>> ones;
+    ones.reserve(3 * impl_->skin_nodes.size());
+    for (std::size_t i = 0; i < impl_->skin_nodes.size(); ++i) {
+        for (int c = 0; c < 3; ++c) ones.emplace_back(3 * static_cast<int>(i) + c, 3 * impl_->skin_nodes[i] + c, 1.0);
+    }
+    Eigen::SparseMatrix<double> result(std::ssize(ones), dofs());
+    result.setFromTriplets(ones.begin(), ones.end());
+    return result;
+}
+
+bool ReferenceBody::has_cavities() const { return impl_->body.has_cavities(); }
 
 const Points& ReferenceBody::support_points() const { return impl_->support_points; }
 const Eigen::VectorXd& ReferenceBody::support_shares() const { return impl_->support_shares; }
@@ -238,9 +288,9 @@ Eigen::MatrixXd ReferenceBody::support_motion(const Vec3& centre) const {
     return S;
 }
 
-Eigen::MatrixXd ReferenceBody::tangent_times(const Eigen::VectorXd& q, const Setting& setting, const Action&,
+Eigen::MatrixXd ReferenceBody::tangent_times(const Eigen::VectorXd& q, const Setting& setting, const Action& action,
                                              const Eigen::MatrixXd& steps) const {
-    return impl_->body.tangent(q, impl_->setting(setting, material(setting))) * steps;
+    return impl_->body.tangent(q, impl_->setting(setting, material(setting), action), memory_of(action)) * steps;
 }
 
 }  // namespace palpate::identify

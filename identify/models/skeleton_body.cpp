@@ -39,7 +39,7 @@ State unpack(const Eigen::VectorXd& q) {
 
 class SolverTangent : public Tangent {
 public:
-    SolverTangent(const skeleton::Model& model, const fem::Potentials& effects, const Eigen::VectorXd& k,
+    SolverTangent(const skeleton::Model& model, const fem::Effects& effects, const Eigen::VectorXd& k,
                   const skeleton::Load& load, const Equilibrium& at)
         : solver_(model, effects) {
         solver_.factor_tangent(k, load, at);
@@ -49,6 +49,19 @@ public:
 private:
     skeleton::StaticsSolver solver_;
 };
+
+/// How far the links' fibres have flowed.
+class FibreMemory : public Memory {
+public:
+    explicit FibreMemory(skeleton::FibreStates states) : fibres(std::move(states)) {}
+    skeleton::FibreStates fibres;
+};
+
+const skeleton::FibreStates& memory_of(const Action& action) {
+    static const skeleton::FibreStates none;
+    const auto* own = dynamic_cast<const FibreMemory*>(action.memory.get());
+    return own ? own->fibres : none;
+}
 
 }  // namespace
 
@@ -61,7 +74,8 @@ struct SkeletonBody::Impl {
     double young, size;
     Points centres, support_points;
     std::vector<char> at_support;
-    Eigen::VectorXd support_shares;
+    Eigen::VectorXd support_shares, skin_areas;
+    bool has_cavities;
     std::unique_ptr<ContactLoads> loads;
 
     using Place = std::tuple<double, double, double, double>;
@@ -71,9 +85,16 @@ struct SkeletonBody::Impl {
     const skeleton::Model& model(const Setting& setting) const { return by_law[setting.law]; }
     skeleton::Load shares_of(const mesh::Contact& contact) const;
     skeleton::Load load(const Action& action) const;
+    /// What is in force: a pressure that is known to act does so in cavities, where there are any.
+    fem::Effects effects(const Setting& setting, const Action& action) const {
+        fem::Effects result = setting.effects;
+        if (has_cavities) result.pressure += action.pressure;
+        return result;
+    }
     /// A configuration as the statics know it.
-    Equilibrium equilibrium_of(const Eigen::VectorXd& q, const Setting& setting) const {
+    Equilibrium equilibrium_of(const Eigen::VectorXd& q, const Setting& setting, const Action& action = {}) const {
         Equilibrium at;
+        at.before = memory_of(action);
         if (static_cast<Law>(setting.law) == Law::linear) {
             at.step = q;
             at.state = skeleton::advance(skeleton::rest_state(by_law[0]), q);
@@ -123,6 +144,8 @@ SkeletonBody::SkeletonBody(const skeleton::Model& model, const std::vector<Marke
         i.support_points.row(static_cast<Eigen::Index>(p)) = support.at[p].rest;
     }
     i.support_shares = support.weights;
+    if (!model.skin.empty()) i.skin_areas = skeleton::point_set(model, fem::ActsOn::surface).weights;
+    i.has_cavities = !skeleton::Cavities(model).empty();
     i.loads = std::make_unique<ContactLoads>(i.by_law[0]);
 }
 
@@ -171,35 +194,38 @@ Eigen::VectorXd SkeletonBody::rest(const Setting& setting) const {
 
 Eigen::VectorXd SkeletonBody::equilibrium(const Setting& setting, const Action& action,
                                           const Eigen::VectorXd* start) const {
-    skeleton::StaticsSolver solver(impl_->model(setting), setting.effects);
+    skeleton::StaticsSolver solver(impl_->model(setting), impl_->effects(setting, action));
     const skeleton::Load load = impl_->load(action);
-    if (!is_nonlinear(setting)) return solver.solve(stiffness(setting), load).step;
+    const skeleton::FibreStates& before = memory_of(action);
+    if (!is_nonlinear(setting)) return solver.solve(stiffness(setting), load, {}, nullptr, before).step;
     std::optional<State> from;
     if (start) from = unpack(*start);
-    return pack(solver.solve(stiffness(setting), load, {}, from ? &*from : nullptr).state);
+    return pack(solver.solve(stiffness(setting), load, {}, from ? &*from : nullptr, before).state);
 }
 
 Eigen::VectorXd SkeletonBody::residual(const Eigen::VectorXd& q, const Setting& setting, const Action& action) const {
     const skeleton::Model& model = impl_->model(setting);
-    const Equilibrium at = impl_->equilibrium_of(q, setting);
-    const skeleton::PlacedEffects effects(model, setting.effects);
+    const Equilibrium at = impl_->equilibrium_of(q, setting, action);
+    const fem::Effects in_force = impl_->effects(setting, action);
+    const skeleton::PlacedEffects effects(model, in_force);
     const bool linear = !is_nonlinear(setting);
     Eigen::VectorXd net = skeleton::external_force(model, impl_->tangent_state(q, setting), impl_->load(action)) +
-                          skeleton::link_forces(model, at) * stiffness(setting);
+                          skeleton::link_forces(model, at, in_force) * stiffness(setting);
     if (!effects.empty()) net += linear ? effects.linear_force(q) : effects.force(at.state);
     return net;
 }
 
 std::shared_ptr<const Tangent> SkeletonBody::tangent(const Eigen::VectorXd& q, const Setting& setting,
                                                      const Action& action) const {
-    return std::make_shared<SolverTangent>(impl_->model(setting), setting.effects, stiffness(setting),
-                                           impl_->load(action), impl_->equilibrium_of(q, setting));
+    return std::make_shared<SolverTangent>(impl_->model(setting), impl_->effects(setting, action), stiffness(setting),
+                                           impl_->load(action), impl_->equilibrium_of(q, setting, action));
 }
 
-Eigen::MatrixXd SkeletonBody::parameter_force(const Eigen::VectorXd& q, const Setting& setting) const {
+Eigen::MatrixXd SkeletonBody::parameter_force(const Eigen::VectorXd& q, const Setting& setting,
+                                              const Action& action) const {
     // by the logarithm of a multiplier: the force of that kind of stiffness itself
     const Eigen::SparseMatrix<double> G =
-        skeleton::link_forces(impl_->model(setting), impl_->equilibrium_of(q, setting));
+        skeleton::link_forces(impl_->model(setting), impl_->equilibrium_of(q, setting, action), setting.effects);
     const Eigen::VectorXd k = stiffness(setting);
     Eigen::MatrixXd result(dofs(), 3);
     for (int kind = 0; kind < 3; ++kind) {
@@ -223,9 +249,11 @@ Eigen::VectorXd SkeletonBody::advance(const Eigen::VectorXd& q, const Eigen::Vec
     return is_nonlinear(setting) ? pack(skeleton::advance(unpack(q), step)) : Eigen::VectorXd(q + step);
 }
 
-Eigen::MatrixXd SkeletonBody::effect_force(const Eigen::VectorXd& q, const Setting& setting,
-                                           const fem::PointPotential& effect) const {
-    return skeleton::effect_forces(impl_->model(setting), impl_->equilibrium_of(q, setting), effect);
+std::shared_ptr<const Memory> SkeletonBody::remember(const Eigen::VectorXd& q, const Setting& setting,
+                                                     const Action& action) const {
+    if (!setting.effects.plasticity) return nullptr;
+    return std::make_shared<FibreMemory>(
+        skeleton::flowed(impl_->model(setting), impl_->equilibrium_of(q, setting, action), setting.effects));
 }
 
 Eigen::VectorXd SkeletonBody::contact_force(const Eigen::VectorXd& q, const Setting& setting,
@@ -242,13 +270,28 @@ Vec3 SkeletonBody::normal_near(const Vec3& point, double radius) const {
 const Points& SkeletonBody::pieces() const { return impl_->centres; }
 const std::vector<char>& SkeletonBody::pieces_at_support() const { return impl_->at_support; }
 
-Eigen::MatrixXd SkeletonBody::piece_force(const Eigen::VectorXd& q, const Setting& setting,
+Eigen::MatrixXd SkeletonBody::piece_force(const Eigen::VectorXd& q, const Setting& setting, const Action& action,
                                           const Eigen::MatrixXd& W) const {
     Eigen::MatrixXd weighted(impl_->k0.size(), W.cols());
     const Eigen::VectorXd k = stiffness(setting);
     for (Eigen::Index row = 0; row < weighted.rows(); ++row) weighted.row(row) = k[row] * W.row(row / 3);
-    return skeleton::link_forces(impl_->model(setting), impl_->equilibrium_of(q, setting)) * weighted;
+    return skeleton::link_forces(impl_->model(setting), impl_->equilibrium_of(q, setting, action), setting.effects) *
+           weighted;
 }
+
+const Points& SkeletonBody::skin() const { return impl_->by_law[0].surface.vertices; }
+const Eigen::VectorXd& SkeletonBody::skin_areas() const { return impl_->skin_areas; }
+
+Points SkeletonBody::skin_positions(const Eigen::VectorXd& q, const Setting& setting) const {
+    return skeleton::observe(impl_->model(setting), impl_->equilibrium_of(q, setting), impl_->by_law[0].skin);
+}
+
+Eigen::SparseMatrix<double> SkeletonBody::skin_motion(const Eigen::VectorXd& q, const Setting& setting) const {
+    return skeleton::observation_jacobian(impl_->model(setting), impl_->equilibrium_of(q, setting),
+                                          impl_->by_law[0].skin);
+}
+
+bool SkeletonBody::has_cavities() const { return impl_->has_cavities; }
 
 const Points& SkeletonBody::support_points() const { return impl_->support_points; }
 const Eigen::VectorXd& SkeletonBody::support_shares() const { return impl_->support_shares; }
@@ -269,18 +312,10 @@ Eigen::MatrixXd SkeletonBody::tangent_times(const Eigen::VectorXd& q, const Sett
                                             const Eigen::MatrixXd& steps) const {
     skeleton::Model model = impl_->model(setting);
     skeleton::set_stiffness(model, stiffness(setting));
-    const State state = impl_->tangent_state(q, setting);
     const skeleton::Load load = is_nonlinear(setting) ? impl_->load(action) : skeleton::Load{};
-    Eigen::MatrixXd result = skeleton::tangent(model, state, load) * steps;
-
-    const skeleton::PlacedEffects effects(model, setting.effects);
-    const auto blocks = effects.curvature(state);
-    for (std::size_t p = 0; p < blocks.size(); ++p) {
-        const auto [a, b] = effects.pairs()[p];
-        result.middleRows<6>(6 * a) += blocks[p] * steps.middleRows<6>(6 * b);
-        if (a != b) result.middleRows<6>(6 * b) += blocks[p].transpose() * steps.middleRows<6>(6 * a);
-    }
-    return result;
+    return skeleton::tangent(model, impl_->tangent_state(q, setting), load, impl_->effects(setting, action),
+                             memory_of(action)) *
+           steps;
 }
 
 }  // namespace palpate::identify

@@ -29,20 +29,26 @@ public:
     Eigen::VectorXd residual(const Eigen::VectorXd& q, const Setting& setting, const Action& action) const override;
     std::shared_ptr<const Tangent> tangent(const Eigen::VectorXd& q, const Setting& setting,
                                            const Action& action) const override;
-    Eigen::MatrixXd parameter_force(const Eigen::VectorXd& q, const Setting& setting) const override;
+    Eigen::MatrixXd parameter_force(const Eigen::VectorXd& q, const Setting& setting,
+                                    const Action& action) const override;
     Points observe(const Eigen::VectorXd& q, const Setting& setting) const override;
     Eigen::SparseMatrix<double> observation(const Eigen::VectorXd& q, const Setting& setting) const override;
     Eigen::VectorXd advance(const Eigen::VectorXd& q, const Eigen::VectorXd& step,
                             const Setting& setting) const override;
-    Eigen::MatrixXd effect_force(const Eigen::VectorXd& q, const Setting& setting,
-                                 const fem::PointPotential& effect) const override;
+    std::shared_ptr<const Memory> remember(const Eigen::VectorXd& q, const Setting& setting,
+                                           const Action& action) const override;
     Eigen::VectorXd contact_force(const Eigen::VectorXd& q, const Setting& setting,
                                   const mesh::Contact& contact) const override;
     Vec3 normal_near(const Vec3& point, double radius) const override;
     const Points& pieces() const override;
     const std::vector<char>& pieces_at_support() const override;
-    Eigen::MatrixXd piece_force(const Eigen::VectorXd& q, const Setting& setting,
+    Eigen::MatrixXd piece_force(const Eigen::VectorXd& q, const Setting& setting, const Action& action,
                                 const Eigen::MatrixXd& W) const override;
+    const Points& skin() const override;
+    const Eigen::VectorXd& skin_areas() const override;
+    Points skin_positions(const Eigen::VectorXd& q, const Setting& setting) const override;
+    Eigen::SparseMatrix<double> skin_motion(const Eigen::VectorXd& q, const Setting& setting) const override;
+    bool has_cavities() const override;
     const Points& support_points() const override;
     const Eigen::VectorXd& support_shares() const override;
     Eigen::MatrixXd support_motion(const Vec3& centre) const override;

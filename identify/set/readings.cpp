@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "identify/set/creep.h"
 #include "identify/set/loads.h"
 
 namespace palpate::identify {
@@ -36,6 +37,8 @@ double rms(const Points& difference) {
 }
 
 std::vector<StateReadings> collect_readings(const skeleton::Model& model, const MeasurementSet& set) {
+    const std::optional<fem::Creep> creep = skeleton::physics_of(model.effects).creep;
+    const MeasurementSet borne = creep ? as_elastic(set, *creep) : set;
     const std::vector<skeleton::Attachment> markers = attach_markers(model, set.markers);
     const ContactLoads loads(model);
     const bool always_loaded = is_always_loaded(model);
@@ -65,7 +68,7 @@ std::vector<StateReadings> collect_readings(const skeleton::Model& model, const 
         }
         readings.coordinates = static_cast<int>((!readings.measured.array().isNaN()).count());
         readings.displacement = rms(readings.measured - readings.rest);
-        readings.load = loads(set, state);
+        readings.load = loads(borne, borne.states[s]);
         readings.tells_stiffness = always_loaded || is_known_to_act(set, state);
         result.push_back(std::move(readings));
     }

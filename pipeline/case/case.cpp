@@ -58,7 +58,7 @@ void read_probing(const YamlFields& yaml, ProbeOptions& probing) {
     read_if(yaml, "probes", probing.probes, [&](auto& key) { return yaml.integer(key, 1, 10000); });
     read_if(yaml, "held_out", probing.held_out, [&](auto& key) { return yaml.integer(key, 0, 10000); });
     read_if(yaml, "markers", probing.markers, [&](auto& key) { return yaml.integer(key, 3, 100000); });
-    read_if(yaml, "displacement", probing.displacement, [&](auto& key) { return yaml.number(key, 1e-9, 0.5); });
+    read_if(yaml, "displacement", probing.displacement, [&](auto& key) { return yaml.number(key, 0, 0.5); });
     read_if(yaml, "radius", probing.radius, [&](auto& key) { return yaml.number(key, 1e-9, 0.5); });
     read_if(yaml, "noise", probing.noise, [&](auto& key) { return yaml.number(key, 0, 1e9); });
     yaml.finish();
@@ -195,6 +195,8 @@ void override_case(Case& c, const CaseOverrides& say) {
         c.probing.probes = *say.probes;
         c.probing.held_out = std::min(c.probing.held_out, *say.probes / 5);
     }
+    if (say.markers) c.probing.markers = *say.markers;
+    if (say.displacement) c.probing.displacement = *say.displacement;
     if (say.noise) c.probing.noise = *say.noise;
     if (say.particles) c.identify.particles = *say.particles;
     if (!say.parameters.empty()) c.identify.scope = parse(scopes, say.parameters, "--parameters");
@@ -212,8 +214,7 @@ void ProbeOptions::validate() const {
     require(probes >= 1 && probes <= 10000, "probes", probes, "1 to 10000");
     require(held_out >= 0 && held_out < probes, "held_out", held_out, "0 to one less than the probes");
     require(markers >= 3 && markers <= 100000, "markers", markers, "3 to 100000");
-    require(displacement > 0 && displacement <= 0.5, "displacement", displacement,
-            "above 0 to 0.5 of the longest side");
+    require(displacement >= 0 && displacement <= 0.5, "displacement", displacement, "0 to 0.5 of the longest side");
     require(radius > 0 && radius <= 0.5, "radius", radius, "above 0 to 0.5 of the longest side");
     require(noise >= 0, "noise", noise, "0 mm or more");
 }

@@ -16,13 +16,17 @@ namespace palpate::pipeline {
 
 /// How a reference simulation probes a body.
 struct ProbeOptions {
-    int probes = 12;              // loaded states, [1, 10000]
-    int held_out = 0;             // of them, how many are kept from the fit, spread evenly
-    int markers = 150;            // surface points that are read, [3, 100000]
-    double displacement = 0.005;  // largest, as a share of the longest side, (0, 0.5]
-    double radius = 0.06;         // of a contact patch, as a share of the longest side, (0, 0.5]
-    double noise = 0;             // 1 sigma added to every reading [mm]
+    int probes = 12;          // places that are touched, [1, 10000]
+    int held_out = 0;         // of them, how many are kept from the fit, spread evenly
+    int markers = 150;        // surface points that are read, [3, 100000]
+    double displacement = 0;  // largest, as a share of the longest side, [0, 0.5]; 0: by how far the law reaches
+    double radius = 0.06;     // of a contact patch, as a share of the longest side, (0, 0.5]
+    double noise = 0;         // 1 sigma added to every reading [mm]
     void validate() const;
+    /// What is asked for, else 0.5 % in small strain and 5 % in large deformation.
+    double largest_displacement(bool small_strain) const {
+        return displacement > 0 ? displacement : small_strain ? 0.005 : 0.05;
+    }
 };
 
 /// What a sample promises; `run` checks it and ends with exit code 5 where it does not hold.
@@ -72,8 +76,8 @@ struct Case {
 /// What the command line says on top of a case.
 struct CaseOverrides {
     std::string unit;  // mm, cm, m; empty: not said
-    std::optional<double> longest, young, poisson, density, edge_length, noise, coverage;
-    std::optional<int> spheres, zones, probes, particles;
+    std::optional<double> longest, young, poisson, density, edge_length, noise, displacement, coverage;
+    std::optional<int> spheres, zones, probes, markers, particles;
     std::string parameters, method;  // empty: not said
     std::optional<std::uint64_t> seed;
     bool linear_elements = false, no_reference = false;

@@ -82,7 +82,7 @@ std::string to_yaml(const Case& c) {
             "  probes: {}\n"
             "  held_out: {}         # of them, kept from the fit\n"
             "  markers: {}\n"
-            "  displacement: {}     # largest, as a share of the longest side\n"
+            "  displacement: {}     # largest, as a share of the longest side; 0: 0.5 % in small strain, 5 % in large\n"
             "  radius: {}           # of a contact, as a share of the longest side\n"
             "  noise: {}            # 1 sigma [mm]\n",
             p.probes, p.held_out, p.markers, p.displacement, p.radius, p.noise);

@@ -8,6 +8,7 @@
 
 #include "pipeline/case/case.h"
 #include "pipeline/console.h"
+#include "pipeline/forge/options.h"
 
 namespace palpate::pipeline::commands {
 
@@ -58,6 +59,7 @@ Outcome skeleton(const SkeletonOptions& options, const Common& common);
 struct ProbeCommandOptions {
     std::filesystem::path input, output;
     CaseOverrides say;
+    ForgeOptions forge = {};
 };
 Outcome probe(const ProbeCommandOptions& options, const Common& common);
 

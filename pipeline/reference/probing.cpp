@@ -60,21 +60,6 @@ Eigen::VectorXd load_scales(const Eigen::MatrixXd& unit_displacements, double wa
     return scales;
 }
 
-std::vector<identify::Marker> spread_markers(const mesh::Surface& surface, const std::vector<mesh::Region>& supports,
-                                             int count) {
-    const std::vector<char> held = mesh::contains(supports, surface.vertices);
-    std::vector<int> free;
-    for (int v = 0; v < surface.vertices.rows(); ++v) {
-        if (!held[v]) free.push_back(v);
-    }
-    const Points candidates = surface.vertices(free, Eigen::all);
-    std::vector<identify::Marker> markers;
-    for (const int chosen : mesh::farthest_points(candidates, count)) {
-        markers.push_back({static_cast<int>(markers.size()), candidates.row(chosen).transpose(), {}});
-    }
-    return markers;
-}
-
 void read_markers(MeasurementSet& set, const mesh::VolumeMesh& mesh, const Eigen::MatrixXd& displacements, double noise,
                   std::mt19937_64& random) {
     Points rest(static_cast<Eigen::Index>(set.markers.size()), 3);
@@ -119,6 +104,21 @@ std::vector<mesh::Contact> probing_contacts(const mesh::Surface& surface, const 
     return contacts;
 }
 
+std::vector<identify::Marker> spread_markers(const mesh::Surface& surface, const std::vector<mesh::Region>& supports,
+                                             int count) {
+    const std::vector<char> held = mesh::contains(supports, surface.vertices);
+    std::vector<int> free;
+    for (int v = 0; v < surface.vertices.rows(); ++v) {
+        if (!held[v]) free.push_back(v);
+    }
+    const Points candidates = surface.vertices(free, Eigen::all);
+    std::vector<identify::Marker> markers;
+    for (const int chosen : mesh::farthest_points(candidates, count)) {
+        markers.push_back({static_cast<int>(markers.size()), candidates.row(chosen).transpose(), {}});
+    }
+    return markers;
+}
+
 ProbedBody probe_body(const fem::ElasticBody& body, const mesh::Surface& surface,
                       const std::vector<mesh::Region>& supports, const ProbeOptions& options, std::uint64_t seed,
                       const Progress& progress) {
@@ -136,7 +136,7 @@ ProbedBody probe_body(const fem::ElasticBody& body, const mesh::Surface& surface
     Eigen::MatrixXd unit = body.solve(fem::patch_loads(body.mesh(), contacts, 0.05 * longest));
     report(progress, "reference deformations", 0.9);
     const Eigen::VectorXd scales =
-        load_scales(unit, options.displacement * longest, contacts.front().radius, body.material().young);
+        load_scales(unit, options.largest_displacement(true) * longest, contacts.front().radius, body.material().young);
     probed.displacements.resize(unit.rows(), unit.cols() + 1);
     probed.displacements << Eigen::VectorXd::Zero(unit.rows()), unit * scales.asDiagonal();
 

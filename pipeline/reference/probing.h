@@ -25,9 +25,13 @@ ProbedBody probe_body(const fem::ElasticBody& body, const mesh::Surface& surface
                       const std::vector<mesh::Region>& supports, const ProbeOptions& options, std::uint64_t seed,
                       const Progress& progress = {});
 
-/// Contacts as probe_body places them, with forces of 1 N.
+/// Contacts as probe_body places them, with forces of 1 N. @throws InvalidInput when no surface is free to be touched.
 std::vector<mesh::Contact> probing_contacts(const mesh::Surface& surface, const std::vector<mesh::Region>& supports,
                                             const ProbeOptions& options, std::uint64_t seed);
+
+/// Markers spread over the vertices that no support holds.
+std::vector<identify::Marker> spread_markers(const mesh::Surface& surface, const std::vector<mesh::Region>& supports,
+                                             int count);
 
 /// Whether a probe of `run`'s own reference is kept from the fit: they are spread evenly through the set.
 bool is_held_out(int probe, const ProbeOptions& options);

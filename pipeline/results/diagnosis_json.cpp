@@ -11,9 +11,9 @@ using nlohmann::json;
 
 json parameters_json(const identify::Candidate& candidate) {
     json result = json::object();
-    for (std::size_t j = 0; j < candidate.told.parameters.size(); ++j) {
-        const skeleton::EffectParameter& p = candidate.told.parameters[j];
-        const double sd = j < candidate.sd.size() ? candidate.sd[j] : identify::missing;
+    for (std::size_t j = 0; j < candidate.told.effect.parameters.size(); ++j) {
+        const skeleton::EffectParameter& p = candidate.told.effect.parameters[j];
+        const double sd = j < candidate.told.sd.size() ? candidate.told.sd[j] : identify::missing;
         result[p.name] = {{"value", known(p.value)}, {"sd", known(sd)}, {"unit", p.unit}};
     }
     return result;
@@ -44,7 +44,8 @@ json to_json(const identify::Candidate& candidate, const identify::BodyModel& mo
         result["held_out_whitened_rms"] = known(candidate.held_out->whitened_rms);
     }
     if (!candidate.objection.empty()) result["objection"] = candidate.objection;
-    if (!candidate.told.parameters.empty()) result["sentence"] = candidate.effect->sentence(candidate.told);
+    if (!candidate.told.effect.parameters.empty())
+        result["sentence"] = candidate.effect->sentence(candidate.told.effect);
     return result;
 }
 

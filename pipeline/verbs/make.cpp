@@ -55,20 +55,6 @@ void Verbs::add_skeleton(CLI::App& app) {
     add_skeleton_flags(sub, skeleton.say);
 }
 
-void Verbs::add_probe(CLI::App& app) {
-    auto* sub = verb(app, "probe", "Reference deformations under probing forces, as a measurement set.",
-                     "  palpate probe liver.stl -o set --noise 0.05\n"
-                     "  palpate probe model.json -o twin        # the skeleton itself is the hidden truth\n",
-                     [this] {
-                         probe.say.seed = common.seed;
-                         return commands::probe(probe, common);
-                     });
-    sub->add_option("INPUT", probe.input, "A mesh, a case.yaml, a measurement set, or a model.json")->required();
-    sub->add_option("-o,--output", probe.output, "The set's folder; measurements by default");
-    add_body_flags(sub, probe.say);
-    add_probing_flags(sub, probe.say);
-}
-
 void Verbs::add_report(CLI::App& app) {
     auto* sub = verb(app, "report", "A run as one self-contained page.", "  palpate report liver-run -o report.html\n",
                      [this] { return commands::report(report, common); });

@@ -31,8 +31,10 @@ struct Verbs {
     void add_check(CLI::App& app);
     void add_mesh(CLI::App& app);
     void add_skeleton(CLI::App& app);
-    void add_probe(CLI::App& app);
     void add_report(CLI::App& app);
+
+    // In probe.cpp.
+    void add_probe(CLI::App& app);
 
     // What works on a model and measurements, in fit.cpp.
     void add_identify(CLI::App& app);

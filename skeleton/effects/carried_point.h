@@ -11,6 +11,13 @@ struct CarriedShare {
     int sphere = 0;
     double w = 0;
     Vec3 r = Vec3::Zero();  // the arm, as it stands [mm]
+
+    /// How the point moves with a step of the sphere.
+    Eigen::Matrix<double, 3, 6> jacobian() const {
+        Eigen::Matrix<double, 3, 6> J;
+        J << w * Mat3::Identity(), -w * skew(r);
+        return J;
+    }
 };
 
 /// An attached point in a state, and the one or two spheres that carry it.

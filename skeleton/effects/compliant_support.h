@@ -9,8 +9,7 @@ class CompliantSupport : public fem::PointPotential {
 public:
     explicit CompliantSupport(double k) : k_(k) {}  // [N/mm]
     fem::ActsOn acts_on() const override { return fem::ActsOn::support; }
-    /// Parameter: ln k.
-    fem::PointTerms terms(const Vec3& X, const Vec3& x, bool with_parameters) const override;
+    fem::PointTerms terms(const Vec3& X, const Vec3& x) const override;
 
 private:
     double k_;

@@ -3,109 +3,157 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <functional>
+#include <deque>
+#include <mutex>
+#include <string_view>
 
 #include "mesh/errors.h"
 #include "mesh/io/words.h"
-#include "skeleton/effects/compliant_support.h"
-#include "skeleton/effects/gravity.h"
+#include "skeleton/effects/known_effects.h"
 
 namespace palpate::skeleton {
 
 namespace {
 
-using Potential = std::shared_ptr<const fem::PointPotential>;
+// Constant from the start: static objects of other files may ask before this file's are made.
+constexpr std::array<std::string_view, 3> measurement_effects{"misalignment", "force-gain", "outliers"};
 
-enum class Range { any, positive };
+// All effects of a body, those of users after those that are known from the start.
+class Registry {
+public:
+    static Registry& instance() {
+        static Registry registry;
+        return registry;
+    }
 
-struct KnownParameter {
-    std::string name, unit;
-    Range range = Range::any;
+    const KnownEffect* find(const std::string& name) const {
+        const std::scoped_lock lock(mutex_);
+        return find_unlocked(name);
+    }
+
+    void add(KnownEffect effect) {
+        const std::scoped_lock lock(mutex_);
+        if (find_unlocked(effect.name) || !is_body_effect(effect.name))
+            throw InvalidInput(
+                fmt::format("effect {} is known already; give yours another name", mesh::cited(effect.name)));
+        effects_.push_back(std::move(effect));
+    }
+
+    std::vector<std::string> names() const {
+        const std::scoped_lock lock(mutex_);
+        std::vector<std::string> names;
+        names.reserve(effects_.size());
+        for (const KnownEffect& effect : effects_) names.push_back(effect.name);
+        return names;
+    }
+
+private:
+    Registry() {
+        for (KnownEffect& effect : known_effects()) effects_.push_back(std::move(effect));
+    }
+    const KnownEffect* find_unlocked(const std::string& name) const {
+        const auto found = std::ranges::find(effects_, name, &KnownEffect::name);
+        return found == effects_.end() ? nullptr : &*found;
+    }
+
+    mutable std::mutex mutex_;
+    std::deque<KnownEffect> effects_;  // which stay where they are when others come
 };
-
-// An effect of the body: what it is told, and how it is made of these numbers, in this order.
-struct KnownEffect {
-    std::string name;
-    std::vector<KnownParameter> parameters;
-    std::function<Potential(const std::vector<double>&)> make;
-};
-
-const std::vector<KnownEffect>& body_effects() {
-    static const std::vector<KnownEffect> effects{
-        {"gravity",
-         {{"gx", "mm/s^2"}, {"gy", "mm/s^2"}, {"gz", "mm/s^2"}},
-         [](const auto& g) { return std::make_shared<Gravity>(Vec3(g[0], g[1], g[2])); }},
-        {"compliant-support",
-         {{"stiffness", "N/mm", Range::positive}},
-         [](const auto& k) { return std::make_shared<CompliantSupport>(k[0]); }},
-    };
-    return effects;
-}
-
-const std::vector<std::string> measurement_effects{"misalignment", "force-gain", "outliers"};
-
-template <typename Named>
-std::vector<std::string> names_of(const std::vector<Named>& all) {
-    std::vector<std::string> names;
-    names.reserve(all.size());
-    for (const Named& one : all) names.push_back(one.name);
-    return names;
-}
 
 const KnownEffect& find_effect(const std::string& name) {
-    const auto& known = body_effects();
-    const auto found = std::ranges::find(known, name, &KnownEffect::name);
-    if (found != known.end()) return *found;
+    if (const KnownEffect* known = find_known_effect(name)) return *known;
     if (!is_body_effect(name))
         throw InvalidInput(
             fmt::format("effect '{}' is about the measurement, not the body: no model can play it", name));
-    std::vector<std::string> names = names_of(known);
+    std::vector<std::string> names = Registry::instance().names();
     names.insert(names.end(), measurement_effects.begin(), measurement_effects.end());
     throw InvalidInput(fmt::format("effect {} is not known{}; known are {}", mesh::cited(name),
                                    mesh::suggestion(name, names), mesh::listed(names)));
 }
 
-double number_of(const Effect& effect, const KnownParameter& known) {
-    const auto found = std::ranges::find(effect.parameters, known.name, &EffectParameter::name);
-    if (found == effect.parameters.end())
-        throw InvalidInput(
-            fmt::format("effect '{}': the parameter '{}' [{}] is missing", effect.name, known.name, known.unit));
-    if (!found->unit.empty() && found->unit != known.unit)
+bool is_in(Range range, double value) {
+    switch (range) {
+        case Range::positive:
+            return value > 0;
+        case Range::not_negative:
+            return value >= 0;
+        case Range::poisson:
+            return value > -1 && value < 0.5;
+        case Range::any:
+            break;
+    }
+    return true;
+}
+
+// In the order of Range.
+constexpr std::array<const char*, 4> range_words{"a number", "above 0", "at least 0", "above -1 and below 0.5"};
+
+// " N/mm", or nothing.
+std::string unit_words(const std::string& unit) { return unit == "1" ? "" : " " + unit; }
+
+double checked(const Effect& effect, const KnownParameter& known, const EffectParameter& told) {
+    if (!told.unit.empty() && told.unit != known.unit)
         throw InvalidInput(fmt::format("effect '{}': {} is in {}, but must be in '{}'", effect.name, known.name,
-                                       mesh::cited(found->unit), known.unit));
-    const double value = found->value;
-    const bool positive = known.range == Range::positive;
-    if (!std::isfinite(value) || (positive && !(value > 0)))
-        throw InvalidInput(fmt::format("effect '{}': {} is {:.6g} {}, but must be {}", effect.name, known.name, value,
-                                       known.unit, positive ? "above 0" : "a number"));
-    return value;
+                                       mesh::cited(told.unit), known.unit));
+    if (!std::isfinite(told.value) || !is_in(known.range, told.value))
+        throw InvalidInput(fmt::format("effect '{}': {} is {:.6g}{}, but must be {}", effect.name, known.name,
+                                       told.value, unit_words(known.unit),
+                                       range_words[static_cast<size_t>(known.range)]));
+    return told.value;
 }
 
-}  // namespace
-
-bool is_body_effect(const std::string& name) {
-    return std::ranges::find(measurement_effects, name) == measurement_effects.end();
-}
-
-std::shared_ptr<const fem::PointPotential> make_potential(const Effect& effect) {
-    const KnownEffect& known = find_effect(effect.name);
-    const std::vector<std::string> names = names_of(known.parameters);
+EffectNumbers numbers_of(const Effect& effect, const KnownEffect& known) {
+    std::vector<std::string> names;
+    names.reserve(known.parameters.size());
+    for (const KnownParameter& parameter : known.parameters) names.push_back(parameter.name);
     for (const EffectParameter& parameter : effect.parameters)
         if (std::ranges::find(names, parameter.name) == names.end())
             throw InvalidInput(fmt::format("effect '{}': the parameter {} is not known{}; known are {}", effect.name,
                                            mesh::cited(parameter.name), mesh::suggestion(parameter.name, names),
                                            mesh::listed(names)));
-    std::vector<double> numbers;
-    for (const KnownParameter& parameter : known.parameters) numbers.push_back(number_of(effect, parameter));
-    return known.make(numbers);
+    std::map<std::string, double> values;
+    for (const KnownParameter& parameter : known.parameters) {
+        const auto told = std::ranges::find(effect.parameters, parameter.name, &EffectParameter::name);
+        if (told != effect.parameters.end())
+            values[parameter.name] = checked(effect, parameter, *told);
+        else if (!parameter.optional)
+            throw InvalidInput(fmt::format("effect '{}': the parameter '{}' [{}] is missing", effect.name,
+                                           parameter.name, parameter.unit));
+    }
+    return EffectNumbers(std::move(values));
 }
 
-fem::Potentials potentials_of(const std::vector<Effect>& effects) {
-    fem::Potentials potentials;
+}  // namespace
+
+bool register_effect(KnownEffect effect) {
+    Registry::instance().add(std::move(effect));
+    return true;
+}
+
+const KnownEffect* find_known_effect(const std::string& name) { return Registry::instance().find(name); }
+
+bool is_body_effect(const std::string& name) {
+    return std::ranges::find(measurement_effects, name) == measurement_effects.end();
+}
+
+fem::Effects make_physics(const Effect& effect) {
+    const KnownEffect& known = find_effect(effect.name);
+    const EffectNumbers numbers = numbers_of(effect, known);
+    try {
+        return known.make(numbers);
+    } catch (const InvalidInput& error) {
+        throw InvalidInput(fmt::format("effect '{}': {}", effect.name, error.what()));
+    }
+}
+
+fem::Effects physics_of(const std::vector<Effect>& effects, const fem::Effects& more) {
+    fem::Effects physics;
     for (const Effect& effect : effects)
-        if (is_body_effect(effect.name)) potentials.push_back(make_potential(effect));
-    return potentials;
+        if (is_body_effect(effect.name)) physics.add(make_physics(effect));
+    physics.add(more);
+    return physics;
 }
 
 }  // namespace palpate::skeleton

@@ -1,10 +1,11 @@
 #pragma once
 
-#include <memory>
+#include <functional>
+#include <map>
 #include <string>
 #include <vector>
 
-#include "fem/point_potential.h"
+#include "fem/effects.h"
 
 namespace palpate::skeleton {
 
@@ -12,7 +13,7 @@ namespace palpate::skeleton {
 struct EffectParameter {
     std::string name;  // "gx"
     double value = 0;
-    std::string unit;  // "mm/s^2"
+    std::string unit;  // "mm/s^2"; "1" where there is none, or none is told
 };
 
 /// A physical effect that a model has beyond its links: a name of the catalogue and its numbers.
@@ -21,15 +22,59 @@ struct Effect {
     std::vector<EffectParameter> parameters;
 };
 
+// --- What effects there are ---------------------------------------------------------------------------------------
+
+/// What a parameter may be.
+enum class Range { any, positive, not_negative, poisson };
+
+struct KnownParameter {
+    std::string name, unit;  // unit "1": none
+    Range range = Range::any;
+    bool optional = false;
+};
+
+/// The numbers of an effect by name; what is not told is missing.
+class EffectNumbers {
+public:
+    explicit EffectNumbers(std::map<std::string, double> values) : values_(std::move(values)) {}
+    bool has(const std::string& name) const { return values_.contains(name); }
+    /// @pre it is told, or not optional.
+    double operator[](const std::string& name) const { return values_.at(name); }
+    Vec3 vector(const std::string& x, const std::string& y, const std::string& z) const {
+        return {(*this)[x], (*this)[y], (*this)[z]};
+    }
+
+private:
+    std::map<std::string, double> values_;
+};
+
+/// An effect of the body: what it is told, and how its physics is made of these numbers. `make` gets what is in range
+/// and complete but for optional ones; it throws InvalidInput, in words, for what does not go together.
+struct KnownEffect {
+    std::string name;
+    std::vector<KnownParameter> parameters;
+    std::function<fem::Effects(const EffectNumbers&)> make;
+};
+
+/// Makes an effect known, to all models of this program: a static object of any source file may do so,
+///   const bool known = register_effect({"swelling", {{"strain", "1"}}, make_swelling});
+/// Safe from several threads. Always true. @throws InvalidInput when the name is known already.
+bool register_effect(KnownEffect effect);
+
+/// The effect of that name; null when there is none. It stays where it is.
+const KnownEffect* find_known_effect(const std::string& name);
+
 /// Is an effect the body's, whether known or not? `misalignment`, `force-gain` and `outliers` are faults of a
 /// measurement: a model records them, and plays without.
 bool is_body_effect(const std::string& name);
 
+// --- Their physics ------------------------------------------------------------------------------------------------
+
 /// The physics of an effect. @throws InvalidInput for a name that is no effect of a body, a parameter that is missing,
 /// unknown, in another unit or out of range.
-std::shared_ptr<const fem::PointPotential> make_potential(const Effect& effect);
+fem::Effects make_physics(const Effect& effect);
 
-/// The physics of all that are the body's, in their order. @throws as make_potential.
-fem::Potentials potentials_of(const std::vector<Effect>& effects);
+/// The physics of all that are the body's, and `more`. @throws as make_physics.
+fem::Effects physics_of(const std::vector<Effect>& effects, const fem::Effects& more = {});
 
 }  // namespace palpate::skeleton

@@ -9,8 +9,7 @@ class Gravity : public fem::PointPotential {
 public:
     explicit Gravity(const Vec3& g) : g_(g) {}  // [mm/s^2]
     fem::ActsOn acts_on() const override { return fem::ActsOn::material; }
-    /// Parameters: gx, gy, gz.
-    fem::PointTerms terms(const Vec3& X, const Vec3& x, bool with_parameters) const override;
+    fem::PointTerms terms(const Vec3& X, const Vec3& x) const override;
 
 private:
     Vec3 g_;

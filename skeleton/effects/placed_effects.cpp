@@ -5,19 +5,23 @@
 #include <cmath>
 #include <map>
 
+#include "mesh/errors.h"
 #include "skeleton/effects/carried_point.h"
 
 namespace palpate::skeleton {
 
-PlacedEffects::PlacedEffects(const Model& model, const fem::Potentials& effects)
-    : rest_(rest_state(model)), supported_(model.spheres.size(), 0) {
+PlacedEffects::PlacedEffects(const Model& model, const fem::Effects& effects)
+    : rest_(rest_state(model)),
+      pressure_(effects.pressure),
+      is_dead_(model.law == Law::linear),
+      supported_(model.spheres.size(), 0) {
     std::map<std::array<int, 2>, int> place;
     const auto pair = [&](int a, int b) {
         const auto [at, fresh] = place.try_emplace({std::min(a, b), std::max(a, b)}, static_cast<int>(pairs_.size()));
         if (fresh) pairs_.push_back(at->first);
         return at->second;
     };
-    for (const auto& potential : effects) {
+    for (const auto& potential : effects.points) {
         const PointSet set = point_set(model, potential->acts_on());
         Placed placed{potential, {}};
         for (size_t i = 0; i < set.at.size(); ++i) {
@@ -29,6 +33,15 @@ PlacedEffects::PlacedEffects(const Model& model, const fem::Potentials& effects)
         }
         effects_.push_back(std::move(placed));
     }
+    if (pressure_ == 0) return;
+    cavities_ = Cavities(model);
+    if (cavities_.empty())
+        throw InvalidInput(
+            "the model's skin encloses no cavity, in which a pressure could act: give it one, closed and turned "
+            "inwards, "
+            "or take the pressure away");
+    rest_volume_ = cavities_.volume(rest_);
+    cavities_.for_each_block(rest_, [&](int a, int b, const Block&) { cavity_blocks_.push_back(pair(a, b)); });
 }
 
 bool PlacedEffects::release_supports() const {
@@ -42,7 +55,7 @@ void PlacedEffects::for_each_point(const State& state, double share, const Visit
         const double scale = effect.potential->acts_on() == fem::ActsOn::support ? 1 : share;
         for (const Point& point : effect.points) {
             const CarriedPoint at = carried(point.at, rest_, state);
-            visit(point, at, effect.potential->terms(point.at.rest, at.x, false), scale * point.weight);
+            visit(point, at, effect.potential->terms(point.at.rest, at.x), scale * point.weight);
         }
     }
 }
@@ -53,6 +66,11 @@ PlacedEffects::Energy PlacedEffects::energy(const State& state, double share) co
         energy.sum += weight * terms.energy;
         energy.size += std::abs(weight * terms.energy);
     });
+    if (pressure_ != 0) {
+        const double volume = cavities_.volume(state);
+        energy.sum -= share * pressure_ * (volume - rest_volume_);
+        energy.size += std::abs(share * pressure_ * volume);
+    }
     return energy;
 }
 
@@ -67,6 +85,7 @@ Eigen::VectorXd PlacedEffects::force(const State& state, double share) const {
                            f.segment<3>(Eigen::Index{6} * sphere + 3) += r.cross(pull);
                        }
                    });
+    if (pressure_ != 0) cavities_.add_gradient(state, share * pressure_, f);
     return f;
 }
 
@@ -79,7 +98,7 @@ std::vector<PlacedEffects::Block> PlacedEffects::curvature(const State& state, d
                        std::array<Eigen::Matrix<double, 3, 6>, 2> J;
                        for (int i = 0; i < at.shares; ++i) {
                            const auto& [sphere, w, r] = at.of[i];
-                           J[i] << w * Mat3::Identity(), -w * skew(r);
+                           J[i] = at.of[i].jacobian();
                            Block& own = blocks[point.pairs[i]];
                            own += J[i].transpose() * (weight * terms.hessian) * J[i];
                            own.bottomRightCorner<3, 3>() += turning_curvature((weight * w) * terms.gradient, r);
@@ -88,6 +107,11 @@ std::vector<PlacedEffects::Block> PlacedEffects::curvature(const State& state, d
                        const int row = at.of[0].sphere < at.of[1].sphere ? 0 : 1;
                        blocks[point.pairs[2]] += J[row].transpose() * (weight * terms.hessian) * J[1 - row];
                    });
+    if (pressure_ != 0 && !is_dead_) {
+        auto next = cavity_blocks_.begin();
+        cavities_.for_each_block(state,
+                                 [&](int, int, const Block& block) { blocks[*next++] -= share * pressure_ * block; });
+    }
     return blocks;
 }
 

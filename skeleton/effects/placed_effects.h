@@ -3,14 +3,18 @@
 #include <array>
 #include <vector>
 
+#include "fem/effects.h"
+#include "skeleton/effects/cavities.h"
 #include "skeleton/effects/point_sets.h"
 #include "skeleton/state.h"
 
 namespace palpate::skeleton {
 
-/// Effects in force on a skeleton: potentials on points that its spheres carry,
-///   Pi = sum_i w_i e(X_i, p_i),  p = sum_s share_s (x_s + R_s r_s),
-/// so their forces are minus a derivative, as the links' are. Those that hold the body at its supports take the place
+/// Effects in force on a skeleton that are not in its links: potentials on points that its spheres carry, and pressure
+/// in the cavities of its skin,
+///   Pi = sum_i w_i e(X_i, p_i) - pressure V,  p = sum_s share_s (x_s + R_s r_s),
+/// so their forces are minus a derivative, as the links' are. By the linear law pressure is a dead load, as it is at
+/// rest. Those that hold the body at its supports take the place
 /// of these: held spheres that are linked are free then.
 class PlacedEffects {
 public:
@@ -21,9 +25,9 @@ public:
     };
 
     /// @throws InvalidInput when the model has nothing that one of them acts on.
-    PlacedEffects(const Model& model, const fem::Potentials& effects);
+    PlacedEffects(const Model& model, const fem::Effects& effects);
 
-    bool empty() const { return effects_.empty(); }
+    bool empty() const { return effects_.empty() && pressure_ == 0; }
     bool release_supports() const;
     /// Spheres that support points hang on (flags, N).
     const std::vector<char>& supported() const { return supported_; }
@@ -58,6 +62,11 @@ private:
 
     State rest_;
     std::vector<Placed> effects_;
+    double pressure_;  // [MPa]
+    bool is_dead_;     // is it?
+    Cavities cavities_;
+    double rest_volume_ = 0;          // of the cavities [mm^3]
+    std::vector<int> cavity_blocks_;  // the pair of each block that the cavities visit
     std::vector<std::array<int, 2>> pairs_;
     std::vector<char> supported_;
 };

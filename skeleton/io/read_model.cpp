@@ -50,7 +50,7 @@ Sphere read_sphere(const JsonField& field, const std::vector<mesh::Region>& supp
 }
 
 Link read_link(const JsonField& field, const std::vector<Sphere>& spheres) {
-    field.allow_only({"a", "b", "length", "elongation", "flexion", "torsion", "zone"});
+    field.allow_only({"a", "b", "length", "elongation", "flexion", "torsion", "zone", "gyration"});
     Link link;
     link.a = field["a"].index(spheres.size());
     link.b = field["b"].index(spheres.size());
@@ -62,6 +62,7 @@ Link read_link(const JsonField& field, const std::vector<Sphere>& spheres) {
     link.length = field.has("length") ? field["length"].positive_number() : distance;
     for (int s = 0; s < 3; ++s) link.stiffness[s] = field[stiffness_names[s]].number_at_least(0);
     if (field.has("zone")) link.zone = field["zone"].index(1'000'000);
+    if (field.has("gyration")) link.gyration = field["gyration"].positive_number();
     return link;
 }
 
@@ -118,7 +119,7 @@ Effect read_effect(const JsonField& field) {
             {name, parameter["value"].number(), parameter.has("unit") ? parameter["unit"].text() : std::string()});
     }
     try {
-        if (is_body_effect(effect.name)) make_potential(effect);
+        if (is_body_effect(effect.name)) make_physics(effect);
     } catch (const InvalidInput& error) {
         field.complain(error.what());
     }

@@ -25,6 +25,7 @@ Json to_json(const Link& link) {
     Json json{{"a", link.a}, {"b", link.b}, {"length", link.length}};
     for (int s = 0; s < 3; ++s) json[stiffness_names[s]] = link.stiffness[s];
     json["zone"] = link.zone;
+    if (link.gyration > 0) json["gyration"] = link.gyration;
     return json;
 }
 

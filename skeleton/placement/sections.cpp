@@ -109,6 +109,13 @@ std::vector<Section> find_sections(const TetGraph& graph, const Core& core, cons
     return all;
 }
 
+double radius_of_gyration(const Section& s) {
+    const double I = s.dimensions < 1.5   ? std::sqrt(s.moment_1 * s.moment_2)
+                     : s.dimensions < 2.5 ? s.moment_2
+                                          : (s.moment_1 + s.moment_2) / 2;
+    return std::sqrt(I / s.area);
+}
+
 Vec3 start_stiffness(const Section& s, const fem::Material& material) {
     const double E = material.young, mu = material.shear_modulus();
     const double torsion = 4 * s.moment_1 * s.moment_2 / (s.moment_1 + s.moment_2);  // J of an ellipse

@@ -21,6 +21,9 @@ struct Section {
 std::vector<Section> find_sections(const TetGraph& graph, const Core& core, const std::vector<int>& owner,
                                    const std::vector<Site>& sites);
 
+/// Radius of gyration of a section [mm]: in bending as start_stiffness has it, of a lump the mean of all axes.
+double radius_of_gyration(const Section& section);
+
 /// Stiffness (kE, kF, kT) of a link from its section, before anything is measured.
 Vec3 start_stiffness(const Section& section, const fem::Material& material);
 

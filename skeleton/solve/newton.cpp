@@ -72,7 +72,7 @@ bool newton(SkeletonSystem& system, const Eigen::VectorXd& k, const Load& load, 
             Equilibrium& at) {
     const Problem problem{system, k, load};
     const double tolerance =
-        std::max(options.tolerance * system.largest_load(at.state, load), system.force_rounding(k));
+        std::max(options.tolerance * system.largest_load(k, at.state, load), system.force_rounding(k));
     double shift = 0;
     Balance here = problem.balance(at.state);
     for (int iteration = 0;; ++iteration, ++at.iterations) {

@@ -7,7 +7,6 @@
 #include <cmath>
 
 #include "mesh/errors.h"
-#include "skeleton/link_energy.h"
 #include "skeleton/statics.h"
 
 namespace palpate::skeleton {
@@ -58,15 +57,10 @@ void release(const PlacedEffects& effects, Model& body) {
         if (moves[i]) body.spheres[i].held = false;
 }
 
-fem::Potentials joined(fem::Potentials all, const fem::Potentials& more) {
-    all.insert(all.end(), more.begin(), more.end());
-    return all;
-}
-
 }  // namespace
 
-SkeletonSystem::SkeletonSystem(const Model& model, const fem::Potentials& extra)
-    : effects_(model, joined(potentials_of(model.effects), extra)), matrix_(0, {}) {
+SkeletonSystem::SkeletonSystem(const Model& model, const fem::Effects& effects)
+    : effects_(model, effects), links_(model, effects), matrix_(0, {}) {
     require_held(model);
     body_.law = model.law;
     body_.spheres = model.spheres;
@@ -81,7 +75,6 @@ SkeletonSystem::SkeletonSystem(const Model& model, const fem::Potentials& extra)
     std::vector<std::array<int, 2>> couplings;
     double sum = 0;
     for (const Link& link : body_.links) {
-        directions_.push_back(rest_direction(body_, link));
         sum += link.length;
         const int i = block_of_[link.a], j = block_of_[link.b];
         const bool couples = i >= 0 && j >= 0;
@@ -103,15 +96,21 @@ SkeletonSystem::SkeletonSystem(const Model& model, const fem::Potentials& extra)
         effect_stiffness_ = std::max(effect_stiffness_, block.diagonal().cwiseAbs().cwiseQuotient(metric_).maxCoeff());
 }
 
+void SkeletonSystem::remember(const FibreStates& before) {
+    assert(before.empty() || before.size() == fibres_per_link * body_.links.size());
+    before_ = before;
+}
+
 Balance SkeletonSystem::balance(const Eigen::VectorXd& k, const State& state, const Load& load) const {
     assert(k.size() == 3 * static_cast<Eigen::Index>(body_.links.size()));
-    double elastic = 0;
+    double elastic = 0, size = 0;
     Eigen::VectorXd net = external_force(body_, state, load);
     for (size_t l = 0; l < body_.links.size(); ++l) {
         const Link& link = body_.links[l];
-        const LinkTerms terms = link_terms(link.length, directions_[l], state.x.row(link.a).transpose(),
-                                           state.R[link.a], state.x.row(link.b).transpose(), state.R[link.b], false);
-        elastic += terms.energy.dot(k.segment<3>(3 * l));
+        const LinkTerms terms = links_.terms(l, state, false, before_);
+        const double energy = terms.energy.dot(k.segment<3>(3 * l));
+        elastic += energy;
+        size += std::abs(energy);
         const Vec12 gradient = terms.gradient * k.segment<3>(3 * l);
         net.segment<6>(Eigen::Index{6} * link.a) -= gradient.head<6>();
         net.segment<6>(Eigen::Index{6} * link.b) -= gradient.tail<6>();
@@ -122,11 +121,12 @@ Balance SkeletonSystem::balance(const Eigen::VectorXd& k, const State& state, co
 
     const double work = external_work(body_, state, load);
     const PlacedEffects::Energy effects = effects_.energy(state, effect_share_);
-    return {elastic - work + effects.sum, 1e-14 * (elastic + std::abs(work) + effects.size), net, largest_force(net)};
+    return {elastic - work + effects.sum, 1e-14 * (size + std::abs(work) + effects.size), net, largest_force(net)};
 }
 
-double SkeletonSystem::largest_load(const State& state, const Load& load) const {
-    return std::max(largest_force(external_force(body_, state, load)), effect_load_);
+double SkeletonSystem::largest_load(const Eigen::VectorXd& k, const State& state, const Load& load) const {
+    return std::max(
+        {largest_force(external_force(body_, state, load)), effect_load_, links_.largest_rest_force(k, before_)});
 }
 
 double SkeletonSystem::largest_force(const Eigen::VectorXd& f) const {
@@ -138,8 +138,10 @@ double SkeletonSystem::largest_force(const Eigen::VectorXd& f) const {
 
 double SkeletonSystem::stiffest(const Eigen::VectorXd& k) const {
     double most = effect_stiffness_;
-    for (size_t l = 0; l < body_.links.size(); ++l)
-        most = std::max({most, k[3 * l], k[3 * l + 1] / (length_ * length_), k[3 * l + 2] / (length_ * length_)});
+    for (size_t l = 0; l < body_.links.size(); ++l) {
+        const Vec3 own = links_.rest_stiffness(l, k.segment<3>(3 * l));
+        most = std::max({most, own[0], own[1] / (length_ * length_), own[2] / (length_ * length_)});
+    }
     return most;
 }
 
@@ -165,8 +167,7 @@ void SkeletonSystem::assemble(const Eigen::VectorXd& k, const State& state, cons
     matrix_.set_zero();
     for (size_t l = 0; l < body_.links.size(); ++l) {
         const Link& link = body_.links[l];
-        const Mat12 H = link_hessian(k.segment<3>(3 * l), link.length, directions_[l], state.x.row(link.a).transpose(),
-                                     state.R[link.a], state.x.row(link.b).transpose(), state.R[link.b]);
+        const Mat12 H = links_.hessian(l, k.segment<3>(3 * l), state, before_);
         const int i = block_of_[link.a], j = block_of_[link.b];
         if (i >= 0) matrix_.add_diagonal(i, H.topLeftCorner<6, 6>());
         if (j >= 0) matrix_.add_diagonal(j, H.bottomRightCorner<6, 6>());

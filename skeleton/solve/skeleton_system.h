@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "skeleton/effects/placed_effects.h"
+#include "skeleton/links/placed_links.h"
 #include "skeleton/load.h"
 #include "skeleton/solve/block_cholesky.h"
 
@@ -21,20 +22,24 @@ struct Balance {
 /// stiffnesses k (3L, ordered as stiffness_vector), states and loads; its effects are in force.
 class SkeletonSystem {
 public:
-    /// Keeps what it needs of the model. `extra`: effects beyond its own.
-    /// @throws InvalidInput when no sphere is held or some hang on no held one, or as potentials_of.
-    SkeletonSystem(const Model& model, const fem::Potentials& extra);
+    /// Keeps what it needs of the model. `effects`: all that are in force.
+    /// @throws InvalidInput when no sphere is held or some hang on no held one, or as PlacedEffects.
+    SkeletonSystem(const Model& model, const fem::Effects& effects);
 
     const Model& body() const { return body_; }  // spheres, links and law; held are those that nothing releases
     const PlacedEffects& effects() const { return effects_; }
+    const PlacedLinks& links() const { return links_; }
     double length() const { return length_; }  // mean of the links [mm]
 
     /// How much of the effects is in force, but of those that hold the supports; 1 if not told otherwise.
     void scale_effects(double share) { effect_share_ = share; }
+    /// How far the links' fibres had flowed (7L); empty, as it is if not told otherwise: not at all.
+    void remember(const FibreStates& before);
+    const FibreStates& before() const { return before_; }
 
     Balance balance(const Eigen::VectorXd& k, const State& state, const Load& load) const;
-    /// Largest force of a load, or of the effects at rest, on a free sphere [N].
-    double largest_load(const State& state, const Load& load) const;
+    /// Largest force of a load, or of the effects at rest, on a free sphere or in a link [N].
+    double largest_load(const Eigen::VectorXd& k, const State& state, const Load& load) const;
     /// Largest force on a free sphere, torques over the mean link length [N].
     double largest_force(const Eigen::VectorXd& f) const;
     /// What rounding of positions and angles leaves of forces that cancel [N].
@@ -62,10 +67,11 @@ private:
 
     Model body_;
     PlacedEffects effects_;
+    PlacedLinks links_;
+    FibreStates before_;
     double effect_share_ = 1;
     double effect_load_ = 0, effect_stiffness_ = 0;  // largest at rest [N, N/mm]
     std::vector<int> coupling_of_pair_;              // of the effects, -1: one sphere alone, or an end is held
-    std::vector<Vec3> directions_;                   // of the links at rest
     std::vector<int> free_;                          // spheres
     std::vector<int> block_of_;                      // place in `free_` of each sphere, -1: held
     std::vector<int> coupling_of_;                   // of each link, -1: an end is held

@@ -27,7 +27,8 @@ Equilibrium solve_linear(SkeletonSystem& system, const Eigen::VectorXd& k, const
     result.step = system.solve(system.balance(k, rest, load).net);
     result.state = advance(rest, result.step);
     result.iterations = 1;
-    Eigen::VectorXd left = external_force(system.body(), rest, load) + link_forces(system.body(), result) * k;
+    Eigen::VectorXd left =
+        external_force(system.body(), rest, load) + system.links().linear_forces(result.step, system.before()) * k;
     if (!system.effects().empty()) left += system.effects().linear_force(result.step);
     result.residual = system.largest_force(left);
     return result;
@@ -103,32 +104,38 @@ struct StaticsSolver::Impl {
     SkeletonSystem system;
 };
 
-StaticsSolver::StaticsSolver(const Model& model, const fem::Potentials& extra)
-    : impl_(new Impl{SkeletonSystem(model, extra)}) {}
+StaticsSolver::StaticsSolver(const Model& model, const fem::Effects& extra)
+    : impl_(new Impl{SkeletonSystem(model, physics_of(model.effects, extra))}) {}
 StaticsSolver::~StaticsSolver() = default;
 StaticsSolver::StaticsSolver(StaticsSolver&&) noexcept = default;
 StaticsSolver& StaticsSolver::operator=(StaticsSolver&&) noexcept = default;
 
 Equilibrium StaticsSolver::solve(const Eigen::VectorXd& k, const Load& load, const EquilibriumOptions& options,
-                                 const State* start) {
+                                 const State* start, const FibreStates& before) {
     options.validate();
     SkeletonSystem& system = impl_->system;
-    if (system.body().law == Law::linear) return solve_linear(system, k, load);
-
+    system.remember(before);
     Equilibrium result;
-    result.state = start ? *start : rest_state(system.body());
-    if (failure_of_newton(system, k, load, options, result)) step_load(system, k, load, options, result);
-    result.step = step_to(system.body(), result.state);
+    if (system.body().law == Law::linear) {
+        result = solve_linear(system, k, load);
+    } else {
+        result.state = start ? *start : rest_state(system.body());
+        if (failure_of_newton(system, k, load, options, result)) step_load(system, k, load, options, result);
+        result.step = step_to(system.body(), result.state);
+    }
+    result.before = before;
     return result;
 }
 
 Eigen::MatrixXd StaticsSolver::linear_steps(const Eigen::VectorXd& k, const Eigen::MatrixXd& F) {
+    impl_->system.remember({});
     impl_->system.assemble(k, rest_state(impl_->system.body()));
     impl_->system.factor_stable(k);
     return impl_->system.solve(F);
 }
 
 void StaticsSolver::factor_tangent(const Eigen::VectorXd& k, const Load& load, const Equilibrium& equilibrium) {
+    impl_->system.remember(equilibrium.before);
     if (impl_->system.body().law == Law::linear)
         impl_->system.assemble(k, rest_state(impl_->system.body()));
     else

@@ -1,13 +1,15 @@
 // What the diagnosis makes of sets whose truth is known: success, wrong and inconclusive apart.
-// Usage: diagnosis_bench FOLDER [--body reference|skeleton] [--ladder] [--threads N] [SET ...]
-// FOLDER holds measurement sets and truth.csv (set, effect, ..., beyond_stiffness_rms_mm, sigma_mm, ...). A table in
-// Markdown on standard output; without SET all of them.
+// Usage: diagnosis_bench FOLDER [--body reference|skeleton] [--ladder] [--tell] [--without EFFECT] [--threads N] [SET
+// ...] FOLDER holds measurement sets and truth.csv (set, effect, ..., beyond_stiffness_rms_mm, sigma_mm, ...). A table
+// in Markdown on standard output; without SET all of them.
 //
 // With --ladder what is named is added, and the skeleton's error told before and after, fitted and on held-out probes.
 //
-// Judged: right - the truth is named, or ambiguous with the truth among the first two; nothing hidden: adequate; an
-// effect that the catalogue does not hold, or several at once: unexplained, or named in part. Wrong - an effect is
-// named that is not there. Else inconclusive.
+// With --tell all that was screened and fitted follows each line, with its numbers.
+//
+// Judged: right - all that is hidden is named, or ambiguous with a hidden effect among the first two; nothing hidden:
+// adequate; where the truth was left out of the catalogue: unexplained. In part - one of several is named. Wrong - an
+// effect is named that is not there. Else inconclusive.
 
 #include <fmt/format.h>
 
@@ -41,7 +43,8 @@ struct Truth {
 struct Options {
     fs::path folder;
     std::vector<std::string> sets;
-    bool skeleton = false, ladder = false;
+    std::vector<std::string> without;
+    bool skeleton = false, ladder = false, tell = false;
     int threads = 1;
 };
 
@@ -53,6 +56,10 @@ Options parse(int argc, char** argv) {
             options.skeleton = std::string(argv[++i]) == "skeleton";
         } else if (word == "--ladder") {
             options.ladder = true;
+        } else if (word == "--tell") {
+            options.tell = true;
+        } else if (word == "--without" && i + 1 < argc) {
+            options.without.emplace_back(argv[++i]);
         } else if (word == "--threads" && i + 1 < argc) {
             options.threads = std::stoi(argv[++i]);
         } else if (options.folder.empty()) {
@@ -91,29 +98,28 @@ std::vector<Truth> read_truth(const fs::path& folder) {
     return truth;
 }
 
-bool is_known(const std::string& effect) {
-    return std::ranges::any_of(identify::catalogue(), [&](const auto& e) { return e->name() == effect; });
-}
+enum Outcome { right, in_part, wrong, inconclusive };
+constexpr const char* outcome_names[] = {"right", "in part", "WRONG", "inconclusive"};
 
-enum Outcome { right, wrong, inconclusive };
-constexpr const char* outcome_names[] = {"right", "WRONG", "inconclusive"};
-
-Outcome judge(const Truth& truth, const identify::Diagnosis& found) {
+Outcome judge(const Truth& truth, const identify::Diagnosis& found, const std::vector<std::string>& without) {
     const auto is_true = [&](const std::string& name) {
         return std::ranges::find(truth.effects, name) != truth.effects.end();
     };
     const bool claims = found.verdict == identify::Verdict::missing_effect;
     if (claims && !std::ranges::all_of(found.explanation, is_true)) return wrong;
     if (truth.effects.empty()) return found.verdict == identify::Verdict::adequate ? right : inconclusive;
-    if (claims) return right;
+    const auto is_named = [&](const std::string& name) {
+        return std::ranges::find(found.explanation, name) != found.explanation.end();
+    };
+    if (claims) return std::ranges::all_of(truth.effects, is_named) ? right : in_part;
     if (found.verdict == identify::Verdict::ambiguous) {
         return std::any_of(found.ranking.begin(), found.ranking.begin() + 2,
                            [&](const auto& c) { return is_true(c.effect->name()); })
                    ? right
                    : wrong;
     }
-    const bool can_be_named = truth.effects.size() == 1 && is_known(truth.effects.front());
-    return !can_be_named && found.verdict == identify::Verdict::unexplained ? right : inconclusive;
+    const bool left_out = std::ranges::any_of(without, is_true);
+    return left_out && found.verdict == identify::Verdict::unexplained ? right : inconclusive;
 }
 
 /// The set's skeleton as it comes from the mesh, with nothing fitted.
@@ -151,6 +157,32 @@ std::string climbed(const identify::BodyModel& body, const identify::Measurement
                                   last.reference->held_out_whitened_rms);
 }
 
+std::string told(const identify::Explained& explained) {
+    std::string text;
+    for (const auto& effect : explained.effects) {
+        const identify::Told numbers = explained.told(effect->name());
+        text += (text.empty() ? "" : "; ") + effect->name();
+        for (std::size_t p = 0; p < numbers.effect.parameters.size(); ++p) {
+            const skeleton::EffectParameter& one = numbers.effect.parameters[p];
+            text += fmt::format(" {} {:.4g}+-{:.2g}", one.name, one.value, numbers.sd[p]);
+        }
+    }
+    return text;
+}
+
+void tell(const identify::Diagnosis& found) {
+    std::string screened;
+    for (const identify::Candidate& c : found.ranking)
+        screened += fmt::format(" {} {:.1f}", c.effect->name(), c.screened);
+    fmt::print("    screened:{}\n", screened);
+    for (const identify::Explained& one : found.tried) {
+        fmt::print("    ln BF {:.1f}, {:.3f} left, {:.2f} held out, strain {:.1f}, law {}, {} steps: {}{}\n",
+                   one.log_bayes_factor, one.fit.whitened_rms, one.held_out.whitened_rms, one.fit.strain,
+                   one.fit.explanation.law, one.fit.steps, told(one),
+                   one.objection.empty() ? "" : " (" + one.objection + ")");
+    }
+}
+
 std::string joined(const std::vector<std::string>& names) { return fmt::format("{}", fmt::join(names, " + ")); }
 
 void run(const Options& options) {
@@ -169,20 +201,28 @@ void run(const Options& options) {
             const auto body = body_of(set, options);
             identify::DiagnoseOptions how;
             how.refit.threads = options.threads;
-            const identify::Diagnosis found = identify::diagnose(*body, set, how);
-            const Outcome outcome = judge(truth, found);
+            how.without = options.without;
+            Progress progress;
+            if (options.tell) {
+                progress = [&](std::string_view what, double) {
+                    const auto now = std::chrono::steady_clock::now();
+                    fmt::print("    {:6.1f} s {}\n", std::chrono::duration<double>(now - start).count(), what);
+                };
+            }
+            const identify::Diagnosis found = identify::diagnose(*body, set, how, progress);
+            const Outcome outcome = judge(truth, found, options.without);
             const identify::Candidate& first = found.ranking.front();
-            const auto& held_out = first.held_out;
-            const bool claimed = &found.best() != &found.baseline;
+            const bool claimed = found.explained.has_value();
             fmt::print("| {} | {} | {:.1f} | {} | {} | {:.1f} | {:.2f} | {} | {} | {} | {:.0f} | {} |\n", truth.set,
                        hidden, truth.strength, identify::verdict_names[static_cast<std::size_t>(found.verdict)],
                        found.explanation.empty() ? "(" + first.effect->name() + ")" : joined(found.explanation),
-                       first.log_bayes_factor, found.baseline.whitened_rms,
-                       first.refit ? fmt::format("{:.2f}", first.refit->whitened_rms) : "",
-                       held_out ? fmt::format("{:.2f}", held_out->whitened_rms) : "",
+                       claimed ? found.explained->log_bayes_factor : first.log_bayes_factor,
+                       found.baseline.whitened_rms, fmt::format("{:.2f}", found.best().whitened_rms),
+                       claimed ? fmt::format("{:.2f}", found.explained->held_out.whitened_rms) : "",
                        body->laws()[static_cast<std::size_t>(claimed ? found.law : found.baseline.explanation.law)],
                        std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(),
                        outcome_names[outcome]);
+            if (options.tell) tell(found);
             if (options.ladder && !found.explanation.empty()) {
                 fmt::print("| | | | | {} | | | | | | | |\n", climbed(*body, set, found, options));
             }
@@ -198,9 +238,9 @@ void run(const Options& options) {
         }
         std::cout << std::flush;
     }
-    fmt::print("\n{}: {} right, {} wrong, {} inconclusive; {} of {} null sets blamed.\n",
-               options.skeleton ? "The skeleton alone" : "The reference body", counts[right], counts[wrong],
-               counts[inconclusive], blamed, nulls);
+    fmt::print("\n{}: {} right, {} in part, {} wrong, {} inconclusive; {} of {} null sets blamed.\n",
+               options.skeleton ? "The skeleton alone" : "The reference body", counts[right], counts[in_part],
+               counts[wrong], counts[inconclusive], blamed, nulls);
 }
 
 }  // namespace
@@ -210,7 +250,7 @@ int main(int argc, char** argv) {
     if (options.folder.empty()) {
         fmt::print(stderr,
                    "Usage: diagnosis_bench FOLDER [--body reference|skeleton] [--ladder] [--threads N] "
-                   "[SET ...]\n");
+                   "[--tell] [--without EFFECT] [SET ...]\n");
         return 2;
     }
     try {

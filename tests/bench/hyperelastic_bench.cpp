@@ -23,9 +23,9 @@ double seconds(Work&& work) {
 
 struct Weight final : fem::PointPotential {
     fem::ActsOn acts_on() const override { return fem::ActsOn::material; }
-    fem::PointTerms terms(const Vec3&, const Vec3& x, bool) const override {
+    fem::PointTerms terms(const Vec3&, const Vec3& x) const override {
         const Vec3 g(0, 0, -9810);  // [mm/s^2]
-        return {-g.dot(x), -g, Mat3::Zero(), {}};
+        return {-g.dot(x), -g, Mat3::Zero()};
     }
 };
 
@@ -117,7 +117,7 @@ int main() {
     fmt::print("{:>6} {:>7} {:>6} {:>7} {:>6} {:>7} {:>8} {:>10} {:>9} {:>9} {:>7} {:>7}\n", "nodes", "elem.", "start",
                "s, all", "steps", "factors", "force us", "tangent us", "factor ms", "solve ms", "max mm", "make s");
     for (const auto law : {fem::Law::neo_hooke, fem::Law::svk, fem::Law::linear}) {
-        const fem::BodySetting setting{law, {.young = 0.5, .poisson = 0.45}, {std::make_shared<Weight>()}};
+        const fem::BodySetting setting{law, {.young = 0.5, .poisson = 0.45}, {.points = {std::make_shared<Weight>()}}};
         fmt::print("{}\n", law == fem::Law::neo_hooke ? "neo-Hooke" : law == fem::Law::svk ? "svk" : "linear");
         measure({12, 4, 4}, 0.05, setting);
         measure({17, 6, 5}, 0.10, setting);

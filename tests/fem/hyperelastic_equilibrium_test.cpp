@@ -1,11 +1,9 @@
 #include <tbb/parallel_for.h>
 
-#include <Eigen/Geometry>
 #include <cmath>
 
-#include "bodies.h"
+#include "beam.h"
 #include "fem/elastic_body.h"
-#include "fem/hyperelastic_body.h"
 #include "mesh/errors.h"
 #include "point_potentials.h"
 
@@ -15,54 +13,12 @@ namespace {
 using testing::AllOf;
 using testing::HasSubstr;
 
-constexpr std::array laws{Law::linear, Law::svk, Law::neo_hooke};
-
-/// A straight bar [0, size], held at x = 0.
-struct Beam {
-    Vec3 size;
-    mesh::VolumeMesh mesh;
-    std::vector<char> held;
-
-    Beam(const Vec3& measures, const Eigen::Vector3i& cells)
-        : size(measures),
-          mesh(mesh::to_quadratic(mesh::make_bar(Vec3::Zero(), measures, cells))),
-          held(nodes_where(mesh, [](const Vec3& x) { return x.x() < 1e-9; })) {}
-    HyperelasticBody body(Dilatation dilatation = Dilatation::mean) const { return {mesh, held, dilatation}; }
-
-    /// Nodal forces of a traction t [MPa] on the face at x: a third of each triangle's share on its midsides.
-    Eigen::VectorXd traction(double x, const Vec3& t) const {
-        Eigen::VectorXd f = Eigen::VectorXd::Zero(mesh.nodes.size());
-        for (Eigen::Index k = 0; k < mesh.faces.rows(); ++k) {
-            const Points corners = mesh.nodes(mesh.faces.row(k), Eigen::all);
-            if ((corners.col(0).array() - x).abs().maxCoeff() > 1e-9) continue;
-            const Vec3 a = corners.row(1) - corners.row(0), b = corners.row(2) - corners.row(0);
-            for (int m = 3; m < 6; ++m) f.segment<3>(3 * mesh.faces(k, m)) += a.cross(b).norm() / 6 * t;
-        }
-        return f;
-    }
-    Eigen::VectorXd end_force(const Vec3& force) const { return traction(size.x(), force / (size.y() * size.z())); }
-
-    /// Mean displacement of the nodes at the end.
-    Vec3 tip(const Eigen::VectorXd& u) const {
-        Vec3 sum = Vec3::Zero();
-        int count = 0;
-        for (Eigen::Index i = 0; i < mesh.nodes.rows(); ++i) {
-            if (mesh.nodes(i, 0) < size.x() - 1e-9) continue;
-            sum += u.segment<3>(3 * i);
-            ++count;
-        }
-        return sum / count;
-    }
-};
-
-double relative(const Eigen::VectorXd& a, const Eigen::VectorXd& b) { return (a - b).norm() / b.norm(); }
-
 TEST(Equilibrium, ForcesBalanceAtFreeNodes) {
     const Beam beam({8, 2, 2}, {6, 2, 2});
     const HyperelasticBody body = beam.body();
     const Eigen::VectorXd f = beam.end_force({0.0005, 0.001, -0.0025});
     for (const Law law : laws) {
-        const BodySetting setting{law, {.density = 1e-7}, {std::make_shared<Weight>(Vec3(0, 0, -900))}};
+        const BodySetting setting{law, {.density = 1e-7}, {.points = {std::make_shared<Weight>(Vec3(0, 0, -900))}}};
         const BodyEquilibrium found = body.equilibrium(setting, f);
         Eigen::VectorXd r = body.residual(found.u, setting, f);
         for (std::size_t i = 0; i < beam.held.size(); ++i) {
@@ -111,7 +67,7 @@ TEST(Equilibrium, BarStretchesAsItsEnergySays) {
         }
         const double pull = (energy(a + h, low) - energy(a - h, low)) / (2 * h);
         const Eigen::VectorXd f = beam.traction(3, Vec3(pull, 0, 0)) + beam.traction(0, Vec3(-pull, 0, 0));
-        const BodySetting setting{law, material, {std::make_shared<Springs>(ActsOn::support, 1e-7, 0.0)}};
+        const BodySetting setting{law, material, {.points = {std::make_shared<Springs>(ActsOn::support, 1e-7, 0.0)}}};
         // Sharply, as little force turns it.
         const BodyEquilibrium found = body.equilibrium(setting, f, {.tolerance = 1e-13});
         const Vec3 first = found.u.head<3>();  // of the corner at the origin
@@ -153,7 +109,7 @@ TEST(Equilibrium, BodyOnSpringsMovesByForceOverStiffness) {
     const Vec3 force(0.02, -0.01, 0.005);
     const double k = 0.05;  // [N/mm]
     for (const Law law : laws) {
-        const BodySetting setting{law, {}, {std::make_shared<Springs>(ActsOn::support, k, 0.0)}};
+        const BodySetting setting{law, {}, {.points = {std::make_shared<Springs>(ActsOn::support, k, 0.0)}}};
         const Eigen::VectorXd u = body.equilibrium(setting, beam.end_force(force)).u;
         // In the mean over the springs, exactly; to Newton's tolerance times the condition.
         Vec3 mean = Vec3::Zero();
@@ -171,7 +127,9 @@ TEST(Equilibrium, LinearLawTakesEffectsAsTheyAreAtRest) {
     const HyperelasticBody body = beam.body();
     const Eigen::VectorXd f = beam.end_force({0, 0, -0.01});
     const auto answer = [&](Law law, double q, double share) {
-        return body.equilibrium({law, {}, {std::make_shared<Springs>(ActsOn::surface, 0.001, q)}}, share * f).u;
+        return body
+            .equilibrium({law, {}, {.points = {std::make_shared<Springs>(ActsOn::surface, 0.001, q)}}}, share * f)
+            .u;
     };
     const Eigen::VectorXd u = answer(Law::linear, 0.01, 1);
     EXPECT_LT(relative(answer(Law::linear, 0, 1), u), 1e-12);
@@ -225,7 +183,7 @@ TEST(Equilibrium, UnbearableLoadsAreNamed) {
 TEST(Equilibrium, ThreadsDoNotChangeANumber) {
     // The first to ask for the released supports analyses them, while others wait.
     const Beam beam({6, 2, 2}, {6, 2, 2});
-    const BodySetting setting{Law::neo_hooke, {}, {std::make_shared<Springs>(ActsOn::support, 0.05, 0.0)}};
+    const BodySetting setting{Law::neo_hooke, {}, {.points = {std::make_shared<Springs>(ActsOn::support, 0.05, 0.0)}}};
     const auto answers = [&](bool together) {
         const HyperelasticBody body = beam.body();
         std::vector<Eigen::VectorXd> u(8);

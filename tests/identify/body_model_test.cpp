@@ -43,8 +43,9 @@ protected:
             setting_.effects.empty() ? Eigen::ArrayX<bool>(!held_) : Eigen::ArrayX<bool>::Constant(held_.size(), true);
     }
 
-    static fem::Potentials effects(const Vec3& g, double ln_k) {
-        return {std::make_shared<skeleton::Gravity>(g), std::make_shared<skeleton::CompliantSupport>(std::exp(ln_k))};
+    static fem::Effects effects(const Vec3& g, double ln_k) {
+        return {.points = {std::make_shared<skeleton::Gravity>(g),
+                           std::make_shared<skeleton::CompliantSupport>(std::exp(ln_k))}};
     }
 
     bool is_nonlinear() const { return model_->is_nonlinear(setting_); }
@@ -147,7 +148,7 @@ TEST_P(BodyModelLaws, SolveInvertsTheTangent) {
 }
 
 TEST_P(BodyModelLaws, ParameterForceIsTheDerivativeOfTheResidual) {
-    const Eigen::MatrixXd G = model_->parameter_force(q_, setting_);
+    const Eigen::MatrixXd G = model_->parameter_force(q_, setting_, action_);
     ASSERT_EQ(G.cols(), std::ssize(model_->parameters()));
     for (Eigen::Index p = 0; p < G.cols(); ++p) {
         constexpr double h = 1e-5;
@@ -158,28 +159,6 @@ TEST_P(BodyModelLaws, ParameterForceIsTheDerivativeOfTheResidual) {
             (model_->residual(q_, ahead, action_) - model_->residual(q_, behind, action_)) / (2 * h);
         EXPECT_LT((G.col(p) - difference).norm(), 1e-7 * difference.norm()) << p;  // h^2 and rounding over h
     }
-}
-
-TEST_P(BodyModelLaws, EffectForceIsTheDerivativeOfTheResidual) {
-    const auto residual_with = [&](const Vec3& g, double ln_k) {
-        Setting setting = setting_;
-        setting.effects = effects(g, ln_k);
-        return model_->residual(q_, setting, action_);
-    };
-    const fem::Potentials both = effects(g_, ln_k_);
-    const Eigen::MatrixXd by_g = model_->effect_force(q_, setting_, *both[0]);
-    ASSERT_EQ(by_g.cols(), 3);
-    for (int axis = 0; axis < 3; ++axis) {
-        const Vec3 step = Vec3::Unit(axis);  // linear in g: any step will do
-        const Eigen::VectorXd difference = (residual_with(g_ + step, ln_k_) - residual_with(g_ - step, ln_k_)) / 2;
-        EXPECT_LT((by_g.col(axis) - difference).norm(), 1e-7 * difference.norm());  // rounding of forces of some 1 N
-    }
-    if (!GetParam().effects) return;  // where the support holds, its points stay and give no signature
-    const Eigen::MatrixXd by_k = model_->effect_force(q_, setting_, *both[1]);
-    ASSERT_EQ(by_k.cols(), 1);
-    constexpr double h = 1e-4;
-    const Eigen::VectorXd difference = (residual_with(g_, ln_k_ + h) - residual_with(g_, ln_k_ - h)) / (2 * h);
-    EXPECT_LT((by_k.col(0) - difference).norm(), 1e-7 * difference.norm());  // h^2 / 6
 }
 
 TEST_P(BodyModelLaws, ObservationIsTheDerivativeOfWhatIsObserved) {
@@ -218,17 +197,17 @@ TEST_P(BodyModelLaws, ContactForceIsWhatAContactAddsToTheResidual) {
 
 TEST_P(BodyModelLaws, AllPiecesTogetherAreWhatStiffens) {
     const Eigen::MatrixXd ones = Eigen::MatrixXd::Ones(model_->pieces().rows(), 1);
-    const Eigen::MatrixXd G = model_->parameter_force(q_, setting_);
+    const Eigen::MatrixXd G = model_->parameter_force(q_, setting_, action_);
     Eigen::VectorXd stiffer = Eigen::VectorXd::Zero(model_->dofs());
     for (Eigen::Index p = 0; p < G.cols(); ++p) {
         if (model_->parameters()[p].stiffens) stiffer += G.col(p);
     }
-    const Eigen::VectorXd all = model_->piece_force(q_, setting_, ones);
+    const Eigen::VectorXd all = model_->piece_force(q_, setting_, action_, ones);
     EXPECT_LT((all - stiffer).norm(), 1e-10 * stiffer.norm());  // rounding
     // and each is its own share of it
     Eigen::MatrixXd halves(ones.rows(), 2);
     for (Eigen::Index p = 0; p < ones.rows(); ++p) halves.row(p) = Eigen::RowVector2d::Unit(p % 2);
-    EXPECT_LT((model_->piece_force(q_, setting_, halves).rowwise().sum() - all).norm(), 1e-10 * all.norm());
+    EXPECT_LT((model_->piece_force(q_, setting_, action_, halves).rowwise().sum() - all).norm(), 1e-10 * all.norm());
 }
 
 TEST_P(BodyModelLaws, PiecesAtASupportLieThere) {
@@ -262,7 +241,7 @@ TEST_P(BodyModelLaws, SupportMotionIsARigidMotionOfWhatIsHeld) {
 }
 
 TEST_P(BodyModelLaws, ARigidMotionOfBodyAndBaseCostsNothing) {
-    setting_.effects.clear();
+    setting_.effects = {};
     const Eigen::VectorXd rest = model_->rest(setting_);
     const Eigen::MatrixXd S = rigid_steps();
     const double stiff =

@@ -105,7 +105,7 @@ TEST_F(Diagnosed, NumbersDoNotDependOnThreads) {
         EXPECT_EQ(a.ranking[c].effect->name(), b.ranking[c].effect->name());
         EXPECT_EQ(a.ranking[c].screened, b.ranking[c].screened);
         EXPECT_EQ(a.ranking[c].log_bayes_factor, b.ranking[c].log_bayes_factor);
-        EXPECT_EQ(a.ranking[c].sd, b.ranking[c].sd);
+        EXPECT_EQ(a.ranking[c].told.sd, b.ranking[c].told.sd);
     }
     EXPECT_EQ(a.best().explanation.all(), b.best().explanation.all());
     EXPECT_EQ(a.best().residual, b.best().residual);

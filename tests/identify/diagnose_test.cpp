@@ -52,9 +52,10 @@ TEST_F(Diagnosed, GravityIsNamedWithItsSizeAndDirection) {
         EXPECT_GT(gravity.log_bayes_factor, 1000);
         EXPECT_GT(gravity.probability, 0.99);
         for (int axis = 0; axis < 3; ++axis) {
-            EXPECT_NEAR(gravity.told.parameters[axis].value, 9810 * half_g[axis], 3 * gravity.sd[axis]) << seed;
+            EXPECT_NEAR(gravity.told.effect.parameters[axis].value, 9810 * half_g[axis], 3 * gravity.told.sd[axis])
+                << seed;
         }
-        EXPECT_LT(gravity.sd[2], 0.02 * 4905);
+        EXPECT_LT(gravity.told.sd[2], 0.02 * 4905);
         EXPECT_LT(found.best().rms_mm, 0.1 * found.baseline.rms_mm);
         // the screen says beforehand what will be left
         EXPECT_NEAR(gravity.predicted_rms_mm, found.best().rms_mm, 0.3 * found.best().rms_mm);
@@ -66,7 +67,7 @@ TEST_F(Diagnosed, GravityIsNamedWhateverTheLaw) {
     const Diagnosis found = diagnose(twin(truth("gravity", half_g)));
     EXPECT_EQ(found.verdict, Verdict::missing_effect);
     EXPECT_THAT(found.explanation, ElementsAre("gravity"));
-    EXPECT_NEAR(told(found.ranking.front(), "gz"), 9810 * half_g.z(), 3 * found.ranking.front().sd[2]);
+    EXPECT_NEAR(told(found.ranking.front(), "gz"), 9810 * half_g.z(), 3 * found.ranking.front().told.sd[2]);
 }
 
 TEST_F(Diagnosed, NoisierGravityIsNamed) {
@@ -80,8 +81,8 @@ TEST_F(Diagnosed, ACompliantSupportIsNamedWithItsStiffness) {
     const Diagnosis found = diagnose(twin(truth("compliant-support", numbers({std::log(2.0)}))));
     EXPECT_EQ(found.verdict, Verdict::missing_effect);
     EXPECT_THAT(found.explanation, ElementsAre("compliant-support"));
-    EXPECT_NEAR(told(found.ranking.front(), "stiffness"), 2, 3 * found.ranking.front().sd[0]);
-    EXPECT_LT(found.ranking.front().sd[0], 0.2);
+    EXPECT_NEAR(told(found.ranking.front(), "stiffness"), 2, 3 * found.ranking.front().told.sd[0]);
+    EXPECT_LT(found.ranking.front().told.sd[0], 0.2);
 }
 
 TEST_F(Diagnosed, AMisalignmentIsNamedWithItsSixNumbers) {
@@ -90,7 +91,8 @@ TEST_F(Diagnosed, AMisalignmentIsNamedWithItsSixNumbers) {
     EXPECT_EQ(found.verdict, Verdict::missing_effect);
     EXPECT_THAT(found.explanation, ElementsAre("misalignment"));
     const Candidate& first = found.ranking.front();
-    for (int j = 0; j < 6; ++j) EXPECT_NEAR(first.told.parameters[j].value, moved[j], 3.5 * first.sd[j]) << j;
+    for (int j = 0; j < 6; ++j)
+        EXPECT_NEAR(first.told.effect.parameters[j].value, moved[j], 3.5 * first.told.sd[j]) << j;
 }
 
 TEST_F(Diagnosed, ForceGainsAreNamedProbeByProbe) {
@@ -99,10 +101,10 @@ TEST_F(Diagnosed, ForceGainsAreNamedProbeByProbe) {
     EXPECT_EQ(found.verdict, Verdict::missing_effect);
     EXPECT_THAT(found.explanation, ElementsAre("force-gain"));
     const Candidate& first = found.ranking.front();
-    ASSERT_EQ(first.told.parameters.size(), 8u);
+    ASSERT_EQ(first.told.effect.parameters.size(), 8u);
     for (int j = 0; j < 8; ++j) {
-        EXPECT_NEAR(std::log(first.told.parameters[j].value), gains[j],
-                    3.5 * first.sd[j] / first.told.parameters[j].value)
+        EXPECT_NEAR(std::log(first.told.effect.parameters[j].value), gains[j],
+                    3.5 * first.told.sd[j] / first.told.effect.parameters[j].value)
             << j;
     }
 }
@@ -207,7 +209,7 @@ TEST_F(Diagnosed, TheSkeletonDiagnosesItselfAsWell) {
     EXPECT_EQ(found.verdict, Verdict::missing_effect);
     EXPECT_THAT(found.explanation, ElementsAre("gravity"));
     EXPECT_EQ(found.law, 1);
-    EXPECT_NEAR(told(found.ranking.front(), "gz"), 9810 * half_g.z(), 3 * found.ranking.front().sd[2]);
+    EXPECT_NEAR(told(found.ranking.front(), "gz"), 9810 * half_g.z(), 3 * found.ranking.front().told.sd[2]);
     EXPECT_EQ(identify::diagnose(
                   *skeleton, make_twin(*skeleton, body_.set(SmallBody::probes()), bare_truth(*skeleton, 1), sigma), {})
                   .verdict,

@@ -38,7 +38,7 @@ protected:
         return *std::ranges::find_if(diagnosis.ranking, [&](const Candidate& c) { return c.effect->name() == name; });
     }
     static double told(const Candidate& c, const std::string& name) {
-        return std::ranges::find(c.told.parameters, name, &skeleton::EffectParameter::name)->value;
+        return std::ranges::find(c.told.effect.parameters, name, &skeleton::EffectParameter::name)->value;
     }
     static std::string message_of(const std::function<void()>& call) {
         try {

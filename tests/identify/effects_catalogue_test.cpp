@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <set>
 
 #include "mesh/errors.h"
@@ -32,10 +33,22 @@ class EveryEffect : public testing::TestWithParam<std::shared_ptr<const Effect>>
 protected:
     const Effect& effect() const { return *GetParam(); }
 
+    /// A body and a set in which all effects of bodies and rigs can show.
+    EveryEffect() {
+        if (effect().name() == "pressure") body_ = SmallBody::hollow();
+        if (effect().name() == "torsion" || effect().name() == "shear") {
+            model_ = body_.skeleton();
+        } else {
+            model_ = body_.reference();
+        }
+        MeasurementSet set = body_.set(SmallBody::dwells(0.01, 3));
+        set.material = MaterialGuess{.poisson = 0.45};
+        problem_ = make_problem(make_twin(*model_, set, bare_truth(*model_, 0), 0), 0.05);
+    }
+
     SmallBody body_;
-    std::unique_ptr<ReferenceBody> model_ = body_.reference();
-    Problem problem_ =
-        make_problem(make_twin(*model_, body_.set(SmallBody::probes(0.01, 3)), bare_truth(*model_, 0), 0), 0.05);
+    std::unique_ptr<BodyModel> model_;
+    Problem problem_;
 };
 
 TEST_P(EveryEffect, IsDescribedWithoutEmptyFields) {
@@ -75,18 +88,19 @@ TEST_P(EveryEffect, HasNumbersWithNamesUnitsAndWidths) {
 
 TEST_P(EveryEffect, WhatIsToldCanBeTakenBack) {
     const auto numbers = effect().numbers(*model_, problem_);
-    Eigen::VectorXd values(std::ssize(numbers));
-    for (Eigen::Index j = 0; j < values.size(); ++j) {
-        values[j] = numbers[j].prior_mean + 0.1 * static_cast<double>(j + 1) * numbers[j].prior_sd;
-    }
+    const Eigen::VectorXd values = example(effect(), numbers);
     const skeleton::Effect told = effect().told(numbers, values);
     EXPECT_EQ(told.name, effect().name());
-    ASSERT_EQ(told.parameters.size(), numbers.size());
-    for (std::size_t j = 0; j < numbers.size(); ++j) {
-        EXPECT_EQ(told.parameters[j].name, numbers[j].name);
-        EXPECT_EQ(told.parameters[j].unit, numbers[j].unit);
+    for (const skeleton::EffectParameter& parameter : told.parameters) {
+        const auto number = std::ranges::find(numbers, parameter.name, &EffectNumber::name);
+        ASSERT_NE(number, numbers.end()) << parameter.name;
+        EXPECT_EQ(parameter.unit, number->unit);
     }
     EXPECT_LT((effect().values(numbers, told) - values).norm(), 1e-13 * values.norm() + 1e-300);  // rounding
+}
+
+TEST_P(EveryEffect, HasNumbersWhereItCanShow) {
+    EXPECT_EQ(effect().numbers(*model_, problem_).empty(), effect().name() == "outliers");  // which need none
 }
 
 TEST_P(EveryEffect, WhatIsNotToldStartsAsAFitDoes) {
@@ -98,8 +112,7 @@ TEST_P(EveryEffect, WhatIsNotToldStartsAsAFitDoes) {
 
 TEST_P(EveryEffect, SpeaksASentence) {
     const auto numbers = effect().numbers(*model_, problem_);
-    Eigen::VectorXd values = Eigen::VectorXd::Constant(std::ssize(numbers), 0.1);
-    skeleton::Effect told = effect().told(numbers, values);
+    skeleton::Effect told = effect().told(numbers, example(effect(), numbers));
     if (effect().name() == "outliers")
         told.parameters = {{"share", 0.02, "1"}, {"readings", 3, "1"}, {"width", 8, "1"}};
     const std::string sentence = effect().sentence(told);
@@ -108,17 +121,27 @@ TEST_P(EveryEffect, SpeaksASentence) {
 }
 
 TEST_P(EveryEffect, OfABodyIsWhatAModelFilePlays) {
+    // In force by the fit's numbers and by what a model file says, the body feels the same.
     const auto numbers = effect().numbers(*model_, problem_);
-    if (!effect().is_of_body() || numbers.empty()) return;
-    Eigen::VectorXd values(std::ssize(numbers));
-    for (Eigen::Index j = 0; j < values.size(); ++j) values[j] = numbers[j].prior_mean + 0.2;
-    const auto own = effect().potential(values);
-    const auto file = skeleton::make_potential(effect().told(numbers, values));
-    ASSERT_TRUE(own);
-    EXPECT_EQ(own->acts_on(), file->acts_on());
-    const Vec3 X(1, 2, 3), x(1.5, 1.8, 3.3);
-    EXPECT_LT((own->terms(X, x, false).gradient - file->terms(X, x, false).gradient).norm(),
-              1e-12 * own->terms(X, x, false).gradient.norm());  // rounding
+    if (!effect().is_of_body()) return;
+    const Eigen::VectorXd values = example(effect(), numbers);
+    const Setting bare = bare_truth(*model_, 1).setting();
+    Setting own = bare, file = bare;
+    effect().enforce(values, own);
+    own.theta = bare.theta;  // a Poisson's ratio is in no file
+    file.effects = skeleton::make_physics(effect().told(numbers, values));
+    EXPECT_EQ(own.effects.points.size(), file.effects.points.size());
+    EXPECT_EQ(own.effects.material.size(), file.effects.material.size());
+    ASSERT_EQ(own.effects.creep.has_value(), file.effects.creep.has_value());
+    if (own.effects.creep) {
+        EXPECT_DOUBLE_EQ(own.effects.creep->creep, file.effects.creep->creep);
+        EXPECT_DOUBLE_EQ(own.effects.creep->tau, file.effects.creep->tau);
+    }
+    const Action push{.contacts = SmallBody::probes(0.01)[1].contacts};
+    const Eigen::VectorXd bent = model_->equilibrium(bare, push);
+    const Eigen::VectorXd force = model_->residual(bent, own, push);
+    const double without = model_->residual(bent, bare, push).norm();
+    EXPECT_LT((force - model_->residual(bent, file, push)).norm(), 1e-12 * (force.norm() + without));  // rounding
 }
 
 TEST_P(EveryEffect, OfTheMeasurementIsTakenOutOfASet) {
@@ -129,7 +152,7 @@ TEST_P(EveryEffect, OfTheMeasurementIsTakenOutOfASet) {
     Eigen::VectorXd values(std::ssize(numbers));
     for (Eigen::Index j = 0; j < values.size(); ++j) values[j] = 0.2 * static_cast<double>(j % 2 ? 1 : -1);
     const Explanation truth = bare_truth(*model_, 2), faulty = with(truth, GetParam(), values);
-    const MeasurementSet set = effect().corrected(make_twin(*model_, body_.set(SmallBody::probes(0.01, 3)), faulty, 0),
+    const MeasurementSet set = effect().corrected(make_twin(*model_, body_.set(SmallBody::dwells(0.01, 3)), faulty, 0),
                                                   effect().told(numbers, values));
     const Problem understood = make_problem(set, 0.05);
     const Eigen::VectorXd modelled = understood.pick(play(*model_, understood, truth, 1).markers);
@@ -164,6 +187,17 @@ TEST(ForceGain, IsAClaimWhereGainsComeAndGo) {
     alternating << 0.2, -0.2, 0.2, -0.2, 0.2, -0.2;
     EXPECT_EQ(find_effect("force-gain")->objection(doubling_loads(), alternating, false), "");
     EXPECT_THAT(find_effect("force-gain")->objection(doubling_loads(), alternating, true), HasSubstr("noise already"));
+}
+
+TEST(Catalogue, RefusesASecondEffectOfAName) {
+    const std::size_t before = catalogue().size();
+    try {
+        register_effect(gravity_effect());
+        FAIL() << "nothing was thrown";
+    } catch (const InvalidInput& error) {
+        EXPECT_STREQ(error.what(), "there is an effect 'gravity' already; give yours another name");
+    }
+    EXPECT_EQ(catalogue().size(), before);
 }
 
 TEST(Catalogue, NamesAreAllDifferent) {

@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "mesh/errors.h"
 
 namespace palpate::identify {
@@ -100,11 +102,9 @@ TEST(Problem, AReadingsSigmaWinsOverTheSets) {
     MeasurementSet set = make_set({state});
     EXPECT_THAT(make_problem(set, 0.1).sigma, ElementsAre(0.1, 0.1, 0.1, 0.5, 0.5, 0.5));
     set.position_noise = 0.2;
-    set.force_noise = 0.03;
     const Problem problem = make_problem(set, 0.1);
     EXPECT_THAT(problem.sigma, ElementsAre(0.2, 0.2, 0.2, 0.5, 0.5, 0.5));
     EXPECT_NEAR(problem.rms_sigma(), std::sqrt((0.04 + 0.25) / 2), 1e-15);
-    EXPECT_EQ(problem.force_noise, 0.03);
 }
 
 TEST(Problem, PicksRowsFromMarkerPositions) {
@@ -151,6 +151,28 @@ TEST(Problem, WithoutActionsIsTheProblemOfASetWithoutTheirStates) {
     EXPECT_EQ(rest.state, by_set.state);
     EXPECT_EQ(rest.reading, by_set.reading);
     EXPECT_EQ(rest.measured, by_set.measured);
+}
+
+TEST(Problem, AnotherPressureIsAnotherAction) {
+    MeasurementSet set = make_set({read(0, 0, {}), read(0, 1, {}), read(0, 2, {})});
+    set.states[1].pressure = 0;  // as if nothing were told
+    set.states[2].pressure = 0.01;
+    const Problem problem = make_problem(set, 0.1);
+    ASSERT_EQ(problem.actions.size(), 2u);
+    EXPECT_EQ(problem.actions[0].pressure, 0);
+    EXPECT_EQ(problem.actions[1].pressure, 0.01);
+}
+
+TEST(Problem, APoissonsRatioIsDeclaredOrMissing) {
+    MeasurementSet set = make_set({read(1, 1, {push})});
+    EXPECT_TRUE(std::isnan(make_problem(set, 0.1).declared_poisson));
+    set.material = MaterialGuess{.young = 0.3};
+    EXPECT_TRUE(std::isnan(make_problem(set, 0.1).declared_poisson));
+    set.material->poisson = 0.4;
+    const Problem problem = make_problem(set, 0.1);
+    EXPECT_EQ(problem.declared_poisson, 0.4);
+    EXPECT_EQ(problem.stage_by_stage().declared_poisson, 0.4);
+    EXPECT_EQ(problem.with_rows(std::vector<char>(9, 1)).declared_poisson, 0.4);
 }
 
 TEST(Problem, WithoutWholeStatesKeepsItsActions) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cmath>
+#include <map>
 #include <memory>
 #include <string>
 #include <vector>
@@ -40,6 +41,23 @@ struct SmallBody {
         markers.push_back({24, Vec3(46, 5, 5), Vec3(40, 5, 5)});
         markers.push_back({25, Vec3(19, 16, 5), Vec3(19, 10, 5)});
         return markers;
+    }
+
+    /// The bar with a hollow within, of 13 x 3.3 x 3.3 mm.
+    static SmallBody hollow() {
+        const mesh::VolumeMesh solid = mesh::make_bar(Vec3::Zero(), Vec3(40, 10, 10), {3, 3, 3});
+        const mesh::BoxRegion inside{Vec3(40, 10, 10) / 3, Vec3(80, 20, 20) / 3};
+        std::vector<int> walls;
+        for (int e = 0; e < static_cast<int>(solid.tetrahedra.rows()); ++e) {
+            const Eigen::RowVector4i corners = solid.tetrahedra.row(e);
+            const Points centre = solid.nodes(corners, Eigen::all).colwise().mean();
+            if (mesh::contains({inside}, centre)[0] == 0) walls.push_back(e);
+        }
+        mesh::VolumeMesh mesh{.nodes = solid.nodes, .tetrahedra = solid.tetrahedra(walls, Eigen::all), .faces = {}};
+        mesh.faces = mesh::boundary_faces(mesh.tetrahedra);
+        SmallBody body;
+        body.mesh = mesh::to_quadratic(mesh);
+        return body;
     }
 
     std::unique_ptr<ReferenceBody> reference() const {
@@ -84,6 +102,20 @@ struct SmallBody {
         return states;
     }
 
+    /// Pushes that are held, each read at once, after 5 s, and 5 s after it was taken off again.
+    static std::vector<LoadState> dwells(double force = 0.03, int count = 4) {
+        std::vector<LoadState> states{LoadState{.probe = 0}};
+        for (LoadState state : probes(force, count)) {
+            if (state.contacts.empty()) continue;
+            for (const double time : {0.2, 5.0}) {
+                state.time = time;
+                states.push_back(state);
+            }
+            states.push_back({.probe = state.probe, .time = 10});
+        }
+        return states;
+    }
+
     /// States with a reading of every marker, each at rest.
     MeasurementSet set(std::vector<LoadState> states) const {
         MeasurementSet set;
@@ -114,10 +146,32 @@ inline Explanation with(Explanation truth, std::shared_ptr<const Effect> effect,
     return truth;
 }
 
+/// Numbers of an effect that bends or moves the bar by some tenths of a millimetre and more.
+inline Eigen::VectorXd example(const Effect& effect, const std::vector<EffectNumber>& numbers) {
+    static const std::map<std::string, std::vector<double>> chosen{
+        {"stiffening", {1, 10}},
+        {"anisotropy", {1.5, 0.48, 0.6, 0.64}},  // of unit length, as they are told
+        {"inclusion", {21, 6, 4, std::log(7), std::log(3)}},
+        {"volume", {std::log(0.1), std::log(0.4)}},
+        {"contact", {0, 0.28, 0.96, -0.3, std::log(0.02)}},
+        {"pressure", {0.01}},
+        {"prestress", {0.01, -0.006, 0.004, 0.006, -0.004, 0.002}},
+        {"viscosity", {0.5, std::log(3)}},
+        {"torsion", {0.3}},
+        {"shear", {0.3}}};
+    const auto found = chosen.find(effect.name());
+    Eigen::VectorXd values(std::ssize(numbers));
+    for (Eigen::Index j = 0; j < values.size(); ++j) {
+        values[j] = found != chosen.end() ? found->second[j]
+                                          : numbers[j].prior_mean + 0.2 * numbers[j].prior_sd * (j % 2 ? 1 : -0.7);
+    }
+    return values;
+}
+
 /// A twin: what a model shows in all states, read with noise [mm] that the set tells.
 inline MeasurementSet make_twin(const BodyModel& model, MeasurementSet set, const Explanation& truth, double noise,
                                 std::uint64_t seed = 1) {
-    const Problem problem = make_problem(set, 1);
+    const Problem merged = make_problem(set, 1), problem = truth.has_memory() ? merged.stage_by_stage() : merged;
     const Played played = play(model, problem, truth, 1);
     RandomStream random(seed, 0, 0);
     Eigen::Index n = 0;

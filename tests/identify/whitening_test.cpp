@@ -126,6 +126,31 @@ TEST(Screen, OfAnEffectThatDoesNotShowSaysNothing) {
     EXPECT_LT((said.sd - e.tau).norm(), rounding);
 }
 
+TEST(Screen, OfAlternativesIsTheScreenOfEach) {
+    const Example e(3);
+    const Whitening V = e.whitening();
+    RandomStream random(11, 0, 0);
+    constexpr int alternatives = 7;
+    for (const int width : {1, 2, 3}) {
+        const Eigen::MatrixXd all = random.normals(N * width * alternatives).reshaped(N, width * alternatives);
+        const Eigen::VectorXd tau = e.tau.head(width);
+        const std::vector<ScreenResult> together = screen_alternatives(V, e.d, all, tau);
+        ASSERT_EQ(together.size(), static_cast<std::size_t>(alternatives));
+        for (int a = 0; a < alternatives; ++a) {
+            const ScreenResult alone = screen(V, e.d, all.middleCols(a * width, width), tau);
+            EXPECT_NEAR(together[a].log_bayes_factor, alone.log_bayes_factor, rounding);
+            EXPECT_LT((together[a].value - alone.value).norm(), rounding);
+            EXPECT_LT((together[a].sd - alone.sd).norm(), rounding);
+            EXPECT_NEAR(together[a].keep, alone.keep, rounding);
+        }
+    }
+}
+
+TEST(Screen, OfNoAlternativesIsNone) {
+    const Example e;
+    EXPECT_TRUE(screen_alternatives(e.whitening(), e.d, Eigen::MatrixXd(N, 0), e.tau).empty());
+}
+
 TEST(Screen, BayesFactorsOfNullsAverageToOne) {
     // E[p(d | effect) / p(d)] = 1 under p(d), whatever the effect. One weak number keeps the variance finite:
     // for tau^2 M = m the second moment of exp(ln BF) is 1 / sqrt(1 - m^2), here with m = 0.5 some 1.15.

@@ -199,6 +199,7 @@ TEST(BuildSkeleton, LinksOfABarStandForItsSection) {
         // Exact but for spheres that are not quite on the axis.
         EXPECT_NEAR(link.stiffness(0) * link.length / material.young, 256, 2.56);
         EXPECT_NEAR(link.stiffness(1) * link.length / (2 * material.young), 16. * 16 * 16 * 16 / 12, 0.1 * 5461);
+        EXPECT_NEAR(link.gyration, 16 / std::sqrt(12), 0.05 * 16);
     }
 }
 

@@ -62,10 +62,24 @@ TEST_F(ModelFile, IsReadBackEqual) {
     model.spheres[1].inertia << 1.1, 0.1, 0.2, 0.1, 2.2, 0.3, 0.2, 0.3, 3.3;
     model.links[4].zone = 7;
     model.links[5].length *= 1.25;
-    model.effects = {{"gravity", {{"gz", -9810, "mm/s^2"}, {"gx", 1.0 / 3, "mm/s^2"}, {"gy", 0, ""}}},
-                     {"compliant-support", {{"stiffness", 2.5, "N/mm"}}},
-                     {"outliers", {}},
-                     {"misalignment", {{"tx", 0.1, "mm"}, {"rz", 0.01, "rad"}}}};
+    model.links[6].gyration = 4.0 / 3;
+    model.effects = {
+        {"gravity", {{"gz", -9810, "mm/s^2"}, {"gx", 1.0 / 3, "mm/s^2"}, {"gy", 0, ""}}},
+        {"compliant-support", {{"stiffness", 2.5, "N/mm"}}},
+        {"stiffening", {{"c2", 0.25, "1"}, {"c3", 0, ""}}},
+        {"anisotropy", {{"k", -0.5, "1"}, {"nx", 0, "1"}, {"ny", 1, "1"}, {"nz", 1, "1"}}},
+        {"inclusion", {{"cx", 1, "mm"}, {"cy", 2, "mm"}, {"cz", 3, "mm"}, {"radius", 4, "mm"}, {"ratio", 8, "1"}}},
+        {"contact", {{"nx", 0, "1"}, {"ny", 0, "1"}, {"nz", 1, "1"}, {"offset", -1, "mm"}, {"stiffness", 2, "N/mm^3"}}},
+        {"pressure", {{"pressure", -0.01, "MPa"}}},
+        {"prestress",
+         {{"sxx", 0.1, "1"}, {"syy", 0, "1"}, {"szz", 0, "1"}, {"sxy", 0, "1"}, {"syz", 0, "1"}, {"sxz", 0, "1"}}},
+        {"viscosity", {{"creep", 0.7, "1"}, {"tau", 20, "s"}}},
+        {"plasticity", {{"yield", 0.05, "1"}, {"hardening", 0, "1"}}},
+        {"volume", {{"poisson", 0.3, "1"}}},
+        {"torsion", {{"torsion", 0.5, "1"}}},
+        {"shear", {{"shear", 0.5, "1"}}},
+        {"outliers", {}},
+        {"misalignment", {{"tx", 0.1, "mm"}, {"rz", 0.01, "rad"}}}};
     model.surface = mesh::make_sphere({10, 5, 5}, 1.0 / 3, 1);
     for (Eigen::Index i = 0; i < model.surface.vertices.rows(); ++i)
         model.skin.push_back(attach(model, model.surface.vertices.row(i).transpose()));
@@ -92,6 +106,8 @@ TEST_F(ModelFile, IsReadBackEqual) {
     EXPECT_EQ(stiffness_vector(read), stiffness_vector(model));
     EXPECT_EQ(read.links[4].zone, 7);
     EXPECT_EQ(read.links[5].length, model.links[5].length);
+    EXPECT_EQ(read.links[5].gyration, 0);
+    EXPECT_EQ(read.links[6].gyration, model.links[6].gyration);
     ASSERT_EQ(read.effects.size(), model.effects.size());
     for (size_t e = 0; e < model.effects.size(); ++e) {
         EXPECT_EQ(read.effects[e].name, model.effects[e].name);
@@ -173,9 +189,11 @@ TEST_F(ModelFile, EveryFaultIsNamed) {
     EXPECT_EQ(fault("\"flexion\": 20", "\"flexion\": -20"),
               "links[0].flexion: is '-20', but must be a number of at least 0");
     EXPECT_EQ(complaint(two_spheres("", ", \"length\": 0")), "links[0].length: is '0', but must be a number above 0");
+    EXPECT_EQ(complaint(two_spheres("", ", \"gyration\": 0")),
+              "links[0].gyration: is '0', but must be a number above 0");
     EXPECT_EQ(complaint(two_spheres("", ", \"shear\": 2")),
               "links[0]: the field 'shear' is not known; known are 'a', 'b', 'length', 'elongation', 'flexion', "
-              "'torsion', 'zone'");
+              "'torsion', 'zone', 'gyration'");
     EXPECT_EQ(complaint(two_spheres("", R"(}, {"a": 1, "b": 0, "elongation": 1, "flexion": 1, "torsion": 1)")),
               "links[1]: joins spheres 0 and 1, as links[0] does already; keep one of them");
     const auto top = [&](const std::string& extra) { return complaint(two_spheres("", "", ", " + extra)); };
@@ -204,6 +222,11 @@ TEST_F(ModelFile, FaultsOfEffectsAreNamed) {
               "effects[1]: effect 'gravity': the parameter 'gy' [mm/s^2] is missing");
     EXPECT_EQ(effect("compliant-support", R"({"stiffness": {"value": -1, "unit": "N/mm"}})"),
               "effects[1]: effect 'compliant-support': stiffness is -1 N/mm, but must be above 0");
+    EXPECT_EQ(
+        effect("inclusion", R"({"cx": {"value": 0}, "cy": {"value": 0}, "cz": {"value": 0}, "ratio": {"value": 2}})"),
+        "effects[1]: effect 'inclusion': either a radius [mm] is needed, for a ball, or hx, hy and hz [mm], for a box");
+    EXPECT_EQ(effect("plasticity", R"({"yield": {"value": 0, "unit": "1"}, "hardening": {"value": 1, "unit": "1"}})"),
+              "effects[1]: effect 'plasticity': yield is 0, but must be above 0");
     EXPECT_EQ(effect("gravty", "{}").rfind("effects[1]: effect 'gravty' is not known (did you mean 'gravity'?)", 0),
               0u);
 }

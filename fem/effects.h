@@ -1,0 +1,63 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "fem/material_effect.h"
+#include "fem/point_potential.h"
+
+namespace palpate::fem {
+
+/// The material yields: J2 plasticity in large strain with linear isotropic hardening. [Simo & Hughes 1998, box 9.1]
+/// Stresses are shares of the shear modulus mu, so that another stiffness leaves the strains as they are.
+struct Plasticity {
+    double yield = 0;      // Mises stress of first yield / (3 mu): the equivalent strain there [-], > 0
+    double hardening = 0;  // d Mises stress / d equivalent plastic strain / (3 mu) [-], >= 0
+};
+
+/// The material creeps: under a load that is held since time 0 its compliance grows as
+///   J(t) / J(0) = 1 + creep (1 - exp(-t / tau)),
+/// all moduli alike, so that a body bears loads as an elastic one bears them times J.
+struct Creep {
+    double creep = 0;  // [-], >= 0
+    double tau = 1;    // [s], > 0
+};
+
+/// What is in force on a body beyond its law and the forces of contacts.
+struct Effects {
+    std::vector<std::shared_ptr<const PointPotential>> points{};
+    std::vector<std::shared_ptr<const MaterialEffect>> material{};
+    double pressure = 0;  // in closed cavities, above that outside [MPa]
+    std::optional<Plasticity> plasticity{};
+    std::optional<Creep> creep{};  // for whoever puts loads on in time: an equilibrium knows none
+
+    // Of a skeleton's links, a solid has none: resistance to twist as a share of the links' flexion, and to shear
+    // apart from flexion as a share of their elongation [-].
+    double torsion = 0, shear = 0;
+
+    bool empty() const {
+        return points.empty() && material.empty() && pressure == 0 && !plasticity && !creep && torsion == 0 &&
+               shear == 0;
+    }
+    /// Puts others in force besides; numbers add up.
+    void add(const Effects& more) {
+        points.insert(points.end(), more.points.begin(), more.points.end());
+        material.insert(material.end(), more.material.begin(), more.material.end());
+        pressure += more.pressure;
+        torsion += more.torsion;
+        shear += more.shear;
+        if (more.plasticity) plasticity = more.plasticity;
+        if (more.creep) creep = more.creep;
+    }
+};
+
+/// Does one of them take the place of the supports?
+inline bool release_supports(const Effects& effects) {
+    for (const auto& potential : effects.points) {
+        if (potential->acts_on() == ActsOn::support) return true;
+    }
+    return false;
+}
+
+}  // namespace palpate::fem

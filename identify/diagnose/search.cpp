@@ -1,0 +1,333 @@
+#include "identify/diagnose/search.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "identify/diagnose/judge.h"
+#include "mesh/errors.h"
+
+namespace palpate::identify {
+namespace {
+
+std::vector<std::string> names_of(const Explained& explained) {
+    std::vector<std::string> names;
+    names.reserve(explained.effects.size());
+    for (const auto& effect : explained.effects) names.push_back(effect->name());
+    return names;
+}
+
+std::string listed(const std::vector<std::string>& names) {
+    std::string text;
+    for (const std::string& name : names) text += (text.empty() ? "" : " + ") + name;
+    return text;
+}
+
+/// Evidence that an effect of a fit stands for, about: half the square of how far its best known number lies from where
+/// it began, in standard deviations. [Savage-Dickey]
+double evidence_for(const Refit& fit, const std::string& name) {
+    Eigen::Index at = fit.explanation.theta.size();
+    double most = 0;
+    for (std::size_t e = 0; e < fit.explanation.effects.size(); ++e) {
+        for (Eigen::Index j = 0; j < fit.explanation.values[e].size(); ++j, ++at) {
+            if (fit.explanation.effects[e]->name() != name) continue;
+            const double off = fit.explanation.values[e][j] - fit.prior_mean[at];
+            most = std::max(most, 0.5 * off * off / fit.covariance(at, at));
+        }
+    }
+    return most;
+}
+
+/// An explanation without one of its effects.
+Explanation without(const Explanation& all, const std::string& name) {
+    Explanation result = all;
+    for (std::size_t e = 0; e < result.effects.size(); ++e) {
+        if (result.effects[e]->name() != name) continue;
+        result.effects.erase(result.effects.begin() + static_cast<std::ptrdiff_t>(e));
+        result.values.erase(result.values.begin() + static_cast<std::ptrdiff_t>(e));
+        break;
+    }
+    return result;
+}
+
+}  // namespace
+
+Search::Search(const BodyModel& model, const Problem& problem, const Baselines& baselines,
+               const std::vector<std::shared_ptr<const Effect>>& effects, const DiagnoseOptions& options,
+               const Progress& progress)
+    : model_(model),
+      problem_(problem),
+      stages_(problem.by_stage ? problem : problem.stage_by_stage()),
+      baselines_(baselines),
+      effects_(effects),
+      options_(options),
+      progress_(progress) {}
+
+void Search::run() {
+    screen_all();
+    confirm_single_effects();
+    put_together();
+}
+
+const Explained* Search::leader() const { return tried_.empty() ? nullptr : &tried_[index_of_leader()]; }
+
+std::size_t Search::index_of_leader() const {
+    return static_cast<std::size_t>(std::ranges::max_element(tried_, {}, &Explained::log_bayes_factor) -
+                                    tried_.begin());
+}
+
+const Problem& Search::problem_for(const Explanation& explanation) const {
+    return explanation.has_memory() ? stages_ : problem_;
+}
+
+std::vector<Screened> Search::screen_at(const Refit& base, const std::vector<std::string>& without) const {
+    std::vector<std::shared_ptr<const Effect>> others;
+    std::ranges::copy_if(effects_, std::back_inserter(others), [&](const auto& effect) {
+        return std::ranges::find(without, effect->name()) == without.end();
+    });
+    std::vector<Screened> result =
+        screen_effects(model_, problem_for(base.explanation), base, others, options_.refit.threads);
+    std::ranges::stable_sort(result, std::greater{}, &Screened::log_bayes_factor);
+    return result;
+}
+
+void Search::screen_all() {
+    screened_.assign(baselines_.laws(), {});
+    // small strain, and the best of the laws of large deformation: they are alike
+    int large = 1;
+    for (int law = 2; law < baselines_.laws(); ++law) {
+        if (baselines_.evidence(law) >= baselines_.evidence(large)) large = law;
+    }
+    for (const int law : {0, large}) {
+        if (law >= baselines_.laws() || !baselines_.under(law)) continue;
+        report(progress_, "screen, law " + model_.laws()[law], 0.4 + 0.05 * law);
+        screened_[law] = screen_at(*baselines_.under(law), {});
+    }
+}
+
+/// The law under which the best effect, by the screen, promises most.
+int Search::most_promising_law() const {
+    int best = 0;
+    double most = -INFINITY;
+    for (int law = 0; law < baselines_.laws(); ++law) {
+        if (screened_[law].empty()) continue;
+        const double more = std::max(0.0, screened_[law].front().log_bayes_factor);
+        if (baselines_.evidence(law) + more > most) {
+            most = baselines_.evidence(law) + more;
+            best = law;
+        }
+    }
+    return best;
+}
+
+/// A fit with one effect more; nothing where there is no equilibrium.
+std::optional<Explained> Search::refit_with(const Refit& base, const Screened& screened) const {
+    Explanation explanation = base.explanation;
+    explanation.effects.push_back(screened.effect);
+    explanation.values.push_back(screened.start);
+    const bool spread = explanation.has_memory() && !base.explanation.has_memory() && !problem_.by_stage;
+    return refit_from(explanation, spread ? spread_over_stages(model_, base, problem_, stages_) : base,
+                      {screened.effect});
+}
+
+std::optional<Explained> Search::refit_from(const Explanation& explanation, const Refit& start,
+                                            const std::vector<std::shared_ptr<const Effect>>& effects) const {
+    try {
+        const Problem& problem = problem_for(explanation);
+        Explained result{.effects = effects, .fit = refit(model_, problem, explanation, options_.refit, &start)};
+        result.log_bayes_factor = result.fit.log_evidence - baselines_.best().log_evidence;
+        result.held_out = leave_probes_out(problem, result.fit);
+        return result;
+    } catch (const SolverFailure&) {
+        return std::nullopt;
+    }
+}
+
+void Search::confirm_single_effects() {
+    const int law = most_promising_law();
+    if (screened_[law].empty()) return;
+    const Refit& base = *baselines_.under(law);
+    int refitted = 0;
+    double claimed = -INFINITY;  // evidence of an effect that leaves nothing else to explain
+    for (const Screened& screened : screened_[law]) {
+        Candidate candidate{.effect = screened.effect,
+                            .screened = screened.log_bayes_factor,
+                            .log_bayes_factor = screened.log_bayes_factor,
+                            .keep = screened.keep,
+                            .predicted_rms_mm = screened.predicted_rms_mm};
+        // A screen is a linearisation: a refit may bring twice as much, and of little several times.
+        const double at_most = 2 * screened.log_bayes_factor + 200;
+        const double least = std::max(options_.least_screen, 0.1 * screened_[law].front().log_bayes_factor);
+        if (refitted < options_.refits && screened.log_bayes_factor >= least && at_most > claimed) {
+            report(progress_, "refit with " + screened.effect->name(), 0.55 + 0.05 * refitted);
+            if (auto found = refit_with(base, screened)) {
+                if (claims(*found)) claimed = std::max(claimed, found->log_bayes_factor);
+                tried_.push_back(std::move(*found));
+            }
+            ++refitted;
+        }
+        ranking_.push_back(std::move(candidate));
+    }
+    for (const Screened& screened : screened_[law]) {
+        if (!screened.effect->outwits_screen() || was_tried({screened.effect->name()}) || !little_is_left()) continue;
+        report(progress_, "refit with " + screened.effect->name(), 0.75);
+        if (auto found = refit_with(base, screened)) tried_.push_back(std::move(*found));
+    }
+    // The law goes with the effect: the two that lead are tried under the others too.
+    std::vector<std::size_t> order(tried_.size());
+    for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
+    std::ranges::stable_sort(order, std::greater{}, [&](std::size_t i) { return tried_[i].log_bayes_factor; });
+    for (std::size_t i = 0; i < std::min<std::size_t>(2, order.size()); ++i) try_other_laws(order[i]);
+
+    for (const Explained& single : tried_) {
+        const auto own = std::ranges::find(ranking_, single.effects.front(), &Candidate::effect);
+        own->log_bayes_factor = single.log_bayes_factor;
+        own->refit = single.fit;
+        own->held_out = single.held_out;
+        own->told = single.told(own->effect->name());
+    }
+    std::ranges::stable_sort(ranking_, std::greater{}, &Candidate::log_bayes_factor);
+}
+
+void Search::try_other_laws(std::size_t tried) {
+    Explained& single = tried_[tried];
+    const int own = single.fit.explanation.law;
+    for (int law = 0; law < baselines_.laws(); ++law) {
+        if (law == own || !baselines_.under(law)) continue;
+        const auto tell = [&] {
+            report(progress_, fmt::format("refit with {}, law {}", single.effects.front()->name(), model_.laws()[law]),
+                   0.75);
+        };
+        std::optional<Explained> other;
+        if (law > 0 && own > 0) {
+            // next to another law of large deformation; a matter of what little is left
+            if (!is_enough(single.fit, options_)) continue;
+            tell();
+            Explanation explanation = single.fit.explanation;
+            explanation.law = law;
+            other = refit_from(explanation, single.fit, single.effects);
+        } else {
+            const auto screened = std::ranges::find(screened_[law], single.effects.front(), &Screened::effect);
+            if (screened == screened_[law].end()) continue;
+            const double lead = baselines_.best().log_evidence - baselines_.evidence(law);
+            if (2 * screened->log_bayes_factor + 200 < single.log_bayes_factor + lead) continue;
+            tell();
+            other = refit_with(*baselines_.under(law), *screened);
+        }
+        if (other && other->log_bayes_factor > single.log_bayes_factor) single = std::move(*other);
+    }
+}
+
+/// Does it explain the readings, with nothing to be said against it?
+bool Search::claims(const Explained& explained) const {
+    if (!is_enough(explained.fit, options_) || !is_likely(explained, options_)) return false;
+    const Explanation& all = explained.fit.explanation;
+    for (std::size_t e = 0; e < all.effects.size(); ++e) {
+        if (!explained.has(all.effects[e]->name())) continue;
+        if (!all.effects[e]->objection(problem_, all.values[e], false).empty()) return false;
+    }
+    return true;
+}
+
+bool Search::something_claims() const {
+    return std::ranges::any_of(tried_, [&](const Explained& one) { return claims(one); });
+}
+
+/// Something unexplained is left next to what leads, and not much of it.
+bool Search::little_is_left() const {
+    constexpr double little = 2;  // rms, whitened: where more is left, something else is missing
+    const Refit& leads = tried_.empty() ? baselines_.best() : leader()->fit;
+    const bool nothing_is = tried_.empty() && is_enough(leads, options_);
+    return !nothing_is && !something_claims() && leads.whitened_rms < little;
+}
+
+bool Search::was_tried(const std::vector<std::string>& names) const {
+    return std::ranges::any_of(tried_, [&](const Explained& one) {
+        return one.effects.size() == names.size() &&
+               std::ranges::all_of(names, [&](const std::string& name) { return one.has(name); });
+    });
+}
+
+/// Adds to what was tried the best effects next to one that is there; true where the evidence grew enough.
+bool Search::extend(std::size_t from, int most) {
+    const Explained base = tried_[from];
+    const std::vector<std::string> there = names_of(base);
+    report(progress_, "screen next to " + listed(there), 0.8);
+    bool grew = false;
+    int refitted = 0;
+    for (const Screened& screened : screen_at(base.fit, there)) {
+        const bool said = refitted < most && screened.log_bayes_factor >= options_.least_evidence;
+        if (!said && !(screened.effect->outwits_screen() && little_is_left())) continue;
+        std::vector<std::string> names = there;
+        names.push_back(screened.effect->name());
+        if (was_tried(names)) continue;
+        report(progress_, "refit with " + listed(names), 0.85);
+        ++refitted;
+        auto found = refit_with(base.fit, screened);
+        if (!found) continue;
+        found->effects.insert(found->effects.begin(), base.effects.begin(), base.effects.end());
+        const bool worth = found->log_bayes_factor >= base.log_bayes_factor + options_.least_evidence;
+        if (!worth) continue;
+        tried_.push_back(std::move(*found));
+        grew = true;
+    }
+    return grew;
+}
+
+void Search::put_together() {
+    if (options_.together < 2 || tried_.empty()) return;
+    // The two single effects that explain most, then the best of what came out.
+    std::vector<std::size_t> order(tried_.size());
+    for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
+    std::ranges::stable_sort(order, std::greater{}, [&](std::size_t i) { return tried_[i].log_bayes_factor; });
+    const bool first_is_enough = is_enough(tried_[order.front()].fit, options_);
+    for (std::size_t i = 0; i < std::min<std::size_t>(first_is_enough ? 1 : 2, order.size()); ++i) {
+        if (!is_likely(tried_[order[i]], options_)) break;
+        extend(order[i], 3);
+    }
+    for (int count = 2; count < options_.together; ++count) {
+        const std::size_t best = index_of_leader();
+        if (std::ssize(tried_[best].effects) < count || is_enough(tried_[best].fit, options_)) break;
+        if (!extend(best, 2)) break;
+    }
+    drop_and_swap();
+}
+
+void Search::drop_and_swap() {
+    const Explained best = tried_[index_of_leader()];
+    if (best.effects.size() < 2) return;
+    for (const auto& effect : best.effects) {
+        std::vector<std::string> rest = names_of(best);
+        std::erase(rest, effect->name());
+        const bool needed = evidence_for(best.fit, effect->name()) > 10 * options_.least_evidence;
+        if (was_tried(rest) || (needed && is_enough(best.fit, options_))) continue;
+        // Drop: what is left may explain as much.
+        report(progress_, "refit with " + listed(rest), 0.95);
+        const Explanation explanation = without(best.fit.explanation, effect->name());
+        std::vector<std::shared_ptr<const Effect>> others = best.effects;
+        std::erase(others, effect);
+        const Refit* start = &best.fit;
+        if (explanation.has_memory() != best.fit.explanation.has_memory()) {
+            start = baselines_.under(explanation.law) ? &*baselines_.under(explanation.law) : &baselines_.best();
+        }
+        auto less = refit_from(explanation, *start, others);
+        if (!less) continue;
+        tried_.push_back(std::move(*less));
+        // Swap: another in its place.
+        if (!is_enough(best.fit, options_)) extend(tried_.size() - 1, 1);
+    }
+    // What does as well with fewer effects stands for what has more.
+    const std::size_t leader = index_of_leader();
+    for (const Explained& fewer : std::vector<Explained>(tried_)) {
+        const bool part =
+            fewer.effects.size() < tried_[leader].effects.size() &&
+            std::ranges::all_of(fewer.effects, [&](const auto& e) { return tried_[leader].has(e->name()); });
+        if (part && tried_[leader].log_bayes_factor - fewer.log_bayes_factor < options_.least_evidence) {
+            tried_.erase(tried_.begin() + static_cast<std::ptrdiff_t>(leader));
+            return;
+        }
+    }
+}
+
+}  // namespace palpate::identify

@@ -1,0 +1,130 @@
+#include "skeleton/effects/inclusion.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "identify/diagnose/fit.h"
+#include "identify/effects/catalogue.h"
+#include "mesh/sampling.h"
+
+namespace palpate::identify {
+namespace {
+
+/// A ball within the body that is stiffer, or softer, than the rest.
+class InclusionEffect : public Effect {
+public:
+    const EffectDescription& description() const override {
+        static const EffectDescription text{
+            .name = "inclusion",
+            .kind = EffectKind::body,
+            .meaning = "Somewhere in the body the material is stiffer or softer than elsewhere.",
+            .parameters = {"cx, cy, cz [mm]: its centre", "radius [mm]: of a ball that stands for it",
+                           "ratio [-]: its stiffness over that of the rest"},
+            .reveals = "an error in proportion to the load, that some probes know much of and others nothing",
+            .confused_with = {"anisotropy", "outliers"},
+            .separating_probe = "press astride the supposed place",
+            .next_probe = "load"};
+        return text;
+    }
+
+    std::vector<EffectNumber> numbers(const BodyModel& model, const Problem&) const override {
+        const Eigen::RowVector3d low = model.pieces().colwise().minCoeff(), high = model.pieces().colwise().maxCoeff();
+        const Eigen::RowVector3d centre = 0.5 * (low + high), sd = (high - low) / 3.5;
+        std::vector<EffectNumber> result;
+        for (int a = 0; a < 3; ++a) {
+            result.push_back({.name = std::array{"cx", "cy", "cz"}[a],
+                              .unit = "mm",
+                              .start = centre[a],
+                              .prior_mean = centre[a],
+                              .prior_sd = sd[a]});
+        }
+        const double radius = std::log(0.12 * model.size());
+        result.push_back({.name = "radius",
+                          .unit = "mm",
+                          .start = radius,
+                          .prior_mean = radius,
+                          .prior_sd = 0.5,
+                          .logarithm = true});
+        result.push_back({.name = "ratio", .unit = "1", .prior_sd = 1.5, .logarithm = true});
+        return result;
+    }
+
+    bool enforce(const Eigen::VectorXd& values, Setting& setting) const override {
+        setting.effects.material.push_back(std::make_shared<skeleton::Inclusion>(
+            skeleton::Inclusion::sphere(values.head<3>(), std::exp(values[3]), std::exp(values[4]))));
+        return true;
+    }
+
+    ScreenPlan screen_plan(const BodyModel& model, const Problem&, const Explanation& explanation,
+                           const Played& played) const override {
+        const Places places(model);
+        const Setting setting = explanation.setting();
+        ScreenPlan plan;
+        plan.signatures = {places.weights.cols(),
+                           [&model, &played, setting, W = places.weights](int k, const Eigen::VectorXd& q) {
+                               Signatures::InAction result;
+                               result.forces = model.piece_force(q, setting, played.actions[k], W);
+                               for (int c = 0; c < W.cols(); ++c) result.columns.push_back(c);
+                               return result;
+                           }};
+        plan.columns = [](const Eigen::MatrixXd& answers) {
+            return ScreenColumns{answers, Eigen::VectorXd::Constant(1, 1.0)};
+        };
+        plan.start = [balls = places.balls](Eigen::Index place, const Eigen::VectorXd& ratio) {
+            Eigen::VectorXd start(5);
+            start << balls[place].centre, std::log(balls[place].radius), std::clamp(ratio[0], -1.0, 1.0);
+            return start;
+        };
+        return plan;
+    }
+
+    std::string sentence(const skeleton::Effect& told) const override {
+        const auto& p = told.parameters;
+        return fmt::format(
+            "Something {} lies in the body: round ({:.1f}, {:.1f}, {:.1f}) mm, with a radius of {:.2g} mm, it is "
+            "{:.2g} "
+            "times as stiff as elsewhere.",
+            p[4].value > 1 ? "hard" : "soft", p[0].value, p[1].value, p[2].value, p[3].value, p[4].value);
+    }
+
+private:
+    struct Ball {
+        Vec3 centre;
+        double radius;
+    };
+
+    /// Balls to be tried, spread over the body, and the pieces in each.
+    struct Places {
+        std::vector<Ball> balls;
+        Eigen::MatrixXd weights;  // (pieces x balls)
+
+        explicit Places(const BodyModel& model) {
+            const Points& pieces = model.pieces();
+            const auto count = static_cast<double>(pieces.rows());
+            std::vector<Eigen::VectorXd> columns;
+            for (const double share : {0.07, 0.11, 0.17, 0.25}) {  // of the size
+                const double radius = share * model.size();
+                for (const int at : mesh::farthest_points(pieces, 80)) {
+                    const Vec3 centre = pieces.row(at);
+                    const Eigen::ArrayXd d = (pieces.rowwise() - centre.transpose()).rowwise().norm() / radius;
+                    const Eigen::VectorXd inside = ((1.15 - d) / 0.3).min(1.0).max(0.0);
+                    constexpr double most = 0.6;  // of the body: more is the body itself
+                    if (inside.sum() > most * count) continue;
+                    balls.push_back({centre, radius});
+                    columns.push_back(inside);
+                }
+            }
+            weights.resize(pieces.rows(), std::ssize(columns));
+            for (std::size_t c = 0; c < columns.size(); ++c) weights.col(static_cast<Eigen::Index>(c)) = columns[c];
+        }
+    };
+};
+
+}  // namespace
+
+std::shared_ptr<const Effect> inclusion_effect() { return std::make_shared<InclusionEffect>(); }
+
+}  // namespace palpate::identify

@@ -1,0 +1,50 @@
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "identify/effects/catalogue.h"
+
+namespace palpate::identify {
+namespace {
+
+/// Pressure in the closed cavities of the body.
+class PressureEffect : public Effect {
+public:
+    const EffectDescription& description() const override {
+        static const EffectDescription text{
+            .name = "pressure",
+            .kind = EffectKind::body,
+            .meaning = "The closed cavities of the body are under pressure, in every state.",
+            .parameters = {"pressure [MPa]: in the cavities, above that outside"},
+            .reveals = "walls round a cavity that bulge without any load",
+            .confused_with = {"prestress", "gravity"},
+            .separating_probe = "change the pressure, and read the unloaded pose again",
+            .next_probe = "pressure"};
+        return text;
+    }
+
+    std::vector<EffectNumber> numbers(const BodyModel& model, const Problem&) const override {
+        if (!model.has_cavities()) return {};
+        Eigen::VectorXd theta(std::ssize(model.parameters()));
+        for (Eigen::Index p = 0; p < theta.size(); ++p) theta[p] = model.parameters()[p].start;
+        constexpr double strong = 0.1;  // of Young's modulus: walls give way to more
+        return {{.name = "pressure",
+                 .unit = "MPa",
+                 .prior_sd = strong * model.young({.law = 0, .theta = theta, .effects = {}})}};
+    }
+
+    bool enforce(const Eigen::VectorXd& values, Setting& setting) const override {
+        setting.effects.pressure += values[0];
+        return true;
+    }
+
+    std::string sentence(const skeleton::Effect& told) const override {
+        return fmt::format("The cavities are under a pressure of {:.3g} kPa.", 1000 * told.parameters[0].value);
+    }
+};
+
+}  // namespace
+
+std::shared_ptr<const Effect> pressure_effect() { return std::make_shared<PressureEffect>(); }
+
+}  // namespace palpate::identify

@@ -1,0 +1,53 @@
+#include "skeleton/effects/prestress.h"
+
+#include <fmt/format.h>
+
+#include "identify/effects/catalogue.h"
+
+namespace palpate::identify {
+namespace {
+
+/// A uniform stress in the body that was measured as its rest shape: it has not shrunk or swollen freely.
+class PrestressEffect : public Effect {
+public:
+    const EffectDescription& description() const override {
+        static const EffectDescription text{
+            .name = "prestress",
+            .kind = EffectKind::body,
+            .meaning = "The rest shape is not free of stress: the material wants to shrink or swell, all of it alike.",
+            .parameters = {"sxx, syy, szz, sxy, syz, sxz [-]: stress at rest over the shear modulus"},
+            .reveals = "an error without any load that is largest where the body is free to change its size",
+            .confused_with = {"gravity", "misalignment", "pressure"},
+            .separating_probe = "read the unloaded pose with the body turned: prestress turns with it, weight does not",
+            .next_probe = "orientation"};
+        return text;
+    }
+
+    std::vector<EffectNumber> numbers(const BodyModel&, const Problem&) const override {
+        std::vector<EffectNumber> result;
+        for (const char* name : {"sxx", "syy", "szz", "sxy", "syz", "sxz"}) {
+            result.push_back({.name = name, .unit = "1", .prior_sd = 0.06});  // strains of .03
+        }
+        return result;
+    }
+
+    bool enforce(const Eigen::VectorXd& values, Setting& setting) const override {
+        Mat3 S;
+        S << values[0], values[3], values[5], values[3], values[1], values[4], values[5], values[4], values[2];
+        setting.effects.material.push_back(std::make_shared<skeleton::Prestress>(S));
+        return true;
+    }
+
+    std::string sentence(const skeleton::Effect& told) const override {
+        const auto& p = told.parameters;
+        return fmt::format(
+            "The body is under stress at rest: ({:.2g}, {:.2g}, {:.2g}) along the axes, over its shear modulus.",
+            p[0].value, p[1].value, p[2].value);
+    }
+};
+
+}  // namespace
+
+std::shared_ptr<const Effect> prestress_effect() { return std::make_shared<PrestressEffect>(); }
+
+}  // namespace palpate::identify

@@ -1,0 +1,108 @@
+#include <fmt/format.h>
+
+#include "mesh/io/atomic_file.h"
+#include "mesh/io/vtk_files.h"
+#include "pipeline/case/subject.h"
+#include "pipeline/commands/common.h"
+#include "pipeline/forge/truth.h"
+#include "skeleton/model_io.h"
+
+namespace palpate::pipeline::commands {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// What is probed, and how.
+struct Probing {
+    Specimen specimen;
+    ProbeOptions how;
+    std::uint64_t seed = 1;
+};
+
+void tell(const std::vector<std::string>& lines) {
+    for (const std::string& line : lines) Console::notice(line);
+}
+
+Probing probing_of_model(const ProbeCommandOptions& options) {
+    Probing probing;
+    if (options.say.probes) probing.how.probes = *options.say.probes;
+    if (options.say.markers) probing.how.markers = *options.say.markers;
+    if (options.say.displacement) probing.how.displacement = *options.say.displacement;
+    probing.how.validate();
+    probing.seed = options.say.seed.value_or(1);
+    probing.specimen = skeleton_specimen(skeleton::read_model(options.input), probing.how, options.forge, probing.seed);
+    return probing;
+}
+
+Probing probing_of_body(const ProbeCommandOptions& options) {
+    Case settings = read_case(options.input, options.say);
+    if (!options.say.probes) settings.probing.probes = ProbeOptions{}.probes;
+    settings.probing.held_out = 0;
+    const Subject subject = read_subject(settings);
+    tell(subject.assumptions);
+    return {finite_element_specimen(subject, options.forge, Console::progress()), subject.settings.probing,
+            subject.settings.identify.seed};
+}
+
+/// Full fields: node displacements of each state.
+void write_fields(const fs::path& folder, const Forged& forged, const mesh::VolumeMesh& body) {
+    for (std::size_t s = 0; s < forged.set.states.size(); ++s) {
+        const Eigen::VectorXd& q = forged.configurations[s];
+        const Eigen::Map<const Points> u(q.data(), q.size() / 3, 3);
+        mesh::write_vtu(folder / identify::field_file(forged.set.states[s]), body, {.points = {{"displacement", u}}});
+    }
+}
+
+std::vector<std::string> names_of(const std::vector<Hidden>& hidden) {
+    std::vector<std::string> names;
+    for (const Hidden& one : hidden) names.push_back(one.effect.name);
+    return names;
+}
+
+/// What is hidden, in words: never its numbers.
+void tell_hidden(const Forged& forged, bool has_fields) {
+    for (const Hidden& hidden : forged.hidden) {
+        Console::notice(fmt::format("Hidden: {}, which changes the readings by {:.3g} mm rms; the noise is {:.3g} mm.",
+                                    hidden.effect.name, hidden.strength.change, forged.noise));
+    }
+    if (forged.is_blind && has_fields) {
+        Console::notice("Neither full fields nor the material are written: they would tell. truth.json does.");
+    }
+}
+
+}  // namespace
+
+Outcome probe(const ProbeCommandOptions& options, const Common& common) {
+    const fs::path output = options.output.empty() ? fs::path("measurements") : options.output;
+    refuse_to_overwrite(output, common.force);
+    ForgeOptions how = options.forge;
+    how.validate();
+    const bool is_model = options.input.extension() == ".json";
+    const Probing probing = is_model ? probing_of_model(options) : probing_of_body(options);
+    const Specimen& specimen = probing.specimen;
+    if (options.say.noise) how.noise = options.say.noise;
+    if (!how.noise && probing.how.noise > 0) how.noise = probing.how.noise;
+
+    tell(specimen.notes);
+    const Forged forged = forge(specimen, probing.how, how, probing.seed, common.threads, Console::progress());
+    tell(forged.notes);
+    const bool has_fields = !specimen.is_skeleton();
+    tell_hidden(forged, has_fields);
+    identify::write_measurement_set(output, forged.set, [&](const fs::path& folder) {
+        mesh::write_text(folder / "truth.json", truth_of(forged, specimen, how, probing.seed).dump(2) + "\n");
+        if (has_fields && !forged.is_blind) write_fields(folder, forged, specimen.volume);
+    });
+
+    Outcome outcome;
+    outcome.text =
+        fmt::format("{}: {} states of {} by the law '{}', {} markers{}.\n", output.string(), forged.set.states.size(),
+                    specimen.is_skeleton() ? "the skeleton itself" : "finite elements", specimen.law(),
+                    forged.set.markers.size(), has_fields && !forged.is_blind ? ", with full fields" : "");
+    outcome.json = {
+        {"set", output.string()}, {"states", forged.set.states.size()}, {"markers", forged.set.markers.size()},
+        {"law", specimen.law()},  {"noise_mm", forged.noise},           {"hidden", names_of(forged.hidden)},
+        {"notes", forged.notes}};
+    return outcome;
+}
+
+}  // namespace palpate::pipeline::commands

@@ -1,0 +1,52 @@
+#pragma once
+
+#include <vector>
+
+#include "pipeline/forge/course.h"
+#include "pipeline/forge/specimen.h"
+#include "skeleton/effects/effect.h"
+
+namespace palpate::pipeline {
+
+/// What is in force on a specimen beside what its probes are told to do, and how it is seen.
+struct World {
+    identify::Setting setting;
+    double gain = 1;            // every second probe (2, 4, ...) presses so many times as hard as it reports
+    Vec3 shift = Vec3::Zero();  // of the readings' frame [mm]
+    Vec3 turn = Vec3::Zero();   // of it about the centre of the markers at rest, a rotation vector [rad]
+
+    /// Marker positions as they are read: y = c + shift + R(turn) (x - c).
+    Points see(const Specimen& specimen, const Points& markers) const;
+};
+
+/// The specimen with effects and faults of the measurement in force; outliers are no part of it.
+/// @throws InvalidInput for an effect that is not known, cannot be on this specimen, or has an impossible number.
+World world_of(const Specimen& specimen, const std::vector<skeleton::Effect>& effects);
+
+/// Does the body stand otherwise with this effect, or do only its readings differ?
+inline bool moves_body(const skeleton::Effect& effect) {
+    return skeleton::is_body_effect(effect.name) || effect.name == "force-gain";
+}
+
+/// How a course went: a configuration a row. None: the body found no equilibrium in some row.
+using Path = std::vector<Eigen::VectorXd>;
+
+struct PlayOptions {
+    bool continuous = false;  // one body goes through all courses, in order; else each finds it as new
+    int threads = 1;          // changes no number
+};
+
+/// Plays courses in a world. `near`: paths of the same courses in a similar world, where the search for equilibria
+/// begins; empty ones do not matter. A body that remembers goes on from where it was before a course without
+/// equilibrium.
+std::vector<Path> play(const Specimen& specimen, const World& world, const std::vector<Course>& courses,
+                       const PlayOptions& options, const std::vector<Path>* near = nullptr);
+
+/// Where the markers are read, a row of the courses after the other; NaN where there is no path.
+std::vector<Points> seen(const Specimen& specimen, const World& world, const std::vector<Course>& courses,
+                         const std::vector<Path>& paths);
+
+/// How far the markers and the skin stand apart in two configurations, at most [mm].
+double largest_distance(const Specimen& specimen, const Eigen::VectorXd& a, const Eigen::VectorXd& b);
+
+}  // namespace palpate::pipeline

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "pipeline/forge/draft.h"
+
+namespace palpate::pipeline {
+
+/// How much an effect changes the readings, noise apart; rms over all coordinates [mm].
+struct Strength {
+    double displacement = 0;    // from rest, with nothing hidden
+    double change = 0;          // of that by what is hidden
+    double beyond = 0;          // what is left of the change after the best common scaling of the displacement: a body
+                                // that is stiffer or softer throughout explains the rest
+    void add(double variance);  // to what is changed [mm^2]
+};
+
+/// `bare`, `hidden`: what is read, a row of the courses after the other; rows that are NaN do not count.
+Strength strength_of(const Specimen& specimen, const std::vector<Points>& bare, const std::vector<Points>& hidden);
+
+/// What outliers add to the readings' mean square [mm^2]; none by other effects.
+double outlier_variance(const skeleton::Effect& effect, double noise);
+
+/// How much an effect is to change the readings: about a share of the rms displacement, at least 5 sigma.
+struct Target {
+    double noise = 0;  // 1 sigma [mm]
+    double share = 0.2;
+};
+
+struct Hidden {
+    skeleton::Effect effect;
+    bool is_told = false;  // its strength was
+    Strength strength;     // alone, over all courses
+};
+
+/// Gives an effect its strength: told, or sought until it changes the readings by the target. It is played alone, on
+/// the first few probes, then on all. Drafts are tried in turn until 3 sigma are beyond a common stiffness, which
+/// nobody could tell from another material. Where it cannot be made that strong it is as strong as is sensible.
+/// @throws InvalidInput for impossible numbers, SolverFailure when the body bears it at no strength.
+Hidden hide(const Specimen& specimen, const Plan& plan, const std::vector<Draft>& drafts, const Target& target,
+            const PlayOptions& options);
+
+}  // namespace palpate::pipeline

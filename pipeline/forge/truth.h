@@ -1,0 +1,14 @@
+#pragma once
+
+#include <nlohmann/json.hpp>
+
+#include "pipeline/forge/forge.h"
+
+namespace palpate::pipeline {
+
+/// All that a forged set does not tell, as truth.json: law, material, noise, seed, each hidden effect with its numbers,
+/// units and how much it changes the readings, and `hide`: what to say to `palpate probe` to hide the same again.
+nlohmann::json truth_of(const Forged& forged, const Specimen& specimen, const ForgeOptions& options,
+                        std::uint64_t seed);
+
+}  // namespace palpate::pipeline

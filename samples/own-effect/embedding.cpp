@@ -1,0 +1,88 @@
+// An effect of one's own, in one file.
+//
+// What it shows: an organ lies in soft tissue that nobody told of, and which holds its skin back wherever it moves. The
+// catalogue does not know such a thing. This file tells its physics, and how a diagnosis sees it; the program then
+// plays it on both models, hides it in data, names it and adds it, like any other effect.
+//
+// How to run it, in the project's folder:
+//   cmake --preset release -DPALPATE_OWN_EFFECTS=samples/own-effect/embedding.cpp && cmake --build --preset release
+//   build/palpate probe samples/organ/organ.stl --hide embedding:stiffness=2e-4 -o hidden
+//   build/palpate diagnose hidden
+//
+// What should be seen: "missing-effect: embedding", with the stiffness that was hidden.
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "identify/effects/catalogue.h"
+#include "skeleton/effects/effect.h"
+
+namespace {
+
+using namespace palpate;
+
+// --- The physics: a potential at a point of the skin, per area -----------------------------------------------------
+
+/// A bed of springs all round the skin: e = k/2 |x - X|^2 per area, k in N/mm^3. [Winkler 1867]
+class Embedding : public fem::PointPotential {
+public:
+    explicit Embedding(double k) : k_(k) {}
+    fem::ActsOn acts_on() const override { return fem::ActsOn::surface; }
+    fem::PointTerms terms(const Vec3& X, const Vec3& x) const override {
+        const Vec3 u = x - X;
+        return {.energy = 0.5 * k_ * u.squaredNorm(), .gradient = k_ * u, .hessian = k_ * Mat3::Identity()};
+    }
+
+private:
+    double k_;
+};
+
+// By name and numbers, as model files and `--hide` tell it.
+const bool physics_known = skeleton::register_effect(
+    {"embedding", {{"stiffness", "N/mm^3", skeleton::Range::positive}}, [](const skeleton::EffectNumbers& numbers) {
+         fem::Effects effects;
+         effects.points.push_back(std::make_shared<Embedding>(numbers["stiffness"]));
+         return effects;
+     }});
+
+// --- How a diagnosis sees it -----------------------------------------------------------------------------------------
+
+class EmbeddingEffect : public identify::Effect {
+public:
+    const identify::EffectDescription& description() const override {
+        static const identify::EffectDescription text{
+            .name = "embedding",
+            .kind = identify::EffectKind::body,
+            .meaning = "The body lies in something soft that holds its skin back wherever it moves.",
+            .parameters = {"stiffness [N/mm^3]: pressure on the skin over how far it moves"},
+            .reveals = "far parts that move too little, while those under the probe move as they should",
+            .confused_with = {"stiffening", "compliant-support"},
+            .separating_probe = "push far from the supports, and read how far the body follows",
+            .next_probe = "load"};
+        return text;
+    }
+
+    // The fit's number is a multiple of what would be felt, E / size: 0 is neutral, as the screen needs it.
+    std::vector<identify::EffectNumber> numbers(const identify::BodyModel& model,
+                                                const identify::Problem&) const override {
+        Eigen::VectorXd theta(std::ssize(model.parameters()));
+        for (Eigen::Index p = 0; p < theta.size(); ++p) theta[p] = model.parameters()[p].start;
+        const double felt = model.young({.law = 0, .theta = theta, .effects = {}}) / model.size();
+        return {{.name = "stiffness", .unit = "N/mm^3", .prior_sd = felt}};
+    }
+
+    bool enforce(const Eigen::VectorXd& values, identify::Setting& setting) const override {
+        setting.effects.points.push_back(std::make_shared<Embedding>(values[0]));
+        return true;
+    }
+
+    std::string sentence(const skeleton::Effect& told) const override {
+        return fmt::format("The body lies in something soft: {:.3g} N/mm^3 hold its skin back.",
+                           told.parameters[0].value);
+    }
+};
+
+const bool diagnosis_knows = identify::register_effect(std::make_shared<EmbeddingEffect>());
+
+}  // namespace

@@ -1,0 +1,87 @@
+#include "skeleton/effects/cavities.h"
+
+#include <Eigen/Geometry>
+#include <set>
+
+#include "mesh/topology/shells.h"
+
+namespace palpate::skeleton {
+
+namespace {
+
+// Does every edge of these triangles have its other side among them?
+bool is_closed(const mesh::Surface& surface, const std::vector<int>& triangles) {
+    std::set<std::pair<int, int>> edges;
+    for (const int t : triangles)
+        for (int i = 0; i < 3; ++i) edges.emplace(surface.triangles(t, i), surface.triangles(t, (i + 1) % 3));
+    for (const auto& [from, to] : edges)
+        if (!edges.contains({to, from})) return false;
+    return true;
+}
+
+double enclosed(const mesh::Surface& surface, const std::vector<int>& triangles) {
+    const Vec3 origin = surface.vertices.row(surface.triangles(triangles.front(), 0));
+    double sum = 0;
+    for (const int t : triangles) {
+        const auto corner = [&](int i) -> Vec3 {
+            return surface.vertices.row(surface.triangles(t, i)).transpose() - origin;
+        };
+        sum += corner(0).dot(corner(1).cross(corner(2))) / 6;
+    }
+    return sum;
+}
+
+}  // namespace
+
+Cavities::Cavities(const Model& model) : rest_(rest_state(model)) {
+    if (model.skin.empty()) return;
+    const std::vector<int> number = mesh::connected_parts(model.surface);
+    std::vector<std::vector<int>> parts;
+    for (int t = 0; t < static_cast<int>(number.size()); ++t) {
+        if (number[t] >= static_cast<int>(parts.size())) parts.resize(number[t] + 1);
+        parts[number[t]].push_back(t);
+    }
+    for (const std::vector<int>& part : parts) {
+        if (!is_closed(model.surface, part) || !(enclosed(model.surface, part) < 0)) continue;
+        for (const int t : part) {
+            const auto corners = model.surface.triangles.row(t);
+            walls_.push_back({model.skin[corners[0]], model.skin[corners[1]], model.skin[corners[2]]});
+            origin_ += model.surface.vertices.row(corners[0]).transpose();
+        }
+    }
+    if (!walls_.empty()) origin_ /= static_cast<double>(walls_.size());
+}
+
+Cavities::Wall Cavities::at(const std::array<Attachment, 3>& wall, const State& state) const {
+    Wall result;
+    for (int v = 0; v < 3; ++v) {
+        result[v] = carried(wall[v], rest_, state);
+        result[v].x -= origin_;
+    }
+    return result;
+}
+
+double Cavities::volume(const State& state) const {
+    double sum = 0;
+    for (const auto& wall : walls_) {
+        const Wall x = at(wall, state);
+        sum -= x[0].x.dot(x[1].x.cross(x[2].x)) / 6;
+    }
+    return sum;
+}
+
+void Cavities::add_gradient(const State& state, double factor, Eigen::VectorXd& sum) const {
+    for (const auto& wall : walls_) {
+        const Wall x = at(wall, state);
+        for (int v = 0; v < 3; ++v) {
+            const Vec3 by_x = (-factor / 6) * x[(v + 1) % 3].x.cross(x[(v + 2) % 3].x);
+            for (int i = 0; i < x[v].shares; ++i) {
+                const auto& [sphere, w, r] = x[v].of[i];
+                sum.segment<3>(Eigen::Index{6} * sphere) += w * by_x;
+                sum.segment<3>(Eigen::Index{6} * sphere + 3) += w * r.cross(by_x);
+            }
+        }
+    }
+}
+
+}  // namespace palpate::skeleton

@@ -1,0 +1,23 @@
+#pragma once
+
+#include "fem/point_potential.h"
+
+namespace palpate::skeleton {
+
+/// A rigid plane that the body's surface may touch, without friction, and not pass:
+///   e = k/2 min(0, n.x - offset)^2 on its area,
+/// n pointing from the plane to where the body is.
+class Contact : public fem::PointPotential {
+public:
+    /// `n`: of any length above 0; `offset`: of the plane along n / |n| [mm]; `stiffness` k [N/mm^3], > 0.
+    Contact(const Vec3& n, double offset, double stiffness) : n_(n.normalized()), offset_(offset), k_(stiffness) {}
+    fem::ActsOn acts_on() const override { return fem::ActsOn::surface; }
+    fem::PointTerms terms(const Vec3& X, const Vec3& x) const override;
+    bool is_one_sided() const override { return true; }
+
+private:
+    Vec3 n_;
+    double offset_, k_;
+};
+
+}  // namespace palpate::skeleton

@@ -1,0 +1,134 @@
+#include "skeleton/effects/known_effects.h"
+
+#include "mesh/errors.h"
+#include "skeleton/effects/anisotropy.h"
+#include "skeleton/effects/compliant_support.h"
+#include "skeleton/effects/contact.h"
+#include "skeleton/effects/gravity.h"
+#include "skeleton/effects/inclusion.h"
+#include "skeleton/effects/prestress.h"
+#include "skeleton/effects/stiffening.h"
+
+namespace palpate::skeleton {
+
+namespace {
+
+KnownParameter optional(std::string name, std::string unit, Range range = Range::any) {
+    return {std::move(name), std::move(unit), range, true};
+}
+
+Vec3 direction(const EffectNumbers& numbers, const std::string& n) {
+    const Vec3 v = numbers.vector(n + "x", n + "y", n + "z");
+    if (v.isZero(0)) throw InvalidInput(n + "x, " + n + "y and " + n + "z are all 0, but must give a direction");
+    return v.normalized();
+}
+
+fem::Effects in_points(std::shared_ptr<const fem::PointPotential> potential) {
+    return {.points = {std::move(potential)}};
+}
+
+fem::Effects in_material(std::shared_ptr<const fem::MaterialEffect> effect) {
+    return {.material = {std::move(effect)}};
+}
+
+fem::Effects gravity(const EffectNumbers& numbers) {
+    return in_points(std::make_shared<Gravity>(numbers.vector("gx", "gy", "gz")));
+}
+
+fem::Effects compliant_support(const EffectNumbers& numbers) {
+    return in_points(std::make_shared<CompliantSupport>(numbers["stiffness"]));
+}
+
+fem::Effects contact(const EffectNumbers& numbers) {
+    return in_points(std::make_shared<Contact>(direction(numbers, "n"), numbers["offset"], numbers["stiffness"]));
+}
+
+fem::Effects stiffening(const EffectNumbers& numbers) {
+    return in_material(std::make_shared<Stiffening>(numbers["c2"], numbers["c3"]));
+}
+
+fem::Effects anisotropy(const EffectNumbers& numbers) {
+    std::vector<Fibre> fibres{{numbers["k"], direction(numbers, "n")}};
+    int told = 0;
+    for (const char* name : {"k2", "n2x", "n2y", "n2z"}) told += numbers.has(name) ? 1 : 0;
+    if (told != 0 && told != 4) throw InvalidInput("a second family of fibres needs all of k2, n2x, n2y and n2z");
+    if (told == 4) fibres.push_back({numbers["k2"], direction(numbers, "n2")});
+    return in_material(std::make_shared<Anisotropy>(std::move(fibres)));
+}
+
+fem::Effects inclusion(const EffectNumbers& numbers) {
+    const Vec3 centre = numbers.vector("cx", "cy", "cz");
+    int sides = 0;
+    for (const char* name : {"hx", "hy", "hz"}) sides += numbers.has(name) ? 1 : 0;
+    if (numbers.has("radius") ? sides != 0 : sides != 3)
+        throw InvalidInput("either a radius [mm] is needed, for a ball, or hx, hy and hz [mm], for a box");
+    return in_material(std::make_shared<Inclusion>(
+        numbers.has("radius") ? Inclusion::sphere(centre, numbers["radius"], numbers["ratio"])
+                              : Inclusion::box(centre, numbers.vector("hx", "hy", "hz"), numbers["ratio"])));
+}
+
+fem::Effects prestress(const EffectNumbers& numbers) {
+    Mat3 S;
+    S << numbers["sxx"], numbers["sxy"], numbers["sxz"],  //
+        numbers["sxy"], numbers["syy"], numbers["syz"],   //
+        numbers["sxz"], numbers["syz"], numbers["szz"];
+    return in_material(std::make_shared<Prestress>(S));
+}
+
+fem::Effects pressure(const EffectNumbers& numbers) { return {.pressure = numbers["pressure"]}; }
+
+fem::Effects viscosity(const EffectNumbers& numbers) { return {.creep = fem::Creep{numbers["creep"], numbers["tau"]}}; }
+
+fem::Effects plasticity(const EffectNumbers& numbers) {
+    return {.plasticity = fem::Plasticity{numbers["yield"], numbers["hardening"]}};
+}
+
+// Recorded only: a solid has Poisson's ratio in its law, and links have no volume that could resist.
+fem::Effects volume(const EffectNumbers&) { return {}; }
+
+fem::Effects torsion(const EffectNumbers& numbers) { return {.torsion = numbers["torsion"]}; }
+
+fem::Effects shear(const EffectNumbers& numbers) { return {.shear = numbers["shear"]}; }
+
+}  // namespace
+
+std::vector<KnownEffect> known_effects() {
+    constexpr Range positive = Range::positive, not_negative = Range::not_negative;
+    return {
+        {"gravity", {{"gx", "mm/s^2"}, {"gy", "mm/s^2"}, {"gz", "mm/s^2"}}, gravity},
+        {"compliant-support", {{"stiffness", "N/mm", positive}}, compliant_support},
+        {"stiffening", {{"c2", "1", not_negative}, {"c3", "1", not_negative}}, stiffening},
+        {"anisotropy",
+         {{"k", "1"},
+          {"nx", "1"},
+          {"ny", "1"},
+          {"nz", "1"},
+          optional("k2", "1"),
+          optional("n2x", "1"),
+          optional("n2y", "1"),
+          optional("n2z", "1")},
+         anisotropy},
+        {"inclusion",
+         {{"cx", "mm"},
+          {"cy", "mm"},
+          {"cz", "mm"},
+          optional("radius", "mm", positive),
+          optional("hx", "mm", positive),
+          optional("hy", "mm", positive),
+          optional("hz", "mm", positive),
+          {"ratio", "1", positive}},
+         inclusion},
+        {"contact",
+         {{"nx", "1"}, {"ny", "1"}, {"nz", "1"}, {"offset", "mm"}, {"stiffness", "N/mm^3", positive}},
+         contact},
+        {"pressure", {{"pressure", "MPa"}}, pressure},
+        {"prestress", {{"sxx", "1"}, {"syy", "1"}, {"szz", "1"}, {"sxy", "1"}, {"syz", "1"}, {"sxz", "1"}}, prestress},
+        {"viscosity", {{"creep", "1", not_negative}, {"tau", "s", positive}}, viscosity},
+        {"plasticity", {{"yield", "1", positive}, {"hardening", "1", not_negative}}, plasticity},
+        {"volume", {{"poisson", "1", Range::poisson}}, volume},
+        {"torsion", {{"torsion", "1", not_negative}}, torsion},
+        {"shear", {{"shear", "1", not_negative}}, shear},
+    };
+}
+
+}  // namespace palpate::skeleton

@@ -1,0 +1,16 @@
+#include "skeleton/effects/prestress.h"
+
+namespace palpate::skeleton {
+
+Prestress::Prestress(const Mat3& S) : S_((S + S.transpose()) / 2) {}
+
+fem::MaterialTerms Prestress::terms(const Vec3& /*X*/, const Mat3& F, bool with_second) const {
+    fem::MaterialTerms result;
+    result.first = F * S_;
+    result.w = (F.cwiseProduct(result.first).sum() - S_.trace()) / 2;
+    if (!with_second) return result;
+    for (int c = 0; c < 3; ++c) result.second.block<3, 3>(Eigen::Index{3} * c, Eigen::Index{3} * c) = S_;
+    return result;
+}
+
+}  // namespace palpate::skeleton

@@ -1,0 +1,24 @@
+#include "skeleton/effects/stiffening.h"
+
+#include "fem/large_deformation/point_law.h"
+
+namespace palpate::skeleton {
+
+fem::MaterialTerms Stiffening::terms(const Vec3& /*X*/, const Mat3& F, bool with_second) const {
+    const fem::PointLaw<fem::Law::neo_hooke> law(F);  // its D is x / 2
+    const double x = 2 * law.D;
+    const double by_x = x * (2 * c2_ + 3 * c3_ * x), by_x_twice = 2 * c2_ + 6 * c3_ * x;
+    fem::MaterialTerms result;
+    result.w = x * x * (c2_ + c3_ * x);
+    result.first = 2 * by_x * law.dD;
+    if (!with_second) return result;
+    for (int c = 0; c < 3; ++c) {
+        for (int d = 0; d < 3; ++d) {
+            result.second.block<3, 3>(Eigen::Index{3} * c, Eigen::Index{3} * d) =
+                law.second(c, d, 2 * by_x, 0) + 4 * by_x_twice * law.dD.row(c).transpose() * law.dD.row(d);
+        }
+    }
+    return result;
+}
+
+}  // namespace palpate::skeleton

@@ -1,0 +1,62 @@
+#pragma once
+
+#include <array>
+
+#include "skeleton/link_energy.h"
+#include "skeleton/state.h"
+
+namespace palpate::skeleton {
+
+/// A link's material as fibres along it. At rest fibre j spans from X_a + r_j to X_b + r_j; its ends are carried
+/// rigidly by the spheres, so it stretches in tension and in bending:
+///   lambda_j = |x_b + R_b r_j - x_a - R_a r_j| / L.
+/// Offsets and weights (shares of the link's volume) are a rule of degree 5 on a disc of radius 2 r_g, which has the
+/// radius of gyration r_g: one fibre on the axis, six round it at sqrt(8/3) r_g. So second and fourth moments are those
+/// of a round section, about every axis. [Abramowitz & Stegun 1964, 25.4.61]
+inline constexpr int fibres_per_link = 7;
+inline constexpr std::array<double, fibres_per_link> fibre_weights{0.25, 0.125, 0.125, 0.125, 0.125, 0.125, 0.125};
+using FibreOffsets = std::array<Vec3, fibres_per_link>;
+
+/// r_g of the section that a link stands for [mm]: its own, or where it tells none what its stiffnesses amount to.
+/// Bent purely by phi its ends turn by +-phi/2, so kF phi^2 / 4 = E I phi^2 / (2 L) and, with kE = E A / L,
+///   I / A = kF / (2 kE).
+double radius_of_gyration(const Link& link);
+
+/// @pre `direction` is the link's unit direction at rest.
+FibreOffsets fibre_offsets(const Link& link, const Vec3& direction);
+
+/// A function of a stretch, and its derivatives.
+struct StretchTerms {
+    double energy = 0, first = 0, second = 0;
+
+    StretchTerms& operator+=(const StretchTerms& more) {
+        energy += more.energy;
+        first += more.first;
+        second += more.second;
+        return *this;
+    }
+};
+
+inline StretchTerms operator*(double k, const StretchTerms& terms) {
+    return {k * terms.energy, k * terms.first, k * terms.second};
+}
+
+/// One fibre as it stands: its stretch, and how that changes with a step of the link's two ends.
+class LinkFibre {
+public:
+    /// @throws SolverFailure when its ends coincide.
+    LinkFibre(double length, const Vec3& offset, const Vec3& x_a, const Mat3& R_a, const Vec3& x_b, const Mat3& R_b);
+
+    double stretch() const { return l_ / length_; }
+    /// Adds the first derivative of an energy of the stretch.
+    void add_gradient(const StretchTerms& terms, Eigen::Ref<Vec12> g) const;
+    /// Adds the second, in exponential coordinates.
+    void add_hessian(const StretchTerms& terms, Mat12& H) const;
+
+private:
+    double length_, l_;   // at rest, now [mm]
+    Vec3 arm_a_, arm_b_;  // R r
+    Vec3 along_;          // unit, from a to b
+};
+
+}  // namespace palpate::skeleton

@@ -1,0 +1,60 @@
+#pragma once
+
+#include <Eigen/SparseCore>
+#include <vector>
+
+#include "skeleton/links/plastic_fibre.h"
+
+namespace palpate::skeleton {
+
+/// A model's links, with the effects in force that are in the material or in the links themselves. At stiffness
+/// (kE, kF, kT) a link's energy is
+///   s (kE e_E + kF e_F + kT e_T + torsion kF e_T + shear kE e_S + kE L^2 sum_j W_j (w(lambda_j) / 3 + p(lambda_j)))
+/// with e_E, e_F, e_T as link_terms has them, e_S of Shear, and over its fibres of weights W_j w of the material
+/// effects (uniaxial) and p of yielding (plastic_terms). The factor of w is mu V = kE L^2 / 3: kE = E A / L, and E = 3
+/// mu as the material keeps its volume. s is the material's scale: the mean over the fibres in each slice of the link,
+/// whose softnesses add up. So all is linear in the stiffnesses, conservative, and the same after any rigid motion.
+class PlacedLinks {
+public:
+    PlacedLinks(const Model& model, const fem::Effects& effects);
+
+    /// Energies at unit stiffness, each with all that goes with it. `before`, here and below: how far the fibres had
+    /// flowed. @throws SolverFailure when ends of the link or of a fibre coincide.
+    LinkTerms terms(size_t link, const State& state, bool with_hessian, const FibreStates& before = {}) const;
+    /// The sum of their second derivatives at stiffness k, at a third of the cost.
+    Mat12 hessian(size_t link, const Vec3& k, const State& state, const FibreStates& before = {}) const;
+
+    /// d net force / d k in a state (6N x 3L): column 3 l + s is the force of link l at unit stiffness s.
+    Eigen::SparseMatrix<double> forces(const State& state, const FibreStates& before = {}) const;
+    /// The same after a step from rest (6N), to first order.
+    Eigen::SparseMatrix<double> linear_forces(const Eigen::VectorXd& step, const FibreStates& before = {}) const;
+
+    /// How far the fibres have flowed once they stood in a state (7L); empty when nothing yields.
+    FibreStates flowed(const State& state, const FibreStates& before = {}) const;
+
+    /// A link's stiffnesses at rest, with what effects add to them.
+    Vec3 rest_stiffness(size_t link, const Vec3& k) const;
+    /// Largest force of a link's fibres at rest, at stiffnesses k (3L) [N]: of prestress, or what has flowed.
+    double largest_rest_force(const Eigen::VectorXd& k, const FibreStates& before = {}) const;
+
+private:
+    double scale_of(const Link& link, const FibreOffsets& offsets, const fem::Effects& effects) const;
+    LinkFibre fibre(size_t link, int j, const State& state) const;
+    StretchTerms fibre_terms(size_t link, int j, double stretch, bool with_second, const FibreStates& before) const;
+    void add_effects(size_t link, const State& state, const FibreStates& before, bool with_hessian,
+                     LinkTerms& terms) const;
+    template <typename ForcesOf>
+    Eigen::SparseMatrix<double> assembled(const ForcesOf& forces_of) const;
+
+    std::vector<Link> links_;
+    std::vector<Vec3> directions_;  // at rest (L)
+    State rest_;
+    std::vector<std::shared_ptr<const fem::MaterialEffect>> material_;  // those with an energy of their own
+    std::optional<fem::Plasticity> plasticity_;
+    double torsion_, shear_;
+    bool plain_;                         // no effect is in force
+    std::vector<double> scales_;         // s (L); empty when plain
+    std::vector<FibreOffsets> offsets_;  // (L); empty when no fibre has an energy
+};
+
+}  // namespace palpate::skeleton

@@ -1,0 +1,175 @@
+// Measurement sets with something hidden in them, on bodies and probe plans drawn at random, for diagnosis_bench.
+// Usage: forge_bench OUT [--sets N] [--seed N] [--threads N] [EFFECT[+EFFECT] ...]
+// Without names: each effect of a solid in turn, nothing among them. OUT/truth.csv tells them all.
+//
+// Bodies are boxes made round, tapered, bent and twisted, 50 to 150 mm long and up to eight times as long as thick,
+// held at one end, of .03 to 1 MPa and a Poisson's ratio of .4 to .48.
+
+#include <fmt/format.h>
+
+#include <Eigen/Geometry>
+
+#include <fstream>
+#include <iostream>
+#include <random>
+#include <sstream>
+
+#include "mesh/errors.h"
+#include "mesh/io/atomic_file.h"
+#include "mesh/read_surface.h"
+#include "pipeline/case/subject.h"
+#include "pipeline/forge/truth.h"
+
+using namespace palpate;
+
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Options {
+    fs::path out;
+    int sets = 26;
+    std::uint64_t seed = 1;
+    int threads = 1;
+    std::vector<std::string> hide{"none",    "gravity",    "stiffening",        "anisotropy", "inclusion",
+                                  "contact", "prestress",  "compliant-support", "viscosity",  "plasticity",
+                                  "none",    "force-gain", "misalignment"};
+};
+
+Options parse(int argc, char** argv) {
+    Options options;
+    std::vector<std::string> names;
+    for (int i = 1; i < argc; ++i) {
+        const std::string word = argv[i];
+        if (word == "--sets" && i + 1 < argc) {
+            options.sets = std::stoi(argv[++i]);
+        } else if (word == "--seed" && i + 1 < argc) {
+            options.seed = std::stoull(argv[++i]);
+        } else if (word == "--threads" && i + 1 < argc) {
+            options.threads = std::stoi(argv[++i]);
+        } else if (options.out.empty()) {
+            options.out = word;
+        } else {
+            names.push_back(word);
+        }
+    }
+    if (!names.empty()) options.hide = names;
+    return options;
+}
+
+/// A box of 2 x 2 x 2 about the origin, made round by r in [0, 1]: 0 a box, 1 a ball. [Nowell's map of cube to sphere]
+Vec3 rounded(const Vec3& p, double r) {
+    const Vec3 s = p.cwiseAbs2();
+    const Vec3 ball(p.x() * std::sqrt(1 - s.y() / 2 - s.z() / 2 + s.y() * s.z() / 3),
+                    p.y() * std::sqrt(1 - s.z() / 2 - s.x() / 2 + s.z() * s.x() / 3),
+                    p.z() * std::sqrt(1 - s.x() / 2 - s.y() / 2 + s.x() * s.y() / 3));
+    return (1 - r) * p + r * ball;
+}
+
+mesh::Surface random_body(std::mt19937_64& random) {
+    const auto between = [&](double low, double high) {
+        return std::uniform_real_distribution<double>(low, high)(random);
+    };
+    const double length = between(50, 150), aspect = std::exp(between(std::log(1.2), std::log(8)));
+    const double width = length / aspect, height = width * between(0.6, 1);
+    const double round = between(0, 1), taper = between(-0.3, 0.3), bend = between(0, 1.2), twist = between(-0.8, 0.8);
+    mesh::Surface body = mesh::make_box({-1, -1, -1}, {1, 1, 1}, {24, 12, 12});
+    for (Eigen::Index v = 0; v < body.vertices.rows(); ++v) {
+        Vec3 p = rounded(body.vertices.row(v), round);
+        const double along = (p.x() + 1) / 2;  // from 0 at the held end
+        const double scale = 1 - taper * (2 * along - 1);
+        const Eigen::Rotation2Dd turn(twist * along);
+        const Eigen::Vector2d section = turn * Eigen::Vector2d(p.y() * width / 2 * scale, p.z() * height / 2 * scale);
+        // along an arc of that angle
+        const double angle = bend * along, radius = bend > 1e-3 ? length / bend : 0;
+        const Vec3 axis = bend > 1e-3 ? Vec3(radius * std::sin(angle), radius * (1 - std::cos(angle)), 0)
+                                      : Vec3(length * along, 0, 0);
+        const Vec3 out(-std::sin(angle), std::cos(angle), 0);
+        p = axis + section.x() * out + section.y() * Vec3::UnitZ();
+        body.vertices.row(v) = p;
+    }
+    return body;
+}
+
+/// A case of that body, written to a folder of its own.
+fs::path write_case(const fs::path& folder, std::mt19937_64& random) {
+    const auto between = [&](double low, double high) {
+        return std::uniform_real_distribution<double>(low, high)(random);
+    };
+    fs::create_directories(folder);
+    const mesh::Surface body = random_body(random);
+    mesh::write_surface(folder / "body.stl", body);
+    const Eigen::RowVector3d low = body.vertices.colwise().minCoeff(), high = body.vertices.colwise().maxCoeff();
+    const Eigen::RowVector3d pad = Eigen::RowVector3d::Constant(1);
+    const double held = low.x() + between(0.05, 0.12) * (high.x() - low.x());
+    mesh::write_text(
+        folder / "case.yaml",
+        fmt::format("mesh: body.stl\nmaterial: {{young: {:.4g}, poisson: {:.3g}, density: 1050}}\n"
+                    "supports:\n  - box: {{min: [{:.4g}, {:.4g}, {:.4g}], max: [{:.4g}, {:.4g}, {:.4g}]}}\n",
+                    std::exp(between(std::log(0.03), 0)), between(0.4, 0.48), (low - pad).x(), (low - pad).y(),
+                    (low - pad).z(), held, (high + pad).y(), (high + pad).z()));
+    return folder / "case.yaml";
+}
+
+std::vector<std::string> split(const std::string& text, char at) {
+    std::vector<std::string> words;
+    std::stringstream in(text);
+    for (std::string word; std::getline(in, word, at);) words.push_back(word);
+    return words;
+}
+
+void run(const Options& options) {
+    fs::create_directories(options.out);
+    std::ofstream truth(options.out / "truth.csv");
+    truth << "set,effect,signal_rms_mm,effect_rms_mm,beyond_stiffness_rms_mm,sigma_mm,detail\n";
+    for (int i = 0; i < options.sets; ++i) {
+        const std::string& hidden = options.hide[static_cast<std::size_t>(i) % options.hide.size()];
+        const std::string name = fmt::format("{:03}-{}", i, hidden);
+        const std::uint64_t seed = options.seed * 100003 + static_cast<std::uint64_t>(i);
+        std::mt19937_64 random(seed);
+        try {
+            const fs::path file = write_case(options.out / "bodies" / name, random);
+            const pipeline::Subject subject = pipeline::read_subject(pipeline::read_case(file));
+            pipeline::ForgeOptions how;
+            if (hidden == "none") {
+                how.hide = {"gravity:gx=0,gy=0,gz=0"};  // blind, and nothing there
+            } else {
+                how.hide = split(hidden, '+');
+            }
+            const pipeline::Specimen specimen = pipeline::finite_element_specimen(subject, how, {});
+            pipeline::ProbeOptions probing;
+            probing.markers = 80;
+            pipeline::Forged forged = pipeline::forge(specimen, probing, how, seed, options.threads);
+            forged.set.name = name;
+            identify::write_measurement_set(options.out / name, forged.set);
+            const auto json = pipeline::truth_of(forged, specimen, how, seed);
+            truth << fmt::format("{},{},{:.4g},{:.4g},{:.4g},{:.4g},\"{}\"\n", name, hidden,
+                                 forged.strength.displacement, forged.strength.change, forged.strength.beyond,
+                                 forged.noise, json.contains("hide") ? json["hide"].dump() : "")
+                  << std::flush;
+            fmt::print("{}: {} nodes, displacement {:.3g}, change {:.3g}, beyond stiffness {:.3g}, noise {:.3g} mm\n",
+                       name, specimen.volume.nodes.rows(), forged.strength.displacement, forged.strength.change,
+                       forged.strength.beyond, forged.noise);
+        } catch (const std::exception& e) {
+            fmt::print("{}: left out: {}\n", name, e.what());
+        }
+        std::cout << std::flush;
+    }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    const Options options = parse(argc, argv);
+    if (options.out.empty()) {
+        fmt::print(stderr, "Usage: forge_bench OUT [--sets N] [--seed N] [--threads N] [EFFECT[+EFFECT] ...]\n");
+        return 2;
+    }
+    try {
+        run(options);
+    } catch (const std::exception& e) {
+        fmt::print(stderr, "{}\n", e.what());
+        return 1;
+    }
+    return 0;
+}

@@ -1,0 +1,76 @@
+#include "skeleton/effects/compliant_support.h"
+
+#include <gtest/gtest.h>
+
+#include "skeleton/effects/point_sets.h"
+#include "test_effects.h"
+
+namespace palpate::skeleton {
+namespace {
+
+using testing::compliant_support;
+using testing::force_at;
+using testing::gravity;
+using testing::lattice_with_skin;
+using testing::make_chain;
+using testing::make_lattice;
+using testing::with_effects;
+using testing::with_law;
+
+TEST(CompliantSupportEffect, GivesWayByForceOverStiffness) {
+    // The springs bear all forces, so the mean of their points moves by F / k, whatever the body does.
+    const double k = 5;
+    for (const Law law : {Law::linear, Law::large_rotation}) {
+        const Model model =
+            with_law(with_effects(lattice_with_skin(), {compliant_support(k), gravity({0, 0, -1e5})}), law);
+        const Vec3 F(1, 2, -3);
+        const Equilibrium found = equilibrium(model, force_at(model, 3, F));
+        const PointSet support = point_set(model, fem::ActsOn::support);
+        const Points moved = observe(model, found, support.at) - observe(model, rest_state(model), support.at);
+        const Vec3 weight = 16 * 1e-6 * Vec3(0, 0, -1e5);
+        EXPECT_LT((moved.transpose() * support.weights - (F + weight) / k).norm(), 1e-8);  // 1e-9 of 3 N, over k
+    }
+}
+
+TEST(CompliantSupportEffect, CarriesTheBodyAlong) {
+    const Model model = with_effects(make_chain(3), {compliant_support(0.1)});
+    const Equilibrium found = equilibrium(model, force_at(model, 3, {0.5, 0, 0}));
+    for (int i = 0; i <= 3; ++i) EXPECT_NEAR(found.step[6 * i], 0.5 / 0.1 + i * 0.5 / 2, 1e-7);  // F / k, F / kE a link
+}
+
+TEST(CompliantSupportEffect, TurnsUnderACouple) {
+    // Of six points two lie on the axis: k / 6 r^2 sin(theta) each for the other four, against F a cos(theta).
+    const double k = 3, r = 4, F = 2, arm = 3;
+    for (const Law law : {Law::linear, Law::large_rotation}) {
+        const Model model = with_law(with_effects(make_chain(1), {compliant_support(k)}), law);
+        Load load;
+        load.forces.push_back({{0, 0, 0, {arm, 0, 0}}, {0, F, 0}});
+        const Equilibrium found = equilibrium(model, load);
+        const double theta = found.step[5], tangent_of_it = F * arm / (4.0 / 6 * k * r * r);
+        EXPECT_NEAR(law == Law::linear ? theta : std::tan(theta), tangent_of_it, 1e-8);
+        EXPECT_NEAR(found.step[1], F / k, 1e-8);
+    }
+}
+
+TEST(CompliantSupportEffect, OfGreatStiffnessHolds) {
+    for (Model model : {make_lattice({4, 2, 2}), lattice_with_skin()}) {
+        const Load load = force_at(model, 3, {1, 2, -3});
+        const Eigen::VectorXd held = equilibrium(model, load, {1e-12}).step;
+        const auto difference = [&](double k) {
+            return (equilibrium(with_effects(model, {compliant_support(k)}), load).step - held).norm();
+        };
+        EXPECT_LT(difference(1e6), 1e-3);                         // 4 N on arms of 30 mm against 1e6 N/mm
+        EXPECT_NEAR(difference(1e5) / difference(1e6), 10, 0.5);  // to first order in 1 / k
+    }
+}
+
+TEST(CompliantSupportEffect, SpringsInParallelAdd) {
+    const Model model = lattice_with_skin();
+    const Load load = force_at(model, 3, {1, 2, -3});
+    const Eigen::VectorXd step = equilibrium(with_effects(model, {compliant_support(5)}), load).step;
+    const Model two = with_effects(model, {compliant_support(2), compliant_support(3)});
+    EXPECT_LT((equilibrium(two, load).step - step).norm(), 1e-6);  // forces known to 1e-9 of 4 N
+}
+
+}  // namespace
+}  // namespace palpate::skeleton

@@ -1,0 +1,201 @@
+#include <gtest/gtest.h>
+
+#include "skeleton/effects/anisotropy.h"
+#include "skeleton/effects/inclusion.h"
+#include "skeleton/effects/prestress.h"
+#include "skeleton/effects/stiffening.h"
+#include "skeleton/links/placed_links.h"
+#include "test_effects.h"
+
+namespace palpate::skeleton {
+namespace {
+
+using testing::at_sphere;
+using testing::force_at;
+using testing::make_chain;
+using testing::make_lattice;
+using testing::with_law;
+
+// A bar of three links, as of a rod of 4 mm radius.
+const Vec3 stiffness(2, 16, 20);
+Model make_bar(int links = 3) { return make_chain(links, Vec3::UnitX(), stiffness); }
+
+fem::Effects with_material(std::shared_ptr<const fem::MaterialEffect> effect) {
+    return {.material = {std::move(effect)}};
+}
+
+Equilibrium equilibrium_of(const Model& model, const fem::Effects& effects, const Load& load) {
+    return StaticsSolver(model, effects).solve(stiffness_vector(model), load, {1e-12});
+}
+
+// A couple about z on the last sphere.
+Load couple(const Model& model, double moment) {
+    const int last = static_cast<int>(model.spheres.size()) - 1;
+    Load load;
+    for (const double side : {1.0, -1.0})
+        load.forces.push_back(
+            {{last, last, 0, model.spheres[last].center + side * Vec3::UnitX()}, {0, side * moment / 2, 0}});
+    return load;
+}
+
+// --- Fibres -------------------------------------------------------------------------------------------------------
+
+TEST(FibreOffsets, HaveTheSecondMomentsOfTheSection) {
+    Link link;
+    link.stiffness = stiffness;
+    EXPECT_NEAR(radius_of_gyration(link), 2, 1e-15);  // of a circle of 4 mm: I / A = r^2 / 4
+    for (const Vec3& n : {Vec3(1, 0, 0), Vec3(1, 2, -2), Vec3(-1, 1, 1)}) {
+        const Vec3 direction = n.normalized();
+        Vec3 first = Vec3::Zero();
+        Mat3 second = Mat3::Zero();
+        for (const Vec3& r : fibre_offsets(link, direction)) {
+            first += r / fibres_per_link;
+            second += r * r.transpose() / fibres_per_link;
+        }
+        EXPECT_LT(first.norm(), 1e-15);
+        EXPECT_LT((second - 4 * (Mat3::Identity() - direction * direction.transpose())).norm(), 1e-14);
+    }
+}
+
+TEST(FibreOffsets, KeepTheirSectionWhenTheStiffnessIsIdentified) {
+    Model model = make_bar();
+    Eigen::VectorXd k = stiffness_vector(model);
+    k[1] *= 4;
+    set_stiffness(model, k);
+    EXPECT_NEAR(radius_of_gyration(model.links[0]), 2, 1e-15);
+    Link slack;
+    EXPECT_EQ(radius_of_gyration(slack), 0);
+}
+
+// --- Stiffening ---------------------------------------------------------------------------------------------------
+
+TEST(StiffeningBar, FollowsYeohsUniaxialCurve) {
+    const double c2 = 0.3, c3 = 1.5, kE = stiffness[0], L = 10, mu_area = kE * L / 3;
+    Model bar = make_bar();
+    for (Link& link : bar.links) link.stiffness[1] = 500;  // else it buckles where it is pressed
+    for (const double F : {-3.0, 0.1, 4.0, 20.0, 60.0}) {
+        const Equilibrium found =
+            equilibrium_of(bar, with_material(std::make_shared<Stiffening>(c2, c3)), force_at(bar, 3, {F, 0, 0}));
+        const double lambda = 1 + found.step[18] / (3 * L);
+        const double x = lambda * lambda + 2 / lambda - 3;
+        // Nominal stress 2 (lambda - lambda^-2) (2 C20 x + 3 C30 x^2), beyond the link's own. [Yeoh 1990]
+        const double beyond = 2 * (lambda - 1 / (lambda * lambda)) * (2 * c2 * x + 3 * c3 * x * x);
+        EXPECT_NEAR(kE * L * (lambda - 1) + mu_area * beyond, F, 1e-9 * std::abs(F)) << lambda;
+        EXPECT_LT(found.step.segment<2>(19).norm(), 1e-9);
+    }
+}
+
+TEST(StiffeningBar, IsThePlainOneInSmallStrain) {
+    const fem::Effects effects = with_material(std::make_shared<Stiffening>(0.3, 1.5));
+    const Model bar = make_bar(), linear = with_law(bar, Law::linear);
+    const Load load = force_at(bar, 3, {1, 0.1, 0});
+    EXPECT_LT((equilibrium_of(linear, effects, load).step - equilibrium_of(linear, {}, load).step).norm(), 1e-12);
+    const auto difference = [&](double share) {
+        const Load part = force_at(bar, 3, share * Vec3(1, 0, 0));
+        return (equilibrium_of(bar, effects, part).step - equilibrium_of(bar, {}, part).step).norm();
+    };
+    EXPECT_NEAR(difference(0.2) / difference(0.1), 8, 0.5);  // of third order
+}
+
+TEST(StiffeningBar, StiffensInBending) {
+    // Ends turned by +-phi/2: the fibres at +-r across are 1 -+ 2 r/L sin(phi/2) as long, the two others as they were.
+    const double c2 = 0.3, c3 = 1.5, phi = 0.8, r = 2 * std::sqrt(2.0), L = 10;
+    const fem::Effects effects = with_material(std::make_shared<Stiffening>(c2, c3));
+    const Model link = make_bar(1);
+    State bent = rest_state(link);
+    bent.R[0] = rotation({0, 0, -phi / 2});
+    bent.R[1] = rotation({0, 0, phi / 2});
+    double w = 0;
+    for (const double side : {1.0, -1.0}) {
+        const double lambda = 1 + side * 2 * r / L * std::sin(phi / 2);
+        const double x = lambda * lambda + 2 / lambda - 3;
+        w += (c2 + c3 * x) * x * x;
+    }
+    const Vec3 stiffened = PlacedLinks(link, effects).terms(0, bent, false).energy;
+    const Vec3 plain = PlacedLinks(link, {}).terms(0, bent, false).energy;
+    EXPECT_NEAR(stiffened[0] - plain[0], L * L / 3 * w / 4, 1e-12);
+    EXPECT_EQ(stiffened[1], plain[1]);
+
+    // So twice the couple turns the end by less than twice as much; without the effect it does exactly.
+    const Model bar = make_bar();
+    const auto angle = [&](const fem::Effects& all, double moment) {
+        return equilibrium_of(bar, all, couple(bar, moment)).step[23];
+    };
+    EXPECT_LT(angle(effects, 8), 0.99 * angle({}, 8));
+    EXPECT_NEAR(angle(effects, 0.1), angle({}, 0.1), 1e-4 * angle({}, 0.1));  // a share of (angle a link)^2
+}
+
+// --- Anisotropy ---------------------------------------------------------------------------------------------------
+
+TEST(AnisotropicBar, HasTheFibresModulusBesides) {
+    // Fibres of modulus k mu along the bar: Young's modulus grows from 3 mu to (3 + k) mu, in tension and in bending.
+    const double k = 1.2;
+    const fem::Effects effects = with_material(std::make_shared<Anisotropy>(std::vector<Fibre>{{k, {2, 0, 0}}}));
+    const Model bar = with_law(make_bar(), Law::linear);
+    for (const Load& load : {force_at(bar, 3, {1, 0, 0}), couple(bar, 1)}) {
+        const Eigen::VectorXd plain = equilibrium_of(bar, {}, load).step;
+        EXPECT_LT((equilibrium_of(bar, effects, load).step - plain / (1 + k / 3)).norm(), 1e-12 * plain.norm());
+    }
+}
+
+TEST(AnisotropicBar, FeelsFibresAcrossAQuarterAsMuch) {
+    // Across, the strain of a bar that keeps its volume is half that along it: a quarter of the energy.
+    const double k = 1.2;
+    const fem::Effects effects = with_material(std::make_shared<Anisotropy>(std::vector<Fibre>{{k, {0, 1, 0}}}));
+    const Model bar = with_law(make_bar(), Law::linear);
+    const Load load = force_at(bar, 3, {1, 0, 0});
+    const Eigen::VectorXd plain = equilibrium_of(bar, {}, load).step;
+    EXPECT_LT((equilibrium_of(bar, effects, load).step - plain / (1 + k / 12)).norm(), 1e-12 * plain.norm());
+}
+
+// --- Prestress ----------------------------------------------------------------------------------------------------
+
+TEST(PrestressedBar, TakesItsOwnLength) {
+    // Without a load: kE L (lambda - 1) + mu A s lambda = 0, mu A = kE L / 3.
+    const double s = 0.3;
+    const Model bar = make_bar();
+    const fem::Effects effects = with_material(std::make_shared<Prestress>(Vec3(s, 0, 0).asDiagonal()));
+    const Equilibrium found = equilibrium_of(bar, effects, {});
+    for (int i = 1; i <= 3; ++i) EXPECT_NEAR(found.step[6 * i], 10 * i * (1 / (1 + s / 3) - 1), 1e-10);
+    const Equilibrium linear = equilibrium_of(with_law(bar, Law::linear), effects, {});
+    EXPECT_NEAR(linear.step[18], -30 * (s / 3) / (1 + s / 3), 1e-10);
+}
+
+TEST(PrestressedBar, PullsItsClampsAndMovesNothingBetween) {
+    Model bar = make_bar();
+    bar.spheres[3].held = true;
+    const double s = 0.3;
+    const fem::Effects effects = with_material(std::make_shared<Prestress>(Vec3(s, 0, 0).asDiagonal()));
+    for (const Law law : {Law::linear, Law::large_rotation}) {
+        const Equilibrium found = equilibrium_of(with_law(bar, law), effects, {});
+        EXPECT_LT(found.step.norm(), 1e-12);
+        const Eigen::VectorXd f = link_forces(with_law(bar, law), found, effects) * stiffness_vector(bar);
+        EXPECT_NEAR(f[0], 2 * 10 * s / 3, 1e-12);  // on the first sphere, towards the others
+    }
+}
+
+// --- Inclusion ----------------------------------------------------------------------------------------------------
+
+TEST(InclusionInLinks, IsScaledStiffness) {
+    const Model model = make_lattice({4, 2, 2});
+    const Inclusion inclusion = Inclusion::sphere({20, 5, 5}, 9, 6);
+    Eigen::VectorXd k = stiffness_vector(model);
+    double most = 1;
+    for (size_t l = 0; l < model.links.size(); ++l) {
+        const Vec3 middle = 0.5 * (model.spheres[model.links[l].a].center + model.spheres[model.links[l].b].center);
+        k.segment<3>(3 * l) *= inclusion.stiffness(middle);
+        most = std::max(most, inclusion.stiffness(middle));
+    }
+    ASSERT_EQ(most, 6);
+    const Load load = force_at(model, 3, {1, 2, -3});
+    for (const Law law : {Law::linear, Law::large_rotation}) {
+        const Model tested = with_law(model, law);
+        const fem::Effects effects = with_material(std::make_shared<Inclusion>(inclusion));
+        const Eigen::VectorXd scaled = StaticsSolver(tested).solve(k, load, {1e-12}).step;
+        // Forces known to 1e-12 of 4 N, over stiffnesses of 1 N/mm.
+        EXPECT_LT((equilibrium_of(tested, effects, load).step - scaled).norm(), 1e-9);
+    }
+}
+
+}  // namespace
+}  // namespace palpate::skeleton
