@@ -104,7 +104,9 @@ public:
 
     /// The displacement in which the net force vanishes at the free nodes: Newton's method on the potential with line
     /// search, started from the linear answer or a neighbouring state `start`, factors reused while they serve;
-    /// load stepping when it fails at once. @throws SolverFailure with iterations and residual when none was found.
+    /// load stepping when it fails at once. A body that yields flows at once from what it was `before`: a load that
+    /// turns on its way is better put on in parts, each from the plastic state of the one before. @throws SolverFailure
+    /// with iterations and residual when none was found.
     BodyEquilibrium equilibrium(const BodySetting& setting, const Eigen::VectorXd& f, const NewtonOptions& options = {},
                                 const Eigen::VectorXd* start = nullptr, const PlasticState* before = nullptr) const;
 

@@ -12,7 +12,8 @@ struct Potential {
 };
 
 /// A body of some material under effects and dead loads, a share of which is applied. Effects on the support hold the
-/// body and are always there in full. The linear law takes effects as they are at rest, to second order.
+/// body and are always there in full. The linear law takes effects as they are at rest, to second order,
+/// but for those that act on one side only.
 class LoadedBody {
 public:
     /// `before`, `flows`: as BodyMaterial takes them. @pre body, setting and `before` outlive it.

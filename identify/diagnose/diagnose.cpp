@@ -48,7 +48,6 @@ public:
                 estimate_noise();
                 inquire();
             }
-            set_outliers_aside_next_to_effect();
         }
         result_.baseline = baseline();
         result_.baseline_held_out = leave_probes_out(result_.problem, result_.baseline);
@@ -91,12 +90,25 @@ private:
         baselines_.refit(result_.problem);
     }
 
-    /// Screens and confirms the catalogue anew.
+    /// Seeks effects in the catalogue, first by themselves, then several together. Outliers are looked for next to the
+    /// best single one: several effects would bend to them.
     void inquire() {
-        Search search(model_, result_.problem, baselines_, effects_, options_, progress_);
-        search.run();
-        result_.ranking = search.ranking();
-        result_.tried = search.tried();
+        seek(&Search::single_effects);
+        if (set_outliers_aside_next_to_effect()) seek(&Search::single_effects);
+        seek(&Search::put_together);
+        if (!is_enough(leading(), options_) && set_outliers_aside_next_to_effect()) {
+            seek(&Search::single_effects);
+            seek(&Search::put_together);
+        }
+    }
+
+    void seek(void (Search::*what)()) {
+        if (what == &Search::single_effects) {
+            search_ = std::make_unique<Search>(model_, result_.problem, baselines_, effects_, options_, progress_);
+        }
+        ((*search_).*what)();
+        result_.ranking = search_->ranking();
+        result_.tried = search_->tried();
     }
 
     const Explained* leader() const {
@@ -142,17 +154,18 @@ private:
         }
     }
 
-    /// Once an effect explains the rest, or nothing does, the same; only where noise is left then.
-    void set_outliers_aside_next_to_effect() {
+    /// Once an effect explains the rest, or nothing does, the same; only where noise is left then. True where some were
+    /// set aside.
+    bool set_outliers_aside_next_to_effect() {
         const Diagnosis before = result_;
         const Refit leads = leading();
-        if (!set_outliers_aside(leads)) return;
+        if (!set_outliers_aside(leads)) return false;
         if (!is_enough(without_them(leads), options_)) {
             result_ = before;
-            return;
+            return false;
         }
         baselines_.refit(result_.problem);
-        inquire();
+        return true;
     }
 
     /// A fit once more, to the readings that are left.
@@ -171,6 +184,7 @@ private:
     const Progress& progress_;
     std::vector<std::shared_ptr<const Effect>> effects_;
     Baselines baselines_;
+    std::unique_ptr<Search> search_;
     Diagnosis result_;
 };
 

@@ -31,6 +31,7 @@ struct DiagnoseOptions {
     double least_evidence = 10;           // ln Bayes factor of the refit, to claim an effect
     double least_lead = 5;                // over the runner-up
     double most_left = 1.1;               // whitened rms, for what is left to be noise
+    double most_left_together = 1.06;     // the same where several effects explain it: they bend to more
     double most_left_held_out = 1.2;      // the same on probes left out
     double most_strain = 4;               // of a nuisance, in its prior sd
     RefitOptions refit;

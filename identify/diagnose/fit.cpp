@@ -21,7 +21,8 @@ struct Sides {
 };
 
 Sides about(const Explanation& explanation, std::size_t effect, Eigen::Index number) {
-    Sides sides{1e-5 * std::max(1.0, std::abs(explanation.values[effect][number])), explanation, explanation};
+    // The residual is exact to rounding, and kinks where a plane is just touched: a small step.
+    Sides sides{1e-7 * std::max(1.0, std::abs(explanation.values[effect][number])), explanation, explanation};
     sides.ahead.values[effect][number] += sides.h;
     sides.behind.values[effect][number] -= sides.h;
     return sides;

@@ -57,7 +57,9 @@ std::vector<const Explained*> explain_alike(const std::vector<const Explained*>&
         most = std::max(most, one->log_bayes_factor);
         const bool predicts = one->held_out.whitened_rms <= options.most_left_held_out;
         const bool leads = most - one->log_bayes_factor < options.least_lead;
-        if (is_enough(one->fit, options) && predicts && leads && one->objection.empty()) alike.push_back(one);
+        const bool closely = one->effects.size() == 1 || one->fit.whitened_rms <= options.most_left_together;
+        if (is_enough(one->fit, options) && closely && predicts && leads && one->objection.empty())
+            alike.push_back(one);
     }
     return alike;
 }

@@ -147,6 +147,15 @@ Problem Problem::without_actions(const std::vector<char>& drop) const {
     std::vector<char> keep(rows());
     for (Eigen::Index n = 0; n < rows(); ++n) keep[n] = !drop[action[n]];
     Problem result = with_rows(keep);
+    for (Eigen::Index n = 0; n < rows(); ++n) {
+        if (!keep[n]) result.stages[state[n]].action.contacts.clear();
+    }
+    if (by_stage) {  // every stage stays
+        for (std::size_t k = 0; k < actions.size(); ++k) {
+            if (drop[k]) result.actions[k].contacts.clear();
+        }
+        return result;
+    }
     result.actions.clear();
     result.probe.clear();
     std::vector<int> number(actions.size(), -1);
@@ -157,9 +166,6 @@ Problem Problem::without_actions(const std::vector<char>& drop) const {
         result.probe.push_back(probe[k]);
     }
     for (int& k : result.action) k = number[k];
-    for (Eigen::Index n = 0; n < rows(); ++n) {
-        if (!keep[n]) result.stages[state[n]].action.contacts.clear();
-    }
     return result;
 }
 

@@ -15,32 +15,34 @@ double settled(double objective, Eigen::Index readings) {
 }
 
 struct Priors {
-    Eigen::VectorXd mean, sd;
-    Eigen::VectorXd
-        step;  // how far a number may go at once: its prior's width, a logarithm no more than a factor of two
+    Eigen::VectorXd mean, sd, least;
+    // How far a number may go at once: its prior's width, a logarithm no more than a factor of two.
+    Eigen::VectorXd step;
 };
 
 Priors priors_of(const BodyModel& model, const Explanation& explanation,
                  const std::vector<std::vector<EffectNumber>>& numbers) {
     const Eigen::VectorXd start = explanation.all();
     constexpr double factor_of_two = 0.7;
-    std::vector<double> mean, sd, step;
+    std::vector<double> mean, sd, least, step;
     for (const StiffnessParameter& p : model.parameters()) {
         mean.push_back(p.prior_mean);
         sd.push_back(p.prior_sd);
+        least.push_back(-INFINITY);
         step.push_back(std::min(p.prior_sd, factor_of_two));
     }
     for (const auto& list : numbers) {
         for (const EffectNumber& number : list) {
             mean.push_back(number.prior_at_start ? start[std::ssize(mean)] : number.prior_mean);
             sd.push_back(number.prior_sd);
+            least.push_back(number.least);
             step.push_back(number.logarithm ? std::min(number.prior_sd, factor_of_two) : number.prior_sd);
         }
     }
     const auto vector = [](std::vector<double>& values) {
         return Eigen::VectorXd(Eigen::Map<Eigen::VectorXd>(values.data(), std::ssize(values)));
     };
-    return {vector(mean), vector(sd), vector(step)};
+    return {vector(mean), vector(sd), vector(least), vector(step)};
 }
 
 /// Half of chi^2 and priors, to be lowered.
@@ -87,7 +89,7 @@ private:
         const Setting setting = at_.explanation.setting();
         for (double share = 1; share > 0.01; share *= 0.4) {
             Explanation trial = at_.explanation;
-            trial.set_all(x + share * move);
+            trial.set_all((x + share * move).cwiseMax(priors_.least));
             std::vector<Eigen::VectorXd> predicted = at_.played.q;
             for (std::size_t k = 0; k < predicted.size(); ++k) {
                 if (steps_[k].size() > 0) {

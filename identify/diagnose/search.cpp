@@ -64,10 +64,23 @@ Search::Search(const BodyModel& model, const Problem& problem, const Baselines& 
       options_(options),
       progress_(progress) {}
 
-void Search::run() {
+void Search::single_effects() {
     screen_all();
     confirm_single_effects();
-    put_together();
+}
+
+std::vector<Candidate> Search::ranking() const {
+    std::vector<Candidate> result = ranking_;
+    for (const Explained& single : tried_) {
+        if (single.effects.size() > 1) continue;
+        const auto own = std::ranges::find(result, single.effects.front(), &Candidate::effect);
+        own->log_bayes_factor = single.log_bayes_factor;
+        own->refit = single.fit;
+        own->held_out = single.held_out;
+        own->told = single.told(own->effect->name());
+    }
+    std::ranges::stable_sort(result, std::greater{}, &Candidate::log_bayes_factor);
+    return result;
 }
 
 const Explained* Search::leader() const { return tried_.empty() ? nullptr : &tried_[index_of_leader()]; }
@@ -179,15 +192,6 @@ void Search::confirm_single_effects() {
     for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
     std::ranges::stable_sort(order, std::greater{}, [&](std::size_t i) { return tried_[i].log_bayes_factor; });
     for (std::size_t i = 0; i < std::min<std::size_t>(2, order.size()); ++i) try_other_laws(order[i]);
-
-    for (const Explained& single : tried_) {
-        const auto own = std::ranges::find(ranking_, single.effects.front(), &Candidate::effect);
-        own->log_bayes_factor = single.log_bayes_factor;
-        own->refit = single.fit;
-        own->held_out = single.held_out;
-        own->told = single.told(own->effect->name());
-    }
-    std::ranges::stable_sort(ranking_, std::greater{}, &Candidate::log_bayes_factor);
 }
 
 void Search::try_other_laws(std::size_t tried) {
@@ -254,10 +258,15 @@ bool Search::extend(std::size_t from, int most) {
     const Explained base = tried_[from];
     const std::vector<std::string> there = names_of(base);
     report(progress_, "screen next to " + listed(there), 0.8);
+    // Where one explains all but noise, what is left of its own error on the mesh is no other effect: next to it one
+    // has to bring more than this share of its evidence.
+    constexpr double own_error = 5e-4;
+    const double least =
+        claims(base) ? std::max(options_.least_evidence, own_error * base.log_bayes_factor) : options_.least_evidence;
     bool grew = false;
     int refitted = 0;
     for (const Screened& screened : screen_at(base.fit, there)) {
-        const bool said = refitted < most && screened.log_bayes_factor >= options_.least_evidence;
+        const bool said = refitted < most && screened.log_bayes_factor >= least;
         if (!said && !(screened.effect->outwits_screen() && little_is_left())) continue;
         std::vector<std::string> names = there;
         names.push_back(screened.effect->name());
@@ -267,7 +276,7 @@ bool Search::extend(std::size_t from, int most) {
         auto found = refit_with(base.fit, screened);
         if (!found) continue;
         found->effects.insert(found->effects.begin(), base.effects.begin(), base.effects.end());
-        const bool worth = found->log_bayes_factor >= base.log_bayes_factor + options_.least_evidence;
+        const bool worth = found->log_bayes_factor >= base.log_bayes_factor + least;
         if (!worth) continue;
         tried_.push_back(std::move(*found));
         grew = true;

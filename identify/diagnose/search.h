@@ -17,9 +17,10 @@ public:
            const std::vector<std::shared_ptr<const Effect>>& effects, const DiagnoseOptions& options,
            const Progress& progress);
 
-    void run();
+    void single_effects();
+    void put_together();  // @pre single_effects
 
-    std::vector<Candidate> ranking() const { return ranking_; }
+    std::vector<Candidate> ranking() const;  // by evidence, most first
     const std::vector<Explained>& tried() const { return tried_; }
     /// By evidence; none where nothing was fitted.
     const Explained* leader() const;
@@ -33,7 +34,6 @@ private:
     int most_promising_law() const;
     void confirm_single_effects();
     void try_other_laws(std::size_t tried);
-    void put_together();
     bool extend(std::size_t from, int most);
     bool claims(const Explained& explained) const;
     bool something_claims() const;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <functional>
 #include <memory>
 #include <string>
@@ -50,6 +51,7 @@ struct EffectNumber {
     double start = 0;        // neutral, or where a fit begins
     double prior_mean = 0, prior_sd = 1;
     bool logarithm = false;       // the fit's number is its logarithm
+    double least = -INFINITY;     // of the fit's number
     bool prior_at_start = false;  // its prior is centred where the fit begins: a direction, which a scan has found
 };
 

@@ -31,7 +31,7 @@ public:
 
     std::vector<EffectNumber> numbers(const BodyModel& model, const Problem&) const override {
         if (!has_links(model)) return {};
-        return {{.name = "torsion", .unit = "1"}};
+        return {{.name = "torsion", .unit = "1", .least = 0}};
     }
 
     bool enforce(const Eigen::VectorXd& values, Setting& setting) const override {
@@ -63,7 +63,7 @@ public:
 
     std::vector<EffectNumber> numbers(const BodyModel& model, const Problem&) const override {
         if (!has_links(model)) return {};
-        return {{.name = "shear", .unit = "1"}};
+        return {{.name = "shear", .unit = "1", .least = 0}};
     }
 
     bool enforce(const Eigen::VectorXd& values, Setting& setting) const override {

@@ -23,10 +23,11 @@ std::vector<Vec3> lattice_directions() {
 /// Points of the skin that a plane may push on: free, and away from the supports.
 std::vector<char> free_skin(const BodyModel& model) {
     const double away = 0.1 * model.size();
+    const double no_area = 1e-6 * model.skin_areas().maxCoeff();  // what rounding makes of the corners of faces
     std::vector<char> result(model.skin().rows());
     for (Eigen::Index i = 0; i < model.skin().rows(); ++i) {
         const double gap = (model.support_points().rowwise() - model.skin().row(i)).rowwise().norm().minCoeff();
-        result[i] = gap > away && model.skin_areas()[i] > 0;
+        result[i] = gap > away && model.skin_areas()[i] > no_area;
     }
     return result;
 }

@@ -27,7 +27,8 @@ public:
     }
 
     std::vector<EffectNumber> numbers(const BodyModel&, const Problem&) const override {
-        return {{.name = "c2", .unit = "1", .prior_sd = 3}, {.name = "c3", .unit = "1", .prior_sd = 30}};
+        return {{.name = "c2", .unit = "1", .prior_sd = 3, .least = 0},
+                {.name = "c3", .unit = "1", .prior_sd = 30, .least = 0}};
     }
 
     bool enforce(const Eigen::VectorXd& values, Setting& setting) const override {

@@ -43,7 +43,7 @@ public:
         const std::vector<double> times = telling_times(problem);
         if (times.size() < 2) return {};
         const double tau = std::log(std::sqrt(times.front() * times.back()));
-        return {{.name = "creep", .unit = "1", .prior_sd = 1},
+        return {{.name = "creep", .unit = "1", .prior_sd = 1, .least = 0},
                 {.name = "tau", .unit = "s", .start = tau, .prior_mean = tau, .prior_sd = 2, .logarithm = true}};
     }
 

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <mutex>
@@ -121,8 +122,11 @@ ReferenceBody::ReferenceBody(const mesh::VolumeMesh& mesh, const std::vector<mes
     i.skin = mesh.nodes(skin.nodes, Eigen::all);
     i.skin_areas = skin.weights;
     const double start = std::log(options.young.value_or(0.1));
-    // Young's modulus to a factor of twenty; nu = .45, from about .13 to .49.
-    i.parameters = {{"young", start, start, 3}, {"compressibility", std::log(0.1), std::log(0.1), 1, false}};
+    // Young's modulus to a factor of twenty. A ratio that is told is taken at its word; else nu = .45, from about .13
+    // to .49.
+    const double compressibility = std::log(1 - 2 * options.poisson.value_or(0.45));
+    i.parameters = {{"young", start, start, 3},
+                    {"compressibility", compressibility, compressibility, options.poisson ? 0.02 : 1, false}};
 }
 
 ReferenceBody::~ReferenceBody() = default;
@@ -167,7 +171,9 @@ const std::vector<StiffnessParameter>& ReferenceBody::parameters() const { retur
 double ReferenceBody::size() const { return impl_->size; }
 double ReferenceBody::young(const Setting& setting) const { return std::exp(setting.theta[ln_young]); }
 bool ReferenceBody::is_nonlinear(const Setting& setting) const {
-    return static_cast<fem::Law>(setting.law) != fem::Law::linear || setting.effects.plasticity;
+    const bool one_sided =
+        std::ranges::any_of(setting.effects.points, [](const auto& potential) { return potential->is_one_sided(); });
+    return static_cast<fem::Law>(setting.law) != fem::Law::linear || setting.effects.plasticity || one_sided;
 }
 const fem::HyperelasticBody& ReferenceBody::body() const { return impl_->body; }
 

@@ -7,8 +7,9 @@
 namespace palpate::identify {
 
 struct ReferenceBodyOptions {
-    double density = 1e-9;        // [tonne/mm^3]
-    std::optional<double> young;  // a first guess [MPa]
+    double density = 1e-9;               // [tonne/mm^3]
+    std::optional<double> young = {};    // a first guess [MPa]
+    std::optional<double> poisson = {};  // as it is told, not to be fitted; absent: it is
     fem::Dilatation dilatation = fem::Dilatation::mean;
 };
 

@@ -55,6 +55,7 @@ void write_fields(const fs::path& folder, const Forged& forged, const mesh::Volu
 
 std::vector<std::string> names_of(const std::vector<Hidden>& hidden) {
     std::vector<std::string> names;
+    names.reserve(hidden.size());
     for (const Hidden& one : hidden) names.push_back(one.effect.name);
     return names;
 }

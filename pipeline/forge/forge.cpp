@@ -17,6 +17,7 @@ constexpr double visible = 5;           // sigmas that an effect changes the rea
 
 std::vector<std::string> names_of(const std::vector<Wish>& wishes) {
     std::vector<std::string> names;
+    names.reserve(wishes.size());
     for (const Wish& wish : wishes) names.push_back(wish.effect);
     return names;
 }
@@ -105,6 +106,7 @@ private:
 
     std::vector<skeleton::Effect> effects() const {
         std::vector<skeleton::Effect> all;
+        all.reserve(forged_.hidden.size());
         for (const Hidden& hidden : forged_.hidden) all.push_back(hidden.effect);
         return all;
     }
@@ -122,6 +124,7 @@ private:
                                                 fmt::join(names_of(wishes_), ", "), failure.what()));
             }
             std::vector<char> failed;
+            failed.reserve(paths_.size());
             for (const Path& path : paths_) failed.push_back(path.empty());
             if (failed.front()) {
                 throw SolverFailure(fmt::format(

@@ -32,6 +32,7 @@ public:
         const identify::BodyModel& model = *specimen_.model;
         const auto tangent = model.tangent(unloaded_, specimen_.setting, {});
         std::vector<Eigen::VectorXd> steps;
+        steps.reserve(specimen_.contacts.size());
         for (const mesh::Contact& contact : specimen_.contacts) {
             steps.emplace_back(tangent->solve(model.contact_force(unloaded_, specimen_.setting, contact)));
         }
@@ -142,6 +143,7 @@ Plan make_plan(const Specimen& specimen, const ForgeOptions& options, const Rhyt
         }
     });
     std::vector<char> without;
+    without.reserve(plan.bare.size());
     for (const Path& path : plan.bare) without.push_back(path.empty());
     leave_out(plan, without);
     report(progress, "finding the loads", 1.0);

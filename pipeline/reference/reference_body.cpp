@@ -25,6 +25,7 @@ std::unique_ptr<identify::ReferenceBody> fill(const identify::MeasurementSet& se
     identify::ReferenceBodyOptions options;
     options.density = set.density.value_or(default_density * fem::tonne_per_mm3);
     if (set.material && set.material->young > 0) options.young = set.material->young;
+    if (set.material && !std::isnan(set.material->poisson)) options.poisson = set.material->poisson;
     return std::make_unique<identify::ReferenceBody>(mesh::curve_to(body.volume, body.repaired), set.supports,
                                                      set.markers, options);
 }

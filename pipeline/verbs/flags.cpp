@@ -41,7 +41,9 @@ void add_identify_flags(CLI::App* verb, CaseOverrides& say) {
 }
 
 void add_probing_flags(CLI::App* verb, CaseOverrides& say) {
-    verb->add_option("--probes", say.probes, "Number of loaded states")->check(CLI::Range(1, 10000))->group("Probing");
+    verb->add_option("--probes", say.probes, "Number of places that are touched")
+        ->check(CLI::Range(1, 10000))
+        ->group("Probing");
     verb->add_option("--noise", say.noise, "1 sigma of the readings [mm]")
         ->check(CLI::NonNegativeNumber)
         ->group("Probing");

@@ -63,13 +63,13 @@ public:
         return text;
     }
 
-    // The fit's number is a multiple of what would be felt, E / size: 0 is neutral, as the screen needs it.
+    // What a stout body feels is some E / size, a slender one feels far less: 0 is neutral, as the screen needs it.
     std::vector<identify::EffectNumber> numbers(const identify::BodyModel& model,
                                                 const identify::Problem&) const override {
         Eigen::VectorXd theta(std::ssize(model.parameters()));
         for (Eigen::Index p = 0; p < theta.size(); ++p) theta[p] = model.parameters()[p].start;
         const double felt = model.young({.law = 0, .theta = theta, .effects = {}}) / model.size();
-        return {{.name = "stiffness", .unit = "N/mm^3", .prior_sd = felt}};
+        return {{.name = "stiffness", .unit = "N/mm^3", .prior_sd = 0.1 * felt}};
     }
 
     bool enforce(const Eigen::VectorXd& values, identify::Setting& setting) const override {

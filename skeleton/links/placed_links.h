@@ -10,10 +10,11 @@ namespace palpate::skeleton {
 /// A model's links, with the effects in force that are in the material or in the links themselves. At stiffness
 /// (kE, kF, kT) a link's energy is
 ///   s (kE e_E + kF e_F + kT e_T + torsion kF e_T + shear kE e_S + kE L^2 sum_j W_j (w(lambda_j) / 3 + p(lambda_j)))
-/// with e_E, e_F, e_T as link_terms has them, e_S of Shear, and over its fibres of weights W_j w of the material
-/// effects (uniaxial) and p of yielding (plastic_terms). The factor of w is mu V = kE L^2 / 3: kE = E A / L, and E = 3
-/// mu as the material keeps its volume. s is the material's scale: the mean over the fibres in each slice of the link,
-/// whose softnesses add up. So all is linear in the stiffnesses, conservative, and the same after any rigid motion.
+/// with e_E, e_F, e_T as link_terms has them, e_S of Shear, and over the fibres, of weights W_j, w of the material
+/// effects at the link's middle (uniaxial) and p of yielding (plastic_terms). The factor of w is mu V = kE L^2 / 3 for
+/// kE = E A / L, and E = 3 mu as the material keeps its volume. s is the material's scale: the mean over the fibres in
+/// each slice of the link, whose softnesses add up. So all is linear in the stiffnesses, conservative, and the same
+/// after any rigid motion.
 class PlacedLinks {
 public:
     PlacedLinks(const Model& model, const fem::Effects& effects);

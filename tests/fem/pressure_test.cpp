@@ -2,7 +2,6 @@
 
 #include <Eigen/LU>
 #include <cmath>
-#include <numbers>
 
 #include "beam.h"
 #include "hollow.h"
@@ -11,16 +10,11 @@
 namespace palpate::fem {
 namespace {
 
-constexpr double pi = std::numbers::pi;
-
-std::vector<char> none_but_first(const mesh::VolumeMesh& mesh) {
+/// Held at one element.
+HyperelasticBody body_of(const mesh::VolumeMesh& mesh) {
     std::vector<char> held(mesh.nodes.rows(), 0);
     for (int k = 0; k < 10; ++k) held[mesh.tetrahedra(0, k)] = 1;
-    return held;
-}
-
-HyperelasticBody body_of(const mesh::VolumeMesh& mesh, Dilatation dilatation = Dilatation::mean) {
-    return {mesh, none_but_first(mesh), dilatation};
+    return {mesh, held};
 }
 
 TEST(Cavities, AreWhatIsEnclosed) {

@@ -5,8 +5,12 @@
 #include <Eigen/Geometry>
 #include <random>
 
+#include "skeleton/effects/anisotropy.h"
 #include "skeleton/effects/compliant_support.h"
 #include "skeleton/effects/gravity.h"
+#include "skeleton/effects/inclusion.h"
+#include "skeleton/effects/prestress.h"
+#include "skeleton/effects/stiffening.h"
 #include "skeleton/state.h"
 #include "small_body.h"
 
@@ -43,9 +47,15 @@ protected:
             setting_.effects.empty() ? Eigen::ArrayX<bool>(!held_) : Eigen::ArrayX<bool>::Constant(held_.size(), true);
     }
 
+    /// Of points, and in the material.
     static fem::Effects effects(const Vec3& g, double ln_k) {
+        const Mat3 stress = Vec3(0.01, -0.005, 0.004).asDiagonal();  // far from what would make the bar buckle
         return {.points = {std::make_shared<skeleton::Gravity>(g),
-                           std::make_shared<skeleton::CompliantSupport>(std::exp(ln_k))}};
+                           std::make_shared<skeleton::CompliantSupport>(std::exp(ln_k))},
+                .material = {std::make_shared<skeleton::Stiffening>(0.5, 2),
+                             std::make_shared<skeleton::Anisotropy>(std::vector<skeleton::Fibre>{{0.5, Vec3(1, 2, 0)}}),
+                             std::make_shared<skeleton::Inclusion>(skeleton::Inclusion::sphere(Vec3(24, 6, 4), 8, 2)),
+                             std::make_shared<skeleton::Prestress>(stress)}};
     }
 
     bool is_nonlinear() const { return model_->is_nonlinear(setting_); }
@@ -178,6 +188,31 @@ TEST_P(BodyModelLaws, ObservationIsTheDerivativeOfWhatIsObserved) {
     }
 }
 
+TEST_P(BodyModelLaws, SkinMotionIsTheDerivativeOfWhereTheSkinStands) {
+    const auto stand = [&](const Eigen::VectorXd& q) -> Eigen::VectorXd {
+        const Points skin = model_->skin_positions(q, setting_);
+        return Eigen::Map<const Eigen::VectorXd>(skin.data(), skin.size());
+    };
+    const Eigen::SparseMatrix<double> P = model_->skin_motion(q_, setting_);
+    ASSERT_EQ(P.rows(), model_->skin().size());
+    const Eigen::MatrixXd steps = random_steps(3, Eigen::ArrayX<bool>::Constant(held_.size(), true));
+    for (Eigen::Index c = 0; c < steps.cols(); ++c) {
+        const Eigen::VectorXd difference = along(stand, q_, steps.col(c));
+        EXPECT_LT((P * steps.col(c) - difference).norm(), 1e-7 * difference.norm()) << c;  // rounding over h
+    }
+}
+
+TEST_P(BodyModelLaws, TheSkinIsTheWholeSurfaceAndStandsAtRest) {
+    EXPECT_NEAR(model_->skin_areas().sum(), 4 * 400 + 2 * 100, 1e-9);
+    const Points at_rest = model_->skin_positions(model_->rest(setting_), setting_);
+    EXPECT_LT((at_rest - model_->skin()).norm(), 1e-12);
+}
+
+TEST_P(BodyModelLaws, WhatDoesNotYieldRemembersNothing) {
+    EXPECT_FALSE(model_->remember(q_, setting_, action_));
+    EXPECT_FALSE(model_->has_cavities());
+}
+
 TEST_P(BodyModelLaws, ContactForceAddsUpToTheForce) {
     for (const mesh::Contact& contact : action_.contacts) {
         const Eigen::VectorXd f = model_->contact_force(q_, setting_, contact);
@@ -264,6 +299,23 @@ TEST_P(BodyModelLaws, YoungFollowsTheParametersThatStiffen) {
 TEST_P(BodyModelLaws, NormalsPointOutwards) {
     EXPECT_LT((model_->normal_near(Vec3(20, 10, 5), 3) - Vec3::UnitY()).norm(), 1e-9);
     EXPECT_LT((model_->normal_near(Vec3(20, 5, 0), 3) + Vec3::UnitZ()).norm(), 1e-9);
+}
+
+TEST(PressureInACavity, ActsAsTheSameEffectDoesAndOnNothingAsAWhole) {
+    const SmallBody body = SmallBody::hollow();
+    const auto model = body.reference();
+    ASSERT_TRUE(model->has_cavities());
+    for (const int law : {0, 1, 2}) {
+        Setting known = bare_truth(*model, law).setting(), effect = known;
+        effect.effects.pressure = 0.01;
+        const Action under_pressure{.contacts = {}, .pressure = 0.01};
+        const Eigen::VectorXd q = model->equilibrium(known, under_pressure, nullptr);
+        EXPECT_GT(q.norm(), 0.01);
+        const Eigen::VectorXd forces = model->residual(q, known, under_pressure) - model->residual(q, known, {});
+        const Eigen::VectorXd by_effect = model->residual(q, effect, {}) - model->residual(q, known, {});
+        EXPECT_LT((forces - by_effect).norm(), 1e-12 * forces.norm());
+        EXPECT_LT(forces.reshaped(3, forces.size() / 3).rowwise().sum().norm(), 1e-10 * forces.norm());  // rounding
+    }
 }
 
 std::vector<Case> all_cases() {

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/QR>
+
 #include <cmath>
 
 #include "identify/effects/catalogue.h"
@@ -102,7 +104,7 @@ TEST_P(Planes, ThatTheBodyDoesNotReachDoNothing) {
     }
     EXPECT_GT(reached, 10);
     EXPECT_GT(clear, 10);
-    EXPECT_EQ(pushed_back(0).norm(), 0);  // at rest
+    EXPECT_LT(pushed_back(0).norm(), 1e-12);  // at rest, but for rounding
 }
 
 TEST_P(Planes, PushBackByForcesThatAreComplementaryToTheGaps) {

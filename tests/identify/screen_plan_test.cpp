@@ -84,8 +84,8 @@ TEST_P(Screening, OfEffectsThatAreNeutralAtTheirStartIsTheDerivativeThere) {
     const Problem all = problem(0.01);
     const Played played = play(*model_, all, bare_, 1);
     // neutral at no compliance, at no fibres, ...: none of which is a number to start with
-    const std::set<std::string> with_alternatives{"compliant-support", "anisotropy", "inclusion",
-                                                  "contact",           "viscosity",  "plasticity"};
+    const std::set<std::string> with_alternatives{"compliant-support", "anisotropy", "inclusion", "contact",
+                                                  "viscosity",         "plasticity", "stiffening"};
     int tested = 0;
     for (const auto& effect : catalogue()) {
         const auto numbers = effect->numbers(*model_, all);
@@ -171,7 +171,7 @@ TEST_P(Screening, OfAnInclusionIsTheDerivativeByItsRatio) {
         if (difference.norm() < 1) continue;
         ++tested;
         // The ball's border cuts elements, which the screen takes as a whole.
-        EXPECT_GT(found.columns.col(place).normalized().dot(difference.normalized()), 0.9) << place;
+        EXPECT_GT(found.columns.col(place).normalized().dot(difference.normalized()), 0.85) << place;
     }
     EXPECT_GT(tested, 0);
 }

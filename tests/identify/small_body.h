@@ -116,6 +116,17 @@ struct SmallBody {
         return states;
     }
 
+    /// Pushes, each read under its load and after it was taken off again.
+    static std::vector<LoadState> releases(double force = 0.1, int count = 4) {
+        std::vector<LoadState> states{LoadState{.probe = 0}};
+        for (const LoadState& state : probes(force, count)) {
+            if (state.contacts.empty()) continue;
+            states.push_back(state);
+            states.push_back({.probe = state.probe, .time = state.time + 1});
+        }
+        return states;
+    }
+
     /// States with a reading of every marker, each at rest.
     MeasurementSet set(std::vector<LoadState> states) const {
         MeasurementSet set;
@@ -157,6 +168,7 @@ inline Eigen::VectorXd example(const Effect& effect, const std::vector<EffectNum
         {"pressure", {0.01}},
         {"prestress", {0.01, -0.006, 0.004, 0.006, -0.004, 0.002}},
         {"viscosity", {0.5, std::log(3)}},
+        {"plasticity", {std::log(0.02), std::log(0.3)}},
         {"torsion", {0.3}},
         {"shear", {0.3}}};
     const auto found = chosen.find(effect.name());

@@ -12,7 +12,7 @@
 namespace palpate::pipeline {
 namespace {
 
-constexpr double hidden = 2e-3;  // [N/mm^3]: halves what the far end moves
+constexpr double hidden = 1e-5;  // [N/mm^3]: next to 3 E I / L^3 over the beam's skin, it halves what the end moves
 
 /// The beam's own readings, embedded in something soft.
 identify::MeasurementSet embedded_beam() {
@@ -52,13 +52,12 @@ TEST(OwnEffect, IsNamedOnDataThatHideIt) {
     EXPECT_NEAR(told.effect.parameters[0].value, hidden, 0.1 * hidden);
 }
 
-TEST(OwnEffect, IsMissedAndNotMistakenWhereItIsLeftOut) {
+TEST(OwnEffect, IsNotMistakenForAnotherWhereItIsLeftOut) {
     identify::DiagnoseOptions without;
     without.without = {"embedding"};
     const identify::MeasurementSet set = embedded_beam();
     const Reference reference = make_reference(set, 14);
-    const identify::Diagnosis found = identify::diagnose(*reference.body, set, without);
-    EXPECT_NE(found.verdict, identify::Verdict::adequate);
+    EXPECT_TRUE(identify::diagnose(*reference.body, set, without).explanation.empty());
 }
 
 }  // namespace

@@ -12,7 +12,7 @@
 #include "mesh/io/atomic_file.h"
 #include "mesh/read_surface.h"
 #include "pipeline/commands/common.h"
-#include "skeleton/model_io.h"
+#include "skeleton/effects/effect.h"
 #include "tests/temporary_folder.h"
 
 namespace palpate::pipeline {
@@ -189,6 +189,38 @@ INSTANTIATE_TEST_SUITE_P(Probe, EachEffect,
                                            "force-gain", "outliers"),
                          effect_name);
 
+/// Pressure acts in a closed shell within the body.
+TEST_F(Probe, PressureNeedsACavityAndFindsIt) {
+    mesh::Surface hollow = mesh::make_box({0, 0, 0}, {60, 20, 20}, {6, 2, 2});
+    mesh::Surface cavity = mesh::make_box({24, 6, 6}, {48, 14, 14}, {3, 1, 1});
+    const auto outer = static_cast<int>(hollow.vertices.rows());
+    const Eigen::Index triangles = hollow.triangles.rows();
+    hollow.vertices.conservativeResize(outer + cavity.vertices.rows(), 3);
+    hollow.vertices.bottomRows(cavity.vertices.rows()) = cavity.vertices;
+    hollow.triangles.conservativeResize(triangles + cavity.triangles.rows(), 3);
+    hollow.triangles.bottomRows(cavity.triangles.rows()) = cavity.triangles.rowwise().reverse().array() + outer;
+    mesh::write_surface(scratch_ / "bar.stl", hollow);
+    hide({"pressure"});
+    EXPECT_GE(truth()["change_rms_mm"].get<double>(), 5 * truth()["noise_mm"].get<double>());
+    EXPECT_EQ(truth()["effects"][0]["parameters"]["pressure"]["unit"], "MPa");
+}
+
+/// An effect that somebody made known is hidden like any other; the one number that is not told is its strength.
+TEST_F(Probe, HidesAnEffectOfAUsersOwn) {
+    skeleton::register_effect(
+        {"heaviness",
+         {{"g", "mm/s^2", skeleton::Range::positive}, {"tilt", "1"}},
+         [](const skeleton::EffectNumbers& numbers) {
+             return skeleton::make_physics(
+                 {"gravity", {{"gx", numbers["tilt"], ""}, {"gy", 0, ""}, {"gz", -numbers["g"], ""}}});
+         }});
+    hide({"heaviness:tilt=0"});
+    EXPECT_GE(truth()["change_rms_mm"].get<double>(), 5 * truth()["noise_mm"].get<double>());
+    EXPECT_GT(truth()["effects"][0]["parameters"]["g"]["value"], 0);
+    EXPECT_TRUE(says(message({.hide = {"heaviness"}}), {"heaviness", "missing"}));
+    EXPECT_TRUE(says(message({.hide = {"heaviness:tilt=0,tall=3"}}), {"tall", "tilt"}));
+}
+
 TEST_F(Probe, ToldNumbersAreTaken) {
     hide({"gravity:gz=-500", "inclusion:ratio=5,radius=8"});
     const json effects = truth()["effects"];
@@ -287,6 +319,14 @@ TEST_F(Probe, RefusesWhatCannotBeOnThisBody) {
     EXPECT_FALSE(fs::exists(scratch_ / "refused")) << "something was half-written";
 }
 
+/// A body that does not bear what is hidden in it makes no set.
+TEST_F(Probe, TellsThatTheBodyDoesNotBearWhatIsHidden) {
+    const std::string message = message_of<SolverFailure>(
+        [&] { commands::probe(options({.hide = {"prestress:sxx=-5,syy=-5"}}, "refused"), {}); });
+    EXPECT_TRUE(says(message, {"prestress", "equilibrium"}));
+    EXPECT_FALSE(fs::exists(scratch_ / "refused"));
+}
+
 TEST_F(Probe, RefusesLinearElements) {
     auto how = options({}, "refused");
     how.say.linear_elements = true;
@@ -307,7 +347,7 @@ TEST_F(Probe, ASkeletonCanBeTheTruth) {
         return identify::read_measurement_set(scratch_ / name);
     };
     for (const char* effect : {"gravity", "torsion", "anisotropy"}) {
-        const MeasurementSet hidden = twin({.hide = {effect}}, "hidden");
+        const MeasurementSet hidden = twin({.hide = {effect}}, "hidden");  // on its skin
         const json truth = this->truth("hidden");
         EXPECT_EQ(truth["body"], "skeleton");
         EXPECT_TRUE(truth["material"].is_null());
@@ -318,6 +358,8 @@ TEST_F(Probe, ASkeletonCanBeTheTruth) {
     }
     EXPECT_TRUE(says(message_of<InvalidInput>([&] { twin({.hide = {"volume"}}, "refused"); }), {"volume", "links"}));
     EXPECT_TRUE(says(message_of<InvalidInput>([&] { twin({.law = fem::Law::svk}, "refused"); }), {"--law"}));
+    EXPECT_TRUE(says(message_of<InvalidInput>([&] { twin({.hide = {"contact"}, .law = fem::Law::linear}, "refused"); }),
+                     {"contact", "--linear"}));
 }
 
 }  // namespace

@@ -40,20 +40,31 @@ Load couple(const Model& model, double moment) {
 
 // --- Fibres -------------------------------------------------------------------------------------------------------
 
-TEST(FibreOffsets, HaveTheSecondMomentsOfTheSection) {
+TEST(FibreOffsets, HaveTheMomentsOfARoundSection) {
     Link link;
     link.stiffness = stiffness;
-    EXPECT_NEAR(radius_of_gyration(link), 2, 1e-15);  // of a circle of 4 mm: I / A = r^2 / 4
+    EXPECT_NEAR(radius_of_gyration(link), 2, 1e-15);  // of a circle of radius R = 4 mm: I / A = R^2 / 4
     for (const Vec3& n : {Vec3(1, 0, 0), Vec3(1, 2, -2), Vec3(-1, 1, 1)}) {
-        const Vec3 direction = n.normalized();
+        const Vec3 direction = n.normalized(), across = direction.unitOrthogonal();
+        const FibreOffsets offsets = fibre_offsets(link, direction);
         Vec3 first = Vec3::Zero();
         Mat3 second = Mat3::Zero();
-        for (const Vec3& r : fibre_offsets(link, direction)) {
-            first += r / fibres_per_link;
-            second += r * r.transpose() / fibres_per_link;
+        double area = 0;
+        for (int j = 0; j < fibres_per_link; ++j) {
+            area += fibre_weights[j];
+            first += fibre_weights[j] * offsets[j];
+            second += fibre_weights[j] * offsets[j] * offsets[j].transpose();
         }
+        EXPECT_EQ(area, 1);
         EXPECT_LT(first.norm(), 1e-15);
         EXPECT_LT((second - 4 * (Mat3::Identity() - direction * direction.transpose())).norm(), 1e-14);
+        // The mean of y^4 over a circle is R^4 / 8, whichever way y goes.
+        for (const double angle : {0.0, 0.4, 1.1}) {
+            const Vec3 y = rotation(angle * direction) * across;
+            double fourth = 0;
+            for (int j = 0; j < fibres_per_link; ++j) fourth += fibre_weights[j] * std::pow(y.dot(offsets[j]), 4);
+            EXPECT_NEAR(fourth, 256 / 8, 1e-12);
+        }
     }
 }
 
@@ -98,22 +109,23 @@ TEST(StiffeningBar, IsThePlainOneInSmallStrain) {
 }
 
 TEST(StiffeningBar, StiffensInBending) {
-    // Ends turned by +-phi/2: the fibres at +-r across are 1 -+ 2 r/L sin(phi/2) as long, the two others as they were.
-    const double c2 = 0.3, c3 = 1.5, phi = 0.8, r = 2 * std::sqrt(2.0), L = 10;
+    // Ends turned by +-phi/2: a fibre at y across is 1 - 2 y/L sin(phi/2) as long as it was.
+    const double c2 = 0.3, c3 = 1.5, phi = 0.8, L = 10;
     const fem::Effects effects = with_material(std::make_shared<Stiffening>(c2, c3));
     const Model link = make_bar(1);
     State bent = rest_state(link);
     bent.R[0] = rotation({0, 0, -phi / 2});
     bent.R[1] = rotation({0, 0, phi / 2});
+    const FibreOffsets offsets = fibre_offsets(link.links[0], Vec3::UnitX());
     double w = 0;
-    for (const double side : {1.0, -1.0}) {
-        const double lambda = 1 + side * 2 * r / L * std::sin(phi / 2);
+    for (int j = 0; j < fibres_per_link; ++j) {
+        const double lambda = 1 - 2 * offsets[j].y() / L * std::sin(phi / 2);
         const double x = lambda * lambda + 2 / lambda - 3;
-        w += (c2 + c3 * x) * x * x;
+        w += fibre_weights[j] * (c2 + c3 * x) * x * x;
     }
     const Vec3 stiffened = PlacedLinks(link, effects).terms(0, bent, false).energy;
     const Vec3 plain = PlacedLinks(link, {}).terms(0, bent, false).energy;
-    EXPECT_NEAR(stiffened[0] - plain[0], L * L / 3 * w / 4, 1e-12);
+    EXPECT_NEAR(stiffened[0] - plain[0], L * L / 3 * w, 1e-12);
     EXPECT_EQ(stiffened[1], plain[1]);
 
     // So twice the couple turns the end by less than twice as much; without the effect it does exactly.
@@ -176,25 +188,60 @@ TEST(PrestressedBar, PullsItsClampsAndMovesNothingBetween) {
 
 // --- Inclusion ----------------------------------------------------------------------------------------------------
 
+// A part with a sharp border.
+class Part : public fem::MaterialEffect {
+public:
+    Part(std::function<bool(const Vec3&)> holds, double ratio) : holds_(std::move(holds)), ratio_(ratio) {}
+    double stiffness(const Vec3& X) const override { return holds_(X) ? ratio_ : 1; }
+    bool is_scale() const override { return true; }
+
+private:
+    std::function<bool(const Vec3&)> holds_;
+    double ratio_;
+};
+
 TEST(InclusionInLinks, IsScaledStiffness) {
-    const Model model = make_lattice({4, 2, 2});
-    const Inclusion inclusion = Inclusion::sphere({20, 5, 5}, 9, 6);
-    Eigen::VectorXd k = stiffness_vector(model);
-    double most = 1;
-    for (size_t l = 0; l < model.links.size(); ++l) {
-        const Vec3 middle = 0.5 * (model.spheres[model.links[l].a].center + model.spheres[model.links[l].b].center);
-        k.segment<3>(3 * l) *= inclusion.stiffness(middle);
-        most = std::max(most, inclusion.stiffness(middle));
-    }
-    ASSERT_EQ(most, 6);
-    const Load load = force_at(model, 3, {1, 2, -3});
+    // Of the second of three links.
+    const Model bar = make_bar();
+    Eigen::VectorXd k = stiffness_vector(bar);
+    k.segment<3>(3) *= 6;
+    const auto part = std::make_shared<Part>([](const Vec3& X) { return X.x() > 10 && X.x() < 20; }, 6);
+    const Load load = force_at(bar, 3, {0.5, 0.1, -0.1});
     for (const Law law : {Law::linear, Law::large_rotation}) {
-        const Model tested = with_law(model, law);
-        const fem::Effects effects = with_material(std::make_shared<Inclusion>(inclusion));
+        const Model tested = with_law(bar, law);
         const Eigen::VectorXd scaled = StaticsSolver(tested).solve(k, load, {1e-12}).step;
-        // Forces known to 1e-12 of 4 N, over stiffnesses of 1 N/mm.
-        EXPECT_LT((equilibrium_of(tested, effects, load).step - scaled).norm(), 1e-9);
+        // Forces known to 1e-12 of 0.5 N, over the softness of a chain.
+        EXPECT_LT((equilibrium_of(tested, with_material(part), load).step - scaled).norm(), 1e-9);
     }
+}
+
+TEST(InclusionInLinks, ScalesAllThatBelongsToALink) {
+    const Model model = make_lattice({4, 2, 2});
+    const fem::Effects effects{.material = {std::make_shared<Stiffening>(0.5, 1)}, .torsion = 0.3, .shear = 0.2};
+    fem::Effects scaled = effects;
+    scaled.material.push_back(std::make_shared<Inclusion>(Inclusion::sphere({0, 0, 0}, 1e3, 6)));
+    Load load = force_at(model, 3, {1, 2, -3});
+    const Eigen::VectorXd step = equilibrium_of(model, effects, load).step;
+    load.forces[0].force *= 6;
+    EXPECT_LT((equilibrium_of(model, scaled, load).step - step).norm(), 1e-9);
+}
+
+TEST(InclusionInLinks, SlicesOfALinkGiveWayOneAfterAnother) {
+    // Half of a link five times as stiff: its softness is 1/2 + 1/2 / 5.
+    const Model bar = with_law(make_bar(1), Law::linear);
+    const Load load = force_at(bar, 1, {1, 0, 0});
+    const auto part = std::make_shared<Part>([](const Vec3& X) { return X.x() > 2.5 && X.x() < 7.5; }, 5);
+    const double plain = equilibrium_of(bar, {}, load).step[6];
+    EXPECT_NEAR(equilibrium_of(bar, with_material(part), load).step[6], plain * 0.6, 1e-12);
+}
+
+TEST(InclusionInLinks, CountsForWhatItFillsOfASection) {
+    // Three of the six fibres round the axis, an eighth each, ten times as stiff.
+    const Model bar = with_law(make_bar(1), Law::linear);
+    const Load load = force_at(bar, 1, {1, 0, 0});
+    const auto part = std::make_shared<Part>([](const Vec3& X) { return X.y() > 0.1; }, 10);
+    const double plain = equilibrium_of(bar, {}, load).step[6];
+    EXPECT_NEAR(equilibrium_of(bar, with_material(part), load).step[6], plain / (0.625 + 0.375 * 10), 1e-12);
 }
 
 }  // namespace

@@ -43,6 +43,7 @@ std::vector<Draft> prestress(Drawing& drawing, const Told& told) {
     const auto at = [=](double x) {
         const double s = is_told ? 0 : x;
         std::vector<std::pair<std::string, double>> values;
+        values.reserve(names.size());
         for (int i = 0; i < 3; ++i) values.emplace_back(names[i], s * normal[i]);
         for (int i = 0; i < 3; ++i) values.emplace_back(names[i + 3], 0.5 * s * shear[i]);
         return told.effect(values);
@@ -59,10 +60,10 @@ std::vector<Draft> volume(Drawing& drawing, const Told& told) {
             "hide another effect, or probe a mesh");
     }
     const double now = 1 - 2 * specimen.material->poisson;
-    const bool stiffer = drawing.random.uniform() < 0.5;
+    const bool stiffer = drawing.random.uniform() < 0.5 || now > 0.3;
     const auto at = [=](double x) {
-        // to nu = 0.499 or to 0, at most
-        const double then = std::pow(now, 1 - x) * (stiffer ? std::pow(0.002, x) : 1);
+        const double furthest = stiffer ? 0.002 : 0.6;  // nu = 0.499, 0.2
+        const double then = std::pow(now, 1 - x) * std::pow(furthest, x);
         return told.effect({{"poisson", 0.5 * (1 - then)}});
     };
     return {{.at = at, .start = 0.5, .most = 1, .is_told = told.has("poisson")}};

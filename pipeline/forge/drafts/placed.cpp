@@ -86,9 +86,12 @@ Side side_of(const Drawing& drawing, const Vec3& direction) {
 /// The sides that the probes push the body to most, of 26 round it.
 std::vector<Side> sides_in_the_way(const Drawing& drawing, int count) {
     std::vector<Side> sides;
-    for (int i = 0; i < 27; ++i) {
-        const Vec3 direction(i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1);
-        if (!direction.isZero(0)) sides.push_back(side_of(drawing, direction));
+    for (const int z : {-1, 0, 1}) {
+        for (const int y : {-1, 0, 1}) {
+            for (const int x : {-1, 0, 1}) {
+                if (x != 0 || y != 0 || z != 0) sides.push_back(side_of(drawing, Vec3(x, y, z)));
+            }
+        }
     }
     std::ranges::stable_sort(sides, std::greater<>(), &Side::pushed);
     sides.resize(static_cast<std::size_t>(count));
@@ -98,6 +101,10 @@ std::vector<Side> sides_in_the_way(const Drawing& drawing, int count) {
 std::vector<Draft> contact(Drawing& drawing, const Told& told) {
     const Specimen& specimen = drawing.specimen;
     if (specimen.model->skin().rows() == 0) throw InvalidInput("effect 'contact' needs a skin, the model has none");
+    if (specimen.is_skeleton() && specimen.in_small_strain()) {
+        throw InvalidInput(
+            "effect 'contact' is one-sided, which a skeleton's linear law cannot be; leave --linear out");
+    }
     // One of the six sides that are pushed to most; then the others.
     std::vector<Side> sides = sides_in_the_way(drawing, 6);
     const auto first = static_cast<std::size_t>(drawing.random.uniform() * static_cast<double>(sides.size()));
