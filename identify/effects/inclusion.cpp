@@ -34,6 +34,7 @@ public:
         const Eigen::RowVector3d low = model.pieces().colwise().minCoeff(), high = model.pieces().colwise().maxCoeff();
         const Eigen::RowVector3d centre = 0.5 * (low + high), sd = (high - low) / 3.5;
         std::vector<EffectNumber> result;
+        result.reserve(5);
         for (int a = 0; a < 3; ++a) {
             result.push_back({.name = std::array{"cx", "cy", "cz"}[a],
                               .unit = "mm",

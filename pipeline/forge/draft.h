@@ -16,6 +16,7 @@ struct Draft {
     std::function<skeleton::Effect(double strength)> at;  // stronger with rising strength
     double start = 1, most = 1e9;                         // of strength; within [0, most] it is sensible
     double slope = 1;                                     // about d ln change / d ln strength
+    double growth = 8;                                    // most that a trial may be stronger than the one before
     bool is_told = false;                                 // its strength too: at() gives the same whatever is asked
     bool is_local = false;                                // it may be felt by some probes only
     bool acts_at_rest = false;                            // on the untouched body, in proportion to its strength

@@ -39,7 +39,7 @@ public:
           wishes_(read_wishes(options.hide)),
           sequence_(sequence_of(options, wishes_)),
           seed_(seed),
-          play_{sequence_.continuous, threads},
+          play_{.continuous = sequence_.continuous, .threads = threads},
           progress_(progress) {
         std::erase_if(wishes_, [](const Wish& wish) { return wish.effect == "none"; });
         std::ranges::for_each(wishes_, check_wish);
@@ -115,10 +115,13 @@ private:
     void play_together() {
         constexpr int attempts = 4;
         world_ = world_of(specimen_, effects());
+        // What yields gives way for good: to seek long is in vain.
+        PlayOptions options = play_;
+        options.is_patient = !world_.setting.effects.plasticity;
         for (int attempt = 0;; ++attempt) {
             try {
                 // From the bare paths, not from trials: told again, the same effects give the same digits.
-                paths_ = play(specimen_, world_, plan_.courses, play_, &plan_.bare);
+                paths_ = play(specimen_, world_, plan_.courses, options, &plan_.bare);
             } catch (const SolverFailure& failure) {
                 throw SolverFailure(fmt::format("with {} in it the body does not bear itself: {}",
                                                 fmt::join(names_of(wishes_), ", "), failure.what()));

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "pipeline/case/case.h"
-#include "pipeline/forge/strength.h"
+#include "pipeline/forge/hide.h"
 
 namespace palpate::pipeline {
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 
 #include "identify/parallel.h"
@@ -29,7 +30,8 @@ struct Life {
 /// Finds equilibria in one world.
 class Statics {
 public:
-    Statics(const Specimen& specimen, const World& world) : model_(*specimen.model), world_(world) {
+    Statics(const Specimen& specimen, const World& world, bool is_patient)
+        : model_(*specimen.model), world_(world), is_patient_(is_patient) {
         rest_ = model_.rest(world.setting);
         // One-sided contact is in force as it stands, whatever the law.
         const bool one_sided =
@@ -55,6 +57,7 @@ public:
             try {
                 return model_.equilibrium(setting, action, near);
             } catch (const SolverFailure&) {  // too far off: from rest, load by load
+                if (!is_patient_) throw;
             }
         }
         return model_.equilibrium(setting, action, nullptr);
@@ -93,6 +96,7 @@ private:
 
     const identify::BodyModel& model_;
     const World& world_;
+    const bool is_patient_;
     Eigen::VectorXd rest_;
     std::shared_ptr<const identify::Tangent> linear_;  // one factorisation serves all loads; empty: not linear
 };
@@ -127,13 +131,16 @@ World world_of(const Specimen& specimen, const std::vector<skeleton::Effect>& ef
 
 std::vector<Path> play(const Specimen& specimen, const World& world, const std::vector<Course>& courses,
                        const PlayOptions& options, const std::vector<Path>* near) {
-    const Statics statics(specimen, world);
+    const Statics statics(specimen, world, options.is_patient);
     std::vector<Path> paths(courses.size());
     Life life;
+    std::atomic<int> failures = 0;
     const bool in_order = options.continuous && world.setting.effects.plasticity;
     identify::for_each_in_parallel(static_cast<int>(courses.size()), in_order ? 1 : options.threads, [&](int c) {
+        if (failures > options.most_failures) return;
         Life fresh;
         paths[c] = statics.path(courses[c], in_order ? life : fresh, near ? &(*near)[c] : nullptr);
+        if (paths[c].empty()) ++failures;
     });
     return paths;
 }

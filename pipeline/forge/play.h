@@ -1,5 +1,6 @@
 #pragma once
 
+#include <limits>
 #include <vector>
 
 #include "pipeline/forge/course.h"
@@ -34,6 +35,9 @@ using Path = std::vector<Eigen::VectorXd>;
 struct PlayOptions {
     bool continuous = false;  // one body goes through all courses, in order; else each finds it as new
     int threads = 1;          // changes no number
+    bool is_patient = true;   // where no equilibrium is found next to `near` it is sought from rest, load by load; it
+                              // takes long to learn that there is none
+    int most_failures = std::numeric_limits<int>::max();  // courses without equilibrium, after which it is given up
 };
 
 /// Plays courses in a world. `near`: paths of the same courses in a similar world, where the search for equilibria

@@ -1,9 +1,9 @@
 #pragma once
 
-#include <optional>
 #include <vector>
 
-#include "pipeline/forge/draft.h"
+#include "pipeline/forge/specimen.h"
+#include "skeleton/effects/effect.h"
 
 namespace palpate::pipeline {
 
@@ -19,26 +19,10 @@ struct Strength {
 /// `bare`, `hidden`: what is read, a row of the courses after the other; rows that are NaN do not count.
 Strength strength_of(const Specimen& specimen, const std::vector<Points>& bare, const std::vector<Points>& hidden);
 
+/// rms over all coordinates [mm].
+double rms(const std::vector<Points>& readings);
+
 /// What outliers add to the readings' mean square [mm^2]; none by other effects.
 double outlier_variance(const skeleton::Effect& effect, double noise);
-
-/// How much an effect is to change the readings: about a share of the rms displacement, at least 5 sigma.
-struct Target {
-    double noise = 0;  // 1 sigma [mm]
-    double share = 0.2;
-};
-
-struct Hidden {
-    skeleton::Effect effect;
-    bool is_told = false;  // its strength was
-    Strength strength;     // alone, over all courses
-};
-
-/// Gives an effect its strength: told, or sought until it changes the readings by the target. It is played alone, on
-/// the first few probes, then on all. Drafts are tried in turn until 3 sigma are beyond a common stiffness, which
-/// nobody could tell from another material. Where it cannot be made that strong it is as strong as is sensible.
-/// @throws InvalidInput for impossible numbers, SolverFailure when the body bears it at no strength.
-Hidden hide(const Specimen& specimen, const Plan& plan, const std::vector<Draft>& drafts, const Target& target,
-            const PlayOptions& options);
 
 }  // namespace palpate::pipeline

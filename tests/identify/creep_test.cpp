@@ -4,6 +4,9 @@
 
 #include <cmath>
 
+#include "identify/effects/catalogue.h"
+#include "small_body.h"
+
 // What an elastic body has to bear to move as one that creeps, against Boltzmann's superposition written out.
 
 namespace palpate::identify {
@@ -80,6 +83,22 @@ TEST(CreptLoad, OfASetBeginsAnewWithEachProbe) {
     EXPECT_LT((force_at(elastic.states[1].contacts, push) - (J(10) - J(7)) * push.force).norm(), rounding);
     EXPECT_EQ(force_at(elastic.states[2].contacts, push).norm(), 0);
     EXPECT_LT((force_at(elastic.states[2].contacts, other) - J(5) * other.force).norm(), rounding);
+}
+
+TEST(CreepingBody, MovesAsAnElasticOneUnderTheLoadsThatItAmountsTo) {
+    const SmallBody body;
+    const auto model = body.reference();
+    const Explanation bare = bare_truth(*model, 2);
+    const MeasurementSet set = body.set(SmallBody::dwells(0.03, 3));
+    const MeasurementSet creeping = make_twin(
+        *model, set, with(bare, find_effect("viscosity"), Eigen::Vector2d(creep.creep, std::log(creep.tau))), 0);
+    const MeasurementSet elastic = make_twin(*model, as_elastic(set, creep), bare, 0);
+    for (std::size_t s = 0; s < set.states.size(); ++s) {
+        for (std::size_t r = 0; r < set.states[s].readings.size(); ++r) {
+            // two equilibria, each to 1e-7 of its load
+            EXPECT_LT((creeping.states[s].readings[r].position - elastic.states[s].readings[r].position).norm(), 1e-5);
+        }
+    }
 }
 
 }  // namespace

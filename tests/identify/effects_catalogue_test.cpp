@@ -144,6 +144,20 @@ TEST_P(EveryEffect, OfABodyIsWhatAModelFilePlays) {
     EXPECT_LT((force - model_->residual(bent, file, push)).norm(), 1e-12 * (force.norm() + without));  // rounding
 }
 
+TEST_P(EveryEffect, OfABodyComesToNumbersThatAModelFileTakes) {
+    // A fit leads numbers anywhere down to their least, and far from where their priors have them; with a ratio of
+    // Poisson's below -0.9 no body plays.
+    const auto numbers = effect().numbers(*model_, problem_);
+    if (!effect().is_of_body()) return;
+    for (const double far : {-1.5, -0.5, 0.5, 1.5}) {
+        Eigen::VectorXd values = example(effect(), numbers);
+        for (Eigen::Index j = 0; j < values.size(); ++j) {
+            values[j] = std::max(values[j] + far * numbers[j].prior_sd, numbers[j].least);
+        }
+        EXPECT_NO_THROW(skeleton::make_physics(effect().told(numbers, values))) << far;
+    }
+}
+
 TEST_P(EveryEffect, OfTheMeasurementIsTakenOutOfASet) {
     // Readings with the fault in, corrected, are readings without it.
     if (effect().is_of_body()) return;

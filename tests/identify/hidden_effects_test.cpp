@@ -99,7 +99,7 @@ class DeclaredRatio : public Diagnosed {
 protected:
     /// Readings of a body of nu = 0.45, in a set that declares another.
     Diagnosis diagnosed(double declared) const {
-        MeasurementSet set = make_twin(*model_, body_.set(SmallBody::probes(0.1)), truth(), sigma);
+        MeasurementSet set = make_twin(*model_, body_.set(SmallBody::probes()), truth(), sigma);
         set.material = MaterialGuess{.poisson = declared};
         DiagnoseOptions options;
         options.law = neo_hooke;
@@ -116,6 +116,13 @@ TEST_F(DeclaredRatio, ThatIsRightOrMissingLacksNothing) {
         EXPECT_EQ(found.verdict, Verdict::adequate) << declared;
         EXPECT_THAT(found.explanation, IsEmpty());
     }
+}
+
+TEST_F(DeclaredRatio, ThatTheReadingsContradictIsNamed) {
+    const Diagnosis found = diagnosed(0.2);
+    EXPECT_EQ(found.verdict, Verdict::missing_effect);
+    ASSERT_THAT(found.explanation, ElementsAre("volume"));
+    EXPECT_NEAR(told(found.ranking.front(), "poisson"), 0.45, 3 * found.ranking.front().told.sd[0]);
 }
 
 TEST_F(DeclaredRatio, IsNoCandidateWhereNoneIsDeclared) {

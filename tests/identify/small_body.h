@@ -32,6 +32,7 @@ struct SmallBody {
         }
         for (const auto& [y, z] : {std::pair{2, 2}, {8, 3}, {3, 8}, {7, 7}}) at.emplace_back(40, y, z);
         std::vector<Marker> markers;
+        markers.reserve(at.size());
         for (const Vec3& x : at) markers.push_back({static_cast<int>(markers.size()), x, {}});
         return markers;
     }

@@ -31,6 +31,7 @@ protected:
     }
     static std::vector<int> lives(const Problem& problem) {
         std::vector<int> before;
+        before.reserve(problem.actions.size());
         for (int k = 0; k < static_cast<int>(problem.actions.size()); ++k) before.push_back(problem.before(k));
         return before;
     }

@@ -63,7 +63,7 @@ TEST(FibreOffsets, HaveTheMomentsOfARoundSection) {
             const Vec3 y = rotation(angle * direction) * across;
             double fourth = 0;
             for (int j = 0; j < fibres_per_link; ++j) fourth += fibre_weights[j] * std::pow(y.dot(offsets[j]), 4);
-            EXPECT_NEAR(fourth, 256 / 8, 1e-12);
+            EXPECT_NEAR(fourth, 32, 1e-12);
         }
     }
 }

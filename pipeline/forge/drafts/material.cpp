@@ -41,9 +41,9 @@ std::vector<Draft> viscosity(Drawing& drawing, const Told& told) {
 }
 
 std::vector<Draft> plasticity(Drawing&, const Told& told) {
-    const auto at = [=](double x) { return told.effect({{"yield", 0.1 / x}, {"hardening", 0.2}}); };
-    // Nothing below the yield point, much above it.
-    return {{.at = at, .most = 30, .slope = 6, .is_told = told.has("yield")}};
+    const auto at = [=](double x) { return told.effect({{"yield", 0.3 / x}, {"hardening", 0.3}}); };
+    // Nothing below the yield point, much above it, and soon no equilibrium.
+    return {{.at = at, .most = 100, .slope = 6, .growth = 1.3, .is_told = told.has("yield")}};
 }
 
 }  // namespace
