@@ -11,8 +11,15 @@
 namespace palpate::identify {
 
 Explanation Baselines::start(const Problem& problem, int law, const Refit* neighbour) const {
-    Explanation result = first_guess(*model_, problem, law, options_->refit.threads);
-    if (neighbour) result.theta = neighbour->explanation.theta;
+    const auto& near = options_->near;
+    Explanation result;
+    if (near && near->fit->explanation.law == law) {
+        result.law = law;
+        result.theta = near->fit->explanation.theta;
+    } else {
+        result = first_guess(*model_, problem, law, options_->refit.threads);
+        if (neighbour) result.theta = neighbour->explanation.theta;
+    }
     for (const skeleton::Effect& known : options_->known) {
         const auto effect = find_effect(known.name);
         const auto numbers = effect->numbers(*model_, problem);
@@ -37,10 +44,15 @@ void Baselines::fit(const Problem& problem, std::vector<std::string>& notes, con
         const std::string& name = model_->laws()[law];
         report(progress, "baseline, law " + name, 0.1 + 0.1 * i);
         RefitOptions how = options_->refit;
-        if (neighbour) how.steps = std::min(how.steps, 4);
+        std::optional<Refit> from = neighbour;
+        if (neighbour) {
+            how.steps = std::min(how.steps, 4);
+        } else if (options_->near && options_->near->fit->explanation.law == law) {
+            from = start_at(*options_->near, problem);
+        }
         try {
             fits_[law] = identify::refit(*model_, problem, start(problem, law, neighbour ? &*neighbour : nullptr), how,
-                                         neighbour ? &*neighbour : nullptr);
+                                         from ? &*from : nullptr);
             if (law == 0) continue;
             neighbour = fits_[law];
             neighbour->V.reset();

@@ -119,11 +119,11 @@ private:
     const Refit& leading() const { return explained() ? leader()->fit : baseline(); }
 
     /// Readings that are off by themselves, as a fit sees them; true where some were set aside.
-    bool set_outliers_aside(const Refit& fit) {
+    bool set_outliers_aside(const Refit& fit, double least) {
         if (!outliers_wanted() || !result_.outliers.readings.empty()) return false;
         tell("outliers", 0.4);
         const Outliers found = find_outliers(result_.problem, fit.residual);
-        if (found.log_bayes_factor < options_.least_evidence) return false;
+        if (found.log_bayes_factor < least) return false;
         result_.outliers = found;
         result_.outliers.readings.clear();
         const int before = result_.problem.readings();
@@ -144,7 +144,7 @@ private:
     void set_plain_outliers_aside() {
         const Diagnosis before = result_;
         const Baselines baselines = baselines_;
-        if (!set_outliers_aside(baseline())) return;
+        if (!set_outliers_aside(baseline(), options_.least_evidence)) return;
         baselines_.refit(result_.problem, true);
         if (!options_.screen || is_enough(baseline(), options_)) {
             baselines_.refit(result_.problem);
@@ -159,7 +159,10 @@ private:
     bool set_outliers_aside_next_to_effect() {
         const Diagnosis before = result_;
         const Refit leads = leading();
-        if (!set_outliers_aside(leads)) return false;
+        const bool is_explained = explained() && is_enough(leads, options_);
+        const double least =
+            is_explained ? options_.least_next_to(leader()->log_bayes_factor) : options_.least_evidence;
+        if (!set_outliers_aside(leads, least)) return false;
         if (!is_enough(without_them(leads), options_)) {
             result_ = before;
             return false;

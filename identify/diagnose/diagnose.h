@@ -1,11 +1,13 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "identify/diagnose/held_out.h"
+#include "identify/diagnose/nearby.h"
 #include "identify/diagnose/outliers.h"
 #include "identify/diagnose/refit.h"
 #include "mesh/progress.h"
@@ -24,18 +26,23 @@ struct DiagnoseOptions {
     std::vector<std::string> without;     // effects left out of the catalogue
     std::vector<skeleton::Effect> known;  // effects that the model has already: in every explanation, fitted anew
     std::optional<int> law;               // the only one to be tried; absent: the one that explains most
+    std::optional<Nearby> near;           // a fit to begin with, instead of a guess
     bool screen = true;                   // false: the baseline alone, for a comparison
     int refits = 4;                       // candidates that are confirmed by a refit, at most
     int together = 4;                     // effects in one explanation, at most; 1: single ones only
     double least_screen = 3;              // ln Bayes factor of the screen below which none is refitted
     double least_evidence = 10;           // ln Bayes factor of the refit, to claim an effect
     double least_lead = 5;                // over the runner-up
+    double own_error = 5e-4;              // share of an effect's evidence that its own error on the mesh may be worth:
+                                          // where it explains all but noise, what comes next has to bring more
     double most_left = 1.1;               // whitened rms, for what is left to be noise
     double most_left_together = 1.06;     // the same where several effects explain it: they bend to more
     double most_left_held_out = 1.2;      // the same on probes left out
     double most_strain = 4;               // of a nuisance, in its prior sd
     RefitOptions refit;
     void validate() const;  // @throws InvalidInput naming option, value and bound
+    /// Evidence that a further fault has to bring next to what has some already, and leaves nothing but noise.
+    double least_next_to(double log_bayes_factor) const { return std::max(least_evidence, own_error * log_bayes_factor); }
 };
 
 /// An effect's numbers as they are told, each with its standard deviation.

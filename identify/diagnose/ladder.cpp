@@ -117,7 +117,10 @@ private:
         options.screen = false;
         for (const std::string& name : effects) options.known.push_back(start_of(name, diagnosis));
         if (std::ranges::find(effects, "outliers") == effects.end()) options.without.emplace_back("outliers");
-        if (diagnosis) options.law = diagnosis->law;
+        if (diagnosis) {
+            options.law = diagnosis->law;
+            options.near = {&diagnosis->problem, effects.empty() ? &diagnosis->baseline : &diagnosis->best()};
+        }
         return diagnose(*body_, set, options);
     }
 
@@ -191,6 +194,7 @@ private:
         options.screen = false;
         options.law = found.law;
         options.known = told(found);
+        options.near = {&found.problem, &found.best()};
         if (found.outliers.readings.empty()) options.without.emplace_back("outliers");
         return diagnose(*body_, part, options);
     }
@@ -233,7 +237,8 @@ private:
     /// The last step once more, on all states and with particles: the model that is delivered.
     void finish(const std::vector<std::string>& effects, const Diagnosis* diagnosis) {
         report(progress_, "the model on all states", 0.9);
-        const Diagnosis whole = explain(set_, effects, diagnosis);
+        const bool is_known = diagnosis && diagnosis->explanation == effects;
+        const Diagnosis whole = is_known ? *diagnosis : explain(set_, effects, diagnosis);
         LadderStep& last = result_.steps.back();
         last.effects = told(whole);
         last.set = understood(set_, last.effects, whole.outliers.readings);

@@ -191,15 +191,20 @@ Problem Problem::stage_by_stage() const {
     return result;
 }
 
-int Problem::action_in(const Problem& merged, int k) const {
-    for (std::size_t n = 0; n < action.size(); ++n) {
-        if (action[n] == k) return merged.action[n];
+int Problem::action_in(const Problem& other, int k) const {
+    int like = -1, likest = -1;
+    for (std::size_t j = 0; j < other.actions.size(); ++j) {
+        if (!same(other.actions[j], actions[k])) continue;
+        int alike = 0;
+        if (other.probe[j] == probe[k]) ++alike;
+        if (by_stage && other.by_stage && other.stages[j].probe == stages[k].probe) {
+            alike += other.stages[j].time == stages[k].time ? 2 : 1;
+        }
+        if (alike <= likest) continue;
+        likest = alike;
+        like = static_cast<int>(j);
     }
-    // nobody read this stage: any action like it
-    for (std::size_t other = 0; other < merged.actions.size(); ++other) {
-        if (same(merged.actions[other], actions[k])) return static_cast<int>(other);
-    }
-    return -1;
+    return like;
 }
 
 double Problem::rms_sigma() const { return std::sqrt(sigma.squaredNorm() / static_cast<double>(sigma.size())); }

@@ -40,8 +40,9 @@ struct Problem {
     int before(int k) const;
     /// The same problem with an action for each stage: its rows are the same.
     Problem stage_by_stage() const;
-    /// The action of `merged`, of which this is the problem stage by stage, that an action of this one is.
-    int action_in(const Problem& merged, int k) const;
+    /// The action of another problem about the same body that is like action k: with the same loads, of the same probe
+    /// rather than of another, and of the same time where both tell; -1: there is none.
+    int action_in(const Problem& other, int k) const;
 
     /// Coordinates (N) out of each action's marker positions (K of m x 3).
     Eigen::VectorXd pick(const std::vector<Points>& positions) const;

@@ -15,7 +15,7 @@ double settled(double objective, Eigen::Index readings) {
 }
 
 struct Priors {
-    Eigen::VectorXd mean, sd, least;
+    Eigen::VectorXd mean, sd, least, most;
     // How far a number may go at once: its prior's width, a logarithm no more than a factor of two.
     Eigen::VectorXd step;
 };
@@ -24,11 +24,12 @@ Priors priors_of(const BodyModel& model, const Explanation& explanation,
                  const std::vector<std::vector<EffectNumber>>& numbers) {
     const Eigen::VectorXd start = explanation.all();
     constexpr double factor_of_two = 0.7;
-    std::vector<double> mean, sd, least, step;
+    std::vector<double> mean, sd, least, most, step;
     for (const StiffnessParameter& p : model.parameters()) {
         mean.push_back(p.prior_mean);
         sd.push_back(p.prior_sd);
-        least.push_back(-INFINITY);
+        least.push_back(p.least);
+        most.push_back(p.most);
         step.push_back(std::min(p.prior_sd, factor_of_two));
     }
     for (const auto& list : numbers) {
@@ -36,13 +37,27 @@ Priors priors_of(const BodyModel& model, const Explanation& explanation,
             mean.push_back(number.prior_at_start ? start[std::ssize(mean)] : number.prior_mean);
             sd.push_back(number.prior_sd);
             least.push_back(number.least);
+            most.push_back(INFINITY);
             step.push_back(number.logarithm ? std::min(number.prior_sd, factor_of_two) : number.prior_sd);
         }
     }
     const auto vector = [](std::vector<double>& values) {
         return Eigen::VectorXd(Eigen::Map<Eigen::VectorXd>(values.data(), std::ssize(values)));
     };
-    return {vector(mean), vector(sd), vector(least), vector(step)};
+    return {vector(mean), vector(sd), vector(least), vector(most), vector(step)};
+}
+
+/// The move that maximises g^T m - m^T H m / 2, numbers apart that stand at a bound and would go beyond it.
+Eigen::VectorXd bounded_move(Eigen::MatrixXd H, Eigen::VectorXd g, const Priors& priors, const Eigen::VectorXd& x) {
+    for (Eigen::Index i = 0; i < x.size(); ++i) {
+        const bool is_free = (x[i] > priors.least[i] || g[i] > 0) && (x[i] < priors.most[i] || g[i] < 0);
+        if (is_free) continue;
+        g[i] = 0;
+        H.row(i).setZero();
+        H.col(i).setZero();
+        H(i, i) = 1;
+    }
+    return H.llt().solve(g);
 }
 
 /// Half of chi^2 and priors, to be lowered.
@@ -70,9 +85,8 @@ public:
             const Eigen::VectorXd x = at_.explanation.all();
             const Eigen::VectorXd g =
                 VA.transpose() * at_.error - (x - priors_.mean).cwiseQuotient(priors_.sd.cwiseAbs2());
-            const Eigen::LLT<Eigen::MatrixXd> factor(H);
-            Eigen::VectorXd move = factor.solve(g);
-            at_.covariance = factor.solve(Eigen::MatrixXd::Identity(x.size(), x.size()));
+            Eigen::VectorXd move = bounded_move(H, g, priors_, x);
+            at_.covariance = H.llt().solve(Eigen::MatrixXd::Identity(x.size(), x.size()));
             at_.converged = 0.5 * g.dot(move) < settled(now, problem_.rows());
             if (at_.converged) return;
             move *= std::min(1.0, 1 / move.cwiseQuotient(priors_.step).cwiseAbs().maxCoeff());
@@ -89,7 +103,7 @@ private:
         const Setting setting = at_.explanation.setting();
         for (double share = 1; share > 0.01; share *= 0.4) {
             Explanation trial = at_.explanation;
-            trial.set_all((x + share * move).cwiseMax(priors_.least));
+            trial.set_all((x + share * move).cwiseMax(priors_.least).cwiseMin(priors_.most));
             std::vector<Eigen::VectorXd> predicted = at_.played.q;
             for (std::size_t k = 0; k < predicted.size(); ++k) {
                 if (steps_[k].size() > 0) {
@@ -176,6 +190,9 @@ void conclude(const Problem& problem, const Priors& priors, Refit& at) {
     at.residual = at.V->residual(at.error);
 }
 
+/// The same effects under the same law, whatever their numbers.
+bool is_like(const Explanation& a, const Explanation& b) { return a.law == b.law && a.effects == b.effects; }
+
 }  // namespace
 
 Refit refit(const BodyModel& model, const Problem& problem, const Explanation& explanation, const RefitOptions& options,
@@ -186,10 +203,12 @@ Refit refit(const BodyModel& model, const Problem& problem, const Explanation& e
     const Priors priors = priors_of(model, explanation, at.numbers);
     begin(model, problem, options.threads, start, at);
 
-    // A first round with the nuisances of the start, or none; a second with those of where it led, unless it led
+    // A first round with the nuisances of the start, or none where it may be far; a second with those of where it led, unless it led
     // nowhere.
     if (start && start->V) {
         at.V = start->V;
+    } else if (start && is_like(start->explanation, explanation)) {
+        take_nuisances(model, problem, options, at);
     } else {
         at.V.emplace(contact_weights(model, problem, at.explanation, options.nuisances),
                      Eigen::MatrixXd(problem.rows(), 0), Eigen::VectorXd(0));

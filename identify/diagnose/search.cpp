@@ -258,11 +258,7 @@ bool Search::extend(std::size_t from, int most) {
     const Explained base = tried_[from];
     const std::vector<std::string> there = names_of(base);
     report(progress_, "screen next to " + listed(there), 0.8);
-    // Where one explains all but noise, what is left of its own error on the mesh is no other effect: next to it one
-    // has to bring more than this share of its evidence.
-    constexpr double own_error = 5e-4;
-    const double least =
-        claims(base) ? std::max(options_.least_evidence, own_error * base.log_bayes_factor) : options_.least_evidence;
+    const double least = claims(base) ? options_.least_next_to(base.log_bayes_factor) : options_.least_evidence;
     bool grew = false;
     int refitted = 0;
     for (const Screened& screened : screen_at(base.fit, there)) {

@@ -17,6 +17,7 @@ struct StiffnessParameter {
     double start = 0;
     double prior_mean = 0, prior_sd = 1;
     bool stiffens = true;  // all such parameters raised by ln c make the body c times as stiff
+    double least = -INFINITY, most = INFINITY;
 };
 
 /// What a model is told to be.

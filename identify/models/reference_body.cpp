@@ -125,8 +125,10 @@ ReferenceBody::ReferenceBody(const mesh::VolumeMesh& mesh, const std::vector<mes
     // Young's modulus to a factor of twenty. A ratio that is told is taken at its word; else nu = .45, from about .13
     // to .49.
     const double compressibility = std::log(1 - 2 * options.poisson.value_or(0.45));
+    constexpr double least_ratio = -0.5, most_ratio = 0.4999;
     i.parameters = {{"young", start, start, 3},
-                    {"compressibility", compressibility, compressibility, options.poisson ? 0.02 : 1, false}};
+                    {"compressibility", compressibility, compressibility, options.poisson ? 0.02 : 1, false,
+                     std::log(1 - 2 * most_ratio), std::log(1 - 2 * least_ratio)}};
 }
 
 ReferenceBody::~ReferenceBody() = default;

@@ -1,51 +1,47 @@
 // What the diagnosis makes of sets whose truth is known: success, wrong and inconclusive apart.
-// Usage: diagnosis_bench FOLDER [--body reference|skeleton] [--ladder] [--tell] [--without EFFECT] [--threads N] [SET
-// ...] FOLDER holds measurement sets and truth.csv (set, effect, ..., beyond_stiffness_rms_mm, sigma_mm, ...). A table
-// in Markdown on standard output; without SET all of them.
+// Usage: diagnosis_bench FOLDER [--jobs N] [--threads N] [--body reference|skeleton] [--without EFFECT] [--ablate PART]
+//                        [--ladder] [--tell] [SET ...]
+// FOLDER holds measurement sets and truth.csv (set, effect, ..., beyond_stiffness_rms_mm, sigma_mm, ...), and
+// truth/<set>.json where the numbers are known too. Tables in Markdown on standard output; without SET all of them.
 //
-// With --ladder what is named is added, and the skeleton's error told before and after, fitted and on held-out probes.
-//
-// With --tell all that was screened and fitted follows each line, with its numbers.
-//
-// Judged: right - all that is hidden is named, or ambiguous with a hidden effect among the first two; nothing hidden:
-// adequate; where the truth was left out of the catalogue: unexplained. In part - one of several is named. Wrong - an
-// effect is named that is not there. Else inconclusive.
+// --ladder adds what is named, and tells the skeleton's error before and after, fitted and on held-out probes.
+// --tell lists all that was screened and fitted, with its numbers; on standard error what goes on.
+// --ablate leaves a part of the method out, to show what it is for: "whitening" (contacts and clamps are taken at their
+// word), "mesh-error" (so is the body next to them), "gates" (whatever has evidence is claimed, the likeliest first).
+// "--body skeleton" does without the reference body.
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <chrono>
-#include <fstream>
+#include <cmath>
 #include <iostream>
-#include <map>
-#include <sstream>
+#include <mutex>
 
+#include "diagnosis/tally.h"
 #include "identify/diagnose/ladder.h"
 #include "identify/effects/catalogue.h"
 #include "identify/models/skeleton_body.h"
+#include "identify/parallel.h"
 #include "mesh/errors.h"
 #include "pipeline/reference/body.h"
 #include "pipeline/reference/reference_body.h"
 #include "skeleton/build.h"
 
 using namespace palpate;
+using namespace palpate::bench;
 
 namespace {
 
 namespace fs = std::filesystem;
 
-struct Truth {
-    std::string set;
-    std::vector<std::string> effects;  // empty: nothing is hidden
-    double strength = 0;               // beyond what another stiffness does, over the noise
-};
-
 struct Options {
     fs::path folder;
     std::vector<std::string> sets;
     std::vector<std::string> without;
+    std::vector<std::string> ablations;
     bool skeleton = false, ladder = false, tell = false;
-    int threads = 1;
+    int threads = 1, jobs = 1;
 };
 
 Options parse(int argc, char** argv) {
@@ -60,8 +56,12 @@ Options parse(int argc, char** argv) {
             options.tell = true;
         } else if (word == "--without" && i + 1 < argc) {
             options.without.emplace_back(argv[++i]);
+        } else if (word == "--ablate" && i + 1 < argc) {
+            options.ablations.emplace_back(argv[++i]);
         } else if (word == "--threads" && i + 1 < argc) {
             options.threads = std::stoi(argv[++i]);
+        } else if (word == "--jobs" && i + 1 < argc) {
+            options.jobs = std::stoi(argv[++i]);
         } else if (options.folder.empty()) {
             options.folder = word;
         } else {
@@ -71,55 +71,26 @@ Options parse(int argc, char** argv) {
     return options;
 }
 
-std::vector<std::string> split(const std::string& text, char at) {
-    std::vector<std::string> words;
-    std::stringstream in(text);
-    for (std::string word; std::getline(in, word, at);) words.push_back(word);
-    return words;
-}
-
-/// Names that other programs give to what the contract calls otherwise.
-std::vector<std::string> effects_of(const std::string& name) {
-    if (name.starts_with("none")) return {};
-    if (name == "nearly-incompressible") return {"volume"};
-    return split(name, '+');
-}
-
-std::vector<Truth> read_truth(const fs::path& folder) {
-    std::ifstream in(folder / "truth.csv");
-    if (!in) throw IoError(fmt::format("{} cannot be read", (folder / "truth.csv").string()));
-    std::string line;
-    std::getline(in, line);
-    std::vector<Truth> truth;
-    while (std::getline(in, line)) {
-        const std::vector<std::string> cells = split(line, ',');
-        truth.push_back({cells[0], effects_of(cells[1]), std::stod(cells[4]) / std::stod(cells[5])});
+/// The method without some of its parts.
+identify::DiagnoseOptions ablated(const std::vector<std::string>& parts) {
+    identify::DiagnoseOptions options;
+    constexpr double none = 1e-6;
+    identify::NuisanceOptions& nuisances = options.refit.nuisances;
+    for (const std::string& part : parts) {
+        if (part == "whitening") {
+            nuisances = {
+                .shift = none, .radius = none, .softness = none, .clamp = none, .gain_at_support = none, .dent = none};
+        } else if (part == "mesh-error") {
+            nuisances.softness = nuisances.clamp = nuisances.dent = none;
+        } else if (part == "gates") {
+            options.least_lead = 0;
+            options.most_left = options.most_left_together = options.most_left_held_out = options.most_strain =
+                INFINITY;
+        } else {
+            throw InvalidInput(fmt::format("'{}' is no part that can be left out: whitening, mesh-error, gates", part));
+        }
     }
-    return truth;
-}
-
-enum Outcome { right, in_part, wrong, inconclusive };
-constexpr const char* outcome_names[] = {"right", "in part", "WRONG", "inconclusive"};
-
-Outcome judge(const Truth& truth, const identify::Diagnosis& found, const std::vector<std::string>& without) {
-    const auto is_true = [&](const std::string& name) {
-        return std::ranges::find(truth.effects, name) != truth.effects.end();
-    };
-    const bool claims = found.verdict == identify::Verdict::missing_effect;
-    if (claims && !std::ranges::all_of(found.explanation, is_true)) return wrong;
-    if (truth.effects.empty()) return found.verdict == identify::Verdict::adequate ? right : inconclusive;
-    const auto is_named = [&](const std::string& name) {
-        return std::ranges::find(found.explanation, name) != found.explanation.end();
-    };
-    if (claims) return std::ranges::all_of(truth.effects, is_named) ? right : in_part;
-    if (found.verdict == identify::Verdict::ambiguous) {
-        return std::any_of(found.ranking.begin(), found.ranking.begin() + 2,
-                           [&](const auto& c) { return is_true(c.effect->name()); })
-                   ? right
-                   : wrong;
-    }
-    const bool left_out = std::ranges::any_of(without, is_true);
-    return left_out && found.verdict == identify::Verdict::unexplained ? right : inconclusive;
+    return options;
 }
 
 /// The set's skeleton as it comes from the mesh, with nothing fitted.
@@ -170,77 +141,83 @@ std::string told(const identify::Explained& explained) {
     return text;
 }
 
-void tell(const identify::Diagnosis& found) {
-    std::string screened;
-    for (const identify::Candidate& c : found.ranking)
-        screened += fmt::format(" {} {:.1f}", c.effect->name(), c.screened);
-    fmt::print("    screened:{}\n", screened);
+std::string told(const identify::Diagnosis& found) {
+    std::string text = "    screened:";
+    for (const identify::Candidate& c : found.ranking) text += fmt::format(" {} {:.1f}", c.effect->name(), c.screened);
+    text += "\n";
     for (const identify::Explained& one : found.tried) {
-        fmt::print("    ln BF {:.1f}, {:.3f} left, {:.2f} held out, strain {:.1f}, law {}, {} steps: {}{}\n",
-                   one.log_bayes_factor, one.fit.whitened_rms, one.held_out.whitened_rms, one.fit.strain,
-                   one.fit.explanation.law, one.fit.steps, told(one),
-                   one.objection.empty() ? "" : " (" + one.objection + ")");
+        text += fmt::format("    ln BF {:.1f}, {:.3f} left, {:.2f} held out, strain {:.1f}, law {}, {} steps: {}{}\n",
+                            one.log_bayes_factor, one.fit.whitened_rms, one.held_out.whitened_rms, one.fit.strain,
+                            one.fit.explanation.law, one.fit.steps, told(one),
+                            one.objection.empty() ? "" : " (" + one.objection + ")");
     }
+    return text;
 }
 
-std::string joined(const std::vector<std::string>& names) { return fmt::format("{}", fmt::join(names, " + ")); }
+/// A set's row of the table, and what follows it.
+std::string diagnosed(const Truth& truth, const Options& options, Tally& tally) {
+    const auto start = std::chrono::steady_clock::now();
+    const auto seconds = [&] {
+        return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    };
+    std::string text;
+    try {
+        const identify::MeasurementSet set = identify::read_measurement_set(options.folder / truth.set);
+        const auto body = body_of(set, options);
+        identify::DiagnoseOptions how = ablated(options.ablations);
+        how.refit.threads = options.threads;
+        how.without = options.without;
+        Progress progress;
+        if (options.tell) {
+            progress = [&](std::string_view what, double) {
+                fmt::print(stderr, "{} {:6.1f} s {}\n", truth.set, seconds(), what);
+            };
+        }
+        const identify::Diagnosis found = identify::diagnose(*body, set, how, progress);
+        const Outcome outcome = judge(truth, found, options.without);
+        const identify::Candidate& first = found.ranking.front();
+        const bool claimed = found.explained.has_value();
+        text = fmt::format(
+            "| {} | {} | {:.1f} | {} | {} | {:.1f} | {:.2f} | {:.2f} | {} | {} | {:.0f} | {} |\n", truth.set,
+            joined(truth.effects), truth.strength, identify::verdict_names[static_cast<std::size_t>(found.verdict)],
+            found.explanation.empty() ? "(" + first.effect->name() + ")" : joined(found.explanation),
+            claimed ? found.explained->log_bayes_factor : first.log_bayes_factor, found.baseline.whitened_rms,
+            found.best().whitened_rms, claimed ? fmt::format("{:.2f}", found.explained->held_out.whitened_rms) : "",
+            body->laws()[static_cast<std::size_t>(claimed ? found.law : found.baseline.explanation.law)], seconds(),
+            outcome_names[static_cast<std::size_t>(outcome)]);
+        if (options.tell) text += told(found);
+        if (options.ladder && !found.explanation.empty()) {
+            text += fmt::format("| | | | | {} | | | | | | | |\n", climbed(*body, set, found, options));
+        }
+        tally.add(truth, found, outcome);
+    } catch (const std::exception& e) {
+        text += fmt::format("| {} | {} | {:.1f} | failed: {} | | | | | | | {:.0f} | inconclusive |\n", truth.set,
+                            joined(truth.effects), truth.strength, e.what(), seconds());
+        tally.add_failure();
+    }
+    return text;
+}
 
 void run(const Options& options) {
-    std::map<Outcome, int> counts;
-    int nulls = 0, blamed = 0;
+    std::vector<Truth> truths = read_truth(options.folder);
+    if (!options.sets.empty()) {
+        std::erase_if(truths, [&](const Truth& truth) {
+            return std::ranges::find(options.sets, truth.set) == options.sets.end();
+        });
+    }
     fmt::print(
         "| set | hidden | strength | verdict | named | ln BF | whitened before | after | held out | law | s | |\n"
         "| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |\n");
-    for (const Truth& truth : read_truth(options.folder)) {
-        const bool asked = options.sets.empty() || std::ranges::find(options.sets, truth.set) != options.sets.end();
-        if (!asked) continue;
-        const auto start = std::chrono::steady_clock::now();
-        const std::string hidden = truth.effects.empty() ? "nothing" : joined(truth.effects);
-        try {
-            const identify::MeasurementSet set = identify::read_measurement_set(options.folder / truth.set);
-            const auto body = body_of(set, options);
-            identify::DiagnoseOptions how;
-            how.refit.threads = options.threads;
-            how.without = options.without;
-            Progress progress;
-            if (options.tell) {
-                progress = [&](std::string_view what, double) {
-                    const auto now = std::chrono::steady_clock::now();
-                    fmt::print("    {:6.1f} s {}\n", std::chrono::duration<double>(now - start).count(), what);
-                };
-            }
-            const identify::Diagnosis found = identify::diagnose(*body, set, how, progress);
-            const Outcome outcome = judge(truth, found, options.without);
-            const identify::Candidate& first = found.ranking.front();
-            const bool claimed = found.explained.has_value();
-            fmt::print("| {} | {} | {:.1f} | {} | {} | {:.1f} | {:.2f} | {} | {} | {} | {:.0f} | {} |\n", truth.set,
-                       hidden, truth.strength, identify::verdict_names[static_cast<std::size_t>(found.verdict)],
-                       found.explanation.empty() ? "(" + first.effect->name() + ")" : joined(found.explanation),
-                       claimed ? found.explained->log_bayes_factor : first.log_bayes_factor,
-                       found.baseline.whitened_rms, fmt::format("{:.2f}", found.best().whitened_rms),
-                       claimed ? fmt::format("{:.2f}", found.explained->held_out.whitened_rms) : "",
-                       body->laws()[static_cast<std::size_t>(claimed ? found.law : found.baseline.explanation.law)],
-                       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(),
-                       outcome_names[outcome]);
-            if (options.tell) tell(found);
-            if (options.ladder && !found.explanation.empty()) {
-                fmt::print("| | | | | {} | | | | | | | |\n", climbed(*body, set, found, options));
-            }
-            ++counts[outcome];
-            if (truth.effects.empty()) {
-                ++nulls;
-                blamed += found.explanation.empty() ? 0 : 1;
-            }
-        } catch (const std::exception& e) {
-            fmt::print("| {} | {} | {:.1f} | failed: {} | | | | | | | | inconclusive |\n", truth.set, hidden,
-                       truth.strength, e.what());
-            ++counts[inconclusive];
-        }
-        std::cout << std::flush;
-    }
-    fmt::print("\n{}: {} right, {} in part, {} wrong, {} inconclusive; {} of {} null sets blamed.\n",
-               options.skeleton ? "The skeleton alone" : "The reference body", counts[right], counts[in_part],
-               counts[wrong], counts[inconclusive], blamed, nulls);
+    std::mutex telling;
+    Tally tally;
+    identify::for_each_in_parallel(static_cast<int>(truths.size()), options.jobs, [&](int i) {
+        Tally own;
+        const std::string text = diagnosed(truths[i], options, own);
+        const std::scoped_lock lock(telling);
+        std::cout << text << std::flush;
+        tally.add(own);
+    });
+    tally.print();
 }
 
 }  // namespace
@@ -249,8 +226,8 @@ int main(int argc, char** argv) {
     const Options options = parse(argc, argv);
     if (options.folder.empty()) {
         fmt::print(stderr,
-                   "Usage: diagnosis_bench FOLDER [--body reference|skeleton] [--ladder] [--threads N] "
-                   "[--tell] [--without EFFECT] [SET ...]\n");
+                   "Usage: diagnosis_bench FOLDER [--jobs N] [--threads N] [--body reference|skeleton] "
+                   "[--without EFFECT] [--ablate PART] [--ladder] [--tell] [SET ...]\n");
         return 2;
     }
     try {

@@ -1,6 +1,7 @@
 // Measurement sets with something hidden in them, on bodies and probe plans drawn at random, for diagnosis_bench.
-// Usage: forge_bench OUT [--sets N] [--seed N] [--threads N] [EFFECT[+EFFECT] ...]
-// Without names: each effect of a solid in turn, nothing among them. OUT/truth.csv tells them all.
+// Usage: forge_bench OUT [--sets N] [--seed N] [--jobs N] [EFFECT[+EFFECT] ...]
+// Without names: each effect of a solid in turn, nothing among them. OUT/truth.csv tells them all,
+// OUT/truth/<set>.json their numbers.
 //
 // Bodies are boxes made round, tapered, bent and twisted, 50 to 150 mm long and up to eight times as long as thick,
 // held at one end, of .03 to 1 MPa and a Poisson's ratio of .4 to .48.
@@ -9,11 +10,12 @@
 
 #include <Eigen/Geometry>
 
-#include <fstream>
 #include <iostream>
+#include <mutex>
 #include <random>
 #include <sstream>
 
+#include "identify/parallel.h"
 #include "mesh/errors.h"
 #include "mesh/io/atomic_file.h"
 #include "mesh/read_surface.h"
@@ -30,7 +32,7 @@ struct Options {
     fs::path out;
     int sets = 26;
     std::uint64_t seed = 1;
-    int threads = 1;
+    int jobs = 1;
     std::vector<std::string> hide{"none",    "gravity",    "stiffening",        "anisotropy", "inclusion",
                                   "contact", "prestress",  "compliant-support", "viscosity",  "plasticity",
                                   "none",    "force-gain", "misalignment"};
@@ -45,8 +47,8 @@ Options parse(int argc, char** argv) {
             options.sets = std::stoi(argv[++i]);
         } else if (word == "--seed" && i + 1 < argc) {
             options.seed = std::stoull(argv[++i]);
-        } else if (word == "--threads" && i + 1 < argc) {
-            options.threads = std::stoi(argv[++i]);
+        } else if (word == "--jobs" && i + 1 < argc) {
+            options.jobs = std::stoi(argv[++i]);
         } else if (options.out.empty()) {
             options.out = word;
         } else {
@@ -104,7 +106,8 @@ fs::path write_case(const fs::path& folder, std::mt19937_64& random) {
     const double held = low.x() + between(0.05, 0.12) * (high.x() - low.x());
     mesh::write_text(
         folder / "case.yaml",
-        fmt::format("mesh: body.stl\nmaterial: {{young: {:.4g}, poisson: {:.3g}, density: 1050}}\n"
+        fmt::format("format: palpate-case/1\nmesh: body.stl\nunit: mm\nmaterial: {{young: {:.4g}, poisson: {:.3g}, "
+                    "density: 1050}}\n"
                     "supports:\n  - box: {{min: [{:.4g}, {:.4g}, {:.4g}], max: [{:.4g}, {:.4g}, {:.4g}]}}\n",
                     std::exp(between(std::log(0.03), 0)), between(0.4, 0.48), (low - pad).x(), (low - pad).y(),
                     (low - pad).z(), held, (high + pad).y(), (high + pad).z()));
@@ -118,43 +121,58 @@ std::vector<std::string> split(const std::string& text, char at) {
     return words;
 }
 
-void run(const Options& options) {
-    fs::create_directories(options.out);
-    std::ofstream truth(options.out / "truth.csv");
-    truth << "set,effect,signal_rms_mm,effect_rms_mm,beyond_stiffness_rms_mm,sigma_mm,detail\n";
-    for (int i = 0; i < options.sets; ++i) {
-        const std::string& hidden = options.hide[static_cast<std::size_t>(i) % options.hide.size()];
-        const std::string name = fmt::format("{:03}-{}", i, hidden);
-        const std::uint64_t seed = options.seed * 100003 + static_cast<std::uint64_t>(i);
-        std::mt19937_64 random(seed);
-        try {
-            const fs::path file = write_case(options.out / "bodies" / name, random);
-            const pipeline::Subject subject = pipeline::read_subject(pipeline::read_case(file));
-            pipeline::ForgeOptions how;
-            if (hidden == "none") {
-                how.hide = {"gravity:gx=0,gy=0,gz=0"};  // blind, and nothing there
-            } else {
-                how.hide = split(hidden, '+');
-            }
-            const pipeline::Specimen specimen = pipeline::finite_element_specimen(subject, how, {});
-            pipeline::ProbeOptions probing;
-            probing.markers = 80;
-            pipeline::Forged forged = pipeline::forge(specimen, probing, how, seed, options.threads);
-            forged.set.name = name;
-            identify::write_measurement_set(options.out / name, forged.set);
-            const auto json = pipeline::truth_of(forged, specimen, how, seed);
-            truth << fmt::format("{},{},{:.4g},{:.4g},{:.4g},{:.4g},\"{}\"\n", name, hidden,
-                                 forged.strength.displacement, forged.strength.change, forged.strength.beyond,
-                                 forged.noise, json.contains("hide") ? json["hide"].dump() : "")
-                  << std::flush;
-            fmt::print("{}: {} nodes, displacement {:.3g}, change {:.3g}, beyond stiffness {:.3g}, noise {:.3g} mm\n",
-                       name, specimen.volume.nodes.rows(), forged.strength.displacement, forged.strength.change,
-                       forged.strength.beyond, forged.noise);
-        } catch (const std::exception& e) {
-            fmt::print("{}: left out: {}\n", name, e.what());
+/// Draws body i with what is hidden in it; its row of truth.csv, and a line for who waits.
+struct Drawn {
+    std::string row, line;
+};
+
+Drawn draw(const Options& options, int i) {
+    const std::string& hidden = options.hide[static_cast<std::size_t>(i) % options.hide.size()];
+    const std::string name = fmt::format("{:03}-{}", i, hidden);
+    const std::uint64_t seed = options.seed * 100003 + static_cast<std::uint64_t>(i);
+    std::mt19937_64 random(seed);
+    try {
+        const fs::path file = write_case(options.out / "bodies" / name, random);
+        const pipeline::Subject subject = pipeline::read_subject(pipeline::read_case(file));
+        pipeline::ForgeOptions how;
+        if (hidden == "none") {
+            how.hide = {"none"};  // blind, and nothing there
+        } else {
+            how.hide = split(hidden, '+');
         }
-        std::cout << std::flush;
+        const pipeline::Specimen specimen = pipeline::finite_element_specimen(subject, how, {});
+        pipeline::ProbeOptions probing;
+        probing.markers = 80;
+        pipeline::Forged forged = pipeline::forge(specimen, probing, how, seed, 1);
+        forged.set.name = name;
+        identify::write_measurement_set(options.out / name, forged.set);
+        mesh::write_text(options.out / "truth" / (name + ".json"),
+                         pipeline::truth_of(forged, specimen, how, seed).dump(1));
+        const pipeline::Strength& strength = forged.strength;
+        return {
+            fmt::format("{},{},{:.4g},{:.4g},{:.4g},{:.4g},\n", name, hidden, strength.displacement, strength.change,
+                        strength.beyond, forged.noise),
+            fmt::format("{}: {} nodes, displacement {:.3g}, change {:.3g}, beyond stiffness {:.3g}, noise {:.3g} mm",
+                        name, specimen.volume.nodes.rows(), strength.displacement, strength.change, strength.beyond,
+                        forged.noise)};
+    } catch (const std::exception& e) {
+        return {"", fmt::format("{}: left out: {}", name, e.what())};
     }
+}
+
+void run(const Options& options) {
+    fs::create_directories(options.out / "truth");
+    std::vector<std::string> rows(static_cast<std::size_t>(options.sets));
+    std::mutex telling;
+    identify::for_each_in_parallel(options.sets, options.jobs, [&](int i) {
+        const Drawn drawn = draw(options, i);
+        const std::scoped_lock lock(telling);
+        rows[static_cast<std::size_t>(i)] = drawn.row;
+        std::cout << drawn.line << std::endl;
+    });
+    std::string text = "set,effect,signal_rms_mm,effect_rms_mm,beyond_stiffness_rms_mm,sigma_mm,detail\n";
+    for (const std::string& row : rows) text += row;
+    mesh::write_text(options.out / "truth.csv", text);
 }
 
 }  // namespace
@@ -162,7 +180,7 @@ void run(const Options& options) {
 int main(int argc, char** argv) {
     const Options options = parse(argc, argv);
     if (options.out.empty()) {
-        fmt::print(stderr, "Usage: forge_bench OUT [--sets N] [--seed N] [--threads N] [EFFECT[+EFFECT] ...]\n");
+        fmt::print(stderr, "Usage: forge_bench OUT [--sets N] [--seed N] [--jobs N] [EFFECT[+EFFECT] ...]\n");
         return 2;
     }
     try {

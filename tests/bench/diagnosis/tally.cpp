@@ -1,0 +1,119 @@
+#include "diagnosis/tally.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+namespace palpate::bench {
+namespace {
+
+double quantile(std::vector<double> values, double share) {
+    std::ranges::sort(values);
+    return values[static_cast<std::size_t>(std::floor(share * static_cast<double>(values.size() - 1)))];
+}
+
+/// What a diagnosis says, in a word or several.
+std::string said(const identify::Diagnosis& found) {
+    if (found.verdict == identify::Verdict::missing_effect) return joined(found.explanation);
+    return identify::verdict_names[static_cast<std::size_t>(found.verdict)];
+}
+
+}  // namespace
+
+std::string joined(const std::vector<std::string>& names) {
+    std::vector<std::string> sorted = names;
+    std::ranges::sort(sorted);
+    return sorted.empty() ? "nothing" : fmt::format("{}", fmt::join(sorted, " + "));
+}
+
+void Tally::add(const Truth& truth, const identify::Diagnosis& found, Outcome outcome) {
+    ++counts_[outcome];
+    ++named_[joined(truth.effects)][said(found)];
+    if (truth.effects.empty()) {
+        ++nulls_;
+        blamed_ += found.explanation.empty() ? 0 : 1;
+        double most = -INFINITY;
+        for (const identify::Candidate& one : found.ranking) most = std::max(most, one.log_bayes_factor);
+        null_evidence_.push_back(most);
+    }
+    if (outcome != Outcome::right || truth.effects.empty() || !found.explained) return;
+    before_[joined(truth.effects)].push_back(found.baseline.whitened_rms);
+    after_[joined(truth.effects)].push_back(found.explained->fit.whitened_rms);
+    for (const auto& effect : found.explained->effects) {
+        const identify::Told told = found.explained->told(effect->name());
+        for (std::size_t p = 0; p < told.effect.parameters.size(); ++p) {
+            const skeleton::EffectParameter& one = told.effect.parameters[p];
+            const auto known = truth.numbers.find(effect->name() + " " + one.name);
+            if (known == truth.numbers.end() || !(told.sd[p] > 0)) continue;
+            const double off = one.value - known->second;
+            numbers_[known->first].push_back({off / std::abs(known->second), off / told.sd[p]});
+        }
+    }
+}
+
+void Tally::add(const Tally& more) {
+    const auto append = [](auto& to, const auto& from) { to.insert(to.end(), from.begin(), from.end()); };
+    for (const auto& [outcome, count] : more.counts_) counts_[outcome] += count;
+    nulls_ += more.nulls_;
+    blamed_ += more.blamed_;
+    append(null_evidence_, more.null_evidence_);
+    for (const auto& [hidden, row] : more.named_) {
+        for (const auto& [name, times] : row) named_[hidden][name] += times;
+    }
+    for (const auto& [name, list] : more.numbers_) append(numbers_[name], list);
+    for (const auto& [hidden, list] : more.before_) append(before_[hidden], list);
+    for (const auto& [hidden, list] : more.after_) append(after_[hidden], list);
+}
+
+void Tally::print() const {
+    const auto count = [&](Outcome outcome) { return counts_.contains(outcome) ? counts_.at(outcome) : 0; };
+    fmt::print("\n{} right, {} in part, {} wrong, {} inconclusive; {} of {} null sets blamed.\n", count(Outcome::right),
+               count(Outcome::in_part), count(Outcome::wrong), count(Outcome::inconclusive), blamed_, nulls_);
+    if (!null_evidence_.empty()) {
+        fmt::print(
+            "Largest ln BF of any effect in a null set: median {:.1f}, 95 % {:.1f}, 99 % {:.1f}, largest {:.1f}.\n",
+            quantile(null_evidence_, 0.5), quantile(null_evidence_, 0.95), quantile(null_evidence_, 0.99),
+            quantile(null_evidence_, 1));
+    }
+    std::set<std::string> columns;
+    for (const auto& [hidden, row] : named_) {
+        for (const auto& [name, times] : row) columns.insert(name);
+    }
+    fmt::print("\n| hidden \\ said | {} |\n| --- |", fmt::join(columns, " | "));
+    for (std::size_t i = 0; i < columns.size(); ++i) fmt::print(" --- |");
+    for (const auto& [hidden, row] : named_) {
+        fmt::print("\n| {} |", hidden);
+        for (const std::string& name : columns) {
+            fmt::print(" {} |", row.contains(name) ? std::to_string(row.at(name)) : "");
+        }
+    }
+    if (!after_.empty()) {
+        fmt::print(
+            "\n\n| named | sets | whitened before | after, median | largest |\n| --- | --- | --- | --- | --- |\n");
+    }
+    for (const auto& [hidden, after] : after_) {
+        fmt::print("| {} | {} | {:.2f} | {:.3f} | {:.3f} |\n", hidden, after.size(), quantile(before_.at(hidden), 0.5),
+                   quantile(after, 0.5), quantile(after, 1));
+    }
+    if (!numbers_.empty()) {
+        fmt::print(
+            "\n| number | of | error, median | largest | within 1 sd | 2 sd |\n| --- | --- | --- | --- | --- | --- "
+            "|\n");
+    }
+    for (const auto& [name, list] : numbers_) {
+        std::vector<double> errors;
+        int within_1 = 0, within_2 = 0;
+        for (const Number& number : list) {
+            errors.push_back(std::abs(number.error));
+            within_1 += std::abs(number.z) <= 1 ? 1 : 0;
+            within_2 += std::abs(number.z) <= 2 ? 1 : 0;
+        }
+        fmt::print("| {} | {} | {:.1f} % | {:.1f} % | {} | {} |\n", name, list.size(), 100 * quantile(errors, 0.5),
+                   100 * quantile(errors, 1), within_1, within_2);
+    }
+}
+
+}  // namespace palpate::bench

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "diagnosis/truth.h"
+
+namespace palpate::bench {
+
+/// What a bench found over many sets.
+class Tally {
+public:
+    void add(const Truth& truth, const identify::Diagnosis& found, Outcome outcome);
+    void add(const Tally& more);
+    void add_failure() { ++counts_[Outcome::inconclusive]; }
+
+    /// Outcomes, false claims, what is named for what (confusion matrix), the numbers' errors and how many of them lie
+    /// within 1 and 2 standard deviations, what is left before and after; in Markdown.
+    void print() const;
+
+private:
+    struct Number {
+        double error = 0;  // relative
+        double z = 0;      // in standard deviations
+    };
+
+    std::map<Outcome, int> counts_;
+    int nulls_ = 0, blamed_ = 0;
+    std::vector<double> null_evidence_;                        // the largest of each null set, refitted or screened
+    std::map<std::string, std::map<std::string, int>> named_;  // for what is hidden
+    std::map<std::string, std::vector<Number>> numbers_;
+    std::map<std::string, std::vector<double>> before_, after_;  // whitened rms, of what was named rightly
+};
+
+std::string joined(const std::vector<std::string>& names);
+
+}  // namespace palpate::bench
