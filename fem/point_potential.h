@@ -27,9 +27,14 @@ public:
     virtual ~PointPotential() = default;
     virtual ActsOn acts_on() const = 0;
     virtual PointTerms terms(const Vec3& X, const Vec3& x) const = 0;
+    /// What the points weigh for this effect: as the body says, unless it is spread unevenly over them. `rest`: where
+    /// they rest (n x 3) [mm].
+    virtual Eigen::VectorXd weights(const Points& rest, const Eigen::VectorXd& even) const;
     /// Does it act on one side only, as a wall does? Then small strain does not make it linear: a law that takes
     /// effects as they are at rest, to second order, takes this one as it stands.
     virtual bool is_one_sided() const { return false; }
 };
+
+inline Eigen::VectorXd PointPotential::weights(const Points&, const Eigen::VectorXd& even) const { return even; }
 
 }  // namespace palpate::fem

@@ -1,5 +1,8 @@
 #include "identify/parallel.h"
 
+#include <tbb/global_control.h>
+#include <tbb/task_arena.h>
+
 #include <algorithm>
 #include <atomic>
 #include <exception>
@@ -13,10 +16,15 @@ void for_each_in_parallel(int count, int threads, const std::function<void(int)>
     std::atomic<int> next = 0;
     std::exception_ptr failure;
     std::mutex failure_mutex;
+    const int workers = std::max(1, std::min(threads, count));
+    const auto available =
+        static_cast<int>(tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism));
+    const int inner = std::clamp(threads / workers, 1, available);
+    const auto share = [&](int i) { tbb::task_arena(inner).execute([&] { task(i); }); };
     const auto work = [&] {
         for (int i = next++; i < count; i = next++) {
             try {
-                task(i);
+                share(i);
             } catch (...) {
                 const std::scoped_lock lock(failure_mutex);
                 if (!failure) failure = std::current_exception();
@@ -27,7 +35,7 @@ void for_each_in_parallel(int count, int threads, const std::function<void(int)>
 
     // the caller works too
     std::vector<std::jthread> helpers;
-    for (int i = 1; i < std::min(threads, count); ++i) helpers.emplace_back(work);
+    for (int i = 1; i < workers; ++i) helpers.emplace_back(work);
     work();
     helpers.clear();
     if (failure) std::rethrow_exception(failure);

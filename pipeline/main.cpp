@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 #include <malloc.h>
+#include <tbb/global_control.h>
 
 #include <exception>
 #include <new>
@@ -46,6 +47,8 @@ int main(int argc, char** argv) {
     CommandLine line;
     if (const auto answered = line.parse(argc, argv)) return *answered;
     Console::set_up(line.verbosity());
+    const tbb::global_control threads(tbb::global_control::max_allowed_parallelism,
+                                      static_cast<std::size_t>(line.common().threads));
     const commands::Outcome outcome = guarded(line.command());
     if (line.common().json) {
         fmt::print("{}\n", outcome.json.dump(2));

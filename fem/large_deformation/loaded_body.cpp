@@ -11,8 +11,10 @@ LoadedBody::LoadedBody(const BodyShape& body, const BodySetting& setting, const 
       f_(share * f),
       pressure_(body.cavities.empty() ? 0 : share * setting.effects.pressure) {
     for (const auto& effect : setting.effects.points) {
-        effects_.push_back({effect.get(), body.points(effect->acts_on(), setting.material.density)});
-        if (effect->acts_on() != ActsOn::support) effects_.back().at.weights *= share;
+        NodeWeights at = body.points(effect->acts_on(), setting.material.density);
+        at.weights = effect->weights(body.mesh.nodes(at.nodes, Eigen::all), at.weights);
+        if (effect->acts_on() != ActsOn::support) at.weights *= share;
+        effects_.push_back({effect.get(), std::move(at)});
     }
 }
 

@@ -206,6 +206,11 @@ void DiagnoseOptions::validate() const {
     if (together < 1) throw InvalidInput(fmt::format("together is {}; allowed: 1 and more", together));
 }
 
+double DiagnoseOptions::least_next_to(double log_bayes_factor) const {
+    constexpr double idealised = 60, on_mesh = 5e-4;  // the latter a share of the evidence
+    return std::max({least_evidence, idealised, on_mesh * log_bayes_factor});
+}
+
 bool Explained::has(const std::string& name) const {
     return std::ranges::any_of(effects, [&](const auto& effect) { return effect->name() == name; });
 }

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <algorithm>
 #include <array>
 #include <optional>
 #include <string>
@@ -30,19 +29,19 @@ struct DiagnoseOptions {
     bool screen = true;                   // false: the baseline alone, for a comparison
     int refits = 4;                       // candidates that are confirmed by a refit, at most
     int together = 4;                     // effects in one explanation, at most; 1: single ones only
+    int refits_together = 8;              // of several effects, at most
     double least_screen = 3;              // ln Bayes factor of the screen below which none is refitted
     double least_evidence = 10;           // ln Bayes factor of the refit, to claim an effect
     double least_lead = 5;                // over the runner-up
-    double own_error = 5e-4;              // share of an effect's evidence that its own error on the mesh may be worth:
-                                          // where it explains all but noise, what comes next has to bring more
     double most_left = 1.1;               // whitened rms, for what is left to be noise
     double most_left_together = 1.06;     // the same where several effects explain it: they bend to more
     double most_left_held_out = 1.2;      // the same on probes left out
     double most_strain = 4;               // of a nuisance, in its prior sd
     RefitOptions refit;
     void validate() const;  // @throws InvalidInput naming option, value and bound
-    /// Evidence that a further fault has to bring next to what has some already, and leaves nothing but noise.
-    double least_next_to(double log_bayes_factor) const { return std::max(least_evidence, own_error * log_bayes_factor); }
+    /// ln Bayes factor that a further effect has to bring next to what has some already and leaves only noise: more
+    /// than it may owe to the first one's idealisation (even springs, a ball, a law of flow) and error on the mesh.
+    double least_next_to(double log_bayes_factor) const;
 };
 
 /// An effect's numbers as they are told, each with its standard deviation.

@@ -81,7 +81,7 @@ HeldOut predict(const BodyModel& model, const Problem& merged, const Refit& fit,
     A << own * spread, nuisances.columns;
     Eigen::VectorXd precisions(A.cols());
     precisions << Eigen::VectorXd::Ones(own.cols()), nuisances.precisions;
-    const Whitening V(contact_weights(model, unseen, explanation, options.nuisances), A, precisions);
+    const Whitening V(reading_weights(model, unseen, explanation, played, options.nuisances), A, precisions);
     const auto N = static_cast<double>(unseen.rows());
     return {std::sqrt(error.cwiseProduct(unseen.sigma).squaredNorm() / N),
             std::sqrt(error.dot(V.apply(error).col(0)) / N), V.residual(error)};

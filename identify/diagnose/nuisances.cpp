@@ -153,13 +153,17 @@ Nuisances make_nuisances(const BodyModel& model, const Problem& problem, const E
             Eigen::Map<Eigen::VectorXd>(all.precisions.data(), std::ssize(all.precisions)), all.names};
 }
 
-Eigen::VectorXd contact_weights(const BodyModel& model, const Problem& problem, const Explanation& explanation,
-                                const NuisanceOptions& options) {
+Eigen::VectorXd reading_weights(const BodyModel& model, const Problem& problem, const Explanation& explanation,
+                                const Played& played, const NuisanceOptions& options) {
     const Setting setting = explanation.setting();
     const double E = model.young(setting);
     constexpr double nu = 0.45;
+    const double flow = setting.effects.plasticity ? options.flow : 0;
     Eigen::VectorXd variance = Eigen::VectorXd::Ones(problem.rows());  // in sigma^2
     for (Eigen::Index n = 0; n < problem.rows(); ++n) {
+        const int marker = problem.coordinate[n] / 3;
+        const double moved = (played.stand[problem.action[n]].row(marker) - problem.rest.row(marker)).norm();
+        variance[n] += std::pow(flow * moved / problem.sigma[n], 2);
         for (const mesh::Contact& contact : problem.actions[problem.action[n]].contacts) {
             const double r = effective_radius(model, contact), F = contact.force.norm();
             const double d = (problem.rest.row(problem.coordinate[n] / 3).transpose() - contact.point).norm();

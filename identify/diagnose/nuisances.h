@@ -13,6 +13,7 @@ struct NuisanceOptions {
     int clamp_sectors = 30;
     double gain_at_support = 0.3;  // of ln force of a probe that reaches a support
     double dent = 0.1;             // of the local indentation, unknown for each reading
+    double flow = 0.01;            // of the displacement of a body that yields, unknown for each reading
 };
 
 /// What may always be wrong about a rig, as columns over sigma (N x c), with prior precisions (c) and names.
@@ -31,8 +32,10 @@ Nuisances make_nuisances(const BodyModel& model, const Problem& problem, const E
 /// Weights W (N): 1 far from contacts; below it near one, where a reading depends on how exactly the contact is made:
 ///   sigma^2 -> sigma^2 + (kappa U min(1, (1.2 r / d)^2) (1 + p/E))^2, U = F (1 - nu^2) / (2 E r), p = F / (pi r^2),
 /// d the reading's distance from the contact at rest, kappa the `dent`; the last factor for laws of large deformation.
-Eigen::VectorXd contact_weights(const BodyModel& model, const Problem& problem, const Explanation& explanation,
-                                const NuisanceOptions& options = {});
+/// Where the material yields, a share of the modelled displacement comes on top: what flows keeps and adds up the
+/// errors of its mesh.
+Eigen::VectorXd reading_weights(const BodyModel& model, const Problem& problem, const Explanation& explanation,
+                                const Played& played, const NuisanceOptions& options = {});
 
 /// Radius of a contact as the nuisances see it: a point is never sharper than a hundredth of the body [mm].
 double effective_radius(const BodyModel& model, const mesh::Contact& contact);

@@ -170,7 +170,7 @@ void begin(const BodyModel& model, const Problem& problem, int threads, const Re
 
 void take_nuisances(const BodyModel& model, const Problem& problem, const RefitOptions& options, Refit& at) {
     at.nuisances = make_nuisances(model, problem, at.explanation, at.played, options.threads, options.nuisances);
-    at.V.emplace(contact_weights(model, problem, at.explanation, options.nuisances), at.nuisances.columns,
+    at.V.emplace(reading_weights(model, problem, at.explanation, at.played, options.nuisances), at.nuisances.columns,
                  at.nuisances.precisions);
 }
 
@@ -203,14 +203,14 @@ Refit refit(const BodyModel& model, const Problem& problem, const Explanation& e
     const Priors priors = priors_of(model, explanation, at.numbers);
     begin(model, problem, options.threads, start, at);
 
-    // A first round with the nuisances of the start, or none where it may be far; a second with those of where it led, unless it led
-    // nowhere.
+    // A first round with the nuisances of the start, or none where it may be far; a second with those of where it led,
+    // unless it led nowhere.
     if (start && start->V) {
         at.V = start->V;
     } else if (start && is_like(start->explanation, explanation)) {
         take_nuisances(model, problem, options, at);
     } else {
-        at.V.emplace(contact_weights(model, problem, at.explanation, options.nuisances),
+        at.V.emplace(reading_weights(model, problem, at.explanation, at.played, options.nuisances),
                      Eigen::MatrixXd(problem.rows(), 0), Eigen::VectorXd(0));
     }
     Descent descent(model, problem, priors, options.threads, at);

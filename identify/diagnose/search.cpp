@@ -51,6 +51,10 @@ Explanation without(const Explanation& all, const std::string& name) {
     return result;
 }
 
+/// The most that a refit may bring: a screen is a linearisation, which it may exceed twice over, and of little several
+/// times.
+double at_most(const Screened& screened) { return 2 * screened.log_bayes_factor + 200; }
+
 }  // namespace
 
 Search::Search(const BodyModel& model, const Problem& problem, const Baselines& baselines,
@@ -169,10 +173,8 @@ void Search::confirm_single_effects() {
                             .log_bayes_factor = screened.log_bayes_factor,
                             .keep = screened.keep,
                             .predicted_rms_mm = screened.predicted_rms_mm};
-        // A screen is a linearisation: a refit may bring twice as much, and of little several times.
-        const double at_most = 2 * screened.log_bayes_factor + 200;
         const double least = std::max(options_.least_screen, 0.1 * screened_[law].front().log_bayes_factor);
-        if (refitted < options_.refits && screened.log_bayes_factor >= least && at_most > claimed) {
+        if (refitted < options_.refits && screened.log_bayes_factor >= least && at_most(screened) > claimed) {
             report(progress_, "refit with " + screened.effect->name(), 0.55 + 0.05 * refitted);
             if (auto found = refit_with(base, screened)) {
                 if (claims(*found)) claimed = std::max(claimed, found->log_bayes_factor);
@@ -194,6 +196,13 @@ void Search::confirm_single_effects() {
     for (std::size_t i = 0; i < std::min<std::size_t>(2, order.size()); ++i) try_other_laws(order[i]);
 }
 
+/// The fit once more under another law, from its own numbers.
+std::optional<Explained> Search::carry_over(const Explained& single, int law) const {
+    Explanation explanation = single.fit.explanation;
+    explanation.law = law;
+    return refit_from(explanation, single.fit, single.effects);
+}
+
 void Search::try_other_laws(std::size_t tried) {
     Explained& single = tried_[tried];
     const int own = single.fit.explanation.law;
@@ -208,16 +217,15 @@ void Search::try_other_laws(std::size_t tried) {
             // next to another law of large deformation; a matter of what little is left
             if (!is_enough(single.fit, options_)) continue;
             tell();
-            Explanation explanation = single.fit.explanation;
-            explanation.law = law;
-            other = refit_from(explanation, single.fit, single.effects);
+            other = carry_over(single, law);
         } else {
             const auto screened = std::ranges::find(screened_[law], single.effects.front(), &Screened::effect);
             if (screened == screened_[law].end()) continue;
             const double lead = baselines_.best().log_evidence - baselines_.evidence(law);
-            if (2 * screened->log_bayes_factor + 200 < single.log_bayes_factor + lead) continue;
+            if (at_most(*screened) < single.log_bayes_factor + lead) continue;
             tell();
-            other = refit_with(*baselines_.under(law), *screened);
+            other = carry_over(single, law);
+            if (!other) other = refit_with(*baselines_.under(law), *screened);
         }
         if (other && other->log_bayes_factor > single.log_bayes_factor) single = std::move(*other);
     }
@@ -259,16 +267,22 @@ bool Search::extend(std::size_t from, int most) {
     const std::vector<std::string> there = names_of(base);
     report(progress_, "screen next to " + listed(there), 0.8);
     const double least = claims(base) ? options_.least_next_to(base.log_bayes_factor) : options_.least_evidence;
+    const double leads = leader()->log_bayes_factor;
     bool grew = false;
     int refitted = 0;
     for (const Screened& screened : screen_at(base.fit, there)) {
-        const bool said = refitted < most && screened.log_bayes_factor >= least;
+        if (refits_together_ >= options_.refits_together) break;
+        if (base.log_bayes_factor + at_most(screened) < leads) continue;
+        // A screen is a linearisation, and says somewhat too little at times.
+        const bool said =
+            refitted < most && screened.log_bayes_factor >= std::max(options_.least_evidence, 0.5 * least);
         if (!said && !(screened.effect->outwits_screen() && little_is_left())) continue;
         std::vector<std::string> names = there;
         names.push_back(screened.effect->name());
         if (was_tried(names)) continue;
         report(progress_, "refit with " + listed(names), 0.85);
         ++refitted;
+        ++refits_together_;
         auto found = refit_with(base.fit, screened);
         if (!found) continue;
         found->effects.insert(found->effects.begin(), base.effects.begin(), base.effects.end());
@@ -307,6 +321,8 @@ void Search::drop_and_swap() {
         std::erase(rest, effect->name());
         const bool needed = evidence_for(best.fit, effect->name()) > 10 * options_.least_evidence;
         if (was_tried(rest) || (needed && is_enough(best.fit, options_))) continue;
+        if (refits_together_ >= options_.refits_together) break;
+        ++refits_together_;
         // Drop: what is left may explain as much.
         report(progress_, "refit with " + listed(rest), 0.95);
         const Explanation explanation = without(best.fit.explanation, effect->name());

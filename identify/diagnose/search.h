@@ -34,6 +34,7 @@ private:
     int most_promising_law() const;
     void confirm_single_effects();
     void try_other_laws(std::size_t tried);
+    std::optional<Explained> carry_over(const Explained& single, int law) const;
     bool extend(std::size_t from, int most);
     bool claims(const Explained& explained) const;
     bool something_claims() const;
@@ -52,6 +53,7 @@ private:
     std::vector<std::vector<Screened>> screened_;  // under each law, by evidence, most first
     std::vector<Candidate> ranking_;
     std::vector<Explained> tried_;
+    int refits_together_ = 0;  // of several effects
 };
 
 }  // namespace palpate::identify

@@ -15,15 +15,16 @@ namespace {
 
 using skeleton::skew;
 
-/// A support that gives way, as if it stood on springs of stiffness k in all, spread evenly over what it holds.
+/// A support that gives way, as if it stood on springs of stiffness k in all, more or less evenly over what it holds.
 class CompliantSupportEffect : public Effect {
 public:
     const EffectDescription& description() const override {
         static const EffectDescription text{
             .name = "compliant-support",
             .kind = EffectKind::body,
-            .meaning = "What holds the body gives way: springs spread evenly over the supports.",
-            .parameters = {"stiffness [N/mm]: of all springs together"},
+            .meaning = "What holds the body gives way: springs over the supports.",
+            .parameters = {"stiffness [N/mm]: of all springs together",
+                           "turning [-]: how stiffly it turns, over springs that are spread evenly"},
             .reveals = "the body moves and turns at its base in proportion to the force there",
             .confused_with = {"force-gain", "anisotropy"},
             .separating_probe = "put markers on the base and load it there",
@@ -39,11 +40,13 @@ public:
                  .start = std::log(k),
                  .prior_mean = std::log(k),
                  .prior_sd = 2,
-                 .logarithm = true}};
+                 .logarithm = true},
+                {.name = "turning", .unit = "1", .prior_sd = 0.4, .logarithm = true}};
     }
 
     bool enforce(const Eigen::VectorXd& values, Setting& setting) const override {
-        setting.effects.points.push_back(std::make_shared<skeleton::CompliantSupport>(std::exp(values[0])));
+        setting.effects.points.push_back(
+            std::make_shared<skeleton::CompliantSupport>(std::exp(values[0]), std::exp(values[1])));
         return true;
     }
 
@@ -77,7 +80,7 @@ public:
             return ScreenColumns{answers, Eigen::VectorXd::Constant(1, prior_sd), true};
         };
         plan.start = [prior_sd](Eigen::Index, const Eigen::VectorXd& compliance) {
-            return Eigen::VectorXd::Constant(1, -std::log(std::max(compliance[0], 0.1 * prior_sd)));
+            return Eigen::Vector2d(-std::log(std::max(compliance[0], 0.1 * prior_sd)), 0);
         };
         return plan;
     }

@@ -36,7 +36,8 @@ fem::Effects gravity(const EffectNumbers& numbers) {
 }
 
 fem::Effects compliant_support(const EffectNumbers& numbers) {
-    return in_points(std::make_shared<CompliantSupport>(numbers["stiffness"]));
+    const double turning = numbers.has("turning") ? numbers["turning"] : 1;
+    return in_points(std::make_shared<CompliantSupport>(numbers["stiffness"], turning));
 }
 
 fem::Effects contact(const EffectNumbers& numbers) {
@@ -96,7 +97,9 @@ std::vector<KnownEffect> known_effects() {
     constexpr Range positive = Range::positive, not_negative = Range::not_negative;
     return {
         {"gravity", {{"gx", "mm/s^2"}, {"gy", "mm/s^2"}, {"gz", "mm/s^2"}}, gravity},
-        {"compliant-support", {{"stiffness", "N/mm", positive}}, compliant_support},
+        {"compliant-support",
+         {{"stiffness", "N/mm", positive}, optional("turning", "1", Range::positive)},
+         compliant_support},
         {"stiffening", {{"c2", "1", not_negative}, {"c3", "1", not_negative}}, stiffening},
         {"anisotropy",
          {{"k", "1"},

@@ -23,12 +23,16 @@ PlacedEffects::PlacedEffects(const Model& model, const fem::Effects& effects)
     };
     for (const auto& potential : effects.points) {
         const PointSet set = point_set(model, potential->acts_on());
+        Points stand(std::ssize(set.at), 3);
+        for (size_t i = 0; i < set.at.size(); ++i) {
+            stand.row(static_cast<Eigen::Index>(i)) = carried(set.at[i], rest_, rest_).x;
+        }
+        const Eigen::VectorXd weights = potential->weights(stand, set.weights);
         Placed placed{potential, {}};
         for (size_t i = 0; i < set.at.size(); ++i) {
             const CarriedPoint point = carried(set.at[i], rest_, rest_);
             const int first = point.of[0].sphere, last = point.of[point.shares - 1].sphere;
-            placed.points.push_back(
-                {set.at[i], set.weights[i], {pair(first, first), pair(last, last), pair(first, last)}});
+            placed.points.push_back({set.at[i], weights[i], {pair(first, first), pair(last, last), pair(first, last)}});
             if (potential->acts_on() == fem::ActsOn::support) supported_[first] = 1;
         }
         effects_.push_back(std::move(placed));

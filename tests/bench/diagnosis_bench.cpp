@@ -1,9 +1,10 @@
 // What the diagnosis makes of sets whose truth is known: success, wrong and inconclusive apart.
 // Usage: diagnosis_bench FOLDER [--jobs N] [--threads N] [--body reference|skeleton] [--without EFFECT] [--ablate PART]
-//                        [--ladder] [--tell] [SET ...]
+//                        [--coarser FACTOR] [--ladder] [--tell] [SET ...]
 // FOLDER holds measurement sets and truth.csv (set, effect, ..., beyond_stiffness_rms_mm, sigma_mm, ...), and
 // truth/<set>.json where the numbers are known too. Tables in Markdown on standard output; without SET all of them.
 //
+// --coarser makes the elements of the body so much longer, for many sets in little time.
 // --ladder adds what is named, and tells the skeleton's error before and after, fitted and on held-out probes.
 // --tell lists all that was screened and fitted, with its numbers; on standard error what goes on.
 // --ablate leaves a part of the method out, to show what it is for: "whitening" (contacts and clamps are taken at their
@@ -11,6 +12,7 @@
 // "--body skeleton" does without the reference body.
 
 #include <fmt/format.h>
+#include <malloc.h>
 
 #include <algorithm>
 #include <chrono>
@@ -42,6 +44,7 @@ struct Options {
     std::vector<std::string> ablations;
     bool skeleton = false, ladder = false, tell = false;
     int threads = 1, jobs = 1;
+    double coarser = 1;
 };
 
 Options parse(int argc, char** argv) {
@@ -60,6 +63,8 @@ Options parse(int argc, char** argv) {
             options.ablations.emplace_back(argv[++i]);
         } else if (word == "--threads" && i + 1 < argc) {
             options.threads = std::stoi(argv[++i]);
+        } else if (word == "--coarser" && i + 1 < argc) {
+            options.coarser = std::stod(argv[++i]);
         } else if (word == "--jobs" && i + 1 < argc) {
             options.jobs = std::stoi(argv[++i]);
         } else if (options.folder.empty()) {
@@ -105,7 +110,13 @@ std::unique_ptr<identify::BodyModel> body_of(const identify::MeasurementSet& set
     if (options.skeleton) {
         return std::make_unique<identify::SkeletonBody>(skeleton_of(set), set.markers, fem::Material{}.young);
     }
-    pipeline::Reference reference = pipeline::make_reference(set, 0);
+    double edge = 0;
+    if (options.coarser != 1) {
+        edge = options.coarser *
+               pipeline::reference_edge_length(mesh::bounding_box(set.rest_surface.vertices).longest_side(),
+                                               std::abs(mesh::signed_volume(set.rest_surface)));
+    }
+    pipeline::Reference reference = pipeline::make_reference(set, edge);
     if (!reference.body) throw SolverFailure(reference.why_none);
     return std::move(reference.body);
 }
@@ -227,9 +238,12 @@ int main(int argc, char** argv) {
     if (options.folder.empty()) {
         fmt::print(stderr,
                    "Usage: diagnosis_bench FOLDER [--jobs N] [--threads N] [--body reference|skeleton] "
-                   "[--without EFFECT] [--ablate PART] [--ladder] [--tell] [SET ...]\n");
+                   "[--without EFFECT] [--ablate PART] [--coarser FACTOR] [--ladder] [--tell] [SET ...]\n");
         return 2;
     }
+    // as the program does: matrices of some MB come and go
+    mallopt(M_MMAP_THRESHOLD, 256 << 20);
+    mallopt(M_TRIM_THRESHOLD, 512 << 20);
     try {
         run(options);
     } catch (const std::exception& e) {

@@ -1,7 +1,9 @@
 // Measurement sets with something hidden in them, on bodies and probe plans drawn at random, for diagnosis_bench.
-// Usage: forge_bench OUT [--sets N] [--seed N] [--jobs N] [EFFECT[+EFFECT] ...]
+// Usage: forge_bench OUT [--sets N] [--seed N] [--jobs N] [--repeats N] [--coarser FACTOR] [EFFECT[+EFFECT] ...]
 // Without names: each effect of a solid in turn, nothing among them. OUT/truth.csv tells them all,
 // OUT/truth/<set>.json their numbers.
+// --repeats N reads each body in which nothing is hidden N times, with other noise; --coarser makes elements so much
+// longer, for many sets in little time.
 //
 // Bodies are boxes made round, tapered, bent and twisted, 50 to 150 mm long and up to eight times as long as thick,
 // held at one end, of .03 to 1 MPa and a Poisson's ratio of .4 to .48.
@@ -21,6 +23,7 @@
 #include "mesh/read_surface.h"
 #include "pipeline/case/subject.h"
 #include "pipeline/forge/truth.h"
+#include "pipeline/reference/reference_body.h"
 
 using namespace palpate;
 
@@ -32,7 +35,8 @@ struct Options {
     fs::path out;
     int sets = 26;
     std::uint64_t seed = 1;
-    int jobs = 1;
+    int jobs = 1, repeats = 1;
+    double coarser = 1;
     std::vector<std::string> hide{"none",    "gravity",    "stiffening",        "anisotropy", "inclusion",
                                   "contact", "prestress",  "compliant-support", "viscosity",  "plasticity",
                                   "none",    "force-gain", "misalignment"};
@@ -49,6 +53,10 @@ Options parse(int argc, char** argv) {
             options.seed = std::stoull(argv[++i]);
         } else if (word == "--jobs" && i + 1 < argc) {
             options.jobs = std::stoi(argv[++i]);
+        } else if (word == "--repeats" && i + 1 < argc) {
+            options.repeats = std::stoi(argv[++i]);
+        } else if (word == "--coarser" && i + 1 < argc) {
+            options.coarser = std::stod(argv[++i]);
         } else if (options.out.empty()) {
             options.out = word;
         } else {
@@ -114,6 +122,12 @@ fs::path write_case(const fs::path& folder, std::mt19937_64& random) {
     return folder / "case.yaml";
 }
 
+/// Of the body that is fitted, unless it is coarser [mm].
+double edge_length(const mesh::Surface& surface) {
+    return pipeline::reference_edge_length(mesh::bounding_box(surface.vertices).longest_side(),
+                                           std::abs(mesh::signed_volume(surface)));
+}
+
 std::vector<std::string> split(const std::string& text, char at) {
     std::vector<std::string> words;
     std::stringstream in(text);
@@ -121,10 +135,25 @@ std::vector<std::string> split(const std::string& text, char at) {
     return words;
 }
 
-/// Draws body i with what is hidden in it; its row of truth.csv, and a line for who waits.
+/// Rows of truth.csv for a body, and a line for who waits.
 struct Drawn {
-    std::string row, line;
+    std::string rows, line;
 };
+
+/// The set read once more, with noise of its own [mm].
+identify::MeasurementSet with_noise(identify::MeasurementSet set, double sigma, std::uint64_t seed) {
+    std::mt19937_64 random(seed);
+    std::normal_distribution<double> noise(0, sigma);
+    set.position_noise = sigma;
+    for (identify::LoadState& state : set.states) {
+        for (identify::Reading& reading : state.readings) {
+            for (int axis = 0; axis < 3; ++axis) reading.position[axis] += noise(random);
+        }
+    }
+    return set;
+}
+
+/// Body i with what is hidden in it, written to a folder; where nothing is, as often as asked for with other noise.
 
 Drawn draw(const Options& options, int i) {
     const std::string& hidden = options.hide[static_cast<std::size_t>(i) % options.hide.size()];
@@ -133,28 +162,33 @@ Drawn draw(const Options& options, int i) {
     std::mt19937_64 random(seed);
     try {
         const fs::path file = write_case(options.out / "bodies" / name, random);
-        const pipeline::Subject subject = pipeline::read_subject(pipeline::read_case(file));
+        pipeline::Subject subject = pipeline::read_subject(pipeline::read_case(file));
+        if (options.coarser != 1) subject.settings.edge_length = 0.8 * options.coarser * edge_length(subject.surface);
         pipeline::ForgeOptions how;
-        if (hidden == "none") {
-            how.hide = {"none"};  // blind, and nothing there
-        } else {
-            how.hide = split(hidden, '+');
-        }
+        how.hide = split(hidden, '+');
+        const bool repeated = hidden == "none" && options.repeats > 1;
+        if (repeated) how.noise = 0;
         const pipeline::Specimen specimen = pipeline::finite_element_specimen(subject, how, {});
         pipeline::ProbeOptions probing;
         probing.markers = 80;
         pipeline::Forged forged = pipeline::forge(specimen, probing, how, seed, 1);
         forged.set.name = name;
-        identify::write_measurement_set(options.out / name, forged.set);
-        mesh::write_text(options.out / "truth" / (name + ".json"),
-                         pipeline::truth_of(forged, specimen, how, seed).dump(1));
         const pipeline::Strength& strength = forged.strength;
-        return {
-            fmt::format("{},{},{:.4g},{:.4g},{:.4g},{:.4g},\n", name, hidden, strength.displacement, strength.change,
-                        strength.beyond, forged.noise),
-            fmt::format("{}: {} nodes, displacement {:.3g}, change {:.3g}, beyond stiffness {:.3g}, noise {:.3g} mm",
-                        name, specimen.volume.nodes.rows(), strength.displacement, strength.change, strength.beyond,
-                        forged.noise)};
+        std::string rows;
+        for (int repeat = 0; repeat < (repeated ? options.repeats : 1); ++repeat) {
+            const std::string own = repeated ? fmt::format("{}-{}", name, repeat) : name;
+            const double noise = repeated ? 0.02 * strength.displacement : forged.noise;
+            identify::write_measurement_set(
+                options.out / own, repeated ? with_noise(forged.set, noise, seed + 7919 * repeat) : forged.set);
+            mesh::write_text(options.out / "truth" / (own + ".json"),
+                             pipeline::truth_of(forged, specimen, how, seed).dump(1));
+            rows += fmt::format("{},{},{:.4g},{:.4g},{:.4g},{:.4g},\n", own, hidden, strength.displacement,
+                                strength.change, strength.beyond, noise);
+        }
+        return {rows, fmt::format(
+                          "{}: {} nodes, displacement {:.3g}, change {:.3g}, beyond stiffness {:.3g}, noise {:.3g} mm",
+                          name, specimen.volume.nodes.rows(), strength.displacement, strength.change, strength.beyond,
+                          forged.noise)};
     } catch (const std::exception& e) {
         return {"", fmt::format("{}: left out: {}", name, e.what())};
     }
@@ -167,7 +201,7 @@ void run(const Options& options) {
     identify::for_each_in_parallel(options.sets, options.jobs, [&](int i) {
         const Drawn drawn = draw(options, i);
         const std::scoped_lock lock(telling);
-        rows[static_cast<std::size_t>(i)] = drawn.row;
+        rows[static_cast<std::size_t>(i)] = drawn.rows;
         std::cout << drawn.line << std::endl;
     });
     std::string text = "set,effect,signal_rms_mm,effect_rms_mm,beyond_stiffness_rms_mm,sigma_mm,detail\n";
@@ -180,7 +214,9 @@ void run(const Options& options) {
 int main(int argc, char** argv) {
     const Options options = parse(argc, argv);
     if (options.out.empty()) {
-        fmt::print(stderr, "Usage: forge_bench OUT [--sets N] [--seed N] [--jobs N] [EFFECT[+EFFECT] ...]\n");
+        fmt::print(stderr,
+                   "Usage: forge_bench OUT [--sets N] [--seed N] [--jobs N] [--repeats N] [--coarser FACTOR] "
+                   "[EFFECT[+EFFECT] ...]\n");
         return 2;
     }
     try {

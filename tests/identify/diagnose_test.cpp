@@ -78,7 +78,7 @@ TEST_F(Diagnosed, NoisierGravityIsNamed) {
 }
 
 TEST_F(Diagnosed, ACompliantSupportIsNamedWithItsStiffness) {
-    const Diagnosis found = diagnose(twin(truth("compliant-support", numbers({std::log(2.0)}))));
+    const Diagnosis found = diagnose(twin(truth("compliant-support", numbers({std::log(2.0), 0}))));
     EXPECT_EQ(found.verdict, Verdict::missing_effect);
     EXPECT_THAT(found.explanation, ElementsAre("compliant-support"));
     EXPECT_NEAR(told(found.ranking.front(), "stiffness"), 2, 3 * found.ranking.front().told.sd[0]);
@@ -152,7 +152,7 @@ TEST_F(Diagnosed, WhatTheCatalogueLacksIsNotExplained) {
         EXPECT_THAT(found.outliers.readings, IsEmpty()) << effect;
     };
     check("gravity", half_g);
-    check("compliant-support", numbers({std::log(2.0)}));
+    check("compliant-support", numbers({std::log(2.0), 0}));
     check("misalignment", numbers({0.3, -0.2, 0.1, 0.01, -0.015, 0.02}));
     check("force-gain", numbers({0.2, -0.15, 0.3, -0.25, 0.1, -0.2, 0.15, -0.1}));
 }

@@ -51,7 +51,7 @@ protected:
         const Problem all = problem(force);
         const Played played = play(*model_, all, bare_, 1);
         const auto effect = find_effect("compliant-support");
-        const Eigen::VectorXd moved = seen(all, effect, Eigen::VectorXd::Constant(1, std::log(k)), played) -
+        const Eigen::VectorXd moved = seen(all, effect, Eigen::Vector2d(std::log(k), 0), played) -
                                       all.pick(played.markers).cwiseQuotient(all.sigma);
         return {screened(*effect, all, played).columns.col(0), k * moved};
     }

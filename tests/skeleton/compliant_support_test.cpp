@@ -52,6 +52,35 @@ TEST(CompliantSupportEffect, TurnsUnderACouple) {
     }
 }
 
+TEST(CompliantSupportEffect, StandsCloserToTheRimWhereItTurnsMoreStiffly) {
+    // A square plate of unit side, cut into cells: <r^2> = 1/6, <r^4> = 7/180.
+    constexpr int n = 60;
+    Points rest(n * n, 3);
+    for (int i = 0; i < n; ++i) {
+        for (int j = 0; j < n; ++j) rest.row(n * i + j) << 5 + (i + 0.5) / n, -2 + (j + 0.5) / n, 1;
+    }
+    const Eigen::VectorXd even = Eigen::VectorXd::Constant(n * n, 1.0 / (n * n));
+    const Eigen::RowVector3d centre(5.5, -1.5, 1);
+    const auto second_moment = [&](const Eigen::VectorXd& weights) {
+        return weights.dot((rest.rowwise() - centre).rowwise().squaredNorm());
+    };
+    for (const double turning : {0.7, 1.3, 1.6}) {
+        const Eigen::VectorXd weights = CompliantSupport(2, turning).weights(rest, even);
+        EXPECT_NEAR(weights.sum(), 1, 1e-12);
+        EXPECT_LT((weights.transpose() * rest - centre).norm(), 1e-9);
+        EXPECT_NEAR(second_moment(weights) / second_moment(even), turning, 1e-9);
+    }
+    const Eigen::VectorXd rim = CompliantSupport(2, 1.3).weights(rest, even);
+    EXPECT_NEAR(rim[0] * n * n, 1 + 0.3 / (7.0 / 180 * 36 - 1) * 2, 0.1);  // about a corner, where r^2 = 3 <r^2>
+    EXPECT_EQ(CompliantSupport(2).weights(rest, even), even);
+}
+
+TEST(CompliantSupportEffect, OfPointsAsFarFromTheirCentreSharesEvenly) {
+    const Points rest = (Points(4, 3) << 1, 0, 0, -1, 0, 0, 0, 1, 0, 0, -1, 0).finished();
+    const Eigen::VectorXd even = Eigen::VectorXd::Constant(4, 0.25);
+    EXPECT_EQ(CompliantSupport(2, 2).weights(rest, even), even);
+}
+
 TEST(CompliantSupportEffect, OfGreatStiffnessHolds) {
     for (Model model : {make_lattice({4, 2, 2}), lattice_with_skin()}) {
         const Load load = force_at(model, 3, {1, 2, -3});

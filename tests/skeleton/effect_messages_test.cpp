@@ -35,7 +35,7 @@ TEST(EffectMessages, EveryFaultIsNamed) {
     EXPECT_EQ(
         complaint({"compliant-support", {{"stifness", 3, "N/mm"}}}),
         "effect 'compliant-support': the parameter 'stifness' is not known (did you mean 'stiffness'?); known are "
-        "'stiffness'");
+        "'stiffness', 'turning'");
     EXPECT_EQ(complaint(compliant_support(0)), "effect 'compliant-support': stiffness is 0 N/mm, but must be above 0");
     EXPECT_EQ(complaint(gravity({0, std::nan(""), 0})), "effect 'gravity': gy is nan mm/s^2, but must be a number");
     EXPECT_EQ(complaint({"compliant-support", {{"stiffness", 3, "N/m"}}}),
