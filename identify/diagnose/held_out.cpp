@@ -18,9 +18,7 @@ HeldOut leave_probes_out(const Problem& problem, const Refit& fit) {
     for (Eigen::Index n = 0; n < problem.rows(); ++n) group[n] = problem.probe[problem.action[n]];
     const LeftOut left = leave_out(Whitening(fit.V->weights(), A, precisions), d, group);
     const auto N = static_cast<double>(problem.rows());
-    return {std::sqrt(left.error.cwiseProduct(problem.sigma).squaredNorm() / N),
-            std::sqrt(left.whitened.squaredNorm() / N),
-            {}};
+    return {std::sqrt(left.error.cwiseProduct(problem.sigma).squaredNorm() / N), std::sqrt(left.chi_square / N), {}};
 }
 
 namespace {

@@ -105,8 +105,8 @@ void judge(const BodyModel& model, const DiagnoseOptions& options, Diagnosis& di
     }
     std::ranges::stable_sort(by_evidence, std::greater{}, &Explained::log_bayes_factor);
     // is there evidence for more than what is claimed?
-    const bool something =
-        std::ranges::any_of(by_evidence, [&](const Explained* one) { return is_likely(*one, options); });
+    const bool something = std::ranges::any_of(
+        by_evidence, [&](const Explained* one) { return is_likely(*one, options) && one->objection.empty(); });
     const std::vector<const Explained*> alike = explain_alike(by_evidence, options);
     if (alike.size() > 1) {
         diagnosis.verdict = Verdict::ambiguous;

@@ -227,6 +227,22 @@ Refit refit(const BodyModel& model, const Problem& problem, const Explanation& e
     return at;
 }
 
+double objective(const Refit& fit) {
+    return objective(*fit.V, fit.error, {fit.prior_mean, fit.prior_sd, {}, {}, {}}, fit.explanation.all());
+}
+
+double objective_near(const BodyModel& model, const Problem& problem, const Explanation& explanation,
+                      const RefitOptions& options, const Refit& near) {
+    std::vector<std::vector<EffectNumber>> numbers;
+    for (const auto& effect : explanation.effects) numbers.push_back(effect->numbers(model, problem));
+    try {
+        const Played played = play(model, problem, explanation, options.threads, &near.played.q);
+        return objective(*near.V, error_of(problem, played), priors_of(model, explanation, numbers), explanation.all());
+    } catch (const SolverFailure&) {
+        return INFINITY;
+    }
+}
+
 Explanation first_guess(const BodyModel& model, const Problem& problem, int law, int threads) {
     Explanation guess;
     guess.law = law;

@@ -42,6 +42,14 @@ struct RefitOptions {
 Refit refit(const BodyModel& model, const Problem& problem, const Explanation& explanation, const RefitOptions& options,
             const Refit* start = nullptr);
 
+/// Half of chi^2 and of the priors' squares: what a refit lowers.
+double objective(const Refit& fit);
+
+/// The same at an explanation's own equilibria, by the weights and nuisances of a fit nearby: what a refit from there
+/// would begin with. Infinite where there are no equilibria.
+double objective_near(const BodyModel& model, const Problem& problem, const Explanation& explanation,
+                      const RefitOptions& options, const Refit& near);
+
 /// Numbers that begin a fit under a law without effects: Young's modulus, or what stands for it, scaled so that the
 /// linear answers are as large as the measurements' differences to the unloaded state.
 Explanation first_guess(const BodyModel& model, const Problem& problem, int law, int threads);

@@ -60,7 +60,7 @@ Screened judge_columns(const Problem& problem, const Leftover& leftover, const S
                        const ScreenPlan& plan) {
     const Eigen::Index p = b.prior_sd.size();
     const std::vector<ScreenResult> all = screen_alternatives(leftover.V, leftover.d, b.columns, b.prior_sd);
-    Screened result{.effect = nullptr, .log_bayes_factor = -INFINITY, .keep = 0, .predicted_rms_mm = 0, .start = {}};
+    Screened result{.effect = nullptr, .log_bayes_factor = -INFINITY, .keep = 0, .predicted_rms_mm = 0};
     std::size_t best = 0;
     std::vector<double> evidence;
     for (const ScreenResult& one : all) {
@@ -78,7 +78,10 @@ Screened judge_columns(const Problem& problem, const Leftover& leftover, const S
     result.keep = all[best].keep;
     const auto columns = b.columns.middleCols(static_cast<Eigen::Index>(best) * p, p);
     result.predicted_rms_mm = leftover.predicted_rms(problem, columns, b.prior_sd);
-    result.start = plan.start(static_cast<Eigen::Index>(best), all[best].value);
+    for (const double share : {1.0, 0.3, 0.1, 0.03}) {
+        const Eigen::VectorXd start = plan.start(static_cast<Eigen::Index>(best), share * all[best].value);
+        if (result.starts.empty() || start != result.starts.back()) result.starts.push_back(start);
+    }
     return result;
 }
 

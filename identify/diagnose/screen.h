@@ -11,7 +11,8 @@ struct Screened {
     double log_bayes_factor = 0;  // averaged over the alternatives: places, directions
     double keep = 0;              // b^T V^-1 b / b^T W^2 b
     double predicted_rms_mm = 0;  // of the errors once it is in, by this linearisation
-    Eigen::VectorXd start;        // values to begin a refit with
+    std::vector<Eigen::VectorXd> starts =
+        {};  // values to begin a refit with: as it says, then with less and less of it
 };
 
 /// Screens effects without refitting, by their force signatures at the fit; in the order given, those left out that

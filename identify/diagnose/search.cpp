@@ -142,10 +142,16 @@ int Search::most_promising_law() const {
 std::optional<Explained> Search::refit_with(const Refit& base, const Screened& screened) const {
     Explanation explanation = base.explanation;
     explanation.effects.push_back(screened.effect);
-    explanation.values.push_back(screened.start);
+    explanation.values.push_back(screened.starts.front());
     const bool spread = explanation.has_memory() && !base.explanation.has_memory() && !problem_.by_stage;
-    return refit_from(explanation, spread ? spread_over_stages(model_, base, problem_, stages_) : base,
-                      {screened.effect});
+    const Refit from = spread ? spread_over_stages(model_, base, problem_, stages_) : base;
+    // A linearisation may promise too much: then less of the effect, so that its fit begins no worse than without it.
+    for (std::size_t i = 0; i < screened.starts.size() && screened.starts.size() > 1; ++i) {
+        explanation.values.back() = screened.starts[i];
+        const double begins = objective_near(model_, problem_for(explanation), explanation, options_.refit, from);
+        if (begins < objective(base)) break;
+    }
+    return refit_from(explanation, from, {screened.effect});
 }
 
 std::optional<Explained> Search::refit_from(const Explanation& explanation, const Refit& start,
@@ -165,6 +171,7 @@ void Search::confirm_single_effects() {
     const int law = most_promising_law();
     if (screened_[law].empty()) return;
     const Refit& base = *baselines_.under(law);
+    const bool enough = is_enough(baselines_.best(), options_);
     int refitted = 0;
     double claimed = -INFINITY;  // evidence of an effect that leaves nothing else to explain
     for (const Screened& screened : screened_[law]) {
@@ -174,7 +181,9 @@ void Search::confirm_single_effects() {
                             .keep = screened.keep,
                             .predicted_rms_mm = screened.predicted_rms_mm};
         const double least = std::max(options_.least_screen, 0.1 * screened_[law].front().log_bayes_factor);
-        if (refitted < options_.refits && screened.log_bayes_factor >= least && at_most(screened) > claimed) {
+        candidate.objection = enough ? screened.effect->objection(problem_, screened.starts.front(), true) : "";
+        if (candidate.objection.empty() && refitted < options_.refits && screened.log_bayes_factor >= least &&
+            at_most(screened) > claimed) {
             report(progress_, "refit with " + screened.effect->name(), 0.55 + 0.05 * refitted);
             if (auto found = refit_with(base, screened)) {
                 if (claims(*found)) claimed = std::max(claimed, found->log_bayes_factor);
@@ -214,8 +223,10 @@ void Search::try_other_laws(std::size_t tried) {
         };
         std::optional<Explained> other;
         if (law > 0 && own > 0) {
-            // next to another law of large deformation; a matter of what little is left
+            // next to another law of large deformation; a matter of what little is left, where it does as well without
+            constexpr double as_well = 20;  // ln of evidence
             if (!is_enough(single.fit, options_)) continue;
+            if (baselines_.evidence(law) + as_well < baselines_.evidence(own)) continue;
             tell();
             other = carry_over(single, law);
         } else {
@@ -266,7 +277,8 @@ bool Search::extend(std::size_t from, int most) {
     const Explained base = tried_[from];
     const std::vector<std::string> there = names_of(base);
     report(progress_, "screen next to " + listed(there), 0.8);
-    const double least = claims(base) ? options_.least_next_to(base.log_bayes_factor) : options_.least_evidence;
+    const bool noise_is_left = is_likely(base, options_) && base.fit.whitened_rms <= options_.most_left;
+    const double least = noise_is_left ? options_.least_next_to(base.log_bayes_factor) : options_.least_evidence;
     const double leads = leader()->log_bayes_factor;
     bool grew = false;
     int refitted = 0;

@@ -44,6 +44,18 @@ Eigen::VectorXd Whitening::residual(const Eigen::VectorXd& d) const {
     return weighted - B_ * inner_.solve(B_.transpose() * weighted);
 }
 
+Eigen::VectorXd Whitening::solve_within(const std::vector<Eigen::Index>& rows, const Eigen::VectorXd& y) const {
+    const Eigen::VectorXd unweighted = weights_(rows).cwiseInverse();
+    Eigen::VectorXd x = unweighted.cwiseProduct(y);
+    if (B_.cols() > 0) {
+        const Eigen::MatrixXd own = B_(rows, Eigen::all);
+        Eigen::MatrixXd others = inner_.reconstructedMatrix();
+        others.selfadjointView<Eigen::Lower>().rankUpdate(own.transpose(), -1);
+        x += own * others.selfadjointView<Eigen::Lower>().llt().solve(own.transpose() * x);
+    }
+    return unweighted.cwiseProduct(x);
+}
+
 Eigen::VectorXd Whitening::unsure() const {
     // In sigmas: the nuisances' share A Lambda^-1 A^T, and what a weight below 1 stands for, W^-2 - 1.
     const Eigen::VectorXd of_weights = weights_.array().square().inverse() - 1;
@@ -82,21 +94,13 @@ std::vector<ScreenResult> screen_alternatives(const Whitening& V, const Eigen::V
 
 LeftOut leave_out(const Whitening& V, const Eigen::VectorXd& d, const std::vector<int>& group) {
     const Eigen::VectorXd y = V.apply(d);
-    LeftOut result{Eigen::VectorXd::Zero(d.size()), Eigen::VectorXd::Zero(d.size())};
+    LeftOut result{Eigen::VectorXd::Zero(d.size())};
     std::map<int, std::vector<Eigen::Index>> rows;
     for (std::size_t n = 0; n < group.size(); ++n) rows[group[n]].push_back(static_cast<Eigen::Index>(n));
     for (const auto& [id, own] : rows) {
-        Eigen::MatrixXd unit = Eigen::MatrixXd::Zero(d.size(), std::ssize(own));
-        for (Eigen::Index c = 0; c < std::ssize(own); ++c) unit(own[c], c) = 1;
-        const Eigen::MatrixXd precision = V.apply(unit)(own, Eigen::all);
-        // [V^-1]_gg = L L^T: the error is its inverse times y, whitened L^-1 y
-        const Eigen::LLT<Eigen::MatrixXd> factor(0.5 * (precision + precision.transpose()));
-        const Eigen::VectorXd own_y = y(own);
-        const Eigen::VectorXd error = factor.solve(own_y), whitened = factor.matrixL().solve(own_y);
-        for (Eigen::Index c = 0; c < std::ssize(own); ++c) {
-            result.error[own[c]] = error[c];
-            result.whitened[own[c]] = whitened[c];
-        }
+        const Eigen::VectorXd error = V.solve_within(own, y(own));
+        result.chi_square += error.dot(y(own));
+        for (Eigen::Index c = 0; c < std::ssize(own); ++c) result.error[own[c]] = error[c];
     }
     return result;
 }

@@ -21,6 +21,9 @@ public:
     Eigen::VectorXd nuisances(const Eigen::VectorXd& d) const;
     /// d less what the nuisances explain of it, weighted: with the right model, noise of 1 sigma (N).
     Eigen::VectorXd residual(const Eigen::VectorXd& d) const;
+    /// [V^-1]_gg^-1 y for some rows g (n) and y (n), at the price of one factorisation of the nuisances: it is
+    ///   W_g^-1 (1 + B_g (B^T B + Lambda - B_g^T B_g)^-1 B_g^T) W_g^-1. [Woodbury]
+    Eigen::VectorXd solve_within(const std::vector<Eigen::Index>& rows, const Eigen::VectorXd& y) const;
     const Eigen::VectorXd& weights() const { return weights_; }
     /// Prior standard deviation of each error by what nobody can know (N), in sigmas of noise; noise itself not
     /// counted.
@@ -46,10 +49,10 @@ ScreenResult screen(const Whitening& V, const Eigen::VectorXd& d, const Eigen::M
 std::vector<ScreenResult> screen_alternatives(const Whitening& V, const Eigen::VectorXd& d, const Eigen::MatrixXd& b,
                                               const Eigen::VectorXd& tau);
 
-/// Errors of each group of rows (ids >= 0, N) as predicted from all the others, and whitened: [V^-1]_gg^-1 [V^-1 d]_g.
+/// Errors of each group of rows (ids >= 0, N) as predicted from all the others: [V^-1]_gg^-1 [V^-1 d]_g.
 struct LeftOut {
-    Eigen::VectorXd error;     // (N), in sigmas of noise
-    Eigen::VectorXd whitened;  // (N)
+    Eigen::VectorXd error;  // (N), in sigmas of noise
+    double chi_square = 0;  // of the same, group by group whitened by how well it can be predicted
 };
 LeftOut leave_out(const Whitening& V, const Eigen::VectorXd& d, const std::vector<int>& group);
 

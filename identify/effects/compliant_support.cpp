@@ -80,7 +80,7 @@ public:
             return ScreenColumns{answers, Eigen::VectorXd::Constant(1, prior_sd), true};
         };
         plan.start = [prior_sd](Eigen::Index, const Eigen::VectorXd& compliance) {
-            return Eigen::Vector2d(-std::log(std::max(compliance[0], 0.1 * prior_sd)), 0);
+            return Eigen::Vector2d(-std::log(std::max(compliance[0], 1e-3 * prior_sd)), 0);
         };
         return plan;
     }

@@ -80,6 +80,11 @@ public:
         return plan;
     }
 
+    std::string objection(const Problem&, const Eigen::VectorXd&, bool enough_without) const override {
+        // A wall that hardly matters looks like what nobody knows about a probe or a clamp nearby.
+        return enough_without ? "what is left without a wall is noise already" : "";
+    }
+
     skeleton::Effect told(const std::vector<EffectNumber>& numbers, const Eigen::VectorXd& values) const override {
         Eigen::VectorXd of_unit = values;
         of_unit.head<3>().normalize();

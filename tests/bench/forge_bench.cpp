@@ -170,7 +170,8 @@ Drawn draw(const Options& options, int i) {
         if (repeated) how.noise = 0;
         const pipeline::Specimen specimen = pipeline::finite_element_specimen(subject, how, {});
         pipeline::ProbeOptions probing;
-        probing.markers = 80;
+        probing.probes = 6;  // each pushed and pulled at several levels
+        probing.markers = 60;
         pipeline::Forged forged = pipeline::forge(specimen, probing, how, seed, 1);
         forged.set.name = name;
         const pipeline::Strength& strength = forged.strength;

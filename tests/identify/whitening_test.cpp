@@ -173,16 +173,17 @@ TEST(LeaveOut, IsTheErrorOfAFitWithoutTheGroup) {
     std::vector<int> group(N);
     for (int n = 0; n < N; ++n) group[n] = (7 * n) % 5;
     const LeftOut left = leave_out(e.whitening(), e.d, group);
+    double chi_square = 0;
     for (int g = 0; g < 5; ++g) {
         std::vector<int> own, others;
         for (int n = 0; n < N; ++n) (group[n] == g ? own : others).push_back(n);
         const Eigen::MatrixXd to_others = e.V(own, others) * e.V(others, others).inverse();
         const Eigen::VectorXd error = e.d(own) - to_others * e.d(others);
         const Eigen::MatrixXd spread = e.V(own, own) - to_others * e.V(others, own);
-        const Eigen::VectorXd found = left.error(own), whitened = left.whitened(own);
-        EXPECT_LT((found - error).norm(), 1e-10 * error.norm()) << g;
-        EXPECT_NEAR(whitened.squaredNorm(), error.dot(spread.inverse() * error), 1e-9 * whitened.squaredNorm());
+        EXPECT_LT((left.error(own) - error).norm(), 1e-10 * error.norm()) << g;
+        chi_square += error.dot(spread.inverse() * error);
     }
+    EXPECT_NEAR(left.chi_square, chi_square, 1e-9 * chi_square);
 }
 
 TEST(LeaveOut, WhitensErrorsOfTheRightModelToOne) {
@@ -195,7 +196,7 @@ TEST(LeaveOut, WhitensErrorsOfTheRightModelToOne) {
     constexpr int draws = 200;
     RandomStream random(3, 0, 0);
     for (int i = 0; i < draws; ++i) {
-        sum += leave_out(e.whitening(), L * random.normals(N), group).whitened.squaredNorm();
+        sum += leave_out(e.whitening(), L * random.normals(N), group).chi_square;
     }
     // Each group's sum is chi^2 of 8; groups hang together, at most as if they were one: sd sqrt(2 * 5 / 8000).
     EXPECT_NEAR(sum / (draws * N), 1, 4 * std::sqrt(2.0 * 5 / (draws * N)));  // 4 sigma
