@@ -26,7 +26,7 @@ public:
             .parameters = {"stiffness [N/mm]: of all springs together",
                            "turning [-]: how stiffly it turns, over springs that are spread evenly"},
             .reveals = "the body moves and turns at its base in proportion to the force there",
-            .confused_with = {"force-gain", "anisotropy"},
+            .confused_with = {"inclusion", "force-gain", "anisotropy"},
             .separating_probe = "put markers on the base and load it there",
             .next_probe = "load"};
         return text;
