@@ -36,7 +36,7 @@ struct DiagnoseOptions {
     double most_left = 1.1;               // whitened rms, for what is left to be noise
     double most_left_together = 1.06;     // the same where several effects explain it: they bend to more
     double most_left_held_out = 1.2;      // the same on probes left out
-    double most_strain = 4.5;             // of a nuisance, in its prior sd
+    double most_strain = 6;               // of a nuisance, in its prior sd
     RefitOptions refit;
     void validate() const;  // @throws InvalidInput naming option, value and bound
     /// ln Bayes factor that a further effect has to bring next to what has some already and leaves only noise: more

@@ -7,8 +7,8 @@ namespace palpate::skeleton {
 /// A support that gives way: springs of stiffness k in all over what it holds, e = k/2 |x - X|^2.
 ///
 /// `turning`: how stiffly it turns, over springs that are spread evenly. Above 1 they stand closer to the rim, below it
-/// to the middle: their shares are w (1 + s (r^2 / <r^2> - 1)), r the distance from their centre, s such that the second
-/// moment is that many times as large. Points that are all as far from the centre have nothing to share out anew.
+/// to the middle: their shares are w (1 + s (r^2 / <r^2> - 1)), r the distance from their centre, and s such that the
+/// second moment is that many times as large. Points that are all as far from the centre share as they did.
 class CompliantSupport : public fem::PointPotential {
 public:
     explicit CompliantSupport(double k, double turning = 1) : k_(k), turning_(turning) {}  // [N/mm], [-]

@@ -168,10 +168,11 @@ Drawn draw(const Options& options, int i) {
         how.hide = split(hidden, '+');
         const bool repeated = hidden == "none" && options.repeats > 1;
         if (repeated) how.noise = 0;
+        pipeline::ProbeOptions& probing = subject.settings.probing;
+        probing.probes = 12;
+        probing.markers = 80;
+        probing.held_out = 0;
         const pipeline::Specimen specimen = pipeline::finite_element_specimen(subject, how, {});
-        pipeline::ProbeOptions probing;
-        probing.probes = 6;  // each pushed and pulled at several levels
-        probing.markers = 60;
         pipeline::Forged forged = pipeline::forge(specimen, probing, how, seed, 1);
         forged.set.name = name;
         const pipeline::Strength& strength = forged.strength;
