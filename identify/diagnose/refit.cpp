@@ -149,7 +149,9 @@ void begin(const BodyModel& model, const Problem& problem, int threads, const Re
         at.played = play(model, problem, at.explanation, threads, from);
         at.error = error_of(problem, at.played);
     };
-    if (start) {
+    // Configurations are the model's own, and another law may ask for others.
+    const bool alike = start && start->played.q.front().size() == model.rest(at.explanation.setting()).size();
+    if (alike) {
         try {
             return stands(&start->played.q);
         } catch (const SolverFailure&) {  // too far from there
