@@ -1,0 +1,74 @@
+#include "identify/diagnose/refit.h"
+
+#include "diagnosed.h"
+#include "identify/diagnose/nearby.h"
+
+// Fits that begin at others.
+
+namespace palpate::identify {
+namespace {
+
+class Refits : public Diagnosed {
+protected:
+    static double young(const Refit& fit) { return fit.explanation.theta[0]; }
+    RefitOptions options_;
+};
+
+TEST_F(Refits, CarriedToAnotherLawComeOutAsFromAGuess) {
+    // The skeleton's configurations under one law say nothing under another.
+    const auto skeleton = body_.skeleton();
+    const MeasurementSet set = make_twin(*skeleton, body_.set(SmallBody::probes()), bare_truth(*skeleton, 1), sigma, 1);
+    const Problem problem = make_problem(set, sigma);
+    for (const BodyModel* model :
+         {static_cast<const BodyModel*>(skeleton.get()), static_cast<const BodyModel*>(model_.get())}) {
+        const auto large = static_cast<int>(model->laws().size()) - 1;
+        const Refit linear = refit(*model, problem, first_guess(*model, problem, 0, 1), options_);
+        Explanation carried = linear.explanation;
+        carried.law = large;
+        const Refit from_linear = refit(*model, problem, carried, options_, &linear);
+        const Refit from_guess = refit(*model, problem, first_guess(*model, problem, large, 1), options_);
+        EXPECT_NEAR(young(from_linear), young(from_guess), 0.1 * std::sqrt(from_guess.covariance(0, 0)));
+        EXPECT_NEAR(from_linear.log_evidence, from_guess.log_evidence, 5);  // nuisances are taken on the way
+    }
+}
+
+TEST_F(Refits, OfAPartBeginAtTheWhole) {
+    const MeasurementSet set = twin(truth("gravity", half_g));
+    MeasurementSet part = set;
+    std::erase_if(part.states, [](const LoadState& state) { return state.probe % 4 == 3; });
+    const Problem all = make_problem(set, sigma), some = make_problem(part, sigma);
+    const Explanation guess = with(first_guess(*model_, all, neo_hooke, 1), find_effect("gravity"), half_g);
+    const Refit whole = refit(*model_, all, guess, options_);
+
+    const auto start = start_at({&all, &whole}, some);
+    ASSERT_TRUE(start);
+    EXPECT_EQ(start->played.q.size(), some.actions.size());
+    const Refit near = refit(*model_, some, whole.explanation, options_, &*start);
+    const Refit anew = refit(*model_, some, guess, options_);
+    EXPECT_NEAR(young(near), young(anew), 0.1 * std::sqrt(anew.covariance(0, 0)));
+    EXPECT_NEAR(near.log_evidence, anew.log_evidence, 2);  // nuisances are taken on the way
+    EXPECT_LE(near.steps, anew.steps);
+
+    EXPECT_FALSE(start_at({&some, &near}, all));  // it has not seen them all
+}
+
+TEST_F(Refits, KeepPoissonsRatioWhereMaterialsAre) {
+    // A frame that is far off asks for any ratio.
+    const Eigen::VectorXd moved = numbers({3, -2, 1, 0.1, -0.15, 0.2});
+    const Problem problem = make_problem(twin(truth("misalignment", moved)), sigma);
+    const StiffnessParameter& ratio = model_->parameters()[1];
+    const Refit without = refit(*model_, problem, first_guess(*model_, problem, 0, 1), options_);
+    EXPECT_GE(without.explanation.theta[1], ratio.least);
+    EXPECT_LE(without.explanation.theta[1], ratio.most);
+
+    // From a bound the way back is free.
+    Explanation explanation = with(without.explanation, find_effect("misalignment"), 0 * moved);
+    explanation.law = neo_hooke;
+    explanation.theta[1] = ratio.most;
+    const Refit found = refit(*model_, problem, explanation, options_);
+    EXPECT_LT(found.whitened_rms, 1.1);
+    EXPECT_NEAR(found.explanation.theta[1], truth().theta[1], 5 * std::sqrt(found.covariance(1, 1)));
+}
+
+}  // namespace
+}  // namespace palpate::identify
