@@ -154,7 +154,6 @@ identify::MeasurementSet with_noise(identify::MeasurementSet set, double sigma, 
 }
 
 /// Body i with what is hidden in it, written to a folder; where nothing is, as often as asked for with other noise.
-
 Drawn draw(const Options& options, int i) {
     const std::string& hidden = options.hide[static_cast<std::size_t>(i) % options.hide.size()];
     const std::string name = fmt::format("{:03}-{}", i, hidden);
