@@ -8,11 +8,14 @@ namespace palpate::identify {
 /// What the score test says of an effect at a fit that lacks it.
 struct Screened {
     std::shared_ptr<const Effect> effect;
-    double log_bayes_factor = 0;  // averaged over the alternatives: places, directions
-    double keep = 0;              // b^T V^-1 b / b^T W^2 b
-    double predicted_rms_mm = 0;  // of the errors once it is in, by this linearisation
-    std::vector<Eigen::VectorXd> starts =
-        {};  // values to begin a refit with: as it says, then with less and less of it
+    double log_bayes_factor = 0;               // averaged over the alternatives: places, directions
+    double keep = 0;                           // b^T V^-1 b / b^T W^2 b
+    double predicted_rms_mm = 0;               // of the errors once it is in, by this linearisation
+    std::vector<Eigen::VectorXd> starts = {};  // values to begin a refit with; each after the first has less of it
+
+    /// The most that a refit may bring: this is a linearisation, which it may exceed twice over, and of little several
+    /// times.
+    double at_most() const { return 2 * log_bayes_factor + 200; }
 };
 
 /// Screens effects without refitting, by their force signatures at the fit; in the order given, those left out that

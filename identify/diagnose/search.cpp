@@ -9,53 +9,6 @@
 #include "mesh/errors.h"
 
 namespace palpate::identify {
-namespace {
-
-std::vector<std::string> names_of(const Explained& explained) {
-    std::vector<std::string> names;
-    names.reserve(explained.effects.size());
-    for (const auto& effect : explained.effects) names.push_back(effect->name());
-    return names;
-}
-
-std::string listed(const std::vector<std::string>& names) {
-    std::string text;
-    for (const std::string& name : names) text += (text.empty() ? "" : " + ") + name;
-    return text;
-}
-
-/// Evidence that an effect of a fit stands for, about: half the square of how far its best known number lies from where
-/// it began, in standard deviations. [Savage-Dickey]
-double evidence_for(const Refit& fit, const std::string& name) {
-    Eigen::Index at = fit.explanation.theta.size();
-    double most = 0;
-    for (std::size_t e = 0; e < fit.explanation.effects.size(); ++e) {
-        for (Eigen::Index j = 0; j < fit.explanation.values[e].size(); ++j, ++at) {
-            if (fit.explanation.effects[e]->name() != name) continue;
-            const double off = fit.explanation.values[e][j] - fit.prior_mean[at];
-            most = std::max(most, 0.5 * off * off / fit.covariance(at, at));
-        }
-    }
-    return most;
-}
-
-/// An explanation without one of its effects.
-Explanation without(const Explanation& all, const std::string& name) {
-    Explanation result = all;
-    for (std::size_t e = 0; e < result.effects.size(); ++e) {
-        if (result.effects[e]->name() != name) continue;
-        result.effects.erase(result.effects.begin() + static_cast<std::ptrdiff_t>(e));
-        result.values.erase(result.values.begin() + static_cast<std::ptrdiff_t>(e));
-        break;
-    }
-    return result;
-}
-
-/// The most that a refit may bring: a screen is a linearisation, which it may exceed twice over, and of little several
-/// times.
-double at_most(const Screened& screened) { return 2 * screened.log_bayes_factor + 200; }
-
-}  // namespace
 
 Search::Search(const BodyModel& model, const Problem& problem, const Baselines& baselines,
                const std::vector<std::shared_ptr<const Effect>>& effects, const DiagnoseOptions& options,
@@ -183,7 +136,7 @@ void Search::confirm_single_effects() {
         const double least = std::max(options_.least_screen, 0.1 * screened_[law].front().log_bayes_factor);
         candidate.objection = enough ? screened.effect->objection(problem_, screened.starts.front(), true) : "";
         if (candidate.objection.empty() && refitted < options_.refits && screened.log_bayes_factor >= least &&
-            at_most(screened) > claimed) {
+            screened.at_most() > claimed) {
             report(progress_, "refit with " + screened.effect->name(), 0.55 + 0.05 * refitted);
             if (auto found = refit_with(base, screened)) {
                 if (claims(*found)) claimed = std::max(claimed, found->log_bayes_factor);
@@ -233,7 +186,7 @@ void Search::try_other_laws(std::size_t tried) {
             const auto screened = std::ranges::find(screened_[law], single.effects.front(), &Screened::effect);
             if (screened == screened_[law].end()) continue;
             const double lead = baselines_.best().log_evidence - baselines_.evidence(law);
-            if (at_most(*screened) < single.log_bayes_factor + lead) continue;
+            if (screened->at_most() < single.log_bayes_factor + lead) continue;
             tell();
             other = carry_over(single, law);
             if (!other) other = refit_with(*baselines_.under(law), *screened);
@@ -270,97 +223,6 @@ bool Search::was_tried(const std::vector<std::string>& names) const {
         return one.effects.size() == names.size() &&
                std::ranges::all_of(names, [&](const std::string& name) { return one.has(name); });
     });
-}
-
-/// Adds to what was tried the best effects next to one that is there; true where the evidence grew enough.
-bool Search::extend(std::size_t from, int most) {
-    const Explained base = tried_[from];
-    const std::vector<std::string> there = names_of(base);
-    report(progress_, "screen next to " + listed(there), 0.8);
-    const bool noise_is_left = is_likely(base, options_) && base.fit.whitened_rms <= options_.most_left;
-    const double least = noise_is_left ? options_.least_next_to(base.log_bayes_factor) : options_.least_evidence;
-    const double leads = leader()->log_bayes_factor;
-    bool grew = false;
-    int refitted = 0;
-    for (const Screened& screened : screen_at(base.fit, there)) {
-        if (refits_together_ >= options_.refits_together) break;
-        if (base.log_bayes_factor + at_most(screened) < leads) continue;
-        // A screen is a linearisation, and says somewhat too little at times.
-        const bool said =
-            refitted < most && screened.log_bayes_factor >= std::max(options_.least_evidence, 0.5 * least);
-        if (!said && !(screened.effect->outwits_screen() && little_is_left())) continue;
-        std::vector<std::string> names = there;
-        names.push_back(screened.effect->name());
-        if (was_tried(names)) continue;
-        report(progress_, "refit with " + listed(names), 0.85);
-        ++refitted;
-        ++refits_together_;
-        auto found = refit_with(base.fit, screened);
-        if (!found) continue;
-        found->effects.insert(found->effects.begin(), base.effects.begin(), base.effects.end());
-        const bool worth = found->log_bayes_factor >= base.log_bayes_factor + least;
-        if (!worth) continue;
-        tried_.push_back(std::move(*found));
-        grew = true;
-    }
-    return grew;
-}
-
-void Search::put_together() {
-    if (options_.together < 2 || tried_.empty()) return;
-    // The two single effects that explain most, then the best of what came out.
-    std::vector<std::size_t> order(tried_.size());
-    for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
-    std::ranges::stable_sort(order, std::greater{}, [&](std::size_t i) { return tried_[i].log_bayes_factor; });
-    const bool first_is_enough = is_enough(tried_[order.front()].fit, options_);
-    for (std::size_t i = 0; i < std::min<std::size_t>(first_is_enough ? 1 : 2, order.size()); ++i) {
-        if (!is_likely(tried_[order[i]], options_)) break;
-        extend(order[i], 3);
-    }
-    for (int count = 2; count < options_.together; ++count) {
-        const std::size_t best = index_of_leader();
-        if (std::ssize(tried_[best].effects) < count || is_enough(tried_[best].fit, options_)) break;
-        if (!extend(best, 2)) break;
-    }
-    drop_and_swap();
-}
-
-void Search::drop_and_swap() {
-    const Explained best = tried_[index_of_leader()];
-    if (best.effects.size() < 2) return;
-    for (const auto& effect : best.effects) {
-        std::vector<std::string> rest = names_of(best);
-        std::erase(rest, effect->name());
-        const bool needed = evidence_for(best.fit, effect->name()) > 10 * options_.least_evidence;
-        if (was_tried(rest) || (needed && is_enough(best.fit, options_))) continue;
-        if (refits_together_ >= options_.refits_together) break;
-        ++refits_together_;
-        // Drop: what is left may explain as much.
-        report(progress_, "refit with " + listed(rest), 0.95);
-        const Explanation explanation = without(best.fit.explanation, effect->name());
-        std::vector<std::shared_ptr<const Effect>> others = best.effects;
-        std::erase(others, effect);
-        const Refit* start = &best.fit;
-        if (explanation.has_memory() != best.fit.explanation.has_memory()) {
-            start = baselines_.under(explanation.law) ? &*baselines_.under(explanation.law) : &baselines_.best();
-        }
-        auto less = refit_from(explanation, *start, others);
-        if (!less) continue;
-        tried_.push_back(std::move(*less));
-        // Swap: another in its place.
-        if (!is_enough(best.fit, options_)) extend(tried_.size() - 1, 1);
-    }
-    // What does as well with fewer effects stands for what has more.
-    const std::size_t leader = index_of_leader();
-    for (const Explained& fewer : std::vector<Explained>(tried_)) {
-        const bool part =
-            fewer.effects.size() < tried_[leader].effects.size() &&
-            std::ranges::all_of(fewer.effects, [&](const auto& e) { return tried_[leader].has(e->name()); });
-        if (part && tried_[leader].log_bayes_factor - fewer.log_bayes_factor < options_.least_evidence) {
-            tried_.erase(tried_.begin() + static_cast<std::ptrdiff_t>(leader));
-            return;
-        }
-    }
 }
 
 }  // namespace palpate::identify
