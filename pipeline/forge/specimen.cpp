@@ -54,11 +54,9 @@ Specimen finite_element_specimen(const Subject& subject, const ForgeOptions& opt
         throw InvalidInput("linear elements are too stiff to be the truth; leave --linear-elements out");
     }
     Specimen specimen;
-    const double longest = mesh::bounding_box(subject.surface.vertices).longest_side();
-    const double volume = std::abs(mesh::signed_volume(subject.surface));
     const double edge = subject.settings.edge_length;
     Body body = make_body(subject.surface,
-                          {.edge_length = edge > 0 ? edge : finer * reference_edge_length(longest, volume),
+                          {.edge_length = edge > 0 ? edge : finer * reference_edge_length(subject.surface),
                            .volume_change = chords_cut_off},
                           progress);
     specimen.notes = body.notes;

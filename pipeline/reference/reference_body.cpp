@@ -17,9 +17,7 @@ constexpr double default_density = 1000;  // [kg/m^3]
 
 std::unique_ptr<identify::ReferenceBody> fill(const identify::MeasurementSet& set, double edge_length,
                                               const Progress& progress) {
-    const double longest = mesh::bounding_box(set.rest_surface.vertices).longest_side();
-    const double volume = std::abs(mesh::signed_volume(set.rest_surface));
-    const double edge = edge_length > 0 ? edge_length : reference_edge_length(longest, volume);
+    const double edge = edge_length > 0 ? edge_length : reference_edge_length(set.rest_surface);
     // Curving the elements gives back what their chords cut off.
     const Body body = make_body(set.rest_surface, {.edge_length = edge, .volume_change = 0.06}, progress);
     identify::ReferenceBodyOptions options;
@@ -32,7 +30,9 @@ std::unique_ptr<identify::ReferenceBody> fill(const identify::MeasurementSet& se
 
 }  // namespace
 
-double reference_edge_length(double longest_side, double volume) {
+double reference_edge_length(const mesh::Surface& surface) {
+    const double longest_side = mesh::bounding_box(surface.vertices).longest_side();
+    const double volume = std::abs(mesh::signed_volume(surface));
     // A body of edge length h has about 13.5 V / h^3 nodes.
     constexpr double nodes = 2500;
     return std::clamp(std::cbrt(13.5 * volume / nodes), 0.07 * longest_side, 0.12 * longest_side);

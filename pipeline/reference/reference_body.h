@@ -11,8 +11,8 @@
 namespace palpate::pipeline {
 
 /// Edge length of a reference body's elements by default [mm]: 7 % of the longest side, or, for a stout body, what
-/// makes some 2,500 nodes; finer ones change its answers by less than contacts are known. `volume` [mm^3].
-double reference_edge_length(double longest_side, double volume);
+/// makes some 2,500 nodes; finer ones change its answers by less than contacts are known.
+double reference_edge_length(const mesh::Surface& surface);
 
 /// The body of a measurement set in finite elements, or why there is none.
 struct Reference {

@@ -83,10 +83,15 @@ identify::DiagnoseOptions ablated(const std::vector<std::string>& parts) {
     identify::NuisanceOptions& nuisances = options.refit.nuisances;
     for (const std::string& part : parts) {
         if (part == "whitening") {
-            nuisances = {
-                .shift = none, .radius = none, .softness = none, .clamp = none, .gain_at_support = none, .dent = none};
+            nuisances = {.shift = none,
+                         .radius = none,
+                         .softness = none,
+                         .clamp = none,
+                         .gain_at_support = none,
+                         .dent = none,
+                         .flow = none};
         } else if (part == "mesh-error") {
-            nuisances.softness = nuisances.clamp = nuisances.dent = none;
+            nuisances.softness = nuisances.clamp = nuisances.dent = nuisances.flow = none;
         } else if (part == "gates") {
             options.least_lead = 0;
             options.most_left = options.most_left_together = options.most_left_held_out = options.most_strain =
@@ -110,12 +115,7 @@ std::unique_ptr<identify::BodyModel> body_of(const identify::MeasurementSet& set
     if (options.skeleton) {
         return std::make_unique<identify::SkeletonBody>(skeleton_of(set), set.markers, fem::Material{}.young);
     }
-    double edge = 0;
-    if (options.coarser != 1) {
-        edge = options.coarser *
-               pipeline::reference_edge_length(mesh::bounding_box(set.rest_surface.vertices).longest_side(),
-                                               std::abs(mesh::signed_volume(set.rest_surface)));
-    }
+    const double edge = options.coarser == 1 ? 0 : options.coarser * pipeline::reference_edge_length(set.rest_surface);
     pipeline::Reference reference = pipeline::make_reference(set, edge);
     if (!reference.body) throw SolverFailure(reference.why_none);
     return std::move(reference.body);

@@ -122,12 +122,6 @@ fs::path write_case(const fs::path& folder, std::mt19937_64& random) {
     return folder / "case.yaml";
 }
 
-/// Of the body that is fitted, unless it is coarser [mm].
-double edge_length(const mesh::Surface& surface) {
-    return pipeline::reference_edge_length(mesh::bounding_box(surface.vertices).longest_side(),
-                                           std::abs(mesh::signed_volume(surface)));
-}
-
 std::vector<std::string> split(const std::string& text, char at) {
     std::vector<std::string> words;
     std::stringstream in(text);
@@ -162,7 +156,8 @@ Drawn draw(const Options& options, int i) {
     try {
         const fs::path file = write_case(options.out / "bodies" / name, random);
         pipeline::Subject subject = pipeline::read_subject(pipeline::read_case(file));
-        if (options.coarser != 1) subject.settings.edge_length = 0.8 * options.coarser * edge_length(subject.surface);
+        if (options.coarser != 1)
+            subject.settings.edge_length = 0.8 * options.coarser * pipeline::reference_edge_length(subject.surface);
         pipeline::ForgeOptions how;
         how.hide = split(hidden, '+');
         const bool repeated = hidden == "none" && options.repeats > 1;
