@@ -14,6 +14,7 @@
 #include <fmt/format.h>
 #include <malloc.h>
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -47,35 +48,6 @@ struct Options {
     double coarser = 1;
 };
 
-Options parse(int argc, char** argv) {
-    Options options;
-    for (int i = 1; i < argc; ++i) {
-        const std::string word = argv[i];
-        if (word == "--body" && i + 1 < argc) {
-            options.skeleton = std::string(argv[++i]) == "skeleton";
-        } else if (word == "--ladder") {
-            options.ladder = true;
-        } else if (word == "--tell") {
-            options.tell = true;
-        } else if (word == "--without" && i + 1 < argc) {
-            options.without.emplace_back(argv[++i]);
-        } else if (word == "--ablate" && i + 1 < argc) {
-            options.ablations.emplace_back(argv[++i]);
-        } else if (word == "--threads" && i + 1 < argc) {
-            options.threads = std::stoi(argv[++i]);
-        } else if (word == "--coarser" && i + 1 < argc) {
-            options.coarser = std::stod(argv[++i]);
-        } else if (word == "--jobs" && i + 1 < argc) {
-            options.jobs = std::stoi(argv[++i]);
-        } else if (options.folder.empty()) {
-            options.folder = word;
-        } else {
-            options.sets.push_back(word);
-        }
-    }
-    return options;
-}
-
 /// The method without some of its parts.
 identify::DiagnoseOptions ablated(const std::vector<std::string>& parts) {
     identify::DiagnoseOptions options;
@@ -96,8 +68,6 @@ identify::DiagnoseOptions ablated(const std::vector<std::string>& parts) {
             options.least_lead = 0;
             options.most_left = options.most_left_together = options.most_left_held_out = options.most_strain =
                 INFINITY;
-        } else {
-            throw InvalidInput(fmt::format("'{}' is no part that can be left out: whitening, mesh-error, gates", part));
         }
     }
     return options;
@@ -234,13 +204,24 @@ void run(const Options& options) {
 }  // namespace
 
 int main(int argc, char** argv) {
-    const Options options = parse(argc, argv);
-    if (options.folder.empty()) {
-        fmt::print(stderr,
-                   "Usage: diagnosis_bench FOLDER [--jobs N] [--threads N] [--body reference|skeleton] "
-                   "[--without EFFECT] [--ablate PART] [--coarser FACTOR] [--ladder] [--tell] [SET ...]\n");
-        return 2;
-    }
+    Options options;
+    std::string body = "reference";
+    CLI::App app("What the diagnosis makes of sets whose truth is known");
+    app.add_option("FOLDER", options.folder, "Measurement sets and truth.csv")->required();
+    app.add_option("SET", options.sets, "Which of them; all by default");
+    app.add_option("--jobs", options.jobs, "Sets at once")->check(CLI::PositiveNumber);
+    app.add_option("--threads", options.threads, "Threads for each")->check(CLI::PositiveNumber);
+    app.add_option("--body", body, "What the errors are judged on")->check(CLI::IsMember({"reference", "skeleton"}));
+    app.add_option("--without", options.without, "An effect to leave out of the catalogue")->expected(1)->take_all();
+    app.add_option("--ablate", options.ablations, "A part to leave out of the method")
+        ->expected(1)
+        ->take_all()
+        ->check(CLI::IsMember({"whitening", "mesh-error", "gates"}));
+    app.add_option("--coarser", options.coarser, "Elements so much longer")->check(CLI::PositiveNumber);
+    app.add_flag("--ladder", options.ladder, "Add what is named");
+    app.add_flag("--tell", options.tell, "All that was screened and fitted");
+    CLI11_PARSE(app, argc, argv);
+    options.skeleton = body == "skeleton";
     // as the program does: matrices of some MB come and go
     mallopt(M_MMAP_THRESHOLD, 256 << 20);
     mallopt(M_TRIM_THRESHOLD, 512 << 20);

@@ -10,6 +10,7 @@
 
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
 #include <Eigen/Geometry>
 
 #include <iostream>
@@ -41,31 +42,6 @@ struct Options {
                                   "contact", "prestress",  "compliant-support", "viscosity",  "plasticity",
                                   "none",    "force-gain", "misalignment"};
 };
-
-Options parse(int argc, char** argv) {
-    Options options;
-    std::vector<std::string> names;
-    for (int i = 1; i < argc; ++i) {
-        const std::string word = argv[i];
-        if (word == "--sets" && i + 1 < argc) {
-            options.sets = std::stoi(argv[++i]);
-        } else if (word == "--seed" && i + 1 < argc) {
-            options.seed = std::stoull(argv[++i]);
-        } else if (word == "--jobs" && i + 1 < argc) {
-            options.jobs = std::stoi(argv[++i]);
-        } else if (word == "--repeats" && i + 1 < argc) {
-            options.repeats = std::stoi(argv[++i]);
-        } else if (word == "--coarser" && i + 1 < argc) {
-            options.coarser = std::stod(argv[++i]);
-        } else if (options.out.empty()) {
-            options.out = word;
-        } else {
-            names.push_back(word);
-        }
-    }
-    if (!names.empty()) options.hide = names;
-    return options;
-}
 
 /// A box of 2 x 2 x 2 about the origin, made round by r in [0, 1]: 0 a box, 1 a ball. [Nowell's map of cube to sphere]
 Vec3 rounded(const Vec3& p, double r) {
@@ -208,13 +184,19 @@ void run(const Options& options) {
 }  // namespace
 
 int main(int argc, char** argv) {
-    const Options options = parse(argc, argv);
-    if (options.out.empty()) {
-        fmt::print(stderr,
-                   "Usage: forge_bench OUT [--sets N] [--seed N] [--jobs N] [--repeats N] [--coarser FACTOR] "
-                   "[EFFECT[+EFFECT] ...]\n");
-        return 2;
-    }
+    Options options;
+    std::vector<std::string> hide;
+    CLI::App app("Measurement sets with something hidden in them, on random bodies");
+    app.add_option("OUT", options.out, "Folder to write to")->required();
+    app.add_option("EFFECT", hide, "What to hide, EFFECT[+EFFECT], in turn; by default each effect of a solid");
+    app.add_option("--sets", options.sets, "How many")->check(CLI::PositiveNumber);
+    app.add_option("--seed", options.seed, "Of everything random");
+    app.add_option("--jobs", options.jobs, "Bodies at once")->check(CLI::PositiveNumber);
+    app.add_option("--repeats", options.repeats, "Readings of each body that hides nothing")
+        ->check(CLI::PositiveNumber);
+    app.add_option("--coarser", options.coarser, "Elements so much longer")->check(CLI::PositiveNumber);
+    CLI11_PARSE(app, argc, argv);
+    if (!hide.empty()) options.hide = hide;
     try {
         run(options);
     } catch (const std::exception& e) {
