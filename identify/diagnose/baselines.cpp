@@ -10,16 +10,8 @@
 
 namespace palpate::identify {
 
-Explanation Baselines::start(const Problem& problem, int law, const Refit* neighbour) const {
-    const auto& near = options_->near;
-    Explanation result;
-    if (near && near->fit->explanation.law == law) {
-        result.law = law;
-        result.theta = near->fit->explanation.theta;
-    } else {
-        result = first_guess(*model_, problem, law, options_->refit.threads);
-        if (neighbour) result.theta = neighbour->explanation.theta;
-    }
+Explanation Baselines::start(const Problem& problem, int law, const Eigen::VectorXd& theta) const {
+    Explanation result{.law = law, .theta = theta, .effects = {}, .values = {}};
     for (const skeleton::Effect& known : options_->known) {
         const auto effect = find_effect(known.name);
         const auto numbers = effect->numbers(*model_, problem);
@@ -30,9 +22,40 @@ Explanation Baselines::start(const Problem& problem, int law, const Refit* neigh
     return result;
 }
 
+/// `neighbour`: the fit under another law of large deformation, from where it is not far.
+Refit Baselines::fit_under(const Problem& problem, int law, const Refit* neighbour) const {
+    RefitOptions how = options_->refit;
+    if (neighbour) {
+        how.steps = std::min(how.steps, 4);
+        Refit from = *neighbour;
+        from.V.reset();
+        return identify::refit(*model_, problem, start(problem, law, from.explanation.theta), how, &from);
+    }
+    if (options_->near && options_->near->fit->explanation.law == law) {
+        const std::optional<Refit> from = start_at(*options_->near, problem);
+        const Explanation first = start(problem, law, options_->near->fit->explanation.theta);
+        try {
+            return identify::refit(*model_, problem, first, how, from ? &*from : nullptr);
+        } catch (const SolverFailure&) {  // too soft without the effects that it has there
+        }
+    }
+    return identify::refit(*model_, problem, start(problem, law, first_guess(*model_, problem, law, how.threads).theta),
+                           how);
+}
+
+/// Could a law do about as well as a fit under another one? By its equilibria at the same numbers, and what a change of
+/// them would mend by the slopes of the fit.
+bool Baselines::could_do_as_well(const Problem& problem, int law, const Refit& fit) const {
+    Explanation explanation = fit.explanation;
+    explanation.law = law;
+    const double promised = promised_objective(*model_, problem, explanation, options_->refit, fit);
+    constexpr double about = 50;  // ln of evidence, in units of what is left
+    return promised < objective(fit) + about * std::max(1.0, fit.whitened_rms * fit.whitened_rms);
+}
+
 void Baselines::fit(const Problem& problem, std::vector<std::string>& notes, const Progress& progress) {
     std::string failure;
-    std::optional<Refit> neighbour;  // of another law of large deformation: from one it is not far to the next
+    std::optional<Refit> neighbour;  // of another law of large deformation
     // The linear one first, then from the last, which is the best behaved of the others.
     for (int i = 0; i < laws(); ++i) {
         const int law = i == 0 ? 0 : laws() - i;
@@ -43,19 +66,11 @@ void Baselines::fit(const Problem& problem, std::vector<std::string>& notes, con
         if (neighbour && neighbour->whitened_rms > much) continue;
         const std::string& name = model_->laws()[law];
         report(progress, "baseline, law " + name, 0.1 + 0.1 * i);
-        RefitOptions how = options_->refit;
-        std::optional<Refit> from = neighbour;
-        if (neighbour) {
-            how.steps = std::min(how.steps, 4);
-        } else if (options_->near && options_->near->fit->explanation.law == law) {
-            from = start_at(*options_->near, problem);
-        }
+        if (neighbour && !could_do_as_well(problem, law, *neighbour)) continue;
         try {
-            fits_[law] = identify::refit(*model_, problem, start(problem, law, neighbour ? &*neighbour : nullptr), how,
-                                         from ? &*from : nullptr);
+            fits_[law] = fit_under(problem, law, neighbour ? &*neighbour : nullptr);
             if (law == 0) continue;
             neighbour = fits_[law];
-            neighbour->V.reset();
         } catch (const SolverFailure& e) {
             failure = e.what();
             notes.push_back(fmt::format("Under the law {} the body has no equilibrium: {}", name, failure));

@@ -23,7 +23,9 @@ public:
     const Refit& best() const;
 
 private:
-    Explanation start(const Problem& problem, int law, const Refit* neighbour) const;
+    Explanation start(const Problem& problem, int law, const Eigen::VectorXd& theta) const;
+    Refit fit_under(const Problem& problem, int law, const Refit* neighbour) const;
+    bool could_do_as_well(const Problem& problem, int law, const Refit& fit) const;
 
     const BodyModel* model_;
     const DiagnoseOptions* options_;

@@ -118,16 +118,24 @@ private:
     bool explained() const { return leader() != nullptr; }
     const Refit& leading() const { return explained() ? leader()->fit : baseline(); }
 
+    static double rms_of(const Eigen::VectorXd& v, const std::vector<char>& keep) {
+        double sum = 0;
+        for (Eigen::Index n = 0; n < v.size(); ++n) sum += keep[n] ? v[n] * v[n] : 0;
+        return std::sqrt(sum / static_cast<double>(std::ranges::count(keep, 1)));
+    }
+
     /// Readings that are off by themselves, as a fit sees them; true where some were set aside.
     bool set_outliers_aside(const Refit& fit, double least) {
         if (!outliers_wanted() || !result_.outliers.readings.empty()) return false;
         tell("outliers", 0.4);
         const Outliers found = find_outliers(result_.problem, fit.residual);
         if (found.log_bayes_factor < least) return false;
-        result_.outliers = found;
-        result_.outliers.readings.clear();
         const int before = result_.problem.readings();
         const std::vector<char> keep = rows_without(result_.problem, found.readings);
+        constexpr double little = 3;  // rms, whitened: where more is left without them, they are not what is wrong
+        if (rms_of(fit.residual, keep) > little) return false;
+        result_.outliers = found;
+        result_.outliers.readings.clear();
         for (std::size_t n = 0; n < keep.size(); ++n) {
             const int number = result_.problem.set_reading[n];
             std::vector<int>& numbers = result_.outliers.readings;
@@ -144,7 +152,9 @@ private:
     void set_plain_outliers_aside() {
         const Diagnosis before = result_;
         const Baselines baselines = baselines_;
-        if (!set_outliers_aside(baseline(), options_.least_evidence)) return;
+        const double least = is_enough(baseline(), options_) ? least_next_to_noise(outliers_, result_.problem, options_)
+                                                             : options_.least_evidence;
+        if (!set_outliers_aside(baseline(), least)) return;
         baselines_.refit(result_.problem, true);
         if (!options_.screen || is_enough(baseline(), options_)) {
             baselines_.refit(result_.problem);
@@ -161,7 +171,7 @@ private:
         const Refit leads = leading();
         const bool is_explained = explained() && is_enough(leads, options_);
         const double least =
-            is_explained ? options_.least_next_to(leader()->log_bayes_factor) : options_.least_evidence;
+            is_explained ? least_next_to_effect(outliers_, result_.problem, options_) : options_.least_evidence;
         if (!set_outliers_aside(leads, least)) return false;
         if (!is_enough(without_them(leads), options_)) {
             result_ = before;
@@ -182,6 +192,7 @@ private:
 
     bool outliers_wanted() const { return std::ranges::find(options_.without, "outliers") == options_.without.end(); }
 
+    const Effect& outliers_ = *find_effect("outliers");
     const BodyModel& model_;
     const DiagnoseOptions& options_;
     const Progress& progress_;
@@ -201,14 +212,14 @@ void DiagnoseOptions::validate() const {
     above("most_left", most_left);
     above("most_left_held_out", most_left_held_out);
     above("most_strain", most_strain);
+    const auto no_less = [](const char* name, double value) {
+        if (!(value >= 0)) throw InvalidInput(fmt::format("{} is {}; it must be 0 or more", name, value));
+    };
+    no_less("mesh_error", mesh_error);
+    no_less("idealised", idealised);
     if (refit.steps < 1) throw InvalidInput(fmt::format("refit.steps is {}; allowed: 1 and more", refit.steps));
     if (refits < 1) throw InvalidInput(fmt::format("refits is {}; allowed: 1 and more", refits));
     if (together < 1) throw InvalidInput(fmt::format("together is {}; allowed: 1 and more", together));
-}
-
-double DiagnoseOptions::least_next_to(double log_bayes_factor) const {
-    constexpr double idealised = 60, on_mesh = 5e-4;  // the latter a share of the evidence
-    return std::max({least_evidence, idealised, on_mesh * log_bayes_factor});
 }
 
 bool Explained::has(const std::string& name) const {

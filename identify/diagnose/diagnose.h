@@ -36,12 +36,11 @@ struct DiagnoseOptions {
     double most_left = 1.1;               // whitened rms, for what is left to be noise
     double most_left_together = 1.06;     // the same where several effects explain it: they bend to more
     double most_left_held_out = 1.2;      // the same on probes left out
-    double most_strain = 6;               // of a nuisance, in its prior sd
+    double most_strain = 8;               // of a nuisance, in its prior sd
+    double mesh_error = 0.008;            // of the displacement: what meshes and their contacts may be off by
+    double idealised = 60;                // ln Bayes factor that even springs, a ball, a law of flow may leave behind
     RefitOptions refit;
     void validate() const;  // @throws InvalidInput naming option, value and bound
-    /// ln Bayes factor that a further effect has to bring next to what has some already and leaves only noise: more
-    /// than it may owe to the first one's idealisation (even springs, a ball, a law of flow) and error on the mesh.
-    double least_next_to(double log_bayes_factor) const;
 };
 
 /// An effect's numbers as they are told, each with its standard deviation.

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "mesh/errors.h"
+
 namespace palpate::identify {
 
 HeldOut leave_probes_out(const Problem& problem, const Refit& fit) {
@@ -60,13 +62,42 @@ Carried carry(const BodyModel& model, const Problem& unseen, const Refit& fit) {
     return result;
 }
 
+bool bears(const BodyModel& model, const Setting& setting, const Action& action) {
+    try {
+        model.equilibrium(setting, action);
+        return true;
+    } catch (const SolverFailure&) {
+        return false;
+    }
+}
+
+/// The problem with loads that the body bears: a fit that lacks an effect may be too soft for a probe that it has not
+/// seen, and is as far off there as it can get.
+Problem as_far_as_it_bears(const BodyModel& model, const Problem& problem, const Explanation& explanation) {
+    const Setting setting = explanation.setting();
+    Problem eased = problem;
+    for (int k = 0; k < static_cast<int>(eased.actions.size()); ++k) {
+        constexpr double less = 0.8;
+        for (int attempt = 0; attempt < 10 && !bears(model, setting, explanation.act(eased, k)); ++attempt) {
+            for (mesh::Contact& contact : eased.actions[k].contacts) contact.force *= less;
+        }
+    }
+    return eased;
+}
+
 }  // namespace
 
 HeldOut predict(const BodyModel& model, const Problem& merged, const Refit& fit, const RefitOptions& options) {
     const bool in_stages = fit.explanation.has_memory() && !merged.by_stage;
-    const Problem unseen = in_stages ? merged.stage_by_stage() : merged;
+    Problem unseen = in_stages ? merged.stage_by_stage() : merged;
     const auto [explanation, covariance] = carry(model, unseen, fit);
-    const Played played = play(model, unseen, explanation, options.threads);
+    Played played;
+    try {
+        played = play(model, unseen, explanation, options.threads);
+    } catch (const SolverFailure&) {
+        unseen = as_far_as_it_bears(model, unseen, explanation);
+        played = play(model, unseen, explanation, options.threads);
+    }
     const Eigen::VectorXd error = (unseen.measured - unseen.pick(played.markers)).cwiseQuotient(unseen.sigma);
     const Nuisances nuisances = make_nuisances(model, unseen, explanation, played, options.threads, options.nuisances);
     const Eigen::MatrixXd own = answers(model, unseen, explanation, played,

@@ -13,8 +13,9 @@ struct HeldOut {
 HeldOut leave_probes_out(const Problem& problem, const Refit& fit);
 
 /// How well a fit predicts another problem of the same body, by its own equilibria there: what the fit left uncertain
-/// and the nuisances of the new probes count as unknown.
-/// @throws SolverFailure where an action has no equilibrium.
+/// and the nuisances of the new probes count as unknown. A load that the body does not bear is played as far as it
+/// does.
+/// @throws SolverFailure where an action has no equilibrium under a tenth of its load either.
 HeldOut predict(const BodyModel& model, const Problem& unseen, const Refit& fit, const RefitOptions& options);
 
 }  // namespace palpate::identify

@@ -1,5 +1,7 @@
 #include "identify/diagnose/judge.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -37,6 +39,14 @@ bool enough_without(const Diagnosis& diagnosis, const Explained& all, const std:
 }
 
 std::string objection_to(const Diagnosis& diagnosis, const Explained& explained, const DiagnoseOptions& options) {
+    const double least = least_next_to_noise(*explained.effects.front(), diagnosis.problem, options);
+    const bool is_noise = explained.effects.size() == 1 && is_enough(diagnosis.baseline, options);
+    if (is_noise && explained.log_bayes_factor < least) {
+        return fmt::format(
+            "what is left without it is noise, and its ln Bayes factor of {:.0f} is less than the {:.0f} "
+            "that errors of the mesh may bring about",
+            explained.log_bayes_factor, least);
+    }
     const auto& all = explained.fit.explanation;
     for (std::size_t e = 0; e < all.effects.size(); ++e) {
         if (!explained.has(all.effects[e]->name())) continue;  // known: no claim
@@ -90,6 +100,16 @@ bool is_likely(const Explained& explained, const DiagnoseOptions& options) {
 
 bool is_enough(const Refit& fit, const DiagnoseOptions& options) {
     return fit.whitened_rms <= options.most_left && fit.strain <= options.most_strain;
+}
+
+double least_next_to_noise(const Effect& effect, const Problem& problem, const DiagnoseOptions& options) {
+    if (!effect.is_local()) return options.least_evidence;
+    const double in_sigmas = options.mesh_error * problem.displacement().cwiseQuotient(problem.sigma).norm();
+    return std::max(options.least_evidence, 0.5 * in_sigmas * in_sigmas);
+}
+
+double least_next_to_effect(const Effect& effect, const Problem& problem, const DiagnoseOptions& options) {
+    return std::max(options.idealised, least_next_to_noise(effect, problem, options));
 }
 
 void judge(const BodyModel& model, const DiagnoseOptions& options, Diagnosis& diagnosis) {

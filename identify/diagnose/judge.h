@@ -10,6 +10,13 @@ bool is_likely(const Explained& explained, const DiagnoseOptions& options);
 /// Is what a fit leaves noise, with no nuisance strained?
 bool is_enough(const Refit& fit, const DiagnoseOptions& options);
 
+/// ln Bayes factor that an effect has to bring where what is left without it is noise already. One that acts in one
+/// place more than errors of the mesh may feign, which are a share of the displacement.
+double least_next_to_noise(const Effect& effect, const Problem& problem, const DiagnoseOptions& options);
+
+/// The same next to an effect that leaves noise: more than this effect's own idealisation may feign, too.
+double least_next_to_effect(const Effect& effect, const Problem& problem, const DiagnoseOptions& options);
+
 /// Comes to a verdict on what was tried: an explanation is claimed if its evidence is great enough and leads, what is
 /// left is noise on fitted and on held-out probes, and no nuisance is strained. `diagnosis`: all but verdict,
 /// explanation, law, probabilities and next probe, which are filled in; the ranking is put into order.

@@ -164,7 +164,7 @@ Eigen::VectorXd reading_weights(const BodyModel& model, const Problem& problem, 
         const int marker = problem.coordinate[n] / 3;
         const double moved = (played.stand[problem.action[n]].row(marker) - problem.rest.row(marker)).norm();
         variance[n] += std::pow(flow * moved / problem.sigma[n], 2);
-        for (const mesh::Contact& contact : problem.actions[problem.action[n]].contacts) {
+        for (const mesh::Contact& contact : played.actions[problem.action[n]].contacts) {
             const double r = effective_radius(model, contact), F = contact.force.norm();
             const double d = (problem.rest.row(problem.coordinate[n] / 3).transpose() - contact.point).norm();
             double U = F * (1 - nu * nu) / (2 * E * r);

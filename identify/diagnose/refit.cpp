@@ -188,7 +188,11 @@ void conclude(const Problem& problem, const Priors& priors, Refit& at) {
     at.rms_mm = std::sqrt(at.error.cwiseProduct(problem.sigma).squaredNorm() / N);
     at.whitened_rms = std::sqrt(at.error.dot(at.V->apply(at.error).col(0)) / N);
     const Eigen::VectorXd strained = at.V->nuisances(at.error);
-    at.strain = strained.size() > 0 ? strained.cwiseAbs().maxCoeff() : 0;
+    if (strained.size() > 0) {
+        Eigen::Index most = 0;
+        at.strain = strained.cwiseAbs().maxCoeff(&most);
+        at.most_strained = at.nuisances.names[most];
+    }
     at.residual = at.V->residual(at.error);
 }
 
@@ -240,6 +244,21 @@ double objective_near(const BodyModel& model, const Problem& problem, const Expl
     try {
         const Played played = play(model, problem, explanation, options.threads, &near.played.q);
         return objective(*near.V, error_of(problem, played), priors_of(model, explanation, numbers), explanation.all());
+    } catch (const SolverFailure&) {
+        return INFINITY;
+    }
+}
+
+double promised_objective(const BodyModel& model, const Problem& problem, const Explanation& explanation,
+                          const RefitOptions& options, const Refit& near) {
+    try {
+        const Played played = play(model, problem, explanation, options.threads, &near.played.q);
+        const Eigen::VectorXd d = error_of(problem, played);
+        const Eigen::VectorXd x = explanation.all();
+        const Priors priors{near.prior_mean, near.prior_sd, {}, {}, {}};
+        const Eigen::VectorXd g =
+            near.columns.transpose() * near.V->apply(d) - (x - priors.mean).cwiseQuotient(priors.sd.cwiseAbs2());
+        return objective(*near.V, d, priors, x) - 0.5 * g.dot(near.covariance * g);
     } catch (const SolverFailure&) {
         return INFINITY;
     }

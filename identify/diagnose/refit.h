@@ -23,10 +23,11 @@ struct Refit {
     int steps = 0;                         // Gauss-Newton's
     bool converged = false;
 
-    double rms_mm = 0;         // over all measured coordinates
-    double whitened_rms = 0;   // in sigmas of noise and of what nobody can know: 1 is as good as it gets
-    double strain = 0;         // of the most strained nuisance, in its prior sd
-    Eigen::VectorXd residual;  // what the nuisances do not explain either, in sigmas (N)
+    double rms_mm = 0;          // over all measured coordinates
+    double whitened_rms = 0;    // in sigmas of noise and of what nobody can know: 1 is as good as it gets
+    double strain = 0;          // of the most strained nuisance, in its prior sd
+    std::string most_strained;  // its name
+    Eigen::VectorXd residual;   // what the nuisances do not explain either, in sigmas (N)
 };
 
 struct RefitOptions {
@@ -49,6 +50,11 @@ double objective(const Refit& fit);
 /// would begin with. Infinite where there are no equilibria.
 double objective_near(const BodyModel& model, const Problem& problem, const Explanation& explanation,
                       const RefitOptions& options, const Refit& near);
+
+/// What a refit of the same effects under another law would end with, about: its objective at the numbers of a fit
+/// nearby, less what a step by the slopes of that fit would mend. Infinite where there are no equilibria.
+double promised_objective(const BodyModel& model, const Problem& problem, const Explanation& explanation,
+                          const RefitOptions& options, const Refit& near);
 
 /// Numbers that begin a fit under a law without effects: Young's modulus, or what stands for it, scaled so that the
 /// linear answers are as large as the measurements' differences to the unloaded state.

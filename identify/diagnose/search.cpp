@@ -198,6 +198,9 @@ void Search::try_other_laws(std::size_t tried) {
 /// Does it explain the readings, with nothing to be said against it?
 bool Search::claims(const Explained& explained) const {
     if (!is_enough(explained.fit, options_) || !is_likely(explained, options_)) return false;
+    const bool is_noise = explained.effects.size() == 1 && is_enough(baselines_.best(), options_);
+    const double least = least_next_to_noise(*explained.effects.front(), problem_, options_);
+    if (is_noise && explained.log_bayes_factor < least) return false;
     const Explanation& all = explained.fit.explanation;
     for (std::size_t e = 0; e < all.effects.size(); ++e) {
         if (!explained.has(all.effects[e]->name())) continue;
@@ -219,10 +222,13 @@ bool Search::little_is_left() const {
 }
 
 bool Search::was_tried(const std::vector<std::string>& names) const {
-    return std::ranges::any_of(tried_, [&](const Explained& one) {
-        return one.effects.size() == names.size() &&
-               std::ranges::all_of(names, [&](const std::string& name) { return one.has(name); });
-    });
+    const auto same = [&](const std::vector<std::string>& rejected) {
+        return std::ranges::is_permutation(rejected, names);
+    };
+    return std::ranges::any_of(rejected_, same) || std::ranges::any_of(tried_, [&](const Explained& one) {
+               return one.effects.size() == names.size() &&
+                      std::ranges::all_of(names, [&](const std::string& name) { return one.has(name); });
+           });
 }
 
 }  // namespace palpate::identify

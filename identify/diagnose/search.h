@@ -53,7 +53,8 @@ private:
     std::vector<std::vector<Screened>> screened_;  // under each law, by evidence, most first
     std::vector<Candidate> ranking_;
     std::vector<Explained> tried_;
-    int refits_together_ = 0;  // of several effects
+    std::vector<std::vector<std::string>> rejected_;  // of several effects, refitted and not worth it
+    int refits_together_ = 0;                         // of several effects
 };
 
 }  // namespace palpate::identify

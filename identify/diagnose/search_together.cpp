@@ -56,13 +56,14 @@ bool Search::extend(std::size_t from, int most) {
     const std::vector<std::string> there = names_of(base);
     report(progress_, "screen next to " + listed(there), 0.8);
     const bool noise_is_left = is_likely(base, options_) && base.fit.whitened_rms <= options_.most_left;
-    const double least = noise_is_left ? options_.least_next_to(base.log_bayes_factor) : options_.least_evidence;
     const double leads = leader()->log_bayes_factor;
     bool grew = false;
     int refitted = 0;
     for (const Screened& screened : screen_at(base.fit, there)) {
         if (refits_together_ >= options_.refits_together) break;
         if (base.log_bayes_factor + screened.at_most() < leads) continue;
+        const double least =
+            noise_is_left ? least_next_to_effect(*screened.effect, problem_, options_) : options_.least_evidence;
         // A screen is a linearisation, and says somewhat too little at times.
         const bool said =
             refitted < most && screened.log_bayes_factor >= std::max(options_.least_evidence, 0.5 * least);
@@ -74,10 +75,12 @@ bool Search::extend(std::size_t from, int most) {
         ++refitted;
         ++refits_together_;
         auto found = refit_with(base.fit, screened);
-        if (!found) continue;
+        const bool worth = found && found->log_bayes_factor >= base.log_bayes_factor + least;
+        if (!worth) {
+            rejected_.push_back(names);
+            continue;
+        }
         found->effects.insert(found->effects.begin(), base.effects.begin(), base.effects.end());
-        const bool worth = found->log_bayes_factor >= base.log_bayes_factor + least;
-        if (!worth) continue;
         tried_.push_back(std::move(*found));
         grew = true;
     }

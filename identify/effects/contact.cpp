@@ -30,6 +30,8 @@ public:
         return text;
     }
 
+    bool is_local() const override { return true; }
+
     std::vector<EffectNumber> numbers(const BodyModel& model, const Problem&) const override {
         if (model.skin().rows() == 0) return {};
         std::vector<EffectNumber> result;

@@ -30,6 +30,8 @@ public:
         return text;
     }
 
+    bool is_local() const override { return true; }
+
     std::vector<EffectNumber> numbers(const BodyModel& model, const Problem&) const override {
         const Eigen::RowVector3d low = model.pieces().colwise().minCoeff(), high = model.pieces().colwise().maxCoeff();
         const Eigen::RowVector3d centre = 0.5 * (low + high), sd = (high - low) / 3.5;

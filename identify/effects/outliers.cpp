@@ -23,6 +23,8 @@ public:
         return text;
     }
 
+    bool is_local() const override { return true; }
+
     std::vector<EffectNumber> numbers(const BodyModel&, const Problem&) const override { return {}; }
 
     std::string sentence(const skeleton::Effect& told) const override {

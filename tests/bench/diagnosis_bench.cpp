@@ -127,10 +127,11 @@ std::string told(const identify::Diagnosis& found) {
     for (const identify::Candidate& c : found.ranking) text += fmt::format(" {} {:.1f}", c.effect->name(), c.screened);
     text += "\n";
     for (const identify::Explained& one : found.tried) {
-        text += fmt::format("    ln BF {:.1f}, {:.3f} left, {:.2f} held out, strain {:.1f}, law {}, {} steps: {}{}\n",
-                            one.log_bayes_factor, one.fit.whitened_rms, one.held_out.whitened_rms, one.fit.strain,
-                            one.fit.explanation.law, one.fit.steps, told(one),
-                            one.objection.empty() ? "" : " (" + one.objection + ")");
+        text +=
+            fmt::format("    ln BF {:.1f}, {:.3f} left, {:.2f} held out, strain {:.1f} ({}), law {}, {} steps: {}{}\n",
+                        one.log_bayes_factor, one.fit.whitened_rms, one.held_out.whitened_rms, one.fit.strain,
+                        one.fit.most_strained, one.fit.explanation.law, one.fit.steps, told(one),
+                        one.objection.empty() ? "" : " (" + one.objection + ")");
     }
     return text;
 }

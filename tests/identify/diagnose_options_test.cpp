@@ -93,6 +93,22 @@ TEST_F(Diagnosed, WithoutTheScreenOnlyTheBaselineIsFitted) {
     for (const Candidate& c : found.ranking) EXPECT_FALSE(c.refit);
 }
 
+TEST_F(Diagnosed, WhatErrorsOfTheMeshMayFeignIsNoClaim) {
+    // A weight that shifts the bar by less than the noise: there is evidence for it, and noise is left without it, too.
+    const Vec3 slight = 0.06 * half_g;
+    const MeasurementSet set = twin(truth("gravity", slight));
+    DiagnoseOptions exact, coarse;
+    exact.law = coarse.law = neo_hooke;
+    exact.mesh_error = 0.001;
+    coarse.mesh_error = 0.05;
+    const Diagnosis claimed = diagnose(set, exact), not_claimed = diagnose(set, coarse);
+    ASSERT_LT(claimed.baseline.whitened_rms, exact.most_left);
+    EXPECT_THAT(claimed.explanation, ElementsAre("gravity"));
+    EXPECT_EQ(not_claimed.verdict, Verdict::adequate);
+    EXPECT_GT(candidate(not_claimed, "gravity").log_bayes_factor, coarse.least_evidence);
+    EXPECT_THAT(candidate(not_claimed, "gravity").objection, HasSubstr("errors of the mesh"));
+}
+
 TEST_F(Diagnosed, NumbersDoNotDependOnThreads) {
     const MeasurementSet set = twin(truth("gravity", half_g));
     DiagnoseOptions one, two;
@@ -131,6 +147,7 @@ TEST_F(Diagnosed, MessagesNameOptionValueAndBound) {
     EXPECT_EQ(message([](DiagnoseOptions& o) { o.most_left = 0; }), "most_left is 0; it must be above 0");
     EXPECT_THAT(message([](DiagnoseOptions& o) { o.most_left_held_out = 0; }), HasSubstr("most_left_held_out is 0"));
     EXPECT_THAT(message([](DiagnoseOptions& o) { o.most_left = missing; }), HasSubstr("most_left is nan"));
+    EXPECT_EQ(message([](DiagnoseOptions& o) { o.mesh_error = -1; }), "mesh_error is -1; it must be 0 or more");
     EXPECT_THAT(message([](DiagnoseOptions& o) { o.without = {"gravty"}; }),
                 HasSubstr("there is no effect 'gravty'; did you mean 'gravity'?"));
     EXPECT_THAT(message([](DiagnoseOptions& o) { o.refit.steps = 0; }), HasSubstr("steps is 0"));

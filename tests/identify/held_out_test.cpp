@@ -64,5 +64,19 @@ TEST_F(HeldOutProbes, HaveGainsThatNobodyKnows) {
     EXPECT_GT(taken_as_one.whitened_rms, 1.5 * unknown.whitened_rms);
 }
 
+TEST_F(HeldOutProbes, ThatTheBodyDoesNotBearArePlayedAsFarAsItDoes) {
+    // A fit that knows of no stiffening is too soft for a press that it has not seen.
+    const Problem fitted = make_problem(twin(truth()), sigma);
+    const Refit fit = refit(*model_, fitted, first_guess(*model_, fitted, neo_hooke, 1), {});
+    const auto pressed = [&](double force) {
+        LoadState state{.probe = 9, .time = 1, .contacts = {{Vec3(40, 5, 5), Vec3(-force, 0, 0), 3}}};
+        return make_problem(body_.set({state}), sigma);
+    };
+    ASSERT_THROW(play(*model_, pressed(400), fit.explanation, 1), SolverFailure);
+    const HeldOut borne = predict(*model_, pressed(5), fit, {}), too_much = predict(*model_, pressed(400), fit, {});
+    EXPECT_TRUE(std::isfinite(too_much.whitened_rms));
+    EXPECT_GT(too_much.rms_mm, borne.rms_mm);  // the readings say that nothing moved
+}
+
 }  // namespace
 }  // namespace palpate::identify

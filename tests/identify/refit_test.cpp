@@ -69,5 +69,65 @@ TEST_F(Refits, KeepPoissonsRatioWhereMaterialsAre) {
     EXPECT_NEAR(found.explanation.theta[1], truth().theta[1], 5 * std::sqrt(found.covariance(1, 1)));
 }
 
+TEST_F(Refits, PromiseWhatAnotherLawWouldDo) {
+    constexpr int svk = 1;
+    const MeasurementSet set = make_twin(*model_, body_.set(SmallBody::probes(0.1)), truth(svk), sigma);
+    const Problem problem = make_problem(set, sigma);
+    const Refit fit = refit(*model_, problem, first_guess(*model_, problem, neo_hooke, 1), options_);
+    const double own = objective(fit);
+    // Under its own law there is nothing left to mend.
+    EXPECT_NEAR(promised_objective(*model_, problem, fit.explanation, options_, fit), own, 1);
+
+    Explanation other = fit.explanation;
+    other.law = svk;
+    const double promised = promised_objective(*model_, problem, other, options_, fit);
+    Refit start = fit;
+    start.V.reset();
+    const Refit there = refit(*model_, problem, other, options_, &start);
+    EXPECT_LT(objective(there), own - 100);
+    EXPECT_LT(promised, own - 100);  // by other nuisances, and slopes of the other law
+    EXPECT_GT(promised, objective(there));
+}
+
+TEST_F(Refits, PromiseNothingWithoutEquilibria) {
+    const Problem problem = make_problem(twin(truth()), sigma);
+    const Refit fit = refit(*model_, problem, first_guess(*model_, problem, neo_hooke, 1), options_);
+    Explanation soft = fit.explanation;
+    soft.theta[0] -= 8;
+    EXPECT_EQ(promised_objective(*model_, problem, soft, options_, fit), INFINITY);
+}
+
+TEST_F(Refits, NameTheNuisanceThatIsMostStrained) {
+    // The clamp holds 3 mm more than it says.
+    SmallBody other = body_;
+    other.supports = {mesh::BoxRegion{Vec3(-1, -1, -1), Vec3(8.1, 11, 11)}};
+    const auto held = other.reference();
+    const Problem problem = make_problem(
+        make_twin(*held, body_.set(SmallBody::probes()), bare_truth(*held, neo_hooke), 0.1 * sigma), 0.1 * sigma);
+    const Refit fit = refit(*model_, problem, first_guess(*model_, problem, neo_hooke, 1), options_);
+    EXPECT_GT(fit.strain, 1);
+    const auto at = std::ranges::find(fit.nuisances.names, fit.most_strained);
+    ASSERT_NE(at, fit.nuisances.names.end());
+    EXPECT_DOUBLE_EQ(std::abs(fit.V->nuisances(fit.error)[at - fit.nuisances.names.begin()]), fit.strain);
+}
+
+TEST_F(Refits, TrustReadingsLessWhereTheLoadHasCrept) {
+    // The material gives way as under a greater load: so does what is unknown about a contact.
+    const Explanation creeps = truth("viscosity", numbers({1, std::log(1)}));
+    const MeasurementSet set = make_twin(*model_, body_.set(SmallBody::dwells(0.1)), creeps, sigma);
+    const Problem problem = make_problem(set, sigma).stage_by_stage();
+    const Eigen::VectorXd weights =
+        reading_weights(*model_, problem, creeps, play(*model_, problem, creeps, 1), options_.nuisances);
+    const auto unknown_at = [&](double time) {  // variance beyond the noise, at most
+        double most = 0;
+        for (Eigen::Index n = 0; n < problem.rows(); ++n) {
+            const Stage& stage = problem.stages[problem.action[n]];
+            if (stage.time == time) most = std::max(most, std::pow(weights[n], -2) - 1);
+        }
+        return most;
+    };
+    EXPECT_GT(unknown_at(5), 2 * unknown_at(0.2));  // of (2.0 / 1.2)^2 and the pressure's share
+}
+
 }  // namespace
 }  // namespace palpate::identify
