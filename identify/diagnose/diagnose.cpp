@@ -171,7 +171,8 @@ private:
         const Refit leads = leading();
         const bool is_explained = explained() && is_enough(leads, options_);
         const double least =
-            is_explained ? least_next_to_effect(outliers_, result_.problem, options_) : options_.least_evidence;
+            is_explained ? least_next_to_effect(outliers_, leader()->log_bayes_factor, result_.problem, options_)
+                         : options_.least_evidence;
         if (!set_outliers_aside(leads, least)) return false;
         if (!is_enough(without_them(leads), options_)) {
             result_ = before;

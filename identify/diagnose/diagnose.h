@@ -38,7 +38,7 @@ struct DiagnoseOptions {
     double most_left_held_out = 1.2;      // the same on probes left out
     double most_strain = 8;               // of a nuisance, in its prior sd
     double mesh_error = 0.008;            // of the displacement: what meshes and their contacts may be off by
-    double idealised = 60;                // ln Bayes factor that even springs, a ball, a law of flow may leave behind
+    double idealised = 60;  // ln Bayes factor that an effect's idealisation may leave to another, at least
     RefitOptions refit;
     void validate() const;  // @throws InvalidInput naming option, value and bound
 };
@@ -76,9 +76,20 @@ struct Candidate {
     Told told = {};  // its numbers; in an explanation of several those that it has there
 };
 
+/// A body turned in the room, with its supports.
+struct BodyTurn {
+    Vec3 axis;  // unit
+    double degrees;
+};
+
 struct NextProbe {
-    std::string kind, why;
+    std::string kind, why = {};
     std::optional<mesh::Contact> contact = std::nullopt;
+    int probe = -1;                               // of the set, that is to be repeated
+    std::vector<double> times = {};               // at which the load is to be read [s]
+    std::optional<BodyTurn> turn = std::nullopt;  // of the unloaded body
+    double sigmas = 0;  // how far the explanations are apart there, root of the sum of squares in a state
+    double rms_mm = 0;  // the same over all coordinates
 };
 
 /// What a model lacks, judged on its errors.

@@ -33,7 +33,7 @@ struct Carried {
 
 Carried carry(const BodyModel& model, const Problem& unseen, const Refit& fit) {
     Carried result;
-    result.explanation = fit.explanation;
+    result.explanation = {.law = fit.explanation.law, .theta = fit.explanation.theta, .effects = {}, .values = {}};
     std::vector<Eigen::Index> from;  // place in the fit of each number, -1: it is of these probes alone
     std::vector<double> prior_sd;
     for (Eigen::Index p = 0; p < fit.explanation.theta.size(); ++p) {
@@ -44,7 +44,11 @@ Carried carry(const BodyModel& model, const Problem& unseen, const Refit& fit) {
     for (std::size_t e = 0; e < fit.explanation.effects.size(); ++e) {
         const Effect& effect = *fit.explanation.effects[e];
         const auto numbers = effect.numbers(model, unseen);
-        result.explanation.values[e] = effect.values(numbers, effect.told(fit.numbers[e], fit.explanation.values[e]));
+        if (!numbers.empty() || fit.numbers[e].empty()) {
+            const skeleton::Effect told = effect.told(fit.numbers[e], fit.explanation.values[e]);
+            result.explanation.effects.push_back(fit.explanation.effects[e]);
+            result.explanation.values.push_back(effect.values(numbers, told));
+        }
         for (const EffectNumber& number : numbers) {
             const auto same = std::ranges::find(fit.numbers[e], number.name, &EffectNumber::name);
             from.push_back(same == fit.numbers[e].end() ? -1 : at + (same - fit.numbers[e].begin()));
@@ -87,17 +91,24 @@ Problem as_far_as_it_bears(const BodyModel& model, const Problem& problem, const
 
 }  // namespace
 
-HeldOut predict(const BodyModel& model, const Problem& merged, const Refit& fit, const RefitOptions& options) {
-    const bool in_stages = fit.explanation.has_memory() && !merged.by_stage;
-    Problem unseen = in_stages ? merged.stage_by_stage() : merged;
-    const auto [explanation, covariance] = carry(model, unseen, fit);
-    Played played;
+Foretold foretell(const BodyModel& model, const Problem& unseen, const Refit& fit, const RefitOptions& options) {
+    Foretold result;
+    const bool in_stages = fit.explanation.has_memory() && !unseen.by_stage;
+    result.problem = in_stages ? unseen.stage_by_stage() : unseen;
+    Carried carried = carry(model, result.problem, fit);
+    result.explanation = std::move(carried.explanation);
+    result.covariance = std::move(carried.covariance);
     try {
-        played = play(model, unseen, explanation, options.threads);
+        result.played = play(model, result.problem, result.explanation, options.threads);
     } catch (const SolverFailure&) {
-        unseen = as_far_as_it_bears(model, unseen, explanation);
-        played = play(model, unseen, explanation, options.threads);
+        result.problem = as_far_as_it_bears(model, result.problem, result.explanation);
+        result.played = play(model, result.problem, result.explanation, options.threads);
     }
+    return result;
+}
+
+HeldOut predict(const BodyModel& model, const Problem& merged, const Refit& fit, const RefitOptions& options) {
+    const auto [explanation, covariance, unseen, played] = foretell(model, merged, fit, options);
     const Eigen::VectorXd error = (unseen.measured - unseen.pick(played.markers)).cwiseQuotient(unseen.sigma);
     const Nuisances nuisances = make_nuisances(model, unseen, explanation, played, options.threads, options.nuisances);
     const Eigen::MatrixXd own = answers(model, unseen, explanation, played,

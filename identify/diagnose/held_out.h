@@ -12,6 +12,17 @@ struct HeldOut {
 };
 HeldOut leave_probes_out(const Problem& problem, const Refit& fit);
 
+/// A fit's explanation in another problem of the same body.
+struct Foretold {
+    Explanation explanation;     // numbers that go with the new probes are as likely as any; effects that cannot show
+                                 // there are left out
+    Eigen::MatrixXd covariance;  // of its numbers
+    Problem problem;  // stage by stage where it has a memory; loads that the body does not bear as far as it does
+    Played played;
+};
+/// @throws SolverFailure where an action has no equilibrium under a tenth of its load either.
+Foretold foretell(const BodyModel& model, const Problem& unseen, const Refit& fit, const RefitOptions& options);
+
 /// How well a fit predicts another problem of the same body, by its own equilibria there: what the fit left uncertain
 /// and the nuisances of the new probes count as unknown. A load that the body does not bear is played as far as it
 /// does.

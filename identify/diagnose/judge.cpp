@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "identify/diagnose/next_probe.h"
+#include "identify/diagnose/next_probe/next_probe.h"
 #include "identify/effects/catalogue.h"
 
 namespace palpate::identify {
@@ -108,8 +108,10 @@ double least_next_to_noise(const Effect& effect, const Problem& problem, const D
     return std::max(options.least_evidence, 0.5 * in_sigmas * in_sigmas);
 }
 
-double least_next_to_effect(const Effect& effect, const Problem& problem, const DiagnoseOptions& options) {
-    return std::max(options.idealised, least_next_to_noise(effect, problem, options));
+double least_next_to_effect(const Effect& effect, double brought, const Problem& problem,
+                            const DiagnoseOptions& options) {
+    constexpr double share = 5e-4;  // of the evidence
+    return std::max({options.idealised, share * brought, least_next_to_noise(effect, problem, options)});
 }
 
 void judge(const BodyModel& model, const DiagnoseOptions& options, Diagnosis& diagnosis) {
@@ -130,7 +132,7 @@ void judge(const BodyModel& model, const DiagnoseOptions& options, Diagnosis& di
     const std::vector<const Explained*> alike = explain_alike(by_evidence, options);
     if (alike.size() > 1) {
         diagnosis.verdict = Verdict::ambiguous;
-        diagnosis.next_probe = separate(model, diagnosis.problem, *alike[0], *alike[1], options.refit.threads);
+        diagnosis.next_probe = separate(model, diagnosis.problem, alike, options.refit);
     } else if (alike.size() == 1) {
         diagnosis.verdict = Verdict::missing_effect;
     } else if (enough && !something) {

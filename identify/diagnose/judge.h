@@ -14,8 +14,10 @@ bool is_enough(const Refit& fit, const DiagnoseOptions& options);
 /// place more than errors of the mesh may feign, which are a share of the displacement.
 double least_next_to_noise(const Effect& effect, const Problem& problem, const DiagnoseOptions& options);
 
-/// The same next to an effect that leaves noise: more than this effect's own idealisation may feign, too.
-double least_next_to_effect(const Effect& effect, const Problem& problem, const DiagnoseOptions& options);
+/// The same next to effects that leave noise and brought some evidence: more than their own idealisation (even springs,
+/// a ball, a law of flow) may feign, too.
+double least_next_to_effect(const Effect& effect, double brought, const Problem& problem,
+                            const DiagnoseOptions& options);
 
 /// Comes to a verdict on what was tried: an explanation is claimed if its evidence is great enough and leads, what is
 /// left is noise on fitted and on held-out probes, and no nuisance is strained. `diagnosis`: all but verdict,

@@ -62,8 +62,9 @@ bool Search::extend(std::size_t from, int most) {
     for (const Screened& screened : screen_at(base.fit, there)) {
         if (refits_together_ >= options_.refits_together) break;
         if (base.log_bayes_factor + screened.at_most() < leads) continue;
-        const double least =
-            noise_is_left ? least_next_to_effect(*screened.effect, problem_, options_) : options_.least_evidence;
+        const double least = noise_is_left
+                                 ? least_next_to_effect(*screened.effect, base.log_bayes_factor, problem_, options_)
+                                 : options_.least_evidence;
         // A screen is a linearisation, and says somewhat too little at times.
         const bool said =
             refitted < most && screened.log_bayes_factor >= std::max(options_.least_evidence, 0.5 * least);

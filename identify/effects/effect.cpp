@@ -12,6 +12,8 @@ bool Effect::enforce(const Eigen::VectorXd&, Setting&) const { return false; }
 
 Action Effect::act(const Problem&, int, Action action, const Eigen::VectorXd&) const { return action; }
 
+Eigen::VectorXd Effect::in(const Circumstances&, const Eigen::VectorXd& values) const { return values; }
+
 Points Effect::see(const Problem&, const Points& markers, const Eigen::VectorXd&) const { return markers; }
 
 ScreenPlan Effect::screen_plan(const BodyModel& model, const Problem& problem, const Explanation& explanation,

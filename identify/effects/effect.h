@@ -72,6 +72,12 @@ struct ScreenPlan {
     std::function<Eigen::VectorXd(Eigen::Index alternative, const Eigen::VectorXd& screened)> start;
 };
 
+/// What a probe changes about the body besides its loads.
+struct Circumstances {
+    Mat3 turn = Mat3::Identity();  // of the room's directions in the body's frame
+    bool vented = false;           // its cavities stand open
+};
+
 /// A physical effect, or a fault of a measurement, that a model may lack: a candidate of the diagnosis. One file each.
 ///
 /// `values` are the fit's numbers, in the order of `numbers`.
@@ -93,6 +99,9 @@ public:
     virtual Action act(const Problem& problem, int k, Action action, const Eigen::VectorXd& values) const;
     /// Marker positions as they are read; an affine map of each.
     virtual Points see(const Problem& problem, const Points& markers, const Eigen::VectorXd& values) const;
+
+    /// Its numbers in other circumstances than those of the set.
+    virtual Eigen::VectorXd in(const Circumstances& circumstances, const Eigen::VectorXd& values) const;
 
     /// Does it matter what happened before? Then problems are told stage by stage.
     virtual bool has_memory() const { return false; }

@@ -43,6 +43,10 @@ public:
         return true;
     }
 
+    Eigen::VectorXd in(const Circumstances& circumstances, const Eigen::VectorXd& values) const override {
+        return circumstances.turn * values;
+    }
+
     skeleton::Effect told(const std::vector<EffectNumber>& numbers, const Eigen::VectorXd& values) const override {
         return Effect::told(numbers, g0 * values);
     }

@@ -38,6 +38,10 @@ public:
         return true;
     }
 
+    Eigen::VectorXd in(const Circumstances& circumstances, const Eigen::VectorXd& values) const override {
+        return circumstances.vented ? Eigen::VectorXd(0 * values) : values;
+    }
+
     std::string sentence(const skeleton::Effect& told) const override {
         return fmt::format("The cavities are under a pressure of {:.3g} kPa.", 1000 * told.parameters[0].value);
     }

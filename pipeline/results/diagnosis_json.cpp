@@ -56,6 +56,13 @@ json to_json(const identify::NextProbe& probe) {
         result["force"] = numbers(probe.contact->force);
         result["radius"] = probe.contact->radius;
     }
+    if (probe.probe >= 0) result["probe"] = probe.probe;
+    if (!probe.times.empty()) result["times"] = probe.times;
+    if (probe.turn) result["turn"] = {{"axis", numbers(probe.turn->axis)}, {"degrees", probe.turn->degrees}};
+    if (probe.sigmas > 0) {
+        result["difference_mm"] = probe.rms_mm;
+        result["difference_sigmas"] = probe.sigmas;
+    }
     return result;
 }
 

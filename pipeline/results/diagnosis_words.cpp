@@ -117,8 +117,10 @@ std::string adequate(const json& diagnosis) {
     if (ranking.empty()) return text;
     const json& bayes = ranking[0]["log_bayes_factor"];
     if (!bayes.is_number()) return text;
-    return text + fmt::format(" The likeliest effect, {}, has a ln Bayes factor of {:.1f}; 10 would be a claim.",
-                              ranking[0]["effect"].get<std::string>(), bayes.get<double>());
+    text += fmt::format(" The likeliest effect, {}, has a ln Bayes factor of {:.1f}",
+                        ranking[0]["effect"].get<std::string>(), bayes.get<double>());
+    if (!ranking[0].contains("objection")) return text + "; 10 would be a claim.";
+    return text + fmt::format(" and is no claim: {}.", ranking[0]["objection"].get<std::string>());
 }
 
 std::string next_probe(const json& probe) {

@@ -183,7 +183,9 @@ TEST_F(Diagnosed, AFrameTurnedAsAWeightWouldTurnItIsAmbiguous) {
     const std::vector<std::string> first{found.ranking[0].effect->name(), found.ranking[1].effect->name()};
     EXPECT_THAT(first, testing::UnorderedElementsAre("gravity", "misalignment"));
     ASSERT_TRUE(found.next_probe);
-    EXPECT_EQ(found.next_probe->kind, found.ranking[0].effect->description().next_probe);
+    // A frame is turned for points that stand still, too, and a weight turns against the body.
+    EXPECT_THAT(found.next_probe->kind, testing::AnyOf("fiducials", "orientation"));
+    EXPECT_GT(found.next_probe->sigmas, 3);
     EXPECT_THAT(found.next_probe->why, HasSubstr("separates"));
 }
 
