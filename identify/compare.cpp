@@ -4,6 +4,7 @@
 #include <boost/math/special_functions/gamma.hpp>
 #include <cmath>
 
+#include "identify/fit/lived.h"
 #include "identify/fit/solver_pool.h"
 #include "identify/load_exponent.h"
 #include "identify/parallel.h"
@@ -20,14 +21,40 @@ constexpr int worst_readings = 10;
 
 double square(double x) { return x * x; }
 
-/// Markers of each state at the model's equilibria.
-std::vector<Points> predict(const skeleton::Model& model, const std::vector<StateReadings>& states, int threads) {
+/// A load and how much of it a model bears: 1, or what it bears in steps of a fifth less.
+/// @throws SolverFailure where a tenth is still too much.
+struct Borne {
+    skeleton::Equilibrium equilibrium;
+    bool whole = true;
+};
+Borne solve_as_far_as_it_bears(skeleton::StaticsSolver& solver, const Eigen::VectorXd& k, skeleton::Load load,
+                               const skeleton::FibreStates& before) {
+    constexpr int attempts = 10;
+    for (int attempt = 0;; ++attempt) {
+        try {
+            return {solver.solve(k, load, {}, nullptr, before), attempt == 0};
+        } catch (const SolverFailure&) {
+            if (attempt == attempts) throw;
+            for (skeleton::PointForce& force : load.forces) force.force *= 0.8;
+        }
+    }
+}
+
+/// Markers of each state at the model's equilibria; `borne` is 0 where it does not bear the whole load.
+std::vector<Points> predict(const skeleton::Model& model, const std::vector<StateReadings>& states, int threads,
+                            std::vector<char>& borne) {
     std::vector<Points> predicted(states.size());
+    borne.assign(states.size(), 1);
     SolverPool solvers(model);
     const Eigen::VectorXd k = stiffness_vector(model);
-    for_each_in_parallel(static_cast<int>(states.size()), threads, [&](int s) {
+    std::vector<skeleton::Equilibrium> equilibria(states.size());
+    for_each_in_parallel(static_cast<int>(states.size()), remembers(states) ? 1 : threads, [&](int s) {
         const SolverPool::Loan solver(solvers);
-        predicted[s] = observe(model, solver->solve(k, states[s].load), states[s].points);
+        const skeleton::FibreStates before = flowed_before(model, *solver, k, states, s, equilibria);
+        Borne found = solve_as_far_as_it_bears(*solver, k, states[s].load, before);
+        borne[s] = found.whole;
+        predicted[s] = observe(model, found.equilibrium, states[s].points);
+        equilibria[s] = std::move(found.equilibrium);
     });
     return predicted;
 }
@@ -91,9 +118,15 @@ Comparison compare(const skeleton::Model& model, const MeasurementSet& set, int 
                            "' has no labelled reading to compare with; positions.csv "
                            "needs rows that name a marker");
     }
-    const std::vector<Points> predicted = predict(model, states, threads);
+    std::vector<char> borne;
+    const std::vector<Points> predicted = predict(model, states, threads, borne);
 
     Comparison result;
+    for (std::size_t s = 0; s < states.size(); ++s) {
+        const int probe = set.states[states[s].state].probe;
+        const bool is_new = result.not_borne.empty() || result.not_borne.back() != probe;
+        if (!borne[s] && is_new) result.not_borne.push_back(probe);
+    }
     for (const LoadState& state : set.states) {
         result.predicted.emplace_back(Points::Constant(static_cast<Eigen::Index>(state.readings.size()), 3, missing));
     }

@@ -42,6 +42,7 @@ struct Comparison {
     std::optional<LoadExponent> load_exponent;  // none when the loads do not differ
     std::vector<ProbeError> probes;             // a row per state with readings
     std::vector<WorstReading> worst;            // the ten largest, largest first
+    std::vector<int> not_borne;                 // probes whose load the model does not bear: played as far as it does
     std::vector<Points> predicted;  // modelled marker positions of each state, in the order of its readings [mm]
 };
 

@@ -54,7 +54,7 @@ LoadExponent fit_line(const std::vector<LogPoint>& points) {
 }
 
 const char* words_for(const LoadExponent& exponent) {
-    if (exponent.sd > 0.5) return "the loads differ too little to tell how the error grows with them";
+    if (exponent.sd > 0.5) return "the errors scatter too much to tell how they grow with the load";
     if (exponent.value < least_growth) return "the error is there without any load";
     if (exponent.value < 1.5) return "the error grows in proportion to the load, like a wrong stiffness";
     return "the error grows faster than the load, like a nonlinearity";

@@ -129,7 +129,7 @@ private:
         if (!outliers_wanted() || !result_.outliers.readings.empty()) return false;
         tell("outliers", 0.4);
         const Outliers found = find_outliers(result_.problem, fit.residual);
-        if (found.log_bayes_factor < least) return false;
+        if (found.log_bayes_factor < std::max(least, options_.least_outliers)) return false;
         const int before = result_.problem.readings();
         const std::vector<char> keep = rows_without(result_.problem, found.readings);
         constexpr double little = 3;  // rms, whitened: where more is left without them, they are not what is wrong
@@ -152,8 +152,8 @@ private:
     void set_plain_outliers_aside() {
         const Diagnosis before = result_;
         const Baselines baselines = baselines_;
-        const double least = is_enough(baseline(), options_) ? least_next_to_noise(outliers_, result_.problem, options_)
-                                                             : options_.least_evidence;
+        const double least =
+            is_enough(baseline(), options_) ? least_next_to_noise(outliers_, result_.problem, options_) : 0;
         if (!set_outliers_aside(baseline(), least)) return;
         baselines_.refit(result_.problem, true);
         if (!options_.screen || is_enough(baseline(), options_)) {
@@ -171,8 +171,7 @@ private:
         const Refit leads = leading();
         const bool is_explained = explained() && is_enough(leads, options_);
         const double least =
-            is_explained ? least_next_to_effect(outliers_, leader()->log_bayes_factor, result_.problem, options_)
-                         : options_.least_evidence;
+            is_explained ? least_next_to_effect(outliers_, leader()->log_bayes_factor, result_.problem, options_) : 0;
         if (!set_outliers_aside(leads, least)) return false;
         if (!is_enough(without_them(leads), options_)) {
             result_ = before;
@@ -218,6 +217,7 @@ void DiagnoseOptions::validate() const {
     };
     no_less("mesh_error", mesh_error);
     no_less("idealised", idealised);
+    no_less("least_outliers", least_outliers);
     if (refit.steps < 1) throw InvalidInput(fmt::format("refit.steps is {}; allowed: 1 and more", refit.steps));
     if (refits < 1) throw InvalidInput(fmt::format("refits is {}; allowed: 1 and more", refits));
     if (together < 1) throw InvalidInput(fmt::format("together is {}; allowed: 1 and more", together));

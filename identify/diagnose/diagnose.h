@@ -37,7 +37,8 @@ struct DiagnoseOptions {
     double most_left_together = 1.06;     // the same where several effects explain it: they bend to more
     double most_left_held_out = 1.2;      // the same on probes left out
     double most_strain = 8;               // of a nuisance, in its prior sd
-    double mesh_error = 0.008;            // of the displacement: what meshes and their contacts may be off by
+    double least_outliers = 100;          // the same for outliers: one reading of 15 sigma, say
+    double mesh_error = 0.015;            // of the displacement: what meshes and their contacts may be off by
     double idealised = 60;  // ln Bayes factor that an effect's idealisation may leave to another, at least
     RefitOptions refit;
     void validate() const;  // @throws InvalidInput naming option, value and bound

@@ -38,15 +38,31 @@ bool enough_without(const Diagnosis& diagnosis, const Explained& all, const std:
     });
 }
 
+/// Two effects that are confused with each other, among three and more: whatever is like both, and in no catalogue,
+/// they may put together. Empty: there are none.
+std::string put_together_of_aliases(const Explained& explained) {
+    if (explained.effects.size() < 3) return {};
+    for (const auto& one : explained.effects) {
+        for (const auto& other : explained.effects) {
+            const auto& aliases = one->description().confused_with;
+            if (std::ranges::find(aliases, other->name()) == aliases.end()) continue;
+            return fmt::format("{} and {} are alike, and put something else together", one->name(), other->name());
+        }
+    }
+    return {};
+}
+
 std::string objection_to(const Diagnosis& diagnosis, const Explained& explained, const DiagnoseOptions& options) {
     const double least = least_next_to_noise(*explained.effects.front(), diagnosis.problem, options);
     const bool is_noise = explained.effects.size() == 1 && is_enough(diagnosis.baseline, options);
-    if (is_noise && explained.log_bayes_factor < least) {
+    if (is_noise && is_likely(explained, options) && explained.log_bayes_factor < least) {
         return fmt::format(
             "what is left without it is noise, and its ln Bayes factor of {:.0f} is less than the {:.0f} "
-            "that errors of the mesh may bring about",
+            "that errors of mesh and rig may bring about",
             explained.log_bayes_factor, least);
     }
+    std::string aliases = put_together_of_aliases(explained);
+    if (!aliases.empty()) return aliases;
     const auto& all = explained.fit.explanation;
     for (std::size_t e = 0; e < all.effects.size(); ++e) {
         if (!explained.has(all.effects[e]->name())) continue;  // known: no claim
@@ -103,9 +119,10 @@ bool is_enough(const Refit& fit, const DiagnoseOptions& options) {
 }
 
 double least_next_to_noise(const Effect& effect, const Problem& problem, const DiagnoseOptions& options) {
-    if (!effect.is_local()) return options.least_evidence;
+    const double least = 2 * options.least_evidence;
+    if (!effect.is_like_mesh_error()) return least;
     const double in_sigmas = options.mesh_error * problem.displacement().cwiseQuotient(problem.sigma).norm();
-    return std::max(options.least_evidence, 0.5 * in_sigmas * in_sigmas);
+    return std::max(least, 0.5 * in_sigmas * in_sigmas);
 }
 
 double least_next_to_effect(const Effect& effect, double brought, const Problem& problem,

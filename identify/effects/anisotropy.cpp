@@ -57,6 +57,8 @@ public:
         return text;
     }
 
+    bool is_like_mesh_error() const override { return true; }
+
     std::vector<EffectNumber> numbers(const BodyModel&, const Problem&) const override {
         std::vector<EffectNumber> result{{.name = "k", .unit = "1", .prior_sd = 4}};
         for (const char* axis : {"nx", "ny", "nz"}) {

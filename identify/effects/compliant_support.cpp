@@ -32,6 +32,8 @@ public:
         return text;
     }
 
+    bool is_like_mesh_error() const override { return true; }
+
     std::vector<EffectNumber> numbers(const BodyModel&, const Problem& problem) const override {
         const double k = typical_stiffness(problem);
         if (!(k > 0)) return {};

@@ -109,8 +109,8 @@ public:
     /// Is it so far from linear that its screen may mislead? Then a refit is tried whatever the screen says, where
     /// nothing else explains the readings.
     virtual bool outwits_screen() const { return false; }
-    /// Does it act in one place, as an error of the mesh does?
-    virtual bool is_local() const { return false; }
+    /// Does it change a body as errors of its mesh may: in one place, at the supports, or in some directions more?
+    virtual bool is_like_mesh_error() const { return false; }
 
     /// By default the signatures of all numbers at their start, which must be neutral, and the start itself as the
     /// beginning of a refit. Keeps references to the arguments.

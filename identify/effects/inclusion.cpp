@@ -30,7 +30,7 @@ public:
         return text;
     }
 
-    bool is_local() const override { return true; }
+    bool is_like_mesh_error() const override { return true; }
 
     std::vector<EffectNumber> numbers(const BodyModel& model, const Problem&) const override {
         const Eigen::RowVector3d low = model.pieces().colwise().minCoeff(), high = model.pieces().colwise().maxCoeff();

@@ -23,7 +23,7 @@ public:
         return text;
     }
 
-    bool is_local() const override { return true; }
+    bool is_like_mesh_error() const override { return true; }
 
     std::vector<EffectNumber> numbers(const BodyModel&, const Problem&) const override { return {}; }
 

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <optional>
 
+#include "identify/fit/lived.h"
 #include "mesh/errors.h"
 
 namespace palpate::identify {
@@ -59,6 +60,10 @@ public:
     skeleton::Law choose_law() {
         if (options_.law == LawChoice::linear) return skeleton::Law::linear;
         if (options_.law == LawChoice::large_rotation) return skeleton::Law::large_rotation;
+        if (remembers(readings_)) {
+            note("law: large rotation; by the linear one nothing yields");
+            return skeleton::Law::large_rotation;
+        }
 
         const std::vector<StateReadings> sample = most_displaced(readings_, states_for_law);
         const auto chi_squared = [&](skeleton::Law law) -> std::optional<double> {

@@ -5,6 +5,7 @@
 #include <numbers>
 #include <numeric>
 
+#include "identify/fit/lived.h"
 #include "identify/parallel.h"
 #include "skeleton/effects/placed_effects.h"
 #include "skeleton/statics.h"
@@ -154,10 +155,11 @@ Prediction PositionDomain::predict(const Eigen::VectorXd& theta, int threads, co
     Prediction prediction;
     prediction.equilibria.resize(states_.size());
     prediction.markers.resize(states_.size());
-    for_each_in_parallel(static_cast<int>(states_.size()), threads, [&](int s) {
+    for_each_in_parallel(static_cast<int>(states_.size()), remembers(states_) ? 1 : threads, [&](int s) {
         const SolverPool::Loan solver(*solvers_);
-        prediction.equilibria[s] =
-            solver->solve(k, states_[s].load, {}, start != nullptr ? &start->equilibria[s] : nullptr);
+        const skeleton::FibreStates before = flowed_before(*model_, *solver, k, states_, s, prediction.equilibria);
+        const skeleton::State* from = start != nullptr ? &start->equilibria[s].state : nullptr;
+        prediction.equilibria[s] = solver->solve(k, states_[s].load, {}, from, before);
         prediction.markers[s] = observe(*model_, prediction.equilibria[s], states_[s].points);
     });
     return prediction;

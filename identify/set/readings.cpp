@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "identify/set/creep.h"
 #include "identify/set/loads.h"
@@ -41,8 +42,14 @@ std::vector<StateReadings> collect_readings(const skeleton::Model& model, const 
     const MeasurementSet borne = creep ? as_elastic(set, *creep) : set;
     const std::vector<skeleton::Attachment> markers = attach_markers(model, set.markers);
     const ContactLoads loads(model);
-    const bool always_loaded = is_always_loaded(model);
+    const bool yields = skeleton::physics_of(model.effects).plasticity.has_value();
+    const bool always_loaded = is_always_loaded(model) || yields;
     std::vector<StateReadings> result;
+    struct Life {
+        int last = -1;
+        std::vector<skeleton::Load> since;
+    };
+    std::map<int, Life> lives;  // of each probe; of a body that goes through all of them one
 
     for (int s = 0; s < static_cast<int>(set.states.size()); ++s) {
         const LoadState& state = set.states[s];
@@ -52,7 +59,16 @@ std::vector<StateReadings> collect_readings(const skeleton::Model& model, const 
             const Reading& reading = state.readings[row];
             if (reading.marker >= 0 && !reading.position.array().isNaN().all()) readings.rows.push_back(row);
         }
-        if (readings.rows.empty()) continue;
+        Life& life = lives[set.continuous ? 0 : state.probe];
+        if (readings.rows.empty()) {
+            if (yields) life.since.push_back(loads(borne, borne.states[s]));
+            continue;
+        }
+        if (yields) {
+            readings.before = life.last;
+            readings.unread = std::move(life.since);
+            life = {.last = static_cast<int>(result.size()), .since = {}};
+        }
 
         const auto m = static_cast<Eigen::Index>(readings.rows.size());
         readings.rest.resize(m, 3);

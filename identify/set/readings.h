@@ -19,6 +19,8 @@ struct StateReadings {
     int coordinates = 0;                       // that were measured
     double displacement = 0;                   // rms over them [mm]
     bool tells_stiffness = false;              // a force or gravity is known to act, or an effect of the model
+    int before = -1;                           // the state read last in the life of a body that yields, of those here
+    std::vector<skeleton::Load> unread;        // what such a body went through since then, or since it was new
 };
 
 /// A state each that has labelled readings, in the set's order; unlabelled readings are left out.

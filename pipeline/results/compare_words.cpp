@@ -1,6 +1,7 @@
 #include "pipeline/results/compare_words.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <vector>
@@ -81,6 +82,10 @@ std::string compare_in_words(const json& compare) {
                             share(compare["fitted"]), share(compare["held_out"]));
     }
     text += noise_words(compare);
+    if (compare.contains("not_borne")) {
+        text += fmt::format(" The model does not bear the whole load of probes {}: it is played as far as it does.",
+                            fmt::join(compare["not_borne"].get<std::vector<int>>(), ", "));
+    }
     if (compare.contains("load_exponent")) {
         const json& exponent = compare["load_exponent"];
         text += fmt::format(" The error goes with the load to the power {:.1f} +- {:.1f}: {}.",

@@ -48,6 +48,7 @@ json to_json(const identify::Comparison& c, const identify::MeasurementSet& set)
         result["load_exponent"] = {
             {"value", c.load_exponent->value}, {"sd", c.load_exponent->sd}, {"words", c.load_exponent->words}};
     }
+    if (!c.not_borne.empty()) result["not_borne"] = c.not_borne;
     result["probes"] = json::array();
     for (const auto& p : c.probes) {
         result["probes"].push_back({{"probe", p.probe},

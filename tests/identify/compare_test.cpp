@@ -2,9 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include "identify/effects/catalogue.h"
 #include "identify/load_exponent.h"
 #include "lattice.h"
 #include "mesh/errors.h"
+#include "small_body.h"
 
 namespace palpate::identify {
 namespace {
@@ -51,6 +53,58 @@ TEST(Compare, AWrongStiffnessIsNotAdequateAndGrowsWithTheLoad) {
     // softer by a quarter and a third: between a fifth and a third of the displacement is missed
     EXPECT_GT(comparison.relative, 0.2);
     EXPECT_LT(comparison.relative, 0.34);
+}
+
+TEST(Compare, ALoadThatIsTooMuchIsPlayedAsFarAsItIsBorne) {
+    // A lattice that flows, pulled at its top: somewhere there is a load that it does not bear.
+    skeleton::Model model = make_lattice({3, 3, 2});
+    model.law = skeleton::Law::large_rotation;
+    model.effects = {{"plasticity", {{"yield", 0.01, "1"}, {"hardening", 1e-4, "1"}}}};
+    std::vector<LoadState> states = push_spheres(model, {{0, 0, 0.01}});
+    states[0].contacts[0].point = model.spheres.back().center;
+    MeasurementSet set = simulate_measurements(model, states, markers_on_spheres(model));
+    EXPECT_LT(compare(model, set).probes[0].rms, 1e-6);
+    for (int attempt = 0; attempt < 20; ++attempt) {
+        set.states[0].contacts[0].force *= 2;
+        const Comparison comparison = compare(model, set);
+        if (comparison.not_borne.empty()) continue;
+        EXPECT_EQ(comparison.not_borne, std::vector<int>{set.states[0].probe});
+        EXPECT_TRUE(std::isfinite(comparison.rms));
+        EXPECT_GT(comparison.probes[0].rms, 1e-3);
+        return;
+    }
+    FAIL() << "it bears everything";
+}
+
+TEST(Compare, ABodyThatYieldsIsPlayedThroughWhatItLived) {
+    const SmallBody body;
+    const auto bar = body.skeleton();
+    const Eigen::Vector2d values(std::log(0.02), std::log(0.3));
+    const auto plasticity = find_effect("plasticity");
+    for (const bool continuous : {true, false}) {
+        MeasurementSet blank = body.set(SmallBody::releases());
+        blank.continuous = continuous;
+        const MeasurementSet set = make_twin(*bar, blank, with(bare_truth(*bar, 1), plasticity, values), 0);
+        skeleton::Model model = body.chain();
+        model.law = skeleton::Law::large_rotation;
+        model.effects = {plasticity->told(plasticity->numbers(*bar, make_problem(set, 1)), values)};
+        EXPECT_LT(compare(model, set).rms, 1e-6) << continuous;
+
+        // A state that nobody reads is lived through all the same.
+        MeasurementSet some = set;
+        some.states[1].readings.clear();
+        some.states[2].readings.clear();
+        EXPECT_LT(compare(model, some).rms, 1e-6) << continuous;
+        // Its set shows: without the memory the unloaded states would be as new.
+        double unloaded = 0;
+        for (const LoadState& state : set.states) {
+            if (!state.contacts.empty()) continue;
+            for (const Reading& r : state.readings) {
+                unloaded = std::max(unloaded, (r.position - set.markers[r.marker].rest).norm());
+            }
+        }
+        EXPECT_GT(unloaded, 0.1) << continuous;
+    }
 }
 
 TEST(Compare, WorstReadingPointsFromTheModelToTheMeasurement) {
