@@ -18,6 +18,7 @@ constexpr double link_sd = 0.7;       // of ln of one link's, round the uniform 
 constexpr double first_error = 0.03;  // relative model error to begin with
 constexpr double least_error = 1e-4;  // the model error never falls below it: no model is exact
 constexpr double settled = 1e-4;      // of half the chi^2: a hundredth of a posterior's sd
+constexpr int steps_with_memory = 8;  // of a fit whose states are lived through
 constexpr int states_for_law = 12;    // that choose the law, the most displaced ones
 
 LogNormalPrior prior_round(const Eigen::VectorXd& mean, double sd) {
@@ -102,7 +103,10 @@ public:
     }
 
     FitResult fit(const PositionDomain& domain, const LogNormalPrior& prior, const Eigen::VectorXd& start) {
-        FitResult result = fit_map(domain, prior, start, options_.threads, {.tolerance = settled});
+        FitOptions how{.tolerance = settled};
+        // Slopes leave out what the states before would have left: the last digits take long.
+        if (remembers(readings_)) how.iterations = std::min(how.iterations, steps_with_memory);
+        FitResult result = fit_map(domain, prior, start, options_.threads, how);
         equilibria_ += result.evaluations * static_cast<int>(domain.states().size());
         return result;
     }
