@@ -191,6 +191,7 @@ TEST(LoadExponent, FindsThePower) {
 
 TEST(LoadExponent, AnErrorThatIsThereWithoutLoadSaysZero) {
     std::vector<ErrorUnderLoad> states;
+    states.reserve(7);
     for (int i = 0; i < 6; ++i) states.push_back({5, 0.5 + 0.01 * i, 0.01, 100});
     EXPECT_FALSE(load_exponent(states).has_value());  // one load level
     states.push_back({1e-14, 0.52, 0.01, 100});       // rounding is no load

@@ -17,6 +17,8 @@ struct Hidden {
     std::vector<std::string> effects;
 };
 
+std::ostream& operator<<(std::ostream& out, const Hidden& hidden) { return out << hidden.set; }
+
 class HiddenSet : public ::testing::TestWithParam<Hidden> {};
 
 TEST_P(HiddenSet, KeepsWhatItPromises) {
