@@ -149,7 +149,8 @@ void Search::confirm_single_effects() {
         ranking_.push_back(std::move(candidate));
     }
     for (const Screened& screened : screened_[law]) {
-        if (!screened.effect->outwits_screen() || was_tried({screened.effect->name()}) || !little_is_left()) continue;
+        if (!screened.effect->outwits_screen() || was_tried({screened.effect->name()})) continue;
+        if (!little_is_left() && !takes_leader_for(*screened.effect)) continue;
         report(progress_, "refit with " + screened.effect->name(), 0.75);
         if (auto found = refit_with(base, screened)) tried_.push_back(std::move(*found));
     }
@@ -221,6 +222,13 @@ bool Search::little_is_left() const {
     const Refit& leads = tried_.empty() ? baselines_.best() : leader()->fit;
     const bool nothing_is = tried_.empty() && is_enough(leads, options_);
     return !nothing_is && !something_claims() && leads.whitened_rms < little;
+}
+
+/// Does an effect claim that is taken for another one at times?
+bool Search::takes_leader_for(const Effect& other) const {
+    if (!something_claims()) return false;
+    const auto& aliases = leader()->effects.front()->description().confused_with;
+    return std::ranges::find(aliases, other.name()) != aliases.end();
 }
 
 bool Search::was_tried(const std::vector<std::string>& names) const {

@@ -39,6 +39,7 @@ private:
     bool claims(const Explained& explained) const;
     bool something_claims() const;
     bool little_is_left() const;
+    bool takes_leader_for(const Effect& other) const;
     void drop_and_swap();
     const Problem& problem_for(const Explanation& explanation) const;
     std::size_t index_of_leader() const;
