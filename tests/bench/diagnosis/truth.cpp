@@ -32,7 +32,8 @@ std::map<std::string, double> numbers_of(const fs::path& file) {
     std::map<std::string, double> numbers;
     std::ifstream in(file);
     if (!in) return numbers;
-    for (const auto& effect : nlohmann::json::parse(in).at("effects")) {
+    const nlohmann::json truth = nlohmann::json::parse(in);
+    for (const auto& effect : truth.at("effects")) {
         for (const auto& [name, number] : effect.at("parameters").items()) {
             numbers[effect.at("effect").get<std::string>() + " " + name] = number.at("value").get<double>();
         }
