@@ -21,12 +21,13 @@ constexpr int worst_readings = 10;
 
 double square(double x) { return x * x; }
 
-/// A load and how much of it a model bears: 1, or what it bears in steps of a fifth less.
-/// @throws SolverFailure where a tenth is still too much.
+/// The equilibrium under a load, or under what a model bears of it.
 struct Borne {
     skeleton::Equilibrium equilibrium;
     bool whole = true;
 };
+
+/// In steps of a fifth less. @throws SolverFailure where a tenth is still too much.
 Borne solve_as_far_as_it_bears(skeleton::StaticsSolver& solver, const Eigen::VectorXd& k, skeleton::Load load,
                                const skeleton::FibreStates& before) {
     constexpr int attempts = 10;

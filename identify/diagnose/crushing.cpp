@@ -21,6 +21,8 @@ double pressure_of(const BodyModel& model, const Action& action) {
     return pressure;
 }
 
+}  // namespace
+
 bool has_equilibrium(const BodyModel& model, const Setting& setting, const Action& action) {
     try {
         model.equilibrium(setting, action);
@@ -29,8 +31,6 @@ bool has_equilibrium(const BodyModel& model, const Setting& setting, const Actio
         return false;
     }
 }
-
-}  // namespace
 
 Problem without_crushing_probes(const BodyModel& model, const Problem& problem, int threads,
                                 std::vector<std::string>& notes) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "identify/diagnose/crushing.h"
 #include "mesh/errors.h"
 
 namespace palpate::identify {
@@ -66,15 +67,6 @@ Carried carry(const BodyModel& model, const Problem& unseen, const Refit& fit) {
     return result;
 }
 
-bool bears(const BodyModel& model, const Setting& setting, const Action& action) {
-    try {
-        model.equilibrium(setting, action);
-        return true;
-    } catch (const SolverFailure&) {
-        return false;
-    }
-}
-
 /// The problem with loads that the body bears: a fit that lacks an effect may be too soft for a probe that it has not
 /// seen, and is as far off there as it can get.
 Problem as_far_as_it_bears(const BodyModel& model, const Problem& problem, const Explanation& explanation) {
@@ -82,7 +74,7 @@ Problem as_far_as_it_bears(const BodyModel& model, const Problem& problem, const
     Problem eased = problem;
     for (int k = 0; k < static_cast<int>(eased.actions.size()); ++k) {
         constexpr double less = 0.8;
-        for (int attempt = 0; attempt < 10 && !bears(model, setting, explanation.act(eased, k)); ++attempt) {
+        for (int attempt = 0; attempt < 10 && !has_equilibrium(model, setting, explanation.act(eased, k)); ++attempt) {
             for (mesh::Contact& contact : eased.actions[k].contacts) contact.force *= less;
         }
     }

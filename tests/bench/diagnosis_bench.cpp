@@ -64,6 +64,7 @@ identify::DiagnoseOptions ablated(const std::vector<std::string>& parts) {
                          .flow = none};
         } else if (part == "mesh-error") {
             nuisances.softness = nuisances.clamp = nuisances.dent = nuisances.flow = none;
+            options.mesh_error = 0;
         } else if (part == "gates") {
             options.least_lead = 0;
             options.most_left = options.most_left_together = options.most_left_held_out = options.most_strain =

@@ -98,7 +98,7 @@ TEST_F(Refits, PromiseNothingWithoutEquilibria) {
 }
 
 TEST_F(Refits, NameTheNuisanceThatIsMostStrained) {
-    // The clamp holds 3 mm more than it says.
+    // The clamp holds 8 mm more than it says.
     SmallBody other = body_;
     other.supports = {mesh::BoxRegion{Vec3(-1, -1, -1), Vec3(8.1, 11, 11)}};
     const auto held = other.reference();
