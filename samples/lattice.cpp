@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "identify/set/twin.h"
+#include "skeleton/attach.h"
 
 namespace palpate::samples {
 namespace {
@@ -39,7 +40,7 @@ skeleton::Model make_lattice(const std::string& name, const Eigen::Vector3i& n, 
         high = spacing * (n.array() - 1).matrix().cast<double>() + Vec3(0, 0, half_thickness);
     model.surface = mesh::make_box(low, high, (n.array() - 1).max(1));
     for (Eigen::Index v = 0; v < model.surface.vertices.rows(); ++v) {
-        model.skin.push_back(skeleton::attach(model, model.surface.vertices.row(v).transpose()));
+        model.skin.push_back(skeleton::attach_to_links(model, model.surface.vertices.row(v).transpose()));
     }
     model.supports = {mesh::BoxRegion{low - Vec3(1, 1, 1), Vec3(1, high.y() + 1, high.z() + 1)}};
     return model;

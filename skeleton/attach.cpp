@@ -1,8 +1,12 @@
+#include "skeleton/attach.h"
+
 #include <algorithm>
+#include <array>
 #include <cassert>
 #include <limits>
 
-#include "skeleton/model.h"
+#include "mesh/surface_tree.h"
+#include "skeleton/state.h"
 
 namespace palpate::skeleton {
 
@@ -36,14 +40,75 @@ Nearest nearest_link_or_sphere(const Model& model, const Vec3& point) {
     return nearest;
 }
 
+Share share_of(const Model& model, int sphere, double weight, const Vec3& rest) {
+    Share share{.sphere = sphere, .weight = weight};
+    share.follow << weight * Mat3::Identity(), -weight * skew(rest - model.spheres[sphere].center);
+    return share;
+}
+
 }  // namespace
 
-Attachment attach(const Model& model, const Vec3& point) { return attach(model, point, point); }
-
-Attachment attach(const Model& model, const Vec3& anchor, const Vec3& point) {
-    assert(!model.spheres.empty());
-    const Nearest nearest = nearest_link_or_sphere(model, anchor);
-    return {nearest.a, nearest.b, nearest.t, point};
+Attachment on_sphere(const Model& model, int sphere, const Vec3& rest) {
+    return {{share_of(model, sphere, 1, rest)}, rest};
 }
+
+Attachment between(const Model& model, int a, int b, double t, const Vec3& rest) {
+    if (a == b || t == 0) return on_sphere(model, a, rest);
+    if (t == 1) return on_sphere(model, b, rest);
+    return {{share_of(model, a, 1 - t, rest), share_of(model, b, t, rest)}, rest};
+}
+
+Attachment blend(std::span<const std::pair<double, const Attachment*>> parts) {
+    Attachment mean;
+    for (const auto& [weight, part] : parts) {
+        if (weight == 0) continue;
+        mean.rest += weight * part->rest;
+        for (const Share& share : part->shares) {
+            auto sum = std::ranges::find(mean.shares, share.sphere, &Share::sphere);
+            if (sum == mean.shares.end()) sum = mean.shares.insert(sum, Share{.sphere = share.sphere});
+            sum->weight += weight * share.weight;
+            sum->follow += weight * share.follow;
+        }
+    }
+    return mean;
+}
+
+Attachment moved_to(Attachment attachment, const Vec3& point) {
+    const Vec3 arm = point - attachment.rest;
+    for (Share& share : attachment.shares) share.follow.rightCols<3>() -= share.weight * skew(arm);
+    attachment.rest = point;
+    return attachment;
+}
+
+Attachment attach_to_links(const Model& model, const Vec3& point) {
+    assert(!model.spheres.empty());
+    const Nearest nearest = nearest_link_or_sphere(model, point);
+    return between(model, nearest.a, nearest.b, nearest.t, point);
+}
+
+Attacher::Attacher(const Model& model) : model_(model) {
+    if (model.surface.triangles.rows() == 0 || std::ssize(model.skin) != model.surface.vertices.rows()) return;
+    tree_ = std::make_unique<mesh::SurfaceTree>(model.surface);
+    on_skin_ = 0.02 * mesh::bounding_box(model.surface.vertices).longest_side();
+}
+
+Attacher::~Attacher() = default;
+
+Attachment Attacher::operator()(const Vec3& anchor, const Vec3& point) const {
+    if (tree_) {
+        const mesh::SurfacePoint nearest = tree_->closest(anchor);
+        if (nearest.distance <= on_skin_) {
+            const auto corners = model_.surface.triangles.row(nearest.triangle);
+            std::array<std::pair<double, const Attachment*>, 3> parts;
+            for (int c = 0; c < 3; ++c) parts[c] = {nearest.barycentric[c], &model_.skin[corners[c]]};
+            return moved_to(blend(parts), point);
+        }
+    }
+    return moved_to(attach_to_links(model_, anchor), point);
+}
+
+Attachment attach(const Model& model, const Vec3& point) { return Attacher(model)(point); }
+
+Attachment attach(const Model& model, const Vec3& anchor, const Vec3& point) { return Attacher(model)(anchor, point); }
 
 }  // namespace palpate::skeleton

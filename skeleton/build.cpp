@@ -10,6 +10,7 @@
 #include "skeleton/placement/cover.h"
 #include "skeleton/placement/masses.h"
 #include "skeleton/placement/sections.h"
+#include "skeleton/placement/skin.h"
 
 namespace palpate::skeleton {
 namespace {
@@ -98,21 +99,31 @@ void thicken_extras(const std::vector<Site>& sites, std::vector<Section>& sectio
     }
 }
 
-std::vector<Link> make_links(const std::vector<Section>& sections, const fem::Material& material) {
+std::vector<Link> make_links(const std::vector<Section>& sections, const fem::Material& material, LinkKind kind) {
     std::vector<Link> links;
     links.reserve(sections.size());
     for (const Section& s : sections) {
-        links.push_back({s.a, s.b, s.length, start_stiffness(s, material), 0, radius_of_gyration(s)});
+        Link link{s.a, s.b, s.length, start_stiffness(s, material, kind), 0, radius_of_gyration(s), {}};
+        if (kind == LinkKind::full) link.section = {s.centroid, s.axes, s.area};
+        links.push_back(std::move(link));
     }
 
     // No link is softer than a thousandth of the median one: slivers must not make the model singular.
-    for (int k = 0; k < 3; ++k) {
+    for (int k = 0; k < (kind == LinkKind::full ? 6 : 3); ++k) {
         std::vector<double> values(links.size());
         std::transform(links.begin(), links.end(), values.begin(), [&](const Link& link) { return link.stiffness(k); });
         std::nth_element(values.begin(), values.begin() + values.size() / 2, values.end());
         for (Link& link : links) link.stiffness(k) = std::max(link.stiffness(k), 1e-3 * values[values.size() / 2]);
     }
     return links;
+}
+
+// Hooke's law has lambda for the volume, where the body is a lump; limbs and plates bulge as they like.
+void set_volume_stiffness(const Body& body, const std::vector<Site>& sites, const fem::Material& material,
+                          std::vector<Sphere>& spheres) {
+    for (std::size_t i = 0; i < sites.size(); ++i) {
+        if (!sites[i].held && body.core.of(sites[i].tet).dimensions == 3) spheres[i].volume = std::max(0., material.lame_lambda());
+    }
 }
 
 // Bands of equally many links, by the way from the support to their middle.
@@ -199,13 +210,12 @@ Model build_skeleton(const mesh::Surface& surface, const mesh::VolumeMesh& volum
     set_masses(body.graph, owner, material.density, model.spheres);
     std::vector<Section> sections = find_sections(body.graph, body.core, owner, sites);
     thicken_extras(sites, sections);
-    model.links = make_links(sections, material);
+    model.links = make_links(sections, material, options.links);
+    if (options.links == LinkKind::full) set_volume_stiffness(body, sites, material, model.spheres);
     set_zones(body, sites, options.zones, model.links);
     model.surface = surface;
     model.supports = supports;
-    for (Eigen::Index v = 0; v < surface.vertices.rows(); ++v) {
-        model.skin.push_back(attach(model, Vec3(surface.vertices.row(v))));
-    }
+    model.skin = make_skin(volume, material, body.graph, owner, model);
     model.provenance["skeleton"] =
         fmt::format("{} free and {} held spheres, {} links, coverage {:.4g} mm", free_sites(sites),
                     std::ssize(sites) - free_sites(sites), model.links.size(), result.coverage);

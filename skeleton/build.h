@@ -9,9 +9,16 @@
 
 namespace palpate::skeleton {
 
+/// What joins two spheres.
+enum class LinkKind {
+    full,        // elongation, torsion, and shear apart from flexion in two planes; beside them a volume term a sphere
+    burion2008,  // the paper's: elongation, flexion, torsion
+};
+
 struct BuildOptions {
     int spheres = 0;      // free spheres, [1, 20000]; 0: by the body's shape, and as many as the coverage asks for
     double coverage = 0;  // [mm] no free surface vertex further outside the spheres; 0: 5 % of the longest side
+    LinkKind links = LinkKind::full;
     int zones = 1;        // links are split in so many zones along the body, from the support outwards
     void validate() const;
 };

@@ -45,12 +45,12 @@ Points observe(const Model& model, const Equilibrium& equilibrium, const std::ve
 Eigen::SparseMatrix<double> observation_jacobian(const Model& model, const Equilibrium& equilibrium,
                                                  const std::vector<Attachment>& points);
 
-/// Force signatures in an equilibrium, by the model's law (6N x 3L): d residual / d stiffness, effects in the links
-/// included. With P and the tangent's inverse, d observe / d k = P J^-1 link_forces.
+/// Force signatures in an equilibrium, by the model's law (6N x stiffnesses): d residual / d stiffness, effects in the
+/// links included. With P and the tangent's inverse, d observe / d k = P J^-1 link_forces.
 Eigen::SparseMatrix<double> link_forces(const Model& model, const Equilibrium& equilibrium,
                                         const fem::Effects& extra = {});
 
-/// Solves for equilibria of one model again and again, with other stiffnesses k (3L, ordered as stiffness_vector) and
+/// Solves for equilibria of one model again and again, with other stiffnesses k (as stiffness_vector orders them) and
 /// loads: keeps ordering, symbolic factorisation and work space. Not for several threads at once: one each.
 class StaticsSolver {
 public:

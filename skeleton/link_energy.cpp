@@ -190,14 +190,14 @@ LinkTerms link_terms(double length, const Vec3& rest_direction, const Vec3& x_a,
     const Torsion torsion(d_a, R_a, R_b);
 
     LinkTerms terms;
-    terms.energy = {elongation.energy(), flexion_a.energy() + flexion_b.energy(), torsion.energy()};
-    terms.gradient.setZero();
+    terms.energy = Vec3(elongation.energy(), flexion_a.energy() + flexion_b.energy(), torsion.energy());
+    terms.gradient.setZero(12, 3);
     elongation.gradient(terms.gradient.col(0));
     flexion_a.add_gradient(terms.gradient.col(1));
     flexion_b.add_gradient(terms.gradient.col(1));
     torsion.gradient(terms.gradient.col(2));
     if (with_hessian) {
-        for (Mat12& H : terms.hessian) H.setZero();
+        for (int s = 0; s < 3; ++s) terms.hessian[s].setZero();
         elongation.add_hessian(1, terms.hessian[0]);
         flexion_a.add_hessian(1, terms.hessian[1]);
         flexion_b.add_hessian(1, terms.hessian[1]);

@@ -24,8 +24,14 @@ Eigen::VectorXd external_force(const Model& model, const State& state, const Loa
 /// Work of the dead forces on the way from rest [N mm]; external_force is its derivative.
 double external_work(const Model& model, const State& state, const Load& load);
 
-/// Second derivative of the work by the rotation of each sphere (N), in exponential coordinates [N mm]: a dead
-/// force on a lever arm turns against it. All other second derivatives are zero.
-std::vector<Mat3> external_curvature(const Model& model, const State& state, const Load& load);
+/// A block (a, b) of a second derivative by the steps of two spheres, a <= b; where a < b its transpose stands at (b, a).
+struct CurvatureBlock {
+    int a = 0, b = 0;
+    Eigen::Matrix<double, 6, 6> block;
+};
+
+/// Second derivative of the work by the step, in exponential coordinates: dead forces on lever arms turn against them.
+/// Blocks of the same spheres add up.
+std::vector<CurvatureBlock> external_curvature(const Model& model, const State& state, const Load& load);
 
 }  // namespace palpate::skeleton

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -19,28 +20,50 @@ struct Sphere {
     double mass = 0;              // of its share of the body [tonne]
     Mat3 inertia = Mat3::Zero();  // of that share about the centre [tonne mm^2]
     bool held = false;            // stands in a support: neither moves nor turns, unless an effect holds the body there
+    double cell = 0;              // volume of its share of the body [mm^3]; 0: not told
+    double volume = 0;            // stiffness against changes of that volume [MPa]; 0: none
 };
 
-/// The three stiffnesses of a link, in this order everywhere.
-enum class Stiffness { elongation, flexion, torsion };
-inline constexpr std::array<const char*, 3> stiffness_names{"elongation", "flexion", "torsion"};
-inline constexpr std::array<const char*, 3> stiffness_units{"N/mm", "N*mm/rad", "N*mm/rad"};
+/// The stiffnesses of a model, in this order everywhere. The paper's link has the first three, a full one the first
+/// six: flexion and shear in one plane, flexion_2 and shear_2 in the other. The last is a sphere's.
+enum class Stiffness { elongation, flexion, torsion, flexion_2, shear, shear_2, volume };
+inline constexpr std::array<const char*, 7> stiffness_names{"elongation", "flexion", "torsion", "flexion_2",
+                                                            "shear",      "shear_2", "volume"};
+inline constexpr std::array<const char*, 7> stiffness_units{"N/mm", "N*mm/rad", "N*mm/rad", "N*mm/rad",
+                                                            "N/mm", "N/mm",     "MPa"};
+/// Of one link: 3 or 6.
+using Stiffnesses = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 6, 1>;
+
+/// The section of the body that a full link stands for, at rest.
+struct LinkSection {
+    Vec3 at = Vec3::Zero();        // its centroid, where the link's two halves meet [mm]
+    Mat3 axes = Mat3::Identity();  // rows: along the link; across it in the planes of shear and of shear_2
+    double area = 0;               // [mm^2]
+};
 
 /// An elastic link between two spheres.
 struct Link {
-    int a = 0, b = 0;                          // spheres, a < b
-    double length = 0;                         // at rest [mm]
-    Eigen::Vector3d stiffness = Vec3::Zero();  // kE [N/mm], kF [N mm/rad], kT [N mm/rad]
-    int zone = 0;         // links of a zone share their stiffness multipliers when identified by zones
-    double gyration = 0;  // radius of gyration of its section [mm]; 0: as flexion and elongation have it
+    int a = 0, b = 0;                      // spheres, a < b
+    double length = 0;                     // at rest [mm]
+    Stiffnesses stiffness = Vec3::Zero();  // as many as the kind of link has
+    int zone = 0;                          // links of a zone share their stiffness multipliers when identified by zones
+    double gyration = 0;                 // radius of gyration of its section [mm]; 0: as flexion and elongation have it
+    std::optional<LinkSection> section;  // of a full link
 };
 
-/// Where a point of the body hangs: on the nearest sphere (a == b, or t = 0, 1) or link. It follows
-/// p = (1 - t) (x_a + R_a (rest - X_a)) + t (x_b + R_b (rest - X_b)): exact for rigid motions.
+/// A sphere's share in carrying a point.
+struct Share {
+    int sphere = 0;
+    double weight = 0;                                                         // of the sphere in the mean motion
+    Eigen::Matrix<double, 3, 6> follow = Eigen::Matrix<double, 3, 6>::Zero();  // d point / d step of the sphere, at rest
+};
+
+/// Where a point of the body hangs: on one sphere or several, whose weights add up to 1. It follows their mean motion
+/// rigidly, and beside that what `follow` says of how they move against one another: see CarriedPoint. Rigid motions of
+/// all are followed exactly.
 struct Attachment {
-    int a = 0, b = 0;
-    double t = 0;              // [0, 1]
-    Vec3 rest = Vec3::Zero();  // [mm]
+    std::vector<Share> shares;  // at least one
+    Vec3 rest = Vec3::Zero();   // [mm]
 };
 
 /// How far a model's rotations reach.
@@ -64,12 +87,5 @@ struct Model {
 
     int dofs() const { return 6 * static_cast<int>(spheres.size()); }
 };
-
-/// Attaches a point: to the nearest link's axis or sphere's centre. Distances are measured to the axes, less the
-/// radius there (spheres are cones' ends), so that a thick sphere does not lose its skin to a thin neighbour.
-Attachment attach(const Model& model, const Vec3& point);
-
-/// The same, for a point that is rigidly fixed to the surface at `anchor` but stands at `point`.
-Attachment attach(const Model& model, const Vec3& anchor, const Vec3& point);
 
 }  // namespace palpate::skeleton

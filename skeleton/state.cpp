@@ -4,6 +4,8 @@
 #include <cassert>
 #include <cmath>
 
+#include "skeleton/carried_point.h"
+
 namespace palpate::skeleton {
 
 State rest_state(const Model& model) {
@@ -49,36 +51,24 @@ Vec3 rotation_vector(const Mat3& R) {
 }
 
 Points observe(const Model& model, const State& state, const std::vector<Attachment>& points) {
+    const State rest = rest_state(model);
     Points positions(static_cast<Eigen::Index>(points.size()), 3);
-    for (size_t i = 0; i < points.size(); ++i) {
-        const Attachment& p = points[i];
-        const auto carried = [&](int sphere) -> Vec3 {
-            return state.x.row(sphere).transpose() + state.R[sphere] * (p.rest - model.spheres[sphere].center);
-        };
-        positions.row(i) = ((1 - p.t) * carried(p.a) + p.t * carried(p.b)).transpose();
-    }
+    for (size_t i = 0; i < points.size(); ++i)
+        positions.row(static_cast<Eigen::Index>(i)) = CarriedPoint(points[i], rest, state).x().transpose();
     return positions;
 }
 
 Eigen::SparseMatrix<double> observation_jacobian(const Model& model, const State& state,
                                                  const std::vector<Attachment>& points) {
+    const State rest = rest_state(model);
     std::vector<Eigen::Triplet<double>> entries;
-    entries.reserve(18 * points.size());
     for (size_t i = 0; i < points.size(); ++i) {
-        const int row = 3 * static_cast<int>(i);
-        // The carried point x + r, r = R (rest - X), moves by dx + w x r.
-        const auto add = [&](int sphere, double weight) {
-            if (weight == 0) return;
-            const Vec3 r = state.R[sphere] * (points[i].rest - model.spheres[sphere].center);
-            const Mat3 turn = -weight * skew(r);
-            for (int c = 0; c < 3; ++c) {
-                entries.emplace_back(row + c, 6 * sphere + c, weight);
-                for (int d = 0; d < 3; ++d)
-                    if (d != c) entries.emplace_back(row + c, 6 * sphere + 3 + d, turn(c, d));
-            }
-        };
-        add(points[i].a, 1 - points[i].t);
-        add(points[i].b, points[i].t);
+        const CarriedPoint point(points[i], rest, state);
+        for (int share = 0; share < point.shares(); ++share)
+            for (int c = 0; c < 3; ++c)
+                for (int d = 0; d < 6; ++d)
+                    entries.emplace_back(3 * static_cast<int>(i) + c, 6 * point.sphere(share) + d,
+                                         point.jacobian(share)(c, d));
     }
     Eigen::SparseMatrix<double> P(3 * static_cast<Eigen::Index>(points.size()), model.dofs());
     P.setFromTriplets(entries.begin(), entries.end());

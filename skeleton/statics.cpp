@@ -43,17 +43,25 @@ Eigen::SparseMatrix<double> link_forces(const Model& model, const State& state, 
 }
 
 Eigen::VectorXd stiffness_vector(const Model& model) {
-    Eigen::VectorXd k(3 * static_cast<Eigen::Index>(model.links.size()));
-    for (size_t l = 0; l < model.links.size(); ++l) k.segment<3>(3 * l) = model.links[l].stiffness;
+    const StiffnessOrder order(model);
+    Eigen::VectorXd k(order.size());
+    for (Eigen::Index l = 0; l < std::ssize(model.links); ++l) {
+        for (int s = 0; s < order.per_link(); ++s) k[order.of_link(l, s)] = model.links[l].stiffness[s];
+    }
+    if (!order.full()) return k;
+    for (Eigen::Index i = 0; i < std::ssize(model.spheres); ++i) k[order.of_sphere(i)] = model.spheres[i].volume;
     return k;
 }
 
 void set_stiffness(Model& model, const Eigen::VectorXd& k) {
-    assert(k.size() == 3 * static_cast<Eigen::Index>(model.links.size()));
-    for (size_t l = 0; l < model.links.size(); ++l) {
+    const StiffnessOrder order(model);
+    assert(k.size() == order.size());
+    for (Eigen::Index l = 0; l < std::ssize(model.links); ++l) {
         model.links[l].gyration = radius_of_gyration(model.links[l]);
-        model.links[l].stiffness = k.segment<3>(3 * l);
+        model.links[l].stiffness = order.link(k, l);
     }
+    if (!order.full()) return;
+    for (Eigen::Index i = 0; i < std::ssize(model.spheres); ++i) model.spheres[i].volume = k[order.of_sphere(i)];
 }
 
 Eigen::VectorXd effect_force(const Model& model, const State& state, const fem::Effects& extra) {
@@ -65,7 +73,7 @@ double potential(const Model& model, const State& state, const Load& load, const
     const PlacedLinks links = links_of(model, extra);
     for (size_t l = 0; l < model.links.size(); ++l)
         energy += model.links[l].stiffness.dot(links.terms(l, state, false).energy);
-    return energy;
+    return energy + links.volumes().energy(stiffness_vector(model), state);
 }
 
 Eigen::VectorXd residual(const Model& model, const State& state, const Load& load, const fem::Effects& extra) {
@@ -77,7 +85,7 @@ Eigen::VectorXd residual(const Model& model, const State& state, const Load& loa
         r.segment<6>(Eigen::Index{6} * link.a) -= g.head<6>();
         r.segment<6>(Eigen::Index{6} * link.b) -= g.tail<6>();
     }
-    return r;
+    return r + links.volumes().force(stiffness_vector(model), state);
 }
 
 Eigen::SparseMatrix<double> tangent(const Model& model, const State& state, const Load& load, const fem::Effects& extra,
@@ -91,21 +99,20 @@ Eigen::SparseMatrix<double> tangent(const Model& model, const State& state, cons
         for (int j = 0; j < 12; ++j)
             for (int i = 0; i < 12; ++i) entries.emplace_back(row_of(link, i), row_of(link, j), H(i, j));
     }
-    const std::vector<Mat3> curvature = external_curvature(model, state, load);
-    for (int sphere = 0; sphere < static_cast<int>(curvature.size()); ++sphere)
-        for (int j = 0; j < 3; ++j)
-            for (int i = 0; i < 3; ++i)
-                entries.emplace_back(6 * sphere + 3 + i, 6 * sphere + 3 + j, -curvature[sphere](i, j));
-    const PlacedEffects effects = effects_of(model, extra);
-    const std::vector<PlacedEffects::Block> blocks = effects.curvature(state);
-    for (size_t p = 0; p < blocks.size(); ++p) {
-        const auto [a, b] = effects.pairs()[p];
+    const auto add = [&](int a, int b, const PlacedEffects::Block& block) {
         for (int j = 0; j < 6; ++j)
             for (int i = 0; i < 6; ++i) {
-                entries.emplace_back(6 * a + i, 6 * b + j, blocks[p](i, j));
-                if (a != b) entries.emplace_back(6 * b + j, 6 * a + i, blocks[p](i, j));
+                entries.emplace_back(6 * a + i, 6 * b + j, block(i, j));
+                if (a != b) entries.emplace_back(6 * b + j, 6 * a + i, block(i, j));
             }
-    }
+    };
+    const auto add_pairs = [&](const auto& pairs, const auto& blocks) {
+        for (size_t p = 0; p < blocks.size(); ++p) add(pairs[p][0], pairs[p][1], blocks[p]);
+    };
+    for (const auto& [a, b, block] : external_curvature(model, state, load)) add(a, b, -block);
+    const PlacedEffects effects = effects_of(model, extra);
+    add_pairs(effects.pairs(), effects.curvature(state));
+    add_pairs(links.volumes().pairs(), links.volumes().curvature(stiffness_vector(model), state));
     Eigen::SparseMatrix<double> J(model.dofs(), model.dofs());
     J.setFromTriplets(entries.begin(), entries.end());
     return J;

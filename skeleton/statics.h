@@ -10,12 +10,12 @@ namespace palpate::skeleton {
 
 // All here with the model's effects in force, and `extra` ones; nothing has flowed before.
 
-/// Force signatures (6N x 3L): column 3 l + s is the force on the spheres of link l at unit stiffness s. The net
+/// Force signatures (6N x stiffnesses, in their order): each column the force on the spheres at unit stiffness. The net
 /// force is external_force + effect_force + link_forces * k, linear in the stiffnesses. [Burion 2008, eqs. 7-8 with
 /// the sum kept]
 Eigen::SparseMatrix<double> link_forces(const Model& model, const State& state, const fem::Effects& extra = {});
 
-/// Stiffnesses of all links (3L), as link_forces orders them.
+/// All stiffnesses, ordered as StiffnessOrder says.
 Eigen::VectorXd stiffness_vector(const Model& model);
 /// Sets them; the links keep their sections.
 void set_stiffness(Model& model, const Eigen::VectorXd& k);

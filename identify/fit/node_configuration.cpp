@@ -9,6 +9,7 @@
 #include "fem/interpolation.h"
 #include "identify/set/loads.h"
 #include "mesh/errors.h"
+#include "skeleton/attach.h"
 
 namespace palpate::identify {
 namespace {
@@ -32,8 +33,8 @@ void place_sphere(const skeleton::Model& model, int sphere, const Points& x, con
 /// The sphere that a marker hangs on alone, or -1.
 int only_sphere(const skeleton::Attachment& at) {
     constexpr double rounding = 1e-9;
-    if (at.a == at.b || at.t <= rounding) return at.a;
-    return at.t >= 1 - rounding ? at.b : -1;
+    const auto whole = std::ranges::find_if(at.shares, [](const auto& share) { return share.weight > 1 - rounding; });
+    return whole != at.shares.end() ? whole->sphere : -1;
 }
 
 /// Points of a ball of radius 1: the 26 directions from a cube's middle to its corners, edges and sides, on two shells.
@@ -101,11 +102,11 @@ NodeConfiguration configuration_of_markers(const skeleton::Model& model, const M
                                            const LoadState& state) {
     // readings by the sphere that they hang on alone
     std::vector<std::vector<const Reading*>> on_sphere(model.spheres.size());
+    const skeleton::Attacher attach(model);
     for (const Reading& reading : state.readings) {
         if (reading.marker < 0 || !reading.position.allFinite()) continue;
         const Marker& marker = set.markers[reading.marker];
-        const int sphere =
-            only_sphere(marker.anchor ? attach(model, *marker.anchor, marker.rest) : attach(model, marker.rest));
+        const int sphere = only_sphere(attach(marker.anchor.value_or(marker.rest), marker.rest));
         if (sphere >= 0) on_sphere[sphere].push_back(&reading);
     }
 

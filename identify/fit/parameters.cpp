@@ -5,23 +5,28 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <tuple>
 
 #include "mesh/errors.h"
 #include "skeleton/statics.h"
+#include "skeleton/stiffness_order.h"
 
 namespace palpate::identify {
 namespace {
 
-/// Links of a scope that share a multiplier: 0 for all, the zone, or the link itself.
-int group_of(const skeleton::Model& model, Scope scope, int link) {
-    if (scope == Scope::uniform) return 0;
-    return scope == Scope::zones ? model.links[link].zone : link;
+using skeleton::Stiffness;
+
+/// Of those that share a multiplier: 0 for all, the zone, or the link or sphere itself.
+int group_of(const skeleton::Model& model, Scope scope, Stiffness kind, int owner) {
+    if (scope == Scope::uniform || (scope == Scope::zones && kind == Stiffness::volume)) return 0;
+    return scope == Scope::zones ? model.links[owner].zone : owner;
 }
 
-std::string name_of(Scope scope, int kind, int group) {
-    const char* stiffness = skeleton::stiffness_names[kind];
-    if (scope == Scope::uniform) return stiffness;
-    return fmt::format("{}:{}{}", stiffness, scope == Scope::zones ? "zone" : "link", group);
+std::string name_of(Scope scope, Stiffness kind, int group) {
+    const char* name = skeleton::stiffness_names[static_cast<int>(kind)];
+    const bool is_volume = kind == Stiffness::volume;
+    if (scope == Scope::uniform || (scope == Scope::zones && is_volume)) return name;
+    return fmt::format("{}:{}{}", name, scope == Scope::zones ? "zone" : is_volume ? "sphere" : "link", group);
 }
 
 }  // namespace
@@ -55,26 +60,25 @@ Parameters group_stiffness(const skeleton::Model& model, Scope scope, const std:
     result.k0 = skeleton::stiffness_vector(model);
     result.parameter_of = Eigen::VectorXi::Constant(result.k0.size(), -1);
 
-    // by group, then elongation, flexion, torsion
-    std::map<std::pair<int, int>, std::vector<int>> members;
-    for (int link = 0; link < static_cast<int>(model.links.size()); ++link) {
-        for (int kind = 0; kind < 3; ++kind) {
-            const bool is_fixed = std::ranges::find(fixed, static_cast<skeleton::Stiffness>(kind)) != fixed.end();
-            if (!is_fixed && result.k0[3 * link + kind] > 0) {
-                members[{group_of(model, scope, link), kind}].push_back(link);
-            }
-        }
+    // links by group, and in a group by kind; then volumes
+    const skeleton::StiffnessOrder order(model);
+    std::map<std::tuple<bool, int, Stiffness>, std::vector<Eigen::Index>> members;
+    for (Eigen::Index place = 0; place < order.size(); ++place) {
+        const Stiffness kind = order.kind(place);
+        if (!(result.k0[place] > 0) || std::ranges::find(fixed, kind) != fixed.end()) continue;
+        members[{kind == Stiffness::volume, group_of(model, scope, kind, order.owner(place)), kind}].push_back(place);
     }
-    for (const auto& [key, links] : members) {
-        const auto [group, kind] = key;
+    for (const auto& [key, places] : members) {
+        const auto& [is_volume, group, kind] = key;
+        Parameter parameter{name_of(scope, kind, group), kind, scope == Scope::links && !is_volume ? group : -1, {}, 0};
         double log_sum = 0;
-        for (const int link : links) {
-            result.parameter_of[3 * link + kind] = result.size();
-            log_sum += std::log(result.k0[3 * link + kind]);
+        for (const Eigen::Index place : places) {
+            result.parameter_of[place] = result.size();
+            parameter.owners.push_back(order.owner(place));
+            log_sum += std::log(result.k0[place]);
         }
-        result.list.push_back({name_of(scope, kind, group), static_cast<skeleton::Stiffness>(kind),
-                               scope == Scope::links ? group : -1, links,
-                               std::exp(log_sum / static_cast<double>(links.size()))});
+        parameter.stiffness = std::exp(log_sum / static_cast<double>(places.size()));
+        result.list.push_back(std::move(parameter));
     }
     if (result.list.empty()) {
         throw InvalidInput(

@@ -7,8 +7,10 @@
 #include <tuple>
 
 #include "identify/set/loads.h"
+#include "skeleton/attach.h"
 #include "skeleton/effects/placed_effects.h"
 #include "skeleton/statics.h"
+#include "skeleton/stiffness_order.h"
 
 namespace palpate::identify {
 namespace {
@@ -70,7 +72,8 @@ struct SkeletonBody::Impl {
     std::vector<skeleton::Attachment> markers;
     std::vector<std::string> laws;
     std::vector<StiffnessParameter> parameters;
-    Eigen::VectorXd k0;  // (3L)
+    Eigen::VectorXd k0;             // as skeleton::StiffnessOrder says
+    std::vector<int> parameter_of;  // of each stiffness
     double young, size;
     Points centres, support_points;
     std::vector<char> at_support;
@@ -78,11 +81,15 @@ struct SkeletonBody::Impl {
     bool has_cavities;
     std::unique_ptr<ContactLoads> loads;
 
+    void find_kinds();
+
     using Place = std::tuple<double, double, double, double>;
     mutable std::mutex mutex;
     mutable std::map<Place, skeleton::Load> shares;  // of a force of 1 N along x
 
     const skeleton::Model& model(const Setting& setting) const { return by_law[setting.law]; }
+    Eigen::RowVectorXd weight_of(const skeleton::StiffnessOrder& order, Eigen::Index place,
+                                 const Eigen::MatrixXd& W) const;
     skeleton::Load shares_of(const mesh::Contact& contact) const;
     skeleton::Load load(const Action& action) const;
     /// What is in force: a pressure that is known to act does so in cavities, where there are any.
@@ -117,11 +124,12 @@ SkeletonBody::SkeletonBody(const skeleton::Model& model, const std::vector<Marke
         i.by_law[law].law = static_cast<Law>(law);
         i.laws.emplace_back(skeleton::law_names[law]);
     }
+    const skeleton::Attacher attach(model);
     for (const Marker& marker : markers) {
-        i.markers.push_back(marker.anchor ? attach(model, *marker.anchor, marker.rest) : attach(model, marker.rest));
+        i.markers.push_back(attach(marker.anchor.value_or(marker.rest), marker.rest));
     }
-    for (const char* name : skeleton::stiffness_names) i.parameters.push_back({name, 0, 0, 3});
     i.k0 = skeleton::stiffness_vector(model);
+    i.find_kinds();
     i.young = young;
     const Points& reach = model.surface.vertices;
     Points spheres(std::ssize(model.spheres), 3);
@@ -150,6 +158,20 @@ SkeletonBody::SkeletonBody(const skeleton::Model& model, const std::vector<Marke
 }
 
 SkeletonBody::~SkeletonBody() = default;
+
+// A parameter for each kind of stiffness that the model has.
+void SkeletonBody::Impl::find_kinds() {
+    const skeleton::StiffnessOrder order(by_law[0]);
+    std::vector<int> place(skeleton::stiffness_names.size(), -1);
+    for (Eigen::Index k = 0; k < order.size(); ++k) {
+        const auto kind = static_cast<int>(order.kind(k));
+        if (place[kind] < 0 && (kind < 3 || k0[k] > 0)) {
+            place[kind] = static_cast<int>(parameters.size());
+            parameters.push_back({skeleton::stiffness_names[kind], 0, 0, 3});
+        }
+        parameter_of.push_back(place[kind]);
+    }
+}
 
 skeleton::Load SkeletonBody::Impl::shares_of(const mesh::Contact& contact) const {
     const Place place{contact.point.x(), contact.point.y(), contact.point.z(), contact.radius};
@@ -183,7 +205,10 @@ bool SkeletonBody::is_nonlinear(const Setting& setting) const { return static_ca
 
 Eigen::VectorXd SkeletonBody::stiffness(const Setting& setting) const {
     Eigen::VectorXd k = impl_->k0;
-    for (int kind = 0; kind < 3; ++kind) k(Eigen::seq(kind, Eigen::last, 3)) *= std::exp(setting.theta[kind]);
+    for (Eigen::Index place = 0; place < k.size(); ++place) {
+        const int kind = impl_->parameter_of[place];
+        if (kind >= 0) k[place] *= std::exp(setting.theta[kind]);
+    }
     return k;
 }
 
@@ -227,13 +252,12 @@ Eigen::MatrixXd SkeletonBody::parameter_force(const Eigen::VectorXd& q, const Se
     const Eigen::SparseMatrix<double> G =
         skeleton::link_forces(impl_->model(setting), impl_->equilibrium_of(q, setting, action), setting.effects);
     const Eigen::VectorXd k = stiffness(setting);
-    Eigen::MatrixXd result(dofs(), 3);
-    for (int kind = 0; kind < 3; ++kind) {
-        Eigen::VectorXd own = Eigen::VectorXd::Zero(k.size());
-        own(Eigen::seq(kind, Eigen::last, 3)) = k(Eigen::seq(kind, Eigen::last, 3));
-        result.col(kind) = G * own;
+    Eigen::MatrixXd own = Eigen::MatrixXd::Zero(k.size(), std::ssize(impl_->parameters));
+    for (Eigen::Index place = 0; place < k.size(); ++place) {
+        const int kind = impl_->parameter_of[place];
+        if (kind >= 0) own(place, kind) = k[place];
     }
-    return result;
+    return G * own;
 }
 
 Points SkeletonBody::observe(const Eigen::VectorXd& q, const Setting& setting) const {
@@ -267,6 +291,20 @@ Vec3 SkeletonBody::normal_near(const Vec3& point, double radius) const {
     return skin.triangles.rows() > 0 ? mesh::mean_normal(skin, point, radius) : Vec3(Vec3::UnitZ());
 }
 
+Eigen::RowVectorXd SkeletonBody::Impl::weight_of(const skeleton::StiffnessOrder& order, Eigen::Index place,
+                                                 const Eigen::MatrixXd& W) const {
+    const int owner = order.owner(place);
+    if (order.kind(place) != skeleton::Stiffness::volume) return W.row(owner);
+    Eigen::RowVectorXd sum = Eigen::RowVectorXd::Zero(W.cols());
+    int links = 0;
+    for (Eigen::Index l = 0; l < std::ssize(by_law[0].links); ++l) {
+        if (by_law[0].links[l].a != owner && by_law[0].links[l].b != owner) continue;
+        sum += W.row(l);
+        ++links;
+    }
+    return sum / std::max(links, 1);
+}
+
 const Points& SkeletonBody::pieces() const { return impl_->centres; }
 const std::vector<char>& SkeletonBody::pieces_at_support() const { return impl_->at_support; }
 
@@ -274,7 +312,11 @@ Eigen::MatrixXd SkeletonBody::piece_force(const Eigen::VectorXd& q, const Settin
                                           const Eigen::MatrixXd& W) const {
     Eigen::MatrixXd weighted(impl_->k0.size(), W.cols());
     const Eigen::VectorXd k = stiffness(setting);
-    for (Eigen::Index row = 0; row < weighted.rows(); ++row) weighted.row(row) = k[row] * W.row(row / 3);
+    const skeleton::StiffnessOrder order(impl_->model(setting));
+    for (Eigen::Index place = 0; place < weighted.rows(); ++place) {
+        // a volume is as much harder as the links of its sphere are on average: the pieces are the links
+        weighted.row(place) = k[place] * impl_->weight_of(order, place, W);
+    }
     return skeleton::link_forces(impl_->model(setting), impl_->equilibrium_of(q, setting, action), setting.effects) *
            weighted;
 }

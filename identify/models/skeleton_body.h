@@ -55,7 +55,7 @@ public:
     Eigen::MatrixXd tangent_times(const Eigen::VectorXd& q, const Setting& setting, const Action& action,
                                   const Eigen::MatrixXd& steps) const override;
 
-    /// Stiffnesses of a setting (3L).
+    /// Stiffnesses of a setting, as skeleton::StiffnessOrder says.
     Eigen::VectorXd stiffness(const Setting& setting) const;
 
 private:

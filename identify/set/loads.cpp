@@ -46,7 +46,7 @@ std::vector<PatchPoint> sample_patch(const mesh::Surface& surface, const mesh::C
 
 }  // namespace
 
-ContactLoads::ContactLoads(const skeleton::Model& model) : model_(model) {
+ContactLoads::ContactLoads(const skeleton::Model& model) : model_(model), attach_(model) {
     if (model.surface.triangles.rows() > 0) tree_ = std::make_unique<mesh::SurfaceTree>(model.surface);
 }
 
@@ -64,9 +64,11 @@ skeleton::Load ContactLoads::operator()(const std::vector<mesh::Contact>& contac
 
         double area = 0;
         for (const PatchPoint& point : patch) area += point.area;
-        for (const PatchPoint& point : patch) {
-            load.forces.push_back({attach(model_, point.position), point.area / area * contact.force});
-        }
+        std::vector<skeleton::Attachment> points;
+        for (const PatchPoint& point : patch) points.push_back(attach_(point.position));
+        std::vector<std::pair<double, const skeleton::Attachment*>> parts;
+        for (std::size_t i = 0; i < patch.size(); ++i) parts.emplace_back(patch[i].area / area, &points[i]);
+        load.forces.push_back({skeleton::blend(parts), contact.force});
     }
     return load;
 }

@@ -5,19 +5,16 @@
 
 #include "identify/set/measurement_set.h"
 #include "mesh/contact.h"
+#include "skeleton/attach.h"
 #include "skeleton/statics.h"
-
-namespace palpate::mesh {
-class SurfaceTree;
-}
 
 namespace palpate::identify {
 
 /// Turns contacts on the body into forces on a skeleton's skin.
 ///
-/// A contact's force is spread evenly over the skin within its radius, sampled finely; where no sample lies within
-/// (radius 0, or a small one), it acts at the nearest point of the skin. A model without a skin takes it where it is
-/// told to act.
+/// A contact's force is spread evenly over the skin within its radius, sampled finely, and acts on the mean of the
+/// samples: their attachments blended into one. Where no sample lies within (radius 0, or a small one), it acts at the
+/// nearest point of the skin. A model without a skin takes it where it is told to act.
 class ContactLoads {
 public:
     explicit ContactLoads(const skeleton::Model& model);
@@ -29,6 +26,7 @@ public:
 
 private:
     const skeleton::Model& model_;
+    skeleton::Attacher attach_;
     std::unique_ptr<mesh::SurfaceTree> tree_;
 };
 

@@ -6,6 +6,7 @@
 
 #include "identify/set/creep.h"
 #include "identify/set/loads.h"
+#include "skeleton/attach.h"
 
 namespace palpate::identify {
 namespace {
@@ -13,8 +14,9 @@ namespace {
 std::vector<skeleton::Attachment> attach_markers(const skeleton::Model& model, const std::vector<Marker>& markers) {
     std::vector<skeleton::Attachment> points;
     points.reserve(markers.size());
+    const skeleton::Attacher attach(model);
     for (const Marker& marker : markers) {
-        points.push_back(marker.anchor ? attach(model, *marker.anchor, marker.rest) : attach(model, marker.rest));
+        points.push_back(attach(marker.anchor.value_or(marker.rest), marker.rest));
     }
     return points;
 }

@@ -2,6 +2,7 @@
 
 #include "identify/particles/random.h"
 #include "identify/set/loads.h"
+#include "skeleton/attach.h"
 #include "skeleton/statics.h"
 
 namespace palpate::identify {
@@ -17,8 +18,9 @@ MeasurementSet simulate_measurements(const skeleton::Model& model, std::vector<L
     set.states = std::move(states);
 
     std::vector<skeleton::Attachment> points;
+    const skeleton::Attacher attach(model);
     for (const Marker& marker : set.markers) {
-        points.push_back(marker.anchor ? attach(model, *marker.anchor, marker.rest) : attach(model, marker.rest));
+        points.push_back(attach(marker.anchor.value_or(marker.rest), marker.rest));
     }
     const ContactLoads loads(model);
     skeleton::StaticsSolver solver(model);

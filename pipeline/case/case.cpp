@@ -50,6 +50,7 @@ void read_volume(const YamlFields& yaml, Case& c) {
 void read_skeleton(const YamlFields& yaml, Case& c) {
     read_if(yaml, "spheres", c.skeleton.spheres, [&](auto& key) { return yaml.integer(key, 0, 100000); });
     read_if(yaml, "coverage", c.skeleton.coverage, [&](auto& key) { return yaml.number(key, 0, 1e9); });
+    read_if(yaml, "links", c.skeleton.links, [&](auto& key) { return parse(link_kinds, yaml.text(key), yaml.where(key)); });
     read_if(yaml, "zones", c.skeleton.zones, [&](auto& key) { return yaml.integer(key, 1, 1000); });
     yaml.finish();
 }
@@ -190,6 +191,7 @@ void override_case(Case& c, const CaseOverrides& say) {
     if (say.no_reference) c.diagnose.reference = false;
     if (say.spheres) c.skeleton.spheres = *say.spheres;
     if (say.coverage) c.skeleton.coverage = *say.coverage;
+    if (!say.links.empty()) c.skeleton.links = parse(link_kinds, say.links, "--links");
     if (say.zones) c.skeleton.zones = *say.zones;
     if (say.probes) {
         c.probing.probes = *say.probes;

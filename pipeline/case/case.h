@@ -78,7 +78,7 @@ struct CaseOverrides {
     std::string unit;  // mm, cm, m; empty: not said
     std::optional<double> longest, young, poisson, density, edge_length, noise, displacement, coverage;
     std::optional<int> spheres, zones, probes, markers, particles;
-    std::string parameters, method;  // empty: not said
+    std::string parameters, method, links;  // empty: not said
     std::optional<std::uint64_t> seed;
     bool linear_elements = false, no_reference = false;
 };

@@ -8,6 +8,7 @@
 
 #include "identify/identify.h"
 #include "mesh/errors.h"
+#include "skeleton/build.h"
 
 namespace palpate::pipeline {
 
@@ -23,9 +24,15 @@ inline constexpr Names<identify::LawChoice, 3> law_choices{{{"automatic", identi
                                                             {"linear", identify::LawChoice::linear},
                                                             {"large-rotation", identify::LawChoice::large_rotation}}};
 
-inline constexpr Names<skeleton::Stiffness, 3> stiffnesses{{{"elongation", skeleton::Stiffness::elongation},
+inline constexpr Names<skeleton::Stiffness, 7> stiffnesses{{{"elongation", skeleton::Stiffness::elongation},
                                                             {"flexion", skeleton::Stiffness::flexion},
-                                                            {"torsion", skeleton::Stiffness::torsion}}};
+                                                            {"torsion", skeleton::Stiffness::torsion},
+                                                            {"flexion_2", skeleton::Stiffness::flexion_2},
+                                                            {"shear", skeleton::Stiffness::shear},
+                                                            {"shear_2", skeleton::Stiffness::shear_2},
+                                                            {"volume", skeleton::Stiffness::volume}}};
+inline constexpr Names<skeleton::LinkKind, 2> link_kinds{
+    {{"full", skeleton::LinkKind::full}, {"burion2008", skeleton::LinkKind::burion2008}}};
 
 /// @throws InvalidInput naming where, what was written and what is allowed.
 template <typename Enum, std::size_t N>

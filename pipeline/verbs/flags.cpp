@@ -22,6 +22,9 @@ void add_skeleton_flags(CLI::App* verb, CaseOverrides& say) {
     verb->add_option("--coverage", say.coverage, "No surface further outside the spheres than this [mm]")
         ->check(CLI::PositiveNumber)
         ->group("Skeleton");
+    verb->add_option("--links", say.links, "full, or burion2008: the paper's elongation, flexion and torsion alone")
+        ->check(CLI::IsMember({"full", "burion2008"}))
+        ->group("Skeleton");
     verb->add_option("--zones", say.zones, "Zones of equal stiffness, from the support outwards")
         ->check(CLI::Range(1, 1000))
         ->group("Skeleton");

@@ -53,19 +53,15 @@ Cavities::Cavities(const Model& model) : rest_(rest_state(model)) {
 }
 
 Cavities::Wall Cavities::at(const std::array<Attachment, 3>& wall, const State& state) const {
-    Wall result;
-    for (int v = 0; v < 3; ++v) {
-        result[v] = carried(wall[v], rest_, state);
-        result[v].x -= origin_;
-    }
-    return result;
+    return {CarriedPoint(wall[0], rest_, state), CarriedPoint(wall[1], rest_, state),
+            CarriedPoint(wall[2], rest_, state)};
 }
 
 double Cavities::volume(const State& state) const {
     double sum = 0;
     for (const auto& wall : walls_) {
         const Wall x = at(wall, state);
-        sum -= x[0].x.dot(x[1].x.cross(x[2].x)) / 6;
+        sum -= (x[0].x() - origin_).dot((x[1].x() - origin_).cross(x[2].x() - origin_)) / 6;
     }
     return sum;
 }
@@ -74,12 +70,9 @@ void Cavities::add_gradient(const State& state, double factor, Eigen::VectorXd& 
     for (const auto& wall : walls_) {
         const Wall x = at(wall, state);
         for (int v = 0; v < 3; ++v) {
-            const Vec3 by_x = (-factor / 6) * x[(v + 1) % 3].x.cross(x[(v + 2) % 3].x);
-            for (int i = 0; i < x[v].shares; ++i) {
-                const auto& [sphere, w, r] = x[v].of[i];
-                sum.segment<3>(Eigen::Index{6} * sphere) += w * by_x;
-                sum.segment<3>(Eigen::Index{6} * sphere + 3) += w * r.cross(by_x);
-            }
+            const Vec3 by_x = (-factor / 6) * (x[(v + 1) % 3].x() - origin_).cross(x[(v + 2) % 3].x() - origin_);
+            for (int i = 0; i < x[v].shares(); ++i)
+                sum.segment<6>(Eigen::Index{6} * x[v].sphere(i)) += x[v].jacobian(i).transpose() * by_x;
         }
     }
 }

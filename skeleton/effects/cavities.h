@@ -3,7 +3,7 @@
 #include <array>
 #include <vector>
 
-#include "skeleton/effects/carried_point.h"
+#include "skeleton/carried_point.h"
 
 namespace palpate::skeleton {
 
@@ -43,15 +43,15 @@ void Cavities::for_each_block(const State& state, const Visit& visit) const {
         const Wall x = at(wall, state);
         for (int v = 0; v < 3; ++v) {
             const CarriedPoint &one = x[v], &next = x[(v + 1) % 3], &last = x[(v + 2) % 3];
-            const Vec3 by_one = -next.x.cross(last.x) / 6;
-            for (int i = 0; i < one.shares; ++i) {
-                const auto& [a, w, r] = one.of[i];
-                Block turning = Block::Zero();
-                turning.bottomRightCorner<3, 3>() = turning_curvature(w * by_one, r);
-                visit(a, a, turning);
-                for (int j = 0; j < next.shares; ++j) {
-                    const int b = next.of[j].sphere;
-                    const Block both = one.of[i].jacobian().transpose() * (skew(last.x) / 6) * next.of[j].jacobian();
+            const Vec3 x_next = next.x() - origin_, x_last = last.x() - origin_;
+            const Eigen::MatrixXd turning = one.curvature(-x_next.cross(x_last) / 6);
+            for (int i = 0; i < one.shares(); ++i) {
+                const int a = one.sphere(i);
+                for (int j = 0; j < one.shares(); ++j)
+                    if (a <= one.sphere(j)) visit(a, one.sphere(j), Block(turning.block<6, 6>(6 * i, 6 * j)));
+                for (int j = 0; j < next.shares(); ++j) {
+                    const int b = next.sphere(j);
+                    const Block both = one.jacobian(i).transpose() * (skew(x_last) / 6) * next.jacobian(j);
                     if (a < b) visit(a, b, both);
                     if (a > b) visit(b, a, Block(both.transpose()));
                     if (a == b) visit(a, a, Block(both + both.transpose()));

@@ -6,7 +6,7 @@
 #include <map>
 
 #include "mesh/errors.h"
-#include "skeleton/effects/carried_point.h"
+#include "skeleton/carried_point.h"
 
 namespace palpate::skeleton {
 
@@ -25,15 +25,17 @@ PlacedEffects::PlacedEffects(const Model& model, const fem::Effects& effects)
         const PointSet set = point_set(model, potential->acts_on());
         Points stand(std::ssize(set.at), 3);
         for (size_t i = 0; i < set.at.size(); ++i) {
-            stand.row(static_cast<Eigen::Index>(i)) = carried(set.at[i], rest_, rest_).x;
+            stand.row(static_cast<Eigen::Index>(i)) = set.at[i].rest;
         }
         const Eigen::VectorXd weights = potential->weights(stand, set.weights);
         Placed placed{potential, {}};
         for (size_t i = 0; i < set.at.size(); ++i) {
-            const CarriedPoint point = carried(set.at[i], rest_, rest_);
-            const int first = point.of[0].sphere, last = point.of[point.shares - 1].sphere;
-            placed.points.push_back({set.at[i], weights[i], {pair(first, first), pair(last, last), pair(first, last)}});
-            if (potential->acts_on() == fem::ActsOn::support) supported_[first] = 1;
+            Point point{set.at[i], weights[i], {}};
+            for (const Share& s : set.at[i].shares)
+                for (const Share& t : set.at[i].shares)
+                    if (s.sphere <= t.sphere) point.pairs.push_back(pair(s.sphere, t.sphere));
+            placed.points.push_back(std::move(point));
+            if (potential->acts_on() == fem::ActsOn::support) supported_[set.at[i].shares.front().sphere] = 1;
         }
         effects_.push_back(std::move(placed));
     }
@@ -58,8 +60,8 @@ void PlacedEffects::for_each_point(const State& state, double share, const Visit
     for (const Placed& effect : effects_) {
         const double scale = effect.potential->acts_on() == fem::ActsOn::support ? 1 : share;
         for (const Point& point : effect.points) {
-            const CarriedPoint at = carried(point.at, rest_, state);
-            visit(point, at, effect.potential->terms(point.at.rest, at.x), scale * point.weight);
+            const CarriedPoint at(point.at, rest_, state);
+            visit(point, at, effect.potential->terms(point.at.rest, at.x()), scale * point.weight);
         }
     }
 }
@@ -82,12 +84,9 @@ Eigen::VectorXd PlacedEffects::force(const State& state, double share) const {
     Eigen::VectorXd f = Eigen::VectorXd::Zero(6 * state.x.rows());
     for_each_point(state, share,
                    [&](const Point&, const CarriedPoint& at, const fem::PointTerms& terms, double weight) {
-                       for (int i = 0; i < at.shares; ++i) {
-                           const auto& [sphere, w, r] = at.of[i];
-                           const Vec3 pull = -(weight * w) * terms.gradient;
-                           f.segment<3>(Eigen::Index{6} * sphere) += pull;
-                           f.segment<3>(Eigen::Index{6} * sphere + 3) += r.cross(pull);
-                       }
+                       for (int i = 0; i < at.shares(); ++i)
+                           f.segment<6>(Eigen::Index{6} * at.sphere(i)) -=
+                               at.jacobian(i).transpose() * (weight * terms.gradient);
                    });
     if (pressure_ != 0) cavities_.add_gradient(state, share * pressure_, f);
     return f;
@@ -97,19 +96,17 @@ std::vector<PlacedEffects::Block> PlacedEffects::curvature(const State& state, d
     std::vector<Block> blocks(pairs_.size(), Block::Zero());
     for_each_point(state, share,
                    [&](const Point& point, const CarriedPoint& at, const fem::PointTerms& terms, double weight) {
-                       // dp = J dstep with J = w [I, -[r]] for each sphere: J^T H J, and the gradient along the arms'
-                       // turning
-                       std::array<Eigen::Matrix<double, 3, 6>, 2> J;
-                       for (int i = 0; i < at.shares; ++i) {
-                           const auto& [sphere, w, r] = at.of[i];
-                           J[i] = at.of[i].jacobian();
-                           Block& own = blocks[point.pairs[i]];
-                           own += J[i].transpose() * (weight * terms.hessian) * J[i];
-                           own.bottomRightCorner<3, 3>() += turning_curvature((weight * w) * terms.gradient, r);
-                       }
-                       if (at.shares < 2) return;
-                       const int row = at.of[0].sphere < at.of[1].sphere ? 0 : 1;
-                       blocks[point.pairs[2]] += J[row].transpose() * (weight * terms.hessian) * J[1 - row];
+                       if (weight == 0) return;
+                       // by the point's motion, and by how that motion turns
+                       const Eigen::MatrixXd turning = at.curvature(weight * terms.gradient);
+                       auto pair = point.pairs.begin();
+                       for (int i = 0; i < at.shares(); ++i)
+                           for (int j = 0; j < at.shares(); ++j) {
+                               if (at.sphere(i) > at.sphere(j)) continue;
+                               blocks[*pair++] += at.jacobian(i).transpose() * (weight * terms.hessian) *
+                                                      at.jacobian(j) +
+                                                  turning.block<6, 6>(6 * i, 6 * j);
+                           }
                    });
     if (pressure_ != 0 && !is_dead_) {
         auto next = cavity_blocks_.begin();

@@ -50,7 +50,7 @@ private:
     struct Point {
         Attachment at;
         double weight;
-        std::array<int, 3> pairs;  // of its first sphere alone, of its second, of both
+        std::vector<int> pairs;  // of its shares i and j, the sphere of i not above that of j, in their order
     };
     struct Placed {
         std::shared_ptr<const fem::PointPotential> potential;

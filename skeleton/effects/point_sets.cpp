@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "mesh/errors.h"
+#include "skeleton/attach.h"
 
 namespace palpate::skeleton {
 
@@ -16,7 +17,7 @@ PointSet material(const Model& model) {
     PointSet set;
     set.weights.resize(static_cast<Eigen::Index>(model.spheres.size()));
     for (int i = 0; i < static_cast<int>(model.spheres.size()); ++i) {
-        set.at.push_back({i, i, 0, model.spheres[i].center});
+        set.at.push_back(on_sphere(model, i, model.spheres[i].center));
         set.weights[i] = model.spheres[i].mass;
     }
     return set;
@@ -81,7 +82,7 @@ public:
         set.weights.resize(n);
         for (Eigen::Index i = 0; i < n; ++i) {
             const auto& [sphere, at, area] = points_[i];
-            set.at.push_back({sphere, sphere, 0, at});
+            set.at.push_back(on_sphere(model_, sphere, at));
             set.weights[i] = area;
         }
         set.weights /= set.weights.sum();

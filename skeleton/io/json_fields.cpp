@@ -44,6 +44,8 @@ std::vector<std::string> JsonField::keys() const {
     return keys;
 }
 
+bool JsonField::is_list() const { return json_->is_array(); }
+
 std::vector<JsonField> JsonField::list() const {
     if (!json_->is_array()) fail("a list");
     std::vector<JsonField> elements;

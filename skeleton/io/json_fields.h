@@ -23,6 +23,7 @@ public:
     void allow_only(const std::vector<std::string>& known) const;
     std::vector<std::string> keys() const;
 
+    bool is_list() const;
     /// The elements of this list. @throws InvalidInput when it is none.
     std::vector<JsonField> list() const;
     /// The same, with so many of them.

@@ -1,10 +1,12 @@
 #include <fmt/format.h>
 
+#include <Eigen/Geometry>
 #include <map>
 #include <nlohmann/json.hpp>
 
 #include "mesh/errors.h"
 #include "mesh/io/atomic_file.h"
+#include "skeleton/attach.h"
 #include "skeleton/io/json_fields.h"
 #include "skeleton/model_io.h"
 
@@ -38,7 +40,7 @@ Mat3 read_inertia(const JsonField& field) {
 }
 
 Sphere read_sphere(const JsonField& field, const std::vector<mesh::Region>& supports) {
-    field.allow_only({"center", "radius", "mass", "inertia", "held"});
+    field.allow_only({"center", "radius", "mass", "inertia", "held", "cell", "volume"});
     Sphere sphere;
     sphere.center = field["center"].vector();
     sphere.radius = field["radius"].positive_number();
@@ -46,11 +48,32 @@ Sphere read_sphere(const JsonField& field, const std::vector<mesh::Region>& supp
     sphere.inertia =
         field.has("inertia") ? read_inertia(field["inertia"]) : solid_sphere_inertia(sphere.mass, sphere.radius);
     sphere.held = field.has("held") ? field["held"].boolean() : mesh::contains(supports, sphere.center);
+    if (field.has("cell")) sphere.cell = field["cell"].positive_number();
+    if (field.has("volume")) sphere.volume = field["volume"].number_at_least(0);
     return sphere;
 }
 
+// The section of a full link: square, in the link's middle, unless told.
+LinkSection read_section(const JsonField& field, const Link& link, const std::vector<Sphere>& spheres) {
+    const Vec3 &a = spheres[link.a].center, &b = spheres[link.b].center;
+    LinkSection section;
+    section.at = field.has("at") ? field["at"].vector() : Vec3((a + b) / 2);
+    if (field.has("area")) section.area = field["area"].positive_number();
+    const Vec3 along = (b - a).normalized();
+    Vec3 across = along.unitOrthogonal();
+    if (field.has("across")) {
+        across = field["across"].vector();
+        across -= across.dot(along) * along;
+        if (!(across.norm() > 1e-6)) field["across"].fail("a direction across the link");
+        across.normalize();
+    }
+    section.axes << along.transpose(), across.transpose(), along.cross(across).transpose();
+    return section;
+}
+
 Link read_link(const JsonField& field, const std::vector<Sphere>& spheres) {
-    field.allow_only({"a", "b", "length", "elongation", "flexion", "torsion", "zone", "gyration"});
+    field.allow_only({"a", "b", "length", "elongation", "flexion", "torsion", "flexion_2", "shear", "shear_2", "at",
+                      "across", "area", "zone", "gyration"});
     Link link;
     link.a = field["a"].index(spheres.size());
     link.b = field["b"].index(spheres.size());
@@ -60,7 +83,10 @@ Link read_link(const JsonField& field, const std::vector<Sphere>& spheres) {
     if (!(distance > 0))
         field.complain(fmt::format("spheres {} and {} have the same centre; move one of them", link.a, link.b));
     link.length = field.has("length") ? field["length"].positive_number() : distance;
-    for (int s = 0; s < 3; ++s) link.stiffness[s] = field[stiffness_names[s]].number_at_least(0);
+    const bool full = field.has("shear") || field.has("shear_2") || field.has("flexion_2");
+    link.stiffness.resize(full ? 6 : 3);
+    for (int s = 0; s < link.stiffness.size(); ++s) link.stiffness[s] = field[stiffness_names[s]].number_at_least(0);
+    if (full) link.section = read_section(field, link, spheres);
     if (field.has("zone")) link.zone = field["zone"].index(1'000'000);
     if (field.has("gyration")) link.gyration = field["gyration"].positive_number();
     return link;
@@ -75,6 +101,9 @@ std::vector<Link> read_links(const JsonField& field, const std::vector<Sphere>& 
         if (!fresh)
             element.complain(fmt::format("joins spheres {} and {}, as links[{}] does already; keep one of them", link.a,
                                          link.b, first->second));
+        if (!links.empty() && link.section.has_value() != links.front().section.has_value())
+            element.complain(
+                "and links[0] are of two kinds: either all links have flexion_2, shear and shear_2, or none has");
         links.push_back(link);
     }
     return links;
@@ -141,14 +170,32 @@ void read_skin(const JsonField& field, Model& model) {
 
     if (!field.has("attachments")) {
         for (size_t i = 0; i < vertices.size(); ++i)
-            model.skin.push_back(attach(model, model.surface.vertices.row(i).transpose()));
+            model.skin.push_back(attach_to_links(model, model.surface.vertices.row(i).transpose()));
         return;
     }
     const std::vector<JsonField> attachments = field["attachments"].list(vertices.size());
     for (size_t i = 0; i < attachments.size(); ++i) {
-        const std::vector<JsonField> parts = attachments[i].list(3);
-        model.skin.push_back({parts[0].index(model.spheres.size()), parts[1].index(model.spheres.size()),
-                              parts[2].number_between(0, 1), model.surface.vertices.row(i).transpose()});
+        const std::vector<JsonField> parts = attachments[i].list();
+        if (parts.empty()) attachments[i].fail("a list of at least one share");
+        const Vec3 at = model.surface.vertices.row(static_cast<Eigen::Index>(i)).transpose();
+        if (!parts.front().is_list()) {  // two spheres, and how far the vertex is from the first to the second
+            attachments[i].list(3);
+            model.skin.push_back(between(model, parts[0].index(model.spheres.size()),
+                                         parts[1].index(model.spheres.size()), parts[2].number_between(0, 1), at));
+            continue;
+        }
+        Attachment attachment{{}, at};
+        double sum = 0;
+        for (const JsonField& part : parts) {
+            const std::vector<JsonField> numbers = part.list(20);
+            Share share{.sphere = numbers[0].index(model.spheres.size()), .weight = numbers[1].number()};
+            for (int j = 0; j < 18; ++j) share.follow(j / 6, j % 6) = numbers[2 + j].number();
+            sum += share.weight;
+            attachment.shares.push_back(share);
+        }
+        if (std::abs(sum - 1) > 1e-6) attachments[i].complain(fmt::format("weights add up to {}, not to 1", sum));
+        for (Share& share : attachment.shares) share.weight /= sum;
+        model.skin.push_back(std::move(attachment));
     }
 }
 

@@ -1,8 +1,10 @@
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "mesh/io/atomic_file.h"
 #include "mesh/io/vtk_files.h"
 #include "skeleton/model_io.h"
+#include "skeleton/stiffness_order.h"
 
 namespace palpate::skeleton {
 
@@ -14,16 +16,24 @@ Json list(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
 
 Json to_json(const Sphere& sphere) {
     const Mat3& m = sphere.inertia;
-    return {{"center", list(sphere.center)},
-            {"radius", sphere.radius},
-            {"mass", sphere.mass},
-            {"inertia", {m(0, 0), m(1, 1), m(2, 2), m(0, 1), m(0, 2), m(1, 2)}},
-            {"held", sphere.held}};
+    Json json{{"center", list(sphere.center)},
+              {"radius", sphere.radius},
+              {"mass", sphere.mass},
+              {"inertia", {m(0, 0), m(1, 1), m(2, 2), m(0, 1), m(0, 2), m(1, 2)}},
+              {"held", sphere.held}};
+    if (sphere.cell > 0) json["cell"] = sphere.cell;
+    if (sphere.volume > 0) json["volume"] = sphere.volume;
+    return json;
 }
 
 Json to_json(const Link& link) {
     Json json{{"a", link.a}, {"b", link.b}, {"length", link.length}};
-    for (int s = 0; s < 3; ++s) json[stiffness_names[s]] = link.stiffness[s];
+    for (int s = 0; s < link.stiffness.size(); ++s) json[stiffness_names[s]] = link.stiffness[s];
+    if (link.section) {
+        json["at"] = list(link.section->at);
+        json["across"] = list(link.section->axes.row(1));
+        if (link.section->area > 0) json["area"] = link.section->area;
+    }
     json["zone"] = link.zone;
     if (link.gyration > 0) json["gyration"] = link.gyration;
     return json;
@@ -39,7 +49,23 @@ Json to_json(const Effect& effect) {
     return {{"name", effect.name}, {"parameters", parameters}};
 }
 
-Json to_json(const Attachment& attachment) { return {attachment.a, attachment.b, attachment.t}; }
+double rounded(double value, int digits) {
+    if (value == 0) return 0;
+    const double unit = std::pow(10, digits - 1 - std::floor(std::log10(std::abs(value))));
+    return std::round(value * unit) / unit;
+}
+
+// Each share a list: the sphere, its weight, and `follow` row by row. Rigid motions are followed exactly however these
+// are rounded, as long as the weights add up to 1, to which they are scaled when read.
+Json to_json(const Attachment& attachment) {
+    Json shares = Json::array();
+    for (const Share& share : attachment.shares) {
+        Json list{share.sphere, rounded(share.weight, 8)};
+        for (const double number : share.follow.reshaped<Eigen::RowMajor>()) list.push_back(rounded(number, 6));
+        shares.push_back(std::move(list));
+    }
+    return shares;
+}
 
 template <typename Rows>
 std::vector<Json> rows_of(const Rows& matrix) {
@@ -108,16 +134,18 @@ void write_model(const std::filesystem::path& file, const Model& model) { mesh::
 void write_model_vtp(const std::filesystem::path& file, const Model& model) {
     const auto n = static_cast<Eigen::Index>(model.spheres.size()), m = static_cast<Eigen::Index>(model.links.size());
     Points centers(n, 3);
-    Eigen::VectorXd radius(n), mass(n), held(n);
+    Eigen::VectorXd radius(n), mass(n), held(n), volume(n);
     for (Eigen::Index i = 0; i < n; ++i) {
         const Sphere& sphere = model.spheres[i];
         centers.row(i) = sphere.center.transpose();
         radius[i] = sphere.radius;
         mass[i] = sphere.mass;
         held[i] = sphere.held;
+        volume[i] = sphere.volume;
     }
     Eigen::Matrix<int, Eigen::Dynamic, 2> ends(m, 2);
-    Eigen::MatrixXd stiffness(m, 3);
+    const StiffnessOrder order(model);
+    Eigen::MatrixXd stiffness(m, order.per_link());
     Eigen::VectorXd zone(m);
     for (Eigen::Index l = 0; l < m; ++l) {
         const Link& link = model.links[l];
@@ -127,7 +155,8 @@ void write_model_vtp(const std::filesystem::path& file, const Model& model) {
     }
     mesh::MeshData data;
     data.points = {{"radius [mm]", radius}, {"mass [tonne]", mass}, {"held", held}};
-    for (int s = 0; s < 3; ++s)
+    if (order.full()) data.points.push_back({"volume [MPa]", volume});
+    for (int s = 0; s < order.per_link(); ++s)
         data.cells.push_back({std::string(stiffness_names[s]) + " [" + stiffness_units[s] + "]", stiffness.col(s)});
     data.cells.push_back({"zone", zone});
     mesh::write_vtp_lines(file, centers, ends, data);

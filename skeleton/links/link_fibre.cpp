@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "mesh/errors.h"
-#include "skeleton/effects/carried_point.h"
+#include "skeleton/links/turning_curvature.h"
 
 namespace palpate::skeleton {
 

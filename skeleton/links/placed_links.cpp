@@ -16,7 +16,9 @@ Vec3 middle(const Link& link, const State& rest) { return 0.5 * (rest.x.row(link
 }  // namespace
 
 PlacedLinks::PlacedLinks(const Model& model, const fem::Effects& effects)
-    : links_(model.links),
+    : order_(model),
+      volumes_(model, effects),
+      links_(model.links),
       rest_(rest_state(model)),
       plasticity_(effects.plasticity),
       torsion_(effects.torsion),
@@ -100,22 +102,41 @@ void PlacedLinks::add_effects(size_t l, const State& state, const FibreStates& b
     terms.energy *= scales_[l];
     terms.gradient *= scales_[l];
     if (with_hessian)
-        for (Mat12& H : terms.hessian) H *= scales_[l];
+        for (Eigen::Index s = 0; s < terms.energy.size(); ++s) terms.hessian[s] *= scales_[l];
+}
+
+FullLink PlacedLinks::full_link(size_t l, const State& state) const {
+    const Link& link = links_[l];
+    return {*link.section,
+            link.length,
+            rest_.x.row(link.a).transpose(),
+            rest_.x.row(link.b).transpose(),
+            state.x.row(link.a).transpose(),
+            state.R[link.a],
+            state.x.row(link.b).transpose(),
+            state.R[link.b]};
 }
 
 LinkTerms PlacedLinks::terms(size_t l, const State& state, bool with_hessian, const FibreStates& before) const {
     const Link& link = links_[l];
-    LinkTerms terms = link_terms(link.length, directions_[l], state.x.row(link.a).transpose(), state.R[link.a],
-                                 state.x.row(link.b).transpose(), state.R[link.b], with_hessian);
+    LinkTerms terms =
+        link.section ? full_link_terms(full_link(l, state), with_hessian)
+                     : link_terms(link.length, directions_[l], state.x.row(link.a).transpose(), state.R[link.a],
+                                  state.x.row(link.b).transpose(), state.R[link.b], with_hessian);
     if (!plain_) add_effects(l, state, before, with_hessian, terms);
     return terms;
 }
 
-Mat12 PlacedLinks::hessian(size_t l, const Vec3& k, const State& state, const FibreStates& before) const {
+Mat12 PlacedLinks::hessian(size_t l, const Stiffnesses& k, const State& state, const FibreStates& before) const {
     const Link& link = links_[l];
     const Vec3 x_a = state.x.row(link.a).transpose(), x_b = state.x.row(link.b).transpose();
-    const Vec3 with_torsion = plain_ ? k : Vec3(k[0], k[1], k[2] + torsion_ * k[1]);
-    Mat12 H = link_hessian(with_torsion, link.length, directions_[l], x_a, state.R[link.a], x_b, state.R[link.b]);
+    Stiffnesses with_torsion = k;
+    if (!plain_) with_torsion[2] += torsion_ * k[1];
+    Mat12 H = Mat12::Zero();
+    if (link.section)
+        full_link(l, state).add_hessian(with_torsion, H);
+    else
+        H = link_hessian(with_torsion, link.length, directions_[l], x_a, state.R[link.a], x_b, state.R[link.b]);
     if (plain_) return H;
     if (shear_ != 0)
         Shear(link.length, directions_[l], x_a, state.R[link.a], x_b, state.R[link.b]).add_hessian(shear_ * k[0], H);
@@ -128,35 +149,43 @@ Mat12 PlacedLinks::hessian(size_t l, const Vec3& k, const State& state, const Fi
 }
 
 template <typename ForcesOf>
-Eigen::SparseMatrix<double> PlacedLinks::assembled(const ForcesOf& forces_of) const {
-    std::vector<Eigen::Triplet<double>> entries;
-    entries.reserve(36 * links_.size());
+Eigen::SparseMatrix<double> PlacedLinks::assembled(const ForcesOf& forces_of,
+                                                   std::vector<Eigen::Triplet<double>> of_volumes) const {
+    std::vector<Eigen::Triplet<double>>& entries = of_volumes;
+    entries.reserve(entries.size() + 12 * static_cast<std::size_t>(order_.per_link()) * links_.size());
     for (size_t l = 0; l < links_.size(); ++l) {
-        const Eigen::Matrix<double, 12, 3> forces = forces_of(l);
-        for (int s = 0; s < 3; ++s)
+        const auto forces = forces_of(l);
+        for (int s = 0; s < order_.per_link(); ++s)
             for (int i = 0; i < 12; ++i)
-                entries.emplace_back(i < 6 ? 6 * links_[l].a + i : 6 * links_[l].b + i - 6, 3 * static_cast<int>(l) + s,
-                                     forces(i, s));
+                entries.emplace_back(i < 6 ? 6 * links_[l].a + i : 6 * links_[l].b + i - 6,
+                                     static_cast<int>(order_.of_link(static_cast<Eigen::Index>(l), s)), forces(i, s));
     }
-    Eigen::SparseMatrix<double> G(6 * rest_.x.rows(), 3 * static_cast<Eigen::Index>(links_.size()));
+    Eigen::SparseMatrix<double> G(6 * rest_.x.rows(), order_.size());
     G.setFromTriplets(entries.begin(), entries.end());
     return G;
 }
 
 Eigen::SparseMatrix<double> PlacedLinks::forces(const State& state, const FibreStates& before) const {
-    return assembled([&](size_t l) { return (-terms(l, state, false, before).gradient).eval(); });
+    std::vector<Eigen::Triplet<double>> of_volumes;
+    volumes_.add_forces(state, of_volumes);
+    return assembled([&](size_t l) { return (-terms(l, state, false, before).gradient).eval(); },
+                     std::move(of_volumes));
 }
 
 // Linearised at rest: the force of a link at unit stiffness s is -(gradient + Hessian * step).
 Eigen::SparseMatrix<double> PlacedLinks::linear_forces(const Eigen::VectorXd& step, const FibreStates& before) const {
-    return assembled([&](size_t l) {
-        const LinkTerms at_rest = terms(l, rest_, true, before);
-        Vec12 own;
-        own << step.segment<6>(Eigen::Index{6} * links_[l].a), step.segment<6>(Eigen::Index{6} * links_[l].b);
-        Eigen::Matrix<double, 12, 3> forces = -at_rest.gradient;
-        for (int s = 0; s < 3; ++s) forces.col(s) -= at_rest.hessian[s] * own;
-        return forces;
-    });
+    std::vector<Eigen::Triplet<double>> of_volumes;
+    volumes_.add_linear_forces(step, of_volumes);
+    return assembled(
+        [&](size_t l) {
+            const LinkTerms at_rest = terms(l, rest_, true, before);
+            Vec12 own;
+            own << step.segment<6>(Eigen::Index{6} * links_[l].a), step.segment<6>(Eigen::Index{6} * links_[l].b);
+            Eigen::Matrix<double, 12, Eigen::Dynamic, 0, 12, 6> forces = -at_rest.gradient;
+            for (int s = 0; s < order_.per_link(); ++s) forces.col(s) -= at_rest.hessian[s] * own;
+            return forces;
+        },
+        std::move(of_volumes));
 }
 
 FibreStates PlacedLinks::flowed(const State& state, const FibreStates& before) const {
@@ -172,7 +201,7 @@ FibreStates PlacedLinks::flowed(const State& state, const FibreStates& before) c
     return now;
 }
 
-Vec3 PlacedLinks::rest_stiffness(size_t l, const Vec3& k) const {
+Stiffnesses PlacedLinks::rest_stiffness(size_t l, const Stiffnesses& k) const {
     if (plain_) return k;
     // Fibres stiffen tension and bending alike.
     double stiffer = 1;
@@ -181,7 +210,9 @@ Vec3 PlacedLinks::rest_stiffness(size_t l, const Vec3& k) const {
         const StretchTerms on_axis = fibre_terms(l, 0, fibre(l, 0, rest_).stretch(), true, {});
         stiffer += std::max(0.0, on_axis.second / share);
     }
-    return scales_[l] * Vec3((stiffer + shear_) * k[0], stiffer * k[1], k[2] + torsion_ * k[1]);
+    Stiffnesses own = k;
+    own.head<3>() << (stiffer + shear_) * k[0], stiffer * k[1], k[2] + torsion_ * k[1];
+    return scales_[l] * own;
 }
 
 double PlacedLinks::largest_rest_force(const Eigen::VectorXd& k, const FibreStates& before) const {

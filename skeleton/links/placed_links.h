@@ -3,18 +3,22 @@
 #include <Eigen/SparseCore>
 #include <vector>
 
+#include "skeleton/links/full_link.h"
+#include "skeleton/links/placed_volumes.h"
 #include "skeleton/links/plastic_fibre.h"
+#include "skeleton/stiffness_order.h"
 
 namespace palpate::skeleton {
 
 /// A model's links, with the effects in force that are in the material or in the links themselves. At stiffness
 /// (kE, kF, kT) a link's energy is
 ///   s (kE e_E + kF e_F + kT e_T + torsion kF e_T + shear kE e_S + kE L^2 sum_j W_j (w(lambda_j) / 3 + p(lambda_j)))
-/// with e_E, e_F, e_T as link_terms has them, e_S of Shear, and over the fibres, of weights W_j, w of the material
+/// with e_E, e_F, e_T as link_terms has them (a full link's as full_link_terms, with those of its other stiffnesses),
+/// e_S of Shear, and over the fibres, of weights W_j, w of the material
 /// effects at the link's middle (uniaxial) and p of yielding (plastic_terms). The factor of w is mu V = kE L^2 / 3 for
 /// kE = E A / L, and E = 3 mu as the material keeps its volume. s is the material's scale: the mean over the fibres in
 /// each slice of the link, whose softnesses add up. So all is linear in the stiffnesses, conservative, and the same
-/// after any rigid motion.
+/// after any rigid motion. Full links come with what keeps their spheres' volumes (PlacedVolumes).
 class PlacedLinks {
 public:
     PlacedLinks(const Model& model, const fem::Effects& effects);
@@ -23,9 +27,12 @@ public:
     /// flowed. @throws SolverFailure when ends of the link or of a fibre coincide.
     LinkTerms terms(size_t link, const State& state, bool with_hessian, const FibreStates& before = {}) const;
     /// The sum of their second derivatives at stiffness k, at a third of the cost.
-    Mat12 hessian(size_t link, const Vec3& k, const State& state, const FibreStates& before = {}) const;
+    Mat12 hessian(size_t link, const Stiffnesses& k, const State& state, const FibreStates& before = {}) const;
 
-    /// d net force / d k in a state (6N x 3L): column 3 l + s is the force of link l at unit stiffness s.
+    const StiffnessOrder& order() const { return order_; }
+    const PlacedVolumes& volumes() const { return volumes_; }
+
+    /// d net force / d k in a state (6N x stiffnesses, in their order): each column the force at unit stiffness.
     Eigen::SparseMatrix<double> forces(const State& state, const FibreStates& before = {}) const;
     /// The same after a step from rest (6N), to first order.
     Eigen::SparseMatrix<double> linear_forces(const Eigen::VectorXd& step, const FibreStates& before = {}) const;
@@ -34,8 +41,8 @@ public:
     FibreStates flowed(const State& state, const FibreStates& before = {}) const;
 
     /// A link's stiffnesses at rest, with what effects add to them.
-    Vec3 rest_stiffness(size_t link, const Vec3& k) const;
-    /// Largest force of a link's fibres at rest, at stiffnesses k (3L) [N]: of prestress, or what has flowed.
+    Stiffnesses rest_stiffness(size_t link, const Stiffnesses& k) const;
+    /// Largest force of a link's fibres at rest, at stiffnesses k [N]: of prestress, or what has flowed.
     double largest_rest_force(const Eigen::VectorXd& k, const FibreStates& before = {}) const;
 
 private:
@@ -44,9 +51,13 @@ private:
     StretchTerms fibre_terms(size_t link, int j, double stretch, bool with_second, const FibreStates& before) const;
     void add_effects(size_t link, const State& state, const FibreStates& before, bool with_hessian,
                      LinkTerms& terms) const;
+    FullLink full_link(size_t link, const State& state) const;
     template <typename ForcesOf>
-    Eigen::SparseMatrix<double> assembled(const ForcesOf& forces_of) const;
+    Eigen::SparseMatrix<double> assembled(const ForcesOf& forces_of,
+                                          std::vector<Eigen::Triplet<double>> of_volumes) const;
 
+    StiffnessOrder order_;
+    PlacedVolumes volumes_;
     std::vector<Link> links_;
     std::vector<Vec3> directions_;  // at rest (L)
     State rest_;

@@ -2,7 +2,7 @@
 
 #include <Eigen/Geometry>
 
-#include "skeleton/effects/carried_point.h"
+#include "skeleton/links/turning_curvature.h"
 #include "skeleton/state.h"
 
 namespace palpate::skeleton {

@@ -6,6 +6,7 @@ void set_masses(const TetGraph& graph, const std::vector<int>& owner, double den
     for (Sphere& sphere : spheres) {
         sphere.mass = 0;
         sphere.inertia.setZero();
+        sphere.cell = 0;
     }
     for (int t = 0; t < graph.size(); ++t) {
         Sphere& sphere = spheres[owner[t]];
@@ -20,6 +21,7 @@ void set_masses(const TetGraph& graph, const std::vector<int>& owner, double den
         }
         second = mass / 20 * (second + s * s.transpose());
         sphere.mass += mass;
+        sphere.cell += graph.volumes(t);
         sphere.inertia += second.trace() * Mat3::Identity() - second;
     }
 }

@@ -47,7 +47,23 @@ std::map<std::pair<int, int>, Integrals> integrate(const TetGraph& graph, const 
     return all;
 }
 
-Section section_of(const Integrals& sum, int a, int b, const Vec3& axis) {
+// A unit vector across `along` that is nearest to `vector`, which must not lie along it; its sign does not depend on that
+// of `vector`.
+Vec3 across_of(const Vec3& along, const Vec3& vector) {
+    Vec3 across = vector - vector.dot(along) * along;
+    if (!(across.norm() > 1e-3)) {
+        Eigen::Index least = 0;
+        along.cwiseAbs().minCoeff(&least);
+        across = Vec3::Unit(least) - along[least] * along;
+    }
+    across.normalize();
+    Eigen::Index most = 0;
+    across.cwiseAbs().maxCoeff(&most);
+    return across[most] < 0 ? Vec3(-across) : across;
+}
+
+// `axis`: from the centre of a, at `origin`, to that of b.
+Section section_of(const Integrals& sum, int a, int b, const Vec3& origin, const Vec3& axis) {
     Section s;
     s.a = a;
     s.b = b;
@@ -57,7 +73,14 @@ Section section_of(const Integrals& sum, int a, int b, const Vec3& axis) {
     const Mat3 across = Mat3::Identity() - axis * axis.transpose() / axis.squaredNorm();
     const Vec3 centroid = sum.first / sum.area;
     const Mat3 moments = across * (sum.second - sum.area * centroid * centroid.transpose()) * across;
-    const Vec3 values = Eigen::SelfAdjointEigenSolver<Mat3>(moments, Eigen::EigenvaluesOnly).eigenvalues();
+    const Eigen::SelfAdjointEigenSolver<Mat3> principal(moments);
+    const Vec3 values = principal.eigenvalues();
+    const Vec3 along = axis.normalized(), far = across_of(along, principal.eigenvectors().col(2));
+    s.axes << along.transpose(), far.transpose(), along.cross(far).transpose();
+    // Cells that meet at their rims, faces that look back: the centroid stays near the middle.
+    Vec3 aside = across * centroid;
+    aside *= std::min(1.0, 0.5 * s.length / std::max(aside.norm(), 1e-300));
+    s.centroid = origin + std::clamp(centroid.dot(along) / s.length, 0.2, 0.8) * axis + aside;
     // No section of this area bends more easily than a strip 50 times as wide as thick.
     const double least = s.area * s.area / (12 * 50);
     s.moment_1 = std::max(values(2), least);
@@ -92,10 +115,10 @@ std::vector<Section> find_sections(const TetGraph& graph, const Core& core, cons
         Integrals visible = sum;
         if (visible.area < 1e-3 * sum.weight) {
             visible.area = 1e-3 * sum.weight;
-            visible.first.setZero();
-            visible.second.setZero();
+            visible.first = 0.5 * visible.area * axis;
+            visible.second = 0.25 * visible.area * axis * axis.transpose();
         }
-        all.push_back(section_of(visible, pair.first, pair.second, axis));
+        all.push_back(section_of(visible, pair.first, pair.second, sites[pair.first].at, axis));
     }
 
     // Largest first: what comes after all are connected may go.
@@ -116,25 +139,51 @@ double radius_of_gyration(const Section& s) {
     return std::sqrt(I / s.area);
 }
 
-Vec3 start_stiffness(const Section& s, const fem::Material& material) {
+namespace {
+
+double torsion_moment(const Section& s) { return 4 * s.moment_1 * s.moment_2 / (s.moment_1 + s.moment_2); }  // ellipse
+
+Vec3 start_of_paper_link(const Section& s, const fem::Material& material) {
     const double E = material.young, mu = material.shear_modulus();
-    const double torsion = 4 * s.moment_1 * s.moment_2 / (s.moment_1 + s.moment_2);  // J of an ellipse
+
+    // In a lump the links are a lattice: a section carries tension and shear alike, kE = kS. Hooke's law would have it
+    // so with 2 mu A / L and a volume term apart; these links have none, so E A / L, which gives Young's modulus itself.
+    // A shift by s across the link turns both ends by s / L against it:
+    //   kF (s / L)^2 = kS s^2 / 2, so kF = kS L^2 / 2.
+    if (s.is_lump()) {
+        const double kE = E * s.area / s.length;
+        return {kE, kE * s.length * s.length / 2, E * (s.moment_1 + s.moment_2) / s.length};
+    }
 
     // A limb is a beam. Pure bending by phi turns the ends by +-phi/2 against the link:
     //   kF ((phi/2)^2 + (phi/2)^2) / 2 = kF phi^2 / 4 = E I phi^2 / (2 L), so kF = 2 E I / L.
     // (Shear alone would ask for 6 E I / L; in a chain of many links bending decides.) A plate bends likewise about
     // its weak axis, and is stiff in its plane by the triangles of its links.
     const double I = s.dimensions < 1.5 ? std::sqrt(s.moment_1 * s.moment_2) : s.moment_2;
-    const Vec3 beam(E * s.area / s.length, 2 * E * I / s.length, mu * torsion / s.length);
+    return {E * s.area / s.length, 2 * E * I / s.length, mu * torsion_moment(s) / s.length};
+}
 
-    // In a lump the links are a lattice: a section carries tension and shear alike, kE = kS. Hooke's law would have it
-    // so with 2 mu A / L and a volume term apart; links have none, so E A / L, which gives Young's modulus itself.
-    // A shift by s across the link turns both ends by s / L against it:
-    //   kF (s / L)^2 = kS s^2 / 2, so kF = kS L^2 / 2.
-    const double kE = E * s.area / s.length;
-    const Vec3 lattice(kE, kE * s.length * s.length / 2, E * (s.moment_1 + s.moment_2) / s.length);
+Stiffnesses start_of_full_link(const Section& s, const fem::Material& material) {
+    const double E = material.young, mu = material.shear_modulus(), L = s.length;
+    Stiffnesses k(6);
+    if (s.is_lump()) {
+        // Hooke's law: 2 mu for all that a section carries, and the volume's term beside.
+        k << 2 * mu * s.area / L, 2 * mu * s.moment_1 / L, 2 * mu * (s.moment_1 + s.moment_2) / L,
+            2 * mu * s.moment_2 / L, 2 * mu * s.area / L, 2 * mu * s.area / L;
+    } else {
+        // A beam's segment between rigid ends: what bending gives way is in the shear.
+        const double shear = L / (5.0 / 6 * mu * s.area), bending = L * L * L / (12 * E);
+        k << E * s.area / L, E * s.moment_1 / L, mu * torsion_moment(s) / L, E * s.moment_2 / L,
+            1 / (shear + bending / s.moment_1), 1 / (shear + bending / s.moment_2);
+    }
+    return k;
+}
 
-    return s.dimensions < 2.5 ? beam : lattice;
+}  // namespace
+
+Stiffnesses start_stiffness(const Section& section, const fem::Material& material, LinkKind kind) {
+    if (kind == LinkKind::full) return start_of_full_link(section, material);
+    return start_of_paper_link(section, material);
 }
 
 }  // namespace palpate::skeleton

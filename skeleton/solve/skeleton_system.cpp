@@ -72,28 +72,37 @@ SkeletonSystem::SkeletonSystem(const Model& model, const fem::Effects& effects)
         block_of_.push_back(sphere.held ? -1 : static_cast<int>(free_.size()));
         if (!sphere.held) free_.push_back(static_cast<int>(block_of_.size()) - 1);
     }
-    std::vector<std::array<int, 2>> couplings;
     double sum = 0;
     for (const Link& link : body_.links) {
         sum += link.length;
-        const int i = block_of_[link.a], j = block_of_[link.b];
-        const bool couples = i >= 0 && j >= 0;
-        coupling_of_.push_back(couples ? static_cast<int>(couplings.size()) : -1);
-        if (couples) couplings.push_back({i, j});
+        coupling_of_.push_back(coupling(link.a, link.b));
     }
-    for (const auto& [a, b] : effects_.pairs()) {
-        const int i = block_of_[a], j = block_of_[b];
-        const bool couples = a != b && i >= 0 && j >= 0;
-        coupling_of_pair_.push_back(couples ? static_cast<int>(couplings.size()) : -1);
-        if (couples) couplings.push_back({i, j});
-    }
+    for (const auto& [a, b] : effects_.pairs()) coupling_of_pair_.push_back(coupling(a, b));
+    for (const auto& [a, b] : links_.volumes().pairs()) coupling_of_cell_.push_back(coupling(a, b));
     if (!body_.links.empty()) length_ = sum / static_cast<double>(body_.links.size());
     metric_ << 1, 1, 1, length_ * length_, length_ * length_, length_ * length_;
-    matrix_ = BlockCholesky(static_cast<int>(free_.size()), couplings);
+    matrix_ = BlockCholesky(static_cast<int>(free_.size()), couplings_);
 
     effect_load_ = largest_force(effects_.force(effects_.rest()));
     for (const BlockCholesky::Block& block : effects_.curvature(effects_.rest()))
         effect_stiffness_ = std::max(effect_stiffness_, block.diagonal().cwiseAbs().cwiseQuotient(metric_).maxCoeff());
+}
+
+// The place of the coupling of two spheres, a new one if need be; -1: one sphere alone, or one is held.
+int SkeletonSystem::coupling(int a, int b) {
+    if (a == b || block_of_[a] < 0 || block_of_[b] < 0) return -1;
+    const auto [at, fresh] = place_of_coupling_.try_emplace({a, b}, static_cast<int>(couplings_.size()));
+    if (fresh) couplings_.push_back({block_of_[a], block_of_[b]});
+    return at->second;
+}
+
+void SkeletonSystem::prepare(const Load& load) {
+    const std::size_t before = couplings_.size();
+    for (const PointForce& force : load.forces)
+        for (const Share& s : force.at.shares)
+            for (const Share& t : force.at.shares)
+                if (s.sphere < t.sphere) coupling(s.sphere, t.sphere);
+    if (couplings_.size() > before) matrix_ = BlockCholesky(static_cast<int>(free_.size()), couplings_);
 }
 
 void SkeletonSystem::remember(const FibreStates& before) {
@@ -102,18 +111,25 @@ void SkeletonSystem::remember(const FibreStates& before) {
 }
 
 Balance SkeletonSystem::balance(const Eigen::VectorXd& k, const State& state, const Load& load) const {
-    assert(k.size() == 3 * static_cast<Eigen::Index>(body_.links.size()));
+    assert(k.size() == links_.order().size());
     double elastic = 0, size = 0;
     Eigen::VectorXd net = external_force(body_, state, load);
     for (size_t l = 0; l < body_.links.size(); ++l) {
         const Link& link = body_.links[l];
         const LinkTerms terms = links_.terms(l, state, false, before_);
-        const double energy = terms.energy.dot(k.segment<3>(3 * l));
+        const Stiffnesses own = links_.order().link(k, static_cast<Eigen::Index>(l));
+        const double energy = terms.energy.dot(own);
         elastic += energy;
         size += std::abs(energy);
-        const Vec12 gradient = terms.gradient * k.segment<3>(3 * l);
+        const Vec12 gradient = terms.gradient * own;
         net.segment<6>(Eigen::Index{6} * link.a) -= gradient.head<6>();
         net.segment<6>(Eigen::Index{6} * link.b) -= gradient.tail<6>();
+    }
+    if (!links_.volumes().empty()) {
+        const double energy = links_.volumes().energy(k, state);
+        elastic += energy;
+        size += energy;
+        net += links_.volumes().force(k, state);
     }
     if (!effects_.empty()) net += effects_.force(state, effect_share_);
     for (size_t i = 0; i < body_.spheres.size(); ++i)
@@ -139,8 +155,11 @@ double SkeletonSystem::largest_force(const Eigen::VectorXd& f) const {
 double SkeletonSystem::stiffest(const Eigen::VectorXd& k) const {
     double most = effect_stiffness_;
     for (size_t l = 0; l < body_.links.size(); ++l) {
-        const Vec3 own = links_.rest_stiffness(l, k.segment<3>(3 * l));
-        most = std::max({most, own[0], own[1] / (length_ * length_), own[2] / (length_ * length_)});
+        const Stiffnesses own = links_.rest_stiffness(l, links_.order().link(k, static_cast<Eigen::Index>(l)));
+        for (Eigen::Index s = 0; s < own.size(); ++s) {
+            const bool turns = s >= 1 && s <= 3;
+            most = std::max(most, turns ? own[s] / (length_ * length_) : own[s]);
+        }
     }
     return most;
 }
@@ -163,32 +182,33 @@ double SkeletonSystem::step_limit(const Eigen::VectorXd& step) const {
 }
 
 void SkeletonSystem::assemble(const Eigen::VectorXd& k, const State& state, const Load* load) {
-    assert(k.size() == 3 * static_cast<Eigen::Index>(body_.links.size()));
+    assert(k.size() == links_.order().size());
+    if (load) prepare(*load);
     matrix_.set_zero();
     for (size_t l = 0; l < body_.links.size(); ++l) {
         const Link& link = body_.links[l];
-        const Mat12 H = links_.hessian(l, k.segment<3>(3 * l), state, before_);
+        const Mat12 H = links_.hessian(l, links_.order().link(k, static_cast<Eigen::Index>(l)), state, before_);
         const int i = block_of_[link.a], j = block_of_[link.b];
         if (i >= 0) matrix_.add_diagonal(i, H.topLeftCorner<6, 6>());
         if (j >= 0) matrix_.add_diagonal(j, H.bottomRightCorner<6, 6>());
         if (coupling_of_[l] >= 0) matrix_.add_coupling(coupling_of_[l], H.topRightCorner<6, 6>());
     }
-    assemble_effects(state);
+    if (!links_.volumes().empty())
+        add_pairs(links_.volumes().pairs(), coupling_of_cell_, links_.volumes().curvature(k, state));
+    add_pairs(effects_.pairs(), coupling_of_pair_, effects_.curvature(state, effect_share_));
     if (!load || load->forces.empty()) return;
-    const std::vector<Mat3> curvature = external_curvature(body_, state, *load);
-    BlockCholesky::Block A = BlockCholesky::Block::Zero();
-    for (size_t i = 0; i < free_.size(); ++i) {
-        A.bottomRightCorner<3, 3>() = -curvature[free_[i]];
-        matrix_.add_diagonal(static_cast<int>(i), A);
+    for (const auto& [a, b, block] : external_curvature(body_, state, *load)) {
+        if (a == b && block_of_[a] >= 0) matrix_.add_diagonal(block_of_[a], -block);
+        if (const int c = coupling(a, b); c >= 0) matrix_.add_coupling(c, -block);
     }
 }
 
-void SkeletonSystem::assemble_effects(const State& state) {
-    const std::vector<BlockCholesky::Block> blocks = effects_.curvature(state, effect_share_);
+void SkeletonSystem::add_pairs(const std::vector<std::array<int, 2>>& pairs, const std::vector<int>& couplings,
+                               const std::vector<BlockCholesky::Block>& blocks) {
     for (size_t p = 0; p < blocks.size(); ++p) {
-        const auto [a, b] = effects_.pairs()[p];
+        const auto [a, b] = pairs[p];
         if (a == b && block_of_[a] >= 0) matrix_.add_diagonal(block_of_[a], blocks[p]);
-        if (coupling_of_pair_[p] >= 0) matrix_.add_coupling(coupling_of_pair_[p], blocks[p]);
+        if (couplings[p] >= 0) matrix_.add_coupling(couplings[p], blocks[p]);
     }
 }
 
@@ -209,9 +229,9 @@ void SkeletonSystem::fail_at(const BlockCholesky::BadPivot& pivot, const Eigen::
                         sphere, way));
     std::string slack;
     for (size_t l = 0; l < body_.links.size(); ++l)
-        for (int s = 0; s < 3; ++s) {
+        for (int s = 0; s < links_.order().per_link(); ++s) {
             const Link& link = body_.links[l];
-            if ((link.a == sphere || link.b == sphere) && k[3 * l + s] == 0)
+            if ((link.a == sphere || link.b == sphere) && k[links_.order().of_link(static_cast<Eigen::Index>(l), s)] == 0)
                 slack += fmt::format("{}{} of links[{}] (spheres {} and {})", slack.empty() ? "" : ", ",
                                      stiffness_names[s], l, link.a, link.b);
         }

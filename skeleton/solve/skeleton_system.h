@@ -1,5 +1,6 @@
 #pragma once
 
+#include <map>
 #include <optional>
 #include <vector>
 
@@ -19,7 +20,7 @@ struct Balance {
 };
 
 /// A model's equations of equilibrium with held spheres eliminated, ready to be evaluated and factored for many
-/// stiffnesses k (3L, ordered as stiffness_vector), states and loads; its effects are in force.
+/// stiffnesses k (ordered as stiffness_vector), states and loads; its effects are in force.
 class SkeletonSystem {
 public:
     /// Keeps what it needs of the model. `effects`: all that are in force.
@@ -63,7 +64,11 @@ public:
     Eigen::VectorXd metric_times(const Eigen::VectorXd& step) const;
 
 private:
-    void assemble_effects(const State& state);
+    int coupling(int a, int b);
+    /// Makes room for the couplings of a load's points.
+    void prepare(const Load& load);
+    void add_pairs(const std::vector<std::array<int, 2>>& pairs, const std::vector<int>& couplings,
+                   const std::vector<BlockCholesky::Block>& blocks);
 
     Model body_;
     PlacedEffects effects_;
@@ -72,9 +77,12 @@ private:
     double effect_share_ = 1;
     double effect_load_ = 0, effect_stiffness_ = 0;  // largest at rest [N, N/mm]
     std::vector<int> coupling_of_pair_;              // of the effects, -1: one sphere alone, or an end is held
+    std::vector<int> coupling_of_cell_;              // the same, of the pairs of the volumes
     std::vector<int> free_;                          // spheres
     std::vector<int> block_of_;                      // place in `free_` of each sphere, -1: held
     std::vector<int> coupling_of_;                   // of each link, -1: an end is held
+    std::vector<std::array<int, 2>> couplings_;      // of free spheres, by their places
+    std::map<std::array<int, 2>, int> place_of_coupling_;  // of each pair of spheres a < b
     double length_ = 1, reach_ = 0;                  // largest coordinate [mm]
     BlockCholesky::Vec6 metric_;
     BlockCholesky matrix_;

@@ -11,7 +11,7 @@
 #include "identify/models/skeleton_body.h"
 #include "identify/particles/random.h"
 #include "mesh/volume_mesh.h"
-#include "skeleton/model.h"
+#include "skeleton/attach.h"
 
 namespace palpate::identify {
 
@@ -81,7 +81,7 @@ struct SmallBody {
             model.spheres.push_back(sphere);
             if (i > 0) model.links.push_back({i - 1, i, 10, Vec3(3, 50, 15), 0});
         }
-        for (const auto& vertex : model.surface.vertices.rowwise()) model.skin.push_back(attach(model, vertex));
+        for (const auto& vertex : model.surface.vertices.rowwise()) model.skin.push_back(skeleton::attach_to_links(model, vertex));
         return model;
     }
     std::unique_ptr<SkeletonBody> skeleton() const { return std::make_unique<SkeletonBody>(chain(), markers, young); }

@@ -12,6 +12,7 @@
 
 #include "mesh/errors.h"
 #include "mesh/surface_tree.h"
+#include "skeleton/attach.h"
 #include "skeleton/equilibrium.h"
 
 namespace palpate::skeleton {

@@ -44,7 +44,7 @@ TEST(CompliantSupportEffect, TurnsUnderACouple) {
     for (const Law law : {Law::linear, Law::large_rotation}) {
         const Model model = with_law(with_effects(make_chain(1), {compliant_support(k)}), law);
         Load load;
-        load.forces.push_back({{0, 0, 0, {arm, 0, 0}}, {0, F, 0}});
+        load.forces.push_back({on_sphere(model, 0, {arm, 0, 0}), {0, F, 0}});
         const Equilibrium found = equilibrium(model, load);
         const double theta = found.step[5], tangent_of_it = F * arm / (4.0 / 6 * k * r * r);
         EXPECT_NEAR(law == Law::linear ? theta : std::tan(theta), tangent_of_it, 1e-8);

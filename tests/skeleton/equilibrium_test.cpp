@@ -27,8 +27,8 @@ Model with_law(Model model, Law law) {
 Load couple_at(const Model& model, int sphere, const Vec3& arm, const Vec3& force) {
     Load load;
     const Vec3 center = model.spheres[sphere].center;
-    load.forces.push_back({{sphere, sphere, 0, center + arm}, force});
-    load.forces.push_back({{sphere, sphere, 0, center - arm}, -force});
+    load.forces.push_back({on_sphere(model, sphere, center + arm), force});
+    load.forces.push_back({on_sphere(model, sphere, center - arm), -force});
     return load;
 }
 
@@ -112,7 +112,7 @@ TEST(Equilibrium, LinearIsTheLimitOfSmallLoads) {
 
 TEST(Equilibrium, LinearLawIsLinearInTheLoadAsItIsSeen) {
     const Model model = with_law(make_lattice({4, 3, 2}), Law::linear);
-    const std::vector<Attachment> points{{3, 7, 0.4, {31, 6, 2}}, {11, 11, 0, {35, 22, -4}}};
+    const std::vector<Attachment> points{between(model, 3, 7, 0.4, {31, 6, 2}), on_sphere(model, 11, {35, 22, -4})};
     const Points rest = observe(model, rest_state(model), points);
     const auto moved = [&](double F) -> Points {
         return observe(model, equilibrium(model, force_at(model, 3, {F, -F, 2 * F})), points) - rest;
@@ -126,7 +126,7 @@ TEST(Equilibrium, LowersThePotentialAndBalancesTheForces) {
     for (int i = 0; i < 10; ++i) {
         const Model model = make_lattice({5, 2, 2}, static_cast<std::uint64_t>(i));
         Load load = force_at(model, 4, random_vector(engine, 5));
-        load.forces.push_back({{9, 14, 0.5, {40, 20, 5}}, random_vector(engine, 5)});
+        load.forces.push_back({between(model, 9, 14, 0.5, {40, 20, 5}), random_vector(engine, 5)});
         load.gravity = random_vector(engine, 9810);
         const Equilibrium found = equilibrium(model, load);
         EXPECT_LT(potential(model, found.state, load), potential(model, rest_state(model), load));

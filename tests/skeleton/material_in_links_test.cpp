@@ -34,7 +34,7 @@ Load couple(const Model& model, double moment) {
     Load load;
     for (const double side : {1.0, -1.0})
         load.forces.push_back(
-            {{last, last, 0, model.spheres[last].center + side * Vec3::UnitX()}, {0, side * moment / 2, 0}});
+            {on_sphere(model, last, model.spheres[last].center + side * Vec3::UnitX()), {0, side * moment / 2, 0}});
     return load;
 }
 

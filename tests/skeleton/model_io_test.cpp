@@ -82,7 +82,7 @@ TEST_F(ModelFile, IsReadBackEqual) {
         {"misalignment", {{"tx", 0.1, "mm"}, {"rz", 0.01, "rad"}}}};
     model.surface = mesh::make_sphere({10, 5, 5}, 1.0 / 3, 1);
     for (Eigen::Index i = 0; i < model.surface.vertices.rows(); ++i)
-        model.skin.push_back(attach(model, model.surface.vertices.row(i).transpose()));
+        model.skin.push_back(attach_to_links(model, model.surface.vertices.row(i).transpose()));
     Points points(2, 3);
     points << 1, 2, 3, 0.1, 0.2, 0.3;
     model.supports = {mesh::BoxRegion{{-1, -2, -3}, {1, 2, 3}}, mesh::SphereRegion{{1, 2, 3}, 4},
@@ -121,7 +121,9 @@ TEST_F(ModelFile, IsReadBackEqual) {
     EXPECT_EQ(read.surface.vertices, model.surface.vertices);
     EXPECT_EQ(read.surface.triangles, model.surface.triangles);
     ASSERT_EQ(read.skin.size(), model.skin.size());
-    EXPECT_EQ(read.skin[9].t, model.skin[9].t);
+    EXPECT_EQ(read.skin[9].shares[0].sphere, model.skin[9].shares[0].sphere);
+    EXPECT_EQ(read.skin[9].shares[0].weight, model.skin[9].shares[0].weight);
+    EXPECT_EQ(read.skin[9].shares[0].follow, model.skin[9].shares[0].follow);
     EXPECT_EQ(read.supports.size(), 4u);
     EXPECT_EQ(std::get<mesh::PointsRegion>(read.supports[3]).points, points);
     EXPECT_EQ(read.provenance, model.provenance);
@@ -138,7 +140,7 @@ TEST_F(ModelFile, WhatCanBeDerivedMayBeMissing) {
     EXPECT_EQ(model.spheres[0].inertia, Mat3(0.4 * 1e-6 * 2 * 2 * Mat3::Identity()));
     ASSERT_EQ(model.skin.size(), 3u);
     EXPECT_EQ(model.skin[2].rest, Vec3(1.5, 2, 2));
-    EXPECT_NEAR(model.skin[2].t, 0.5, 1e-15);
+    EXPECT_NEAR(model.skin[2].shares[1].weight, 0.5, 1e-15);
 }
 
 TEST_F(ModelFile, HeldAsToldGoesBeforeTheSupports) {

@@ -34,11 +34,11 @@ TEST(PointSets, SupportIsItsSkinOnTheNearestHeldSpheres) {
     EXPECT_EQ(set.at.size(), 25u);  // 5 x 5 vertices of one side: some for each of the four spheres, not in line
     for (const Attachment& point : set.at) {
         EXPECT_EQ(point.rest.x(), -4);
-        EXPECT_EQ(point.a, point.b);
-        ASSERT_TRUE(model.spheres[point.a].held);
+        ASSERT_EQ(point.shares.size(), 1);
+        ASSERT_TRUE(model.spheres[point.shares[0].sphere].held);
         for (const Sphere& sphere : model.spheres) {
             if (!sphere.held) continue;
-            EXPECT_LE((model.spheres[point.a].center - point.rest).norm(), (sphere.center - point.rest).norm());
+            EXPECT_LE((model.spheres[point.shares[0].sphere].center - point.rest).norm(), (sphere.center - point.rest).norm());
         }
     }
 }
@@ -49,7 +49,7 @@ TEST(PointSets, AHeldSphereThatItsSkinDoesNotKeepFromTurningBearsSixPointsMore) 
         const PointSet set = point_set(model, fem::ActsOn::support);
         int on_axes = 0;
         for (const Attachment& point : set.at)
-            on_axes += std::abs((point.rest - model.spheres[point.a].center).norm() - 4) < 1e-12;
+            on_axes += std::abs((point.rest - model.spheres[point.shares[0].sphere].center).norm() - 4) < 1e-12;
         EXPECT_NEAR(set.weights.sum(), 1, 1e-14);
         return on_axes;
     };
@@ -63,7 +63,7 @@ TEST(PointSets, AHeldSphereThatItsSkinDoesNotKeepFromTurningBearsSixPointsMore) 
 TEST(PointSets, AHeldSphereWithoutLinksBearsNothingAndStays) {
     Model model = make_chain(2);
     model.spheres.push_back(testing::sphere_at({0, 30, 0}, true));
-    for (const Attachment& point : point_set(model, fem::ActsOn::support).at) EXPECT_EQ(point.a, 0);
+    for (const Attachment& point : point_set(model, fem::ActsOn::support).at) EXPECT_EQ(point.shares[0].sphere, 0);
     const Equilibrium found = equilibrium(with_effects(model, {compliant_support(1)}), force_at(model, 2, {1, 0, 0}));
     EXPECT_NEAR(found.step[0], 1, 1e-8);
     EXPECT_EQ(found.step.segment<6>(18).norm(), 0);

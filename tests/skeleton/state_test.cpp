@@ -44,14 +44,16 @@ TEST(Rotation, VectorIsItsInverse) {
 
 TEST(Observe, RestIsWhereThePointsAre) {
     const Model model = make_chain(3);
-    const std::vector<Attachment> points{{0, 1, 0.3, {3, 4, 1}}, {2, 2, 0.7, {19, -4, 2}}, {2, 3, 1.0, {31, 0, 5}}};
+    const std::vector<Attachment> points{between(model, 0, 1, 0.3, {3, 4, 1}), between(model, 2, 2, 0.7, {19, -4, 2}),
+                                         between(model, 2, 3, 1.0, {31, 0, 5})};
     const Points seen = observe(model, rest_state(model), points);
     for (int i = 0; i < 3; ++i) EXPECT_LT((seen.row(i).transpose() - points[i].rest).norm(), 1e-14);
 }
 
 TEST(Observe, RigidMotionCarriesEveryPointAlong) {
     const Model model = make_chain(3);
-    const std::vector<Attachment> points{{0, 1, 0.3, {3, 4, 1}}, {1, 1, 0.0, {9, -4, 2}}, {2, 3, 0.9, {31, 0, 5}}};
+    const std::vector<Attachment> points{between(model, 0, 1, 0.3, {3, 4, 1}), on_sphere(model, 1, {9, -4, 2}),
+                                         between(model, 2, 3, 0.9, {31, 0, 5})};
     const Mat3 R = rotation({1.0, -2.0, 0.5});
     const Vec3 shift(5, 6, 7);
     State moved = rest_state(model);
@@ -66,7 +68,8 @@ TEST(Observe, RigidMotionCarriesEveryPointAlong) {
 
 TEST(Observe, JacobianIsItsDerivative) {
     const Model model = make_chain(3);
-    const std::vector<Attachment> points{{0, 1, 0.3, {3, 4, 1}}, {1, 1, 0.4, {9, -4, 2}}, {2, 3, 0.9, {31, 0, 5}}};
+    const std::vector<Attachment> points{between(model, 0, 1, 0.3, {3, 4, 1}), on_sphere(model, 1, {9, -4, 2}),
+                                         between(model, 2, 3, 0.9, {31, 0, 5})};
     std::mt19937_64 engine(3);
     const State state = random_state(model, engine, 5, 1);
     const Eigen::MatrixXd P = observation_jacobian(model, state, points);

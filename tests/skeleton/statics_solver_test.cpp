@@ -50,8 +50,8 @@ TEST(StaticsSolver, TangentGivesTheSensitivityToStiffness) {
         StaticsSolver solver(model);
         const Eigen::VectorXd k = stiffness_vector(model);
         Load load = force_at(model, 3, {1, 2, -3});
-        load.forces.push_back({{7, 11, 0.5, {33, 14, 8}}, {0, 1, 1}});
-        const std::vector<Attachment> points{at_sphere(model, 3), {10, 11, 0.3, {25, 12, 15}}};
+        load.forces.push_back({between(model, 7, 11, 0.5, {33, 14, 8}), {0, 1, 1}});
+        const std::vector<Attachment> points{at_sphere(model, 3), between(model, 10, 11, 0.3, {25, 12, 15})};
 
         const Equilibrium found = solver.solve(k, load, {1e-12});
         solver.factor_tangent(k, load, found);

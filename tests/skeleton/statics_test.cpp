@@ -18,8 +18,8 @@ using testing::random_vector;
 Load some_load(const Model& model) {
     Load load;
     load.forces.push_back({at_sphere(model, 1), {0.1, 0.2, -0.3}});
-    load.forces.push_back({{0, 1, 0.3, {3, 5, 1}}, {-0.2, 0.1, 0.4}});
-    load.forces.push_back({{1, 2, 1.0, {19, -6, 2}}, {0.3, -0.3, 0.1}});
+    load.forces.push_back({between(model, 0, 1, 0.3, {3, 5, 1}), {-0.2, 0.1, 0.4}});
+    load.forces.push_back({on_sphere(model, 2, {19, -6, 2}), {0.3, -0.3, 0.1}});
     load.gravity = {0, 500, -9810};
     return load;
 }
@@ -88,11 +88,7 @@ TEST_F(Statics, ExternalForceDoesTheWorkOfTheForcesOnTheBody) {
     }
     for (const PointForce& point : load.forces) {
         applied += point.force;
-        // A point between two spheres is carried by both: each bears its share at its own arm.
-        const auto carried = [&](int sphere) -> Vec3 {
-            return state.x.row(sphere).transpose() + state.R[sphere] * (point.at.rest - model.spheres[sphere].center);
-        };
-        const Vec3 where = (1 - point.at.t) * carried(point.at.a) + point.at.t * carried(point.at.b);
+        const Vec3 where = observe(model, state, {point.at}).row(0);
         moment += where.cross(point.force);
     }
     EXPECT_LT((force - applied).norm(), 1e-14);

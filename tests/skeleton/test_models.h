@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <random>
 
+#include "skeleton/attach.h"
 #include "skeleton/statics.h"
 
 namespace palpate::skeleton::testing {
@@ -59,8 +60,31 @@ inline Model make_lattice(const Eigen::Vector3i& n, std::uint64_t seed = 1) {
     return model;
 }
 
+/// The same with full links, to the next neighbours alone, and volumes: of sections and cells that fill the block.
+inline Model make_full_lattice(const Eigen::Vector3i& n, std::uint64_t seed = 1) {
+    Model model = make_lattice(n, seed);
+    std::erase_if(model.links, [](const Link& link) { return link.length > 13.2; });
+    std::mt19937_64 engine(seed);
+    std::uniform_real_distribution<double> factor(0.5, 2.0);
+    for (Link& link : model.links) {
+        const Vec3 X_a = model.spheres[link.a].center, X_b = model.spheres[link.b].center;
+        const Vec3 along = (X_b - X_a).normalized(), across = along.unitOrthogonal();
+        link.section.emplace();
+        link.section->at = (X_a + X_b) / 2 + random_vector(engine, 1);
+        link.section->axes << along.transpose(), across.transpose(), along.cross(across).transpose();
+        link.section->area = 100;
+        link.stiffness.resize(6);
+        for (int s = 0; s < 6; ++s) link.stiffness[s] = (s >= 1 && s <= 3 ? 80 : 1.5) * factor(engine);
+    }
+    for (Sphere& sphere : model.spheres) {
+        sphere.cell = 1000;
+        sphere.volume = sphere.held ? 0 : 0.3 * factor(engine);
+    }
+    return model;
+}
+
 inline Attachment at_sphere(const Model& model, int sphere) {
-    return {sphere, sphere, 0.0, model.spheres[sphere].center};
+    return on_sphere(model, sphere, model.spheres[sphere].center);
 }
 
 inline Load force_at(const Model& model, int sphere, const Vec3& force) {
