@@ -24,6 +24,7 @@ double square(double x) { return x * x; }
 /// The equilibrium under a load, or under what a model bears of it.
 struct Borne {
     skeleton::Equilibrium equilibrium;
+    skeleton::Load load;
     bool whole = true;
 };
 
@@ -33,10 +34,11 @@ Borne solve_as_far_as_it_bears(skeleton::StaticsSolver& solver, const Eigen::Vec
     constexpr int attempts = 10;
     for (int attempt = 0;; ++attempt) {
         try {
-            return {solver.solve(k, load, {}, nullptr, before), attempt == 0};
+            return {solver.solve(k, load, {}, nullptr, before), load, attempt == 0};
         } catch (const SolverFailure&) {
             if (attempt == attempts) throw;
             for (skeleton::PointForce& force : load.forces) force.force *= 0.8;
+            for (skeleton::Press& press : load.presses) press.force *= 0.8;
         }
     }
 }
@@ -54,7 +56,7 @@ std::vector<Points> predict(const skeleton::Model& model, const std::vector<Stat
         const skeleton::FibreStates before = flowed_before(model, *solver, k, states, s, equilibria);
         Borne found = solve_as_far_as_it_bears(*solver, k, states[s].load, before);
         borne[s] = found.whole;
-        predicted[s] = observe(model, found.equilibrium, states[s].points);
+        predicted[s] = observed(model, found.equilibrium, found.load, states[s].points);
         equilibria[s] = std::move(found.equilibrium);
     });
     return predicted;

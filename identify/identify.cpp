@@ -119,6 +119,7 @@ IdentifyResult identify_tempered(const skeleton::Model& model, const Measurement
     filter.log_density.maxCoeff(&best);
     result.best = stiffness.row(best);
     result.model = with_stiffness(model, parameters, calibration.fit.theta.array().exp(), calibration.domain.law());
+    result.model.dent = calibration.domain.dent();
     for (FilterStep& step : filter.history) {
         step.particles = stiffness_of(parameters, step.particles);
         result.history.push_back(std::move(step));

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "mesh/errors.h"
+#include "skeleton/dent.h"
 #include "skeleton/links/placed_links.h"
 #include "skeleton/statics.h"
 
@@ -30,6 +31,13 @@ Points observe(const Model& model, const Equilibrium& equilibrium, const std::ve
     const Eigen::VectorXd moved = observation_jacobian(model, rest, points) * equilibrium.step;
     positions += Eigen::Map<const Points>(moved.data(), positions.rows(), 3);
     return positions;
+}
+
+Points observed(const Model& model, const Equilibrium& equilibrium, const Load& load,
+                const std::vector<Attachment>& points) {
+    Points rest(std::ssize(points), 3);
+    for (std::size_t i = 0; i < points.size(); ++i) rest.row(static_cast<Eigen::Index>(i)) = points[i].rest.transpose();
+    return observe(model, equilibrium, points) + dents(model, load, rest);
 }
 
 Eigen::SparseMatrix<double> observation_jacobian(const Model& model, const Equilibrium& equilibrium,

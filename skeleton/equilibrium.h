@@ -41,6 +41,10 @@ FibreStates flowed(const Model& model, const Equilibrium& equilibrium, const fem
 /// linear law, as they are for the other.
 Points observe(const Model& model, const Equilibrium& equilibrium, const std::vector<Attachment>& points);
 
+/// The same under the load that made the equilibrium: with the dents that it presses.
+Points observed(const Model& model, const Equilibrium& equilibrium, const Load& load,
+                const std::vector<Attachment>& points);
+
 /// P = d observe / d step in an equilibrium, by the model's law (3m x 6N).
 Eigen::SparseMatrix<double> observation_jacobian(const Model& model, const Equilibrium& equilibrium,
                                                  const std::vector<Attachment>& points);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <utility>
 #include <vector>
 
 #include "skeleton/state.h"
@@ -12,9 +13,18 @@ struct PointForce {
     Vec3 force;
 };
 
+/// A force that is spread over a patch of the surface: what dents are made of.
+struct Press {
+    Vec3 force = Vec3::Zero();                       // [N]
+    Vec3 normal = Vec3::Zero();                      // of the surface there, outward, unit
+    double radius = 0;                               // [mm], > 0
+    std::vector<std::pair<Vec3, double>> patch;      // points of it at rest and their shares, at least one
+};
+
 /// What acts on a skeleton from outside.
 struct Load {
     std::vector<PointForce> forces;
+    std::vector<Press> presses;     // the same forces where they dent the surface; they do no work on the spheres
     Vec3 gravity = Vec3::Zero();  // [mm/s^2], on the spheres' masses
 };
 

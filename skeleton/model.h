@@ -31,6 +31,11 @@ inline constexpr std::array<const char*, 7> stiffness_names{"elongation", "flexi
                                                             "shear",      "shear_2", "volume"};
 inline constexpr std::array<const char*, 7> stiffness_units{"N/mm", "N*mm/rad", "N*mm/rad", "N*mm/rad",
                                                             "N/mm", "N/mm",     "MPa"};
+/// The kind whose multiplier a stiffness shares when identified: flexion and shear have one for both planes.
+constexpr Stiffness as_identified(Stiffness kind) {
+    if (kind == Stiffness::flexion_2) return Stiffness::flexion;
+    return kind == Stiffness::shear_2 ? Stiffness::shear : kind;
+}
 /// Of one link: 3 or 6.
 using Stiffnesses = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 6, 1>;
 
@@ -82,6 +87,7 @@ struct Model {
     std::vector<Effect> effects;   // beyond the links; those of a measurement are only recorded
     mesh::Surface surface;         // at rest
     std::vector<Attachment> skin;  // of each vertex of the surface
+    Eigen::Matrix<double, 6, 1> dent = Eigen::Matrix<double, 6, 1>::Zero();  // amplitudes, see dent_motions [1/MPa]
     std::vector<mesh::Region> supports;
     std::map<std::string, std::string> provenance;  // where it comes from, in words
 

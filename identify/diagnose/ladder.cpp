@@ -231,6 +231,7 @@ private:
         const Calibration found = calibrate(model, collect_readings(model, set), options_.identify, {});
         model.law = found.domain.law();
         skeleton::set_stiffness(model, found.domain.parameters().stiffness(found.fit.theta));
+        model.dent = found.domain.dent();
         return model;
     }
 

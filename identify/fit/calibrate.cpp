@@ -68,8 +68,8 @@ public:
 
         const std::vector<StateReadings> sample = most_displaced(readings_, states_for_law);
         const auto chi_squared = [&](skeleton::Law law) -> std::optional<double> {
-            const PositionDomain domain(model_, law, group_stiffness(model_, Scope::uniform, options_.fixed), sample,
-                                        options_.threads);
+            PositionDomain domain(model_, law, group_stiffness(model_, Scope::uniform, options_.fixed), sample,
+                                  options_.threads);
             try {
                 return fit_uniform(domain, first_error).fit.chi_squared;
             } catch (const SolverFailure&) {
@@ -94,12 +94,18 @@ public:
         double model_error;
     };
 
-    /// One multiplier a kind, round the best common factor.
-    Stage fit_uniform(PositionDomain domain, double model_error) {
+    /// One multiplier a kind, round the best common factor; then the dents that explain most of what is left.
+    Stage fit_uniform(PositionDomain& domain, double model_error) {
         domain.set_model_error(model_error);
         const Eigen::VectorXd zero = Eigen::VectorXd::Zero(domain.parameters().size());
         const Eigen::VectorXd center = zero.array() + domain.common_factor(zero);
-        return {prior_round(center, wide_sd), fit(domain, prior_round(center, wide_sd), center), model_error};
+        Stage stage{prior_round(center, wide_sd), fit(domain, prior_round(center, wide_sd), center), model_error};
+        fit_dents(domain, stage.fit);
+        return stage;
+    }
+
+    static void fit_dents(PositionDomain& domain, FitResult& fit) {
+        if (domain.fit_dents(fit.theta, fit.prediction)) fit.chi_squared = domain.chi_squared(fit.prediction);
     }
 
     FitResult fit(const PositionDomain& domain, const LogNormalPrior& prior, const Eigen::VectorXd& start) {
@@ -140,7 +146,7 @@ Calibration calibrate(const skeleton::Model& model, const std::vector<StateReadi
 
     // one multiplier a kind; a second time with the model error that the first fit left
     report(progress, "uniform fit", 0.1);
-    const PositionDomain uniform(model, law, group_stiffness(model, Scope::uniform, options.fixed), readings,
+    PositionDomain uniform(model, law, group_stiffness(model, Scope::uniform, options.fixed), readings,
                                  options.threads);
     Calibrator::Stage stage = calibrator.fit_uniform(uniform, first_error);
     stage = calibrator.fit_uniform(uniform, model_error_after(uniform, stage.fit, stage.prior));
@@ -151,8 +157,10 @@ Calibration calibrate(const skeleton::Model& model, const std::vector<StateReadi
     FitResult fit = std::move(stage.fit);
     if (options.scope != Scope::uniform) {
         // finer, from the uniform fit; again twice
-        domain =
-            PositionDomain(model, law, group_stiffness(model, options.scope, options.fixed), readings, options.threads);
+        skeleton::Model dented = model;
+        dented.dent = uniform.dent();
+        domain = PositionDomain(dented, law, group_stiffness(model, options.scope, options.fixed), readings,
+                                options.threads);
         const Eigen::VectorXd start = spread_kinds(domain.parameters(), uniform.parameters(), fit.theta);
         prior = options.scope == Scope::links
                     ? prior_round(start, link_sd)
@@ -160,10 +168,12 @@ Calibration calibrate(const skeleton::Model& model, const std::vector<StateReadi
         domain.set_model_error(model_error);
         report(progress, "first fit", 0.2);
         fit = calibrator.fit(domain, prior, start);
+        Calibrator::fit_dents(domain, fit);
         model_error = std::min(model_error, model_error_after(domain, fit, prior));
         report(progress, "second fit", 0.6);
         domain.set_model_error(model_error);
         fit = calibrator.fit(domain, prior, fit.theta);
+        Calibrator::fit_dents(domain, fit);
     } else {
         domain.set_model_error(model_error);
     }

@@ -64,7 +64,7 @@ Parameters group_stiffness(const skeleton::Model& model, Scope scope, const std:
     const skeleton::StiffnessOrder order(model);
     std::map<std::tuple<bool, int, Stiffness>, std::vector<Eigen::Index>> members;
     for (Eigen::Index place = 0; place < order.size(); ++place) {
-        const Stiffness kind = order.kind(place);
+        const Stiffness kind = skeleton::as_identified(order.kind(place));
         if (!(result.k0[place] > 0) || std::ranges::find(fixed, kind) != fixed.end()) continue;
         members[{kind == Stiffness::volume, group_of(model, scope, kind, order.owner(place)), kind}].push_back(place);
     }

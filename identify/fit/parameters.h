@@ -32,7 +32,8 @@ struct Parameters {
 };
 
 /// Which stiffnesses share a multiplier: those of a kind, in all the model, in a zone, or of each link and sphere alone;
-/// volumes have no zones. Those of the kinds in `fixed`, and those that are zero, stay as they are.
+/// volumes have no zones. Flexion in a link's two planes is one kind here, and so is shear: their ratio is the section's.
+/// Those of the kinds in `fixed`, and those that are zero, stay as they are.
 /// @throws InvalidInput when nothing is left to identify.
 Parameters group_stiffness(const skeleton::Model& model, Scope scope,
                            const std::vector<skeleton::Stiffness>& fixed = {});

@@ -7,6 +7,7 @@
 
 #include "identify/fit/lived.h"
 #include "identify/parallel.h"
+#include "skeleton/dent.h"
 #include "skeleton/effects/placed_effects.h"
 #include "skeleton/statics.h"
 
@@ -86,7 +87,10 @@ PositionDomain::PositionDomain(const skeleton::Model& model, skeleton::Law law, 
         F_.col(s) = skeleton::external_force(*model_, rest, states_[s].load) + effects;
         offsets_.emplace_back(Points::Zero(states_[s].rest.rows(), 3));
         displacements.push_back(states_[s].displacement);
+        dents_.push_back(skeleton::dent_motions(states_[s].load, states_[s].rest));
     }
+    dent_ = model_->dent;
+    for (int s = 0; s < static_cast<int>(states_.size()); ++s) offsets_[s] += dented(s, dent_);
     typical_displacement_ = median(displacements);
     set_model_error(0.03);
 }
@@ -160,9 +164,43 @@ Prediction PositionDomain::predict(const Eigen::VectorXd& theta, int threads, co
         const skeleton::FibreStates before = flowed_before(*model_, *solver, k, states_, s, prediction.equilibria);
         const skeleton::State* from = start != nullptr ? &start->equilibria[s].state : nullptr;
         prediction.equilibria[s] = solver->solve(k, states_[s].load, {}, from, before);
-        prediction.markers[s] = observe(*model_, prediction.equilibria[s], states_[s].points);
+        prediction.markers[s] = observe(*model_, prediction.equilibria[s], states_[s].points) + offsets_[s];
     });
     return prediction;
+}
+
+Points PositionDomain::dented(int s, const Eigen::Matrix<double, 6, 1>& dent) const {
+    const Eigen::VectorXd moved = dents_[s] * dent;
+    return moved.reshaped<Eigen::RowMajor>(moved.size() / 3, 3);
+}
+
+bool PositionDomain::fit_dents(const Eigen::VectorXd& theta, Prediction& prediction) {
+    std::vector<double> moduli;
+    const Eigen::VectorXd k = parameters_.stiffness(theta);
+    for (Eigen::Index l = 0; l < std::ssize(model_->links); ++l) {
+        const skeleton::Link& link = model_->links[l];
+        if (link.section && link.section->area > 0) moduli.push_back(k[3 * l] * link.length / link.section->area);
+    }
+    if (moduli.empty()) return false;
+    Eigen::Matrix<double, 6, 6> H = Eigen::Matrix<double, 6, 6>::Zero();
+    Eigen::Matrix<double, 6, 1> g = Eigen::Matrix<double, 6, 1>::Zero();
+    for (int s = 0; s < static_cast<int>(states_.size()); ++s) {
+        const Eigen::VectorXd error =
+            errors_of(states_[s], prediction.markers[s] - dented(s, dent_));  // without dents
+        const Eigen::MatrixXd weighted = weights_[s].asDiagonal() * dents_[s];
+        H += dents_[s].transpose() * weighted;
+        g += weighted.transpose() * error;
+    }
+    if (H.isZero(0)) return false;
+    H.diagonal().array() += square(median(moduli));
+    const Eigen::Matrix<double, 6, 1> found = H.ldlt().solve(g);
+    for (int s = 0; s < static_cast<int>(states_.size()); ++s) {
+        const Points more = dented(s, found - dent_);
+        offsets_[s] += more;
+        prediction.markers[s] += more;
+    }
+    dent_ = found;
+    return true;
 }
 
 double PositionDomain::chi_squared(const Prediction& prediction) const {

@@ -60,6 +60,12 @@ public:
     double log_constant() const { return log_constant_; }
     NormalEquations normal_equations(const Eigen::VectorXd& theta, const Prediction& prediction) const;
 
+    /// The dents' amplitudes that explain most of what a prediction leaves, in force from then on: linear least squares,
+    /// and a prior sd of what a half space of the links' modulus gives way by, 1 / E. `prediction`, at theta, is brought up
+    /// to date. False where nothing is pressed, or links have no sections that tell a modulus.
+    bool fit_dents(const Eigen::VectorXd& theta, Prediction& prediction);
+    const Eigen::Matrix<double, 6, 1>& dent() const { return dent_; }
+
     /// Logarithm of the factor on all stiffnesses k(theta) that fits best by the linear law, where displacements go as
     /// its inverse: closed form, however far off the start is. 0 where they do not, as effects add a stiffness of
     /// their own.
@@ -71,6 +77,7 @@ public:
 
 private:
     Prediction predict_linear(const Eigen::VectorXd& k) const;
+    Points dented(int s, const Eigen::Matrix<double, 6, 1>& dent) const;  // (m x 3) [mm]
     /// A state's readings pulled back to the forces: X = T^-1 P^T (6N x 3m), and X W X^T (6N x 6N).
     struct PullBack {
         int state = -1;
@@ -90,6 +97,8 @@ private:
     Parameters parameters_;
     std::vector<StateReadings> states_;
     std::vector<Points> offsets_;                 // added to the modelled markers (m x 3) [mm]
+    std::vector<Eigen::MatrixXd> dents_;          // dent_motions of each state's markers (3m x 6), empty without
+    Eigen::Matrix<double, 6, 1> dent_;            // amplitudes [1/MPa]
     std::vector<Eigen::SparseMatrix<double>> P_;  // of each state at rest (3m x 6N)
     Eigen::MatrixXd F_;                           // loads and effects at rest (6N x states)
     Eigen::SparseMatrix<double> G_rest_;          // those of the links, of each stiffness (6N x 3L)

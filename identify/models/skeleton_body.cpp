@@ -164,7 +164,7 @@ void SkeletonBody::Impl::find_kinds() {
     const skeleton::StiffnessOrder order(by_law[0]);
     std::vector<int> place(skeleton::stiffness_names.size(), -1);
     for (Eigen::Index k = 0; k < order.size(); ++k) {
-        const auto kind = static_cast<int>(order.kind(k));
+        const auto kind = static_cast<int>(skeleton::as_identified(order.kind(k)));
         if (place[kind] < 0 && (kind < 3 || k0[k] > 0)) {
             place[kind] = static_cast<int>(parameters.size());
             parameters.push_back({skeleton::stiffness_names[kind], 0, 0, 3});

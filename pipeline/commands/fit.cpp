@@ -112,8 +112,9 @@ Outcome simulate(const SimulateOptions& options, const Common& common) {
     std::vector<mesh::SeriesStep> steps;
     nlohmann::json results = nlohmann::json::array();
     for (std::size_t s = 0; s < states.size(); ++s) {
-        const skeleton::Equilibrium found = solver.solve(k, to_load(states[s].contacts));
-        const Points u = skin_displacement(model, found);
+        const skeleton::Load load = to_load(states[s].contacts);
+        const skeleton::Equilibrium found = solver.solve(k, load);
+        const Points u = skin_displacement(model, found, load);
         const fs::path file = output / fmt::format("simulation_{:03}.vtp", s);
         mesh::write_vtp(file, model.surface, {.points = {{"displacement [mm]", u}}});
         steps.push_back({static_cast<double>(s), file});

@@ -73,8 +73,9 @@ void write_marker_series(const fs::path& folder, const std::string& name, const 
     mesh::write_pvd(folder / (name + ".pvd"), steps);
 }
 
-Points skin_displacement(const skeleton::Model& model, const skeleton::Equilibrium& equilibrium) {
-    return skeleton::observe(model, equilibrium, model.skin) - model.surface.vertices;
+Points skin_displacement(const skeleton::Model& model, const skeleton::Equilibrium& equilibrium,
+                         const skeleton::Load& load) {
+    return skeleton::observed(model, equilibrium, load, model.skin) - model.surface.vertices;
 }
 
 void write_skin_series(const fs::path& folder, const std::string& name, const skeleton::Model& model,
@@ -84,7 +85,8 @@ void write_skin_series(const fs::path& folder, const std::string& name, const sk
     const Eigen::VectorXd k = skeleton::stiffness_vector(model);
     std::vector<mesh::SeriesStep> steps;
     for (std::size_t s = 0; s < set.states.size(); ++s) {
-        const Points u = skin_displacement(model, solver.solve(k, to_load(set, set.states[s])));
+        const skeleton::Load load = to_load(set, set.states[s]);
+        const Points u = skin_displacement(model, solver.solve(k, load), load);
         mesh::MeshData data{.points = {{"displacement [mm]", u}}};
         if (const auto measured = field_on_skin(model, set.states[s])) {
             data.points.push_back({"measured [mm]", *measured});

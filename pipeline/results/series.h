@@ -30,7 +30,8 @@ void write_skin_series(const std::filesystem::path& folder, const std::string& n
                        const identify::MeasurementSet& set);
 
 /// A skin at rest with its displacement to an equilibrium.
-Points skin_displacement(const skeleton::Model& model, const skeleton::Equilibrium& equilibrium);
+Points skin_displacement(const skeleton::Model& model, const skeleton::Equilibrium& equilibrium,
+                         const skeleton::Load& load);
 
 /// The particle sets as a series like figures 3 and 5 of Burion 2008: a point a particle in the plane of elongation
 /// [N/mm] and flexion (scaled to the same width) per zone; "weight [-]" and every stiffness as arrays.

@@ -204,7 +204,8 @@ void read_skin(const JsonField& field, Model& model) {
 Model read_model(const std::filesystem::path& file) {
     const nlohmann::ordered_json json = parse(file);
     const JsonField root(json, file.string());
-    root.allow_only({"format", "name", "law", "spheres", "links", "effects", "skin", "supports", "provenance"});
+    root.allow_only({"format", "name", "law", "spheres", "links", "effects", "skin", "dent", "supports",
+                     "provenance"});
     root["format"].choice({"palpate-model/1"});
 
     Model model;
@@ -218,6 +219,10 @@ Model read_model(const std::filesystem::path& file) {
     if (root.has("effects"))
         for (const JsonField& effect : root["effects"].list()) model.effects.push_back(read_effect(effect));
     if (root.has("skin")) read_skin(root["skin"], model);
+    if (root.has("dent")) {
+        const std::vector<JsonField> amplitudes = root["dent"].list(6);
+        for (int i = 0; i < 6; ++i) model.dent[i] = amplitudes[i].number();
+    }
     if (root.has("provenance"))
         for (const std::string& key : root["provenance"].keys()) model.provenance[key] = root["provenance"][key].text();
     return model;

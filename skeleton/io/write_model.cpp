@@ -122,6 +122,8 @@ std::string to_text(const Model& model) {
         if (!model.skin.empty()) text += ",\n    \"attachments\": " + lines(all_to_json(model.skin), deep);
         text += "\n  },\n";
     }
+    if (!model.dent.isZero(0))
+        text += "  \"dent\": " + Json(std::vector<double>(model.dent.begin(), model.dent.end())).dump() + ",\n";
     text += "  \"supports\": " + lines(supports) + ",\n";
     text += "  \"provenance\": " + Json(model.provenance).dump() + "\n}\n";
     return text;

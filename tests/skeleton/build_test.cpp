@@ -194,7 +194,7 @@ TEST(BuildSkeleton, MassAndInertiaAddUpToTheBodys) {
 
 TEST(BuildSkeleton, LinksOfABarStandForItsSection) {
     const fem::Material material;
-    const Model model = build(limb(), {.spheres = 12}).model;
+    const Model model = build(limb(), {.spheres = 12, .links = LinkKind::burion2008}).model;
     ASSERT_EQ(model.links.size(), 12u);
     for (const Link& link : model.links) {
         // Exact but for spheres that are not quite on the axis.
