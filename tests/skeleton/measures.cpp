@@ -1,0 +1,149 @@
+#include "tests/skeleton/measures.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <iterator>
+#include <limits>
+#include <map>
+#include <set>
+#include <vector>
+
+#include "mesh/topology/shells.h"
+
+namespace palpate::skeleton {
+namespace {
+
+using Edges = std::set<std::pair<int, int>>;
+
+// The links, and the ground: held spheres are one piece with those that hold the same neighbour.
+Edges edges_of(const Model& model) {
+    Edges edges;
+    std::vector<std::set<int>> holders(model.spheres.size());
+    for (const Link& link : model.links) {
+        edges.insert(std::minmax(link.a, link.b));
+        if (model.spheres[link.a].held) holders[link.b].insert(link.a);
+        if (model.spheres[link.b].held) holders[link.a].insert(link.b);
+    }
+    for (const std::set<int>& around : holders) {
+        for (int i : around) {
+            for (int j : around) {
+                if (i < j) edges.emplace(i, j);
+            }
+        }
+    }
+    return edges;
+}
+
+int count_components(std::size_t nodes, const Edges& edges) {
+    std::vector<int> parent(nodes);
+    for (std::size_t i = 0; i < nodes; ++i) parent[i] = static_cast<int>(i);
+    const auto root = [&](int i) {
+        while (parent[i] != i) i = parent[i] = parent[parent[i]];
+        return i;
+    };
+    for (const auto& [a, b] : edges) parent[root(a)] = root(b);
+    int count = 0;
+    for (std::size_t i = 0; i < nodes; ++i) count += parent[i] == static_cast<int>(i);
+    return count;
+}
+
+// Rank of the boundary of the triangles over the field of two elements, by columns with distinct lowest edges.
+int rank_of_triangles(const Edges& edges) {
+    std::map<int, std::vector<int>> above;
+    for (const auto& [a, b] : edges) above[a].push_back(b);
+    std::map<std::pair<int, int>, int> index;
+    for (const auto& edge : edges) index.emplace(edge, std::ssize(index));
+    std::map<int, std::vector<int>> reduced;
+    for (const auto& [a, b] : edges) {
+        for (int c : above[b]) {
+            if (!edges.contains({a, c})) continue;
+            std::vector<int> column{index[{a, b}], index[{a, c}], index[{b, c}]};
+            std::sort(column.begin(), column.end());
+            while (!column.empty()) {
+                const auto found = reduced.find(column.back());
+                if (found == reduced.end()) break;
+                std::vector<int> sum;
+                std::set_symmetric_difference(column.begin(), column.end(), found->second.begin(), found->second.end(),
+                                              std::back_inserter(sum));
+                column = std::move(sum);
+            }
+            if (!column.empty()) reduced.emplace(column.back(), column);
+        }
+    }
+    return static_cast<int>(reduced.size());
+}
+
+double out_by(const mesh::SurfaceTree& tree, const Vec3& point) {
+    return tree.inside(point) ? 0 : tree.closest(point).distance;
+}
+
+}  // namespace
+
+Measures measure(const Model& model, const mesh::SurfaceTree& tree) {
+    Measures found;
+    std::vector<int> degree(model.spheres.size());
+    std::set<std::pair<int, int>> seen;
+    for (const Link& link : model.links) {
+        ++degree[link.a];
+        ++degree[link.b];
+        found.duplicates += link.a == link.b || !seen.insert(std::minmax(link.a, link.b)).second;
+        const Vec3 &a = model.spheres[link.a].center, &b = model.spheres[link.b].center;
+        constexpr int samples = 20;
+        for (int i = 0; i <= samples; ++i)
+            found.worst_link = std::max(found.worst_link, out_by(tree, a + i * (b - a) / samples));
+    }
+    for (std::size_t i = 0; i < model.spheres.size(); ++i) {
+        const bool held = model.spheres[i].held;
+        (held ? found.held : found.free) += 1;
+        if (held) continue;
+        found.tips += degree[i] == 1;
+        found.worst_center = std::max(found.worst_center, out_by(tree, model.spheres[i].center));
+    }
+    found.links = static_cast<int>(model.links.size());
+    const Edges edges = edges_of(model);
+    found.components = count_components(model.spheres.size(), edges);
+    found.loops =
+        static_cast<int>(std::ssize(edges) - std::ssize(model.spheres)) + found.components - rank_of_triangles(edges);
+
+    for (Eigen::Index v = 0; v < model.surface.vertices.rows(); ++v) {
+        const Vec3 vertex = model.surface.vertices.row(v);
+        if (mesh::contains(model.supports, vertex)) continue;
+        double least = std::numeric_limits<double>::infinity();
+        for (const Sphere& s : model.spheres) least = std::min(least, (vertex - s.center).norm() - s.radius);
+        found.coverage = std::max(found.coverage, least);
+    }
+    return found;
+}
+
+double asymmetry(const Model& model, const Vec3& normal, const Vec3& middle) {
+    const auto nearest = [&](const Vec3& point, const Sphere* but) {
+        double least = std::numeric_limits<double>::infinity();
+        for (const Sphere& s : model.spheres) {
+            if (&s != but) least = std::min(least, (s.center - point).norm());
+        }
+        return least;
+    };
+    double squares = 0, apart = 0;
+    int count = 0;
+    for (const Sphere& s : model.spheres) {
+        if (s.held) continue;
+        const Vec3 image = s.center - 2 * normal.dot(s.center - middle) * normal;
+        squares += std::pow(nearest(image, nullptr), 2);
+        apart += nearest(s.center, &s);
+        ++count;
+    }
+    return std::sqrt(squares / count) / (apart / count);
+}
+
+int handles(const mesh::Surface& surface) {
+    int sum = 0;
+    for (const mesh::Surface& part : mesh::split_parts(surface)) {
+        // Closed: three half edges a triangle. V - E + F = 2 - 2 genus.
+        const Eigen::Index F = part.triangles.rows();
+        sum += static_cast<int>(2 - (part.vertices.rows() - F / 2)) / 2;
+    }
+    return sum;
+}
+
+}  // namespace palpate::skeleton
