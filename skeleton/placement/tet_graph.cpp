@@ -117,7 +117,7 @@ TetGraph make_tet_graph(const mesh::VolumeMesh& body, int least) {
         graph.volumes(t) = volume(graph.nodes, {c(0), c(1), c(2), c(3)});
     }
 
-    const Eigen::VectorXd path = path_lengths(graph, {0});
+    const Eigen::VectorXd path = path_lengths(graph, graph.centers, {0});
     const auto apart = std::find_if(path.begin(), path.end(), [](double d) { return d > 1e300; });
     if (apart != path.end()) {
         const Vec3 at = graph.centers.row(apart - path.begin());
@@ -129,7 +129,7 @@ TetGraph make_tet_graph(const mesh::VolumeMesh& body, int least) {
     return graph;
 }
 
-Eigen::VectorXd path_lengths(const TetGraph& graph, const std::vector<int>& from) {
+Eigen::VectorXd path_lengths(const TetGraph& graph, const Points& at, const std::vector<int>& from) {
     using Entry = std::pair<double, int>;
     Eigen::VectorXd length = Eigen::VectorXd::Constant(graph.size(), std::numeric_limits<double>::infinity());
     std::priority_queue<Entry, std::vector<Entry>, std::greater<>> front;
@@ -144,7 +144,7 @@ Eigen::VectorXd path_lengths(const TetGraph& graph, const std::vector<int>& from
         for (int c = 0; c < 4; ++c) {
             const int u = graph.neighbors(t, c);
             if (u < 0) continue;
-            const double further = d + (graph.centers.row(u) - graph.centers.row(t)).norm();
+            const double further = d + (at.row(u) - at.row(t)).norm();
             if (further >= length(u)) continue;
             length(u) = further;
             front.emplace(further, u);

@@ -106,7 +106,10 @@ void study(const Shape& body, bool variants) {
         print_variant("noise 0.5 fine", place(noisy(base->surface, 0.005, seed), support, 0.03), *base);
     }
     const Motion motion = some_motion();
-    print_variant("turned", place(motion(body.surface), motion(support)), *base);
+    // As fine in the same millimetres: the longest side of a turned body is another one.
+    const mesh::Surface turned = motion(body.surface);
+    const double ratio = base->size / mesh::bounding_box(turned.vertices).longest_side();
+    print_variant("turned", place(turned, motion(support), 0.06 * ratio, {.coverage = 0.05 * base->size}), *base);
     print_variant("coarser", place(body.surface, support, 0.12), *base);
     print_variant("finer", place(body.surface, support, 0.03), *base);
     const auto again = place(body.surface, support), mixed = place(shuffled(body.surface, 3), support);

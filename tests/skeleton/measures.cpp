@@ -48,34 +48,79 @@ int count_components(std::size_t nodes, const Edges& edges) {
     return count;
 }
 
+double out_by(const mesh::SurfaceTree& tree, const Vec3& point) {
+    return tree.inside(point) ? 0 : tree.closest(point).distance;
+}
+
+using Triangle = std::array<int, 3>;
+
+// The triangles of edges that lie in the body within 0.75 % of its size: the others lie round a hole. A quadrangle of
+// edges without diagonals that lies inside is two of them, and gets a diagonal.
+std::vector<Triangle> triangles_of(const Model& model, const mesh::SurfaceTree& tree, Edges& edges) {
+    std::vector<std::set<int>> around(model.spheres.size());
+    for (const auto& [a, b] : edges) {
+        around[a].insert(b);
+        around[b].insert(a);
+    }
+    const double tolerance = 0.0075 * mesh::bounding_box(model.surface.vertices).longest_side();
+    const auto lies_inside = [&](int a, int b, int c) {
+        constexpr int samples = 6;
+        for (int i = 0; i <= samples; ++i) {
+            for (int j = 0; i + j <= samples; ++j) {
+                const Vec3 x = (i * model.spheres[a].center + j * model.spheres[b].center +
+                                (samples - i - j) * model.spheres[c].center) /
+                               samples;
+                if (out_by(tree, x) > tolerance) return false;
+            }
+        }
+        return true;
+    };
+    std::vector<Triangle> triangles;
+    for (const auto& [a, b] : edges) {
+        for (int c : around[b]) {
+            if (c > b && around[a].contains(c) && lies_inside(a, b, c)) triangles.push_back({a, b, c});
+        }
+    }
+    Edges diagonals;
+    for (int a = 0; a < std::ssize(around); ++a) {
+        for (int b : around[a]) {
+            for (int c : around[b]) {
+                if (c <= a || around[a].contains(c)) continue;
+                for (int d : around[c]) {
+                    if (d <= b || !around[a].contains(d) || around[b].contains(d) || diagonals.contains({b, d}))
+                        continue;
+                    if (!lies_inside(a, b, c) || !lies_inside(a, c, d)) continue;
+                    diagonals.emplace(a, c);
+                    triangles.push_back({a, std::min(b, c), std::max(b, c)});
+                    triangles.push_back({a, std::min(c, d), std::max(c, d)});
+                }
+            }
+        }
+    }
+    edges.merge(diagonals);
+    for (Triangle& t : triangles) std::sort(t.begin(), t.end());
+    return triangles;
+}
+
 // Rank of the boundary of the triangles over the field of two elements, by columns with distinct lowest edges.
-int rank_of_triangles(const Edges& edges) {
-    std::map<int, std::vector<int>> above;
-    for (const auto& [a, b] : edges) above[a].push_back(b);
+int rank_of(const std::vector<Triangle>& triangles, const Edges& edges) {
     std::map<std::pair<int, int>, int> index;
     for (const auto& edge : edges) index.emplace(edge, std::ssize(index));
     std::map<int, std::vector<int>> reduced;
-    for (const auto& [a, b] : edges) {
-        for (int c : above[b]) {
-            if (!edges.contains({a, c})) continue;
-            std::vector<int> column{index[{a, b}], index[{a, c}], index[{b, c}]};
-            std::sort(column.begin(), column.end());
-            while (!column.empty()) {
-                const auto found = reduced.find(column.back());
-                if (found == reduced.end()) break;
-                std::vector<int> sum;
-                std::set_symmetric_difference(column.begin(), column.end(), found->second.begin(), found->second.end(),
-                                              std::back_inserter(sum));
-                column = std::move(sum);
-            }
-            if (!column.empty()) reduced.emplace(column.back(), column);
+    for (const auto& [a, b, c] : triangles) {
+        std::vector<int> column{index.at({a, b}), index.at({a, c}), index.at({b, c})};
+        std::sort(column.begin(), column.end());
+        while (!column.empty()) {
+            const auto found = reduced.find(column.back());
+            if (found == reduced.end()) break;
+            std::vector<int> sum;
+            std::set_symmetric_difference(column.begin(), column.end(), found->second.begin(), found->second.end(),
+                                          std::back_inserter(sum));
+            column = std::move(sum);
         }
+        if (!column.empty()) reduced.emplace(column.back(), column);
     }
     return static_cast<int>(reduced.size());
-}
-
-double out_by(const mesh::SurfaceTree& tree, const Vec3& point) {
-    return tree.inside(point) ? 0 : tree.closest(point).distance;
 }
 
 }  // namespace
@@ -101,10 +146,11 @@ Measures measure(const Model& model, const mesh::SurfaceTree& tree) {
         found.worst_center = std::max(found.worst_center, out_by(tree, model.spheres[i].center));
     }
     found.links = static_cast<int>(model.links.size());
-    const Edges edges = edges_of(model);
+    Edges edges = edges_of(model);
+    const std::vector<Triangle> triangles = triangles_of(model, tree, edges);
     found.components = count_components(model.spheres.size(), edges);
     found.loops =
-        static_cast<int>(std::ssize(edges) - std::ssize(model.spheres)) + found.components - rank_of_triangles(edges);
+        static_cast<int>(std::ssize(edges) - std::ssize(model.spheres)) + found.components - rank_of(triangles, edges);
 
     for (Eigen::Index v = 0; v < model.surface.vertices.rows(); ++v) {
         const Vec3 vertex = model.surface.vertices.row(v);

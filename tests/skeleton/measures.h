@@ -8,9 +8,9 @@ namespace palpate::skeleton {
 /// What a skeleton's graph is like, and how it lies in its body.
 struct Measures {
     int free = 0, held = 0, links = 0;
-    int components = 0;       // of the graph
-    int loops = 0;            // of its complex, triangles of links filled: first Betti number
-    int tips = 0;             // free spheres with one link
+    int components = 0;  // of the graph
+    int loops = 0;  // of its complex, first Betti number: triangles and quadrangles of links within the body filled
+    int tips = 0;   // free spheres with one link
     int duplicates = 0;       // links that join the same two spheres as another, or a sphere with itself
     double coverage = 0;      // of vertices that no support holds, outside the spheres, largest [mm]
     double worst_link = 0;    // how far links lie outside the body, largest [mm]
