@@ -162,8 +162,10 @@ Model build_skeleton(const mesh::Surface& surface, const mesh::VolumeMesh& volum
     // What they leave uncovered gets balls of its own, apart from the others if that will do.
     const Points vertices = free_vertices(surface, supports);
     Model model;
+    std::vector<int> owner;
     const auto place_spheres = [&] {
         model.spheres = make_spheres(body, tree, supports, sites, spacing);
+        owner = share_out(body, sites, model.spheres);
         swell(vertices, delta, model.spheres);
         const Eigen::VectorXd distance = outside(model.spheres, vertices);
         result.coverage = std::max(0., vertices.rows() > 0 ? distance.maxCoeff() : 0);
@@ -184,8 +186,7 @@ Model build_skeleton(const mesh::Surface& surface, const mesh::VolumeMesh& volum
                         free_sites(sites), result.coverage, delta));
     }
 
-    // Who belongs to whom: cells, masses, links, skin.
-    const std::vector<int> owner = share_out(body, sites, model.spheres);
+    // Who belongs to whom: masses, links, skin.
     set_masses(body.graph, owner, material.density, model.spheres);
     std::vector<Section> sections = find_sections(body.graph, body.core, owner, sites);
     const auto dispensed = find_mending(body, tree, handles, owner, sites, tolerance).dispensed;

@@ -1,6 +1,7 @@
 #include "skeleton/placement/cover.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <utility>
 
@@ -111,9 +112,13 @@ std::vector<Site> covering_sites(const Body& body, const std::vector<mesh::Regio
     std::vector<Site> added;
     for (int ball : cover(body.axis, allowed, points, uncovered, (1 + 0.9 * swelling) * delta)) {
         const Eigen::RowVector3d center = body.axis.centers.row(ball);
+        // The nearest tetrahedron that is still to be had.
+        Eigen::VectorXd squares = (body.graph.centers.rowwise() - center).rowwise().squaredNorm();
+        for (Eigen::Index t = 0; t < squares.size(); ++t) {
+            if (taken[t]) squares(t) = std::numeric_limits<double>::infinity();
+        }
         Eigen::Index tet = 0;
-        (body.graph.centers.rowwise() - center).rowwise().squaredNorm().minCoeff(&tet);
-        if (taken[tet]) continue;
+        if (!std::isfinite(squares.minCoeff(&tet))) break;
         taken[tet] = 1;
         added.push_back({center, static_cast<int>(tet), false, true});
     }

@@ -1,6 +1,7 @@
 #include "skeleton/placement/mend.h"
 
 #include <algorithm>
+#include <limits>
 #include <map>
 
 namespace palpate::skeleton {
@@ -72,11 +73,13 @@ Meetings find_meetings(const Body& body, const Handles& handles, const std::vect
     return meetings;
 }
 
+// Chords of a bent body lie outside by a little.
 bool outside_on_way(const mesh::SurfaceTree& tree, const Vec3& a, const Vec3& b, double tolerance) {
     constexpr int samples = 12;
+    const double allowed = std::max(tolerance, 0.1 * (b - a).norm());
     for (int i = 1; i < samples; ++i) {
         const Vec3 x = a + i * (b - a) / samples;
-        if (!tree.inside(x) && tree.closest(x).distance > tolerance) return true;
+        if (!tree.inside(x) && tree.closest(x).distance > allowed) return true;
     }
     return false;
 }
@@ -101,23 +104,33 @@ Mending find_mending(const Body& body, const mesh::SurfaceTree& tree, const Hand
     std::set<int> taken;
     for (const Site& site : sites) taken.insert(site.tet);
     Mending mending;
-    const auto add = [&](int tet) {
-        if (body.ground.held[tet] || !taken.insert(tet).second) return;
+    // New sites keep `apart` from the others.
+    const auto add = [&](int tet, double apart) {
+        if (body.ground.held[tet] || taken.count(tet) != 0) return;
         const Vec3 center = graph.centers.row(tet), on_core = body.core.at.row(tet);
-        mending.wanted.push_back({tree.inside(on_core) ? on_core : center, tet});
+        const Site site{tree.inside(on_core) ? on_core : center, tet};
+        const auto close = [&](const Site& other) { return (other.at - site.at).norm() < apart; };
+        if (std::any_of(sites.begin(), sites.end(), close)) return;
+        if (std::any_of(mending.wanted.begin(), mending.wanted.end(), close)) return;
+        taken.insert(tet);
+        mending.wanted.push_back(site);
     };
     // In the middle of a border.
-    const auto add_on = [&](const Border& border) {
+    const auto add_on = [&](const Border& border, double apart) {
         const Vec3 middle = border.first / border.area;
-        const auto nearer = [&](int t, int u) {
-            return (graph.centers.row(t).transpose() - middle).squaredNorm() <
-                   (graph.centers.row(u).transpose() - middle).squaredNorm();
-        };
-        add(*std::min_element(border.tets.begin(), border.tets.end(), nearer));
+        int best = -1;
+        double least = std::numeric_limits<double>::infinity();
+        for (int t : border.tets) {
+            const double d = (graph.centers.row(t).transpose() - middle).squaredNorm();
+            if (d >= least || body.ground.held[t] || taken.count(t) != 0) continue;
+            least = d;
+            best = t;
+        }
+        if (best >= 0) add(best, apart);
     };
 
     const Ways ways(body, handles, owner, sites);
-    for (const auto& [cell, tet] : ways.closing) add(tet);
+    for (const auto& [cell, tet] : ways.closing) add(tet, tolerance);
     const Meetings meetings = find_meetings(body, handles, owner, sites, ways);
     double mean = 0;
     for (const auto& [pair, borders] : meetings) {
@@ -131,7 +144,7 @@ Mending find_mending(const Body& body, const mesh::SurfaceTree& tree, const Hand
         const auto& [a, b] = pair;
         const auto smaller = [](const auto& p, const auto& q) { return p.second.area < q.second.area; };
         if (borders.size() > 1) {
-            add_on(std::min_element(borders.begin(), borders.end(), smaller)->second);
+            add_on(std::min_element(borders.begin(), borders.end(), smaller)->second, tolerance);
         } else if (outside_on_way(tree, sites[a].at, sites[b].at, tolerance)) {
             outside.push_back(pair);
         } else if (borders.begin()->second.area >= sliver * mean) {
@@ -144,7 +157,7 @@ Mending find_mending(const Body& body, const mesh::SurfaceTree& tree, const Hand
         if (detour(neighbors, pair, bits)) {
             mending.dispensed.insert(pair);
         } else if (border.area >= sliver * mean) {
-            add_on(border);
+            add_on(border, 0.3 * (sites[pair.first].at - sites[pair.second].at).norm());
         }
     }
     return mending;

@@ -17,8 +17,8 @@ struct Mending {
 };
 
 /// More sites are wanted in cells that close on themselves round a handle, where two cells meet on both sides of one,
-/// and where the straight way between cells that meet leads further than `tolerance` [mm] outside, unless a third cell
-/// links them on the same side of all handles: then they need no link.
+/// and where the straight way between cells that meet leads further than `tolerance` [mm] and a tenth of its
+/// length outside, unless a third cell links them on the same side of all handles: then they need no link.
 Mending find_mending(const Body& body, const mesh::SurfaceTree& tree, const Handles& handles,
                      const std::vector<int>& owner, const std::vector<Site>& sites, double tolerance);
 

@@ -54,23 +54,22 @@ double out_by(const mesh::SurfaceTree& tree, const Vec3& point) {
 
 using Triangle = std::array<int, 3>;
 
-// The triangles of edges that lie in the body within 0.75 % of its size: the others lie round a hole. A quadrangle of
-// edges without diagonals that lies inside is two of them, and gets a diagonal.
+// The triangles of edges that lie in the body, within a tenth of their shortest side: the others lie round a hole. A
+// quadrangle of edges without diagonals that lies inside is two of them, and gets a diagonal.
 std::vector<Triangle> triangles_of(const Model& model, const mesh::SurfaceTree& tree, Edges& edges) {
     std::vector<std::set<int>> around(model.spheres.size());
     for (const auto& [a, b] : edges) {
         around[a].insert(b);
         around[b].insert(a);
     }
-    const double tolerance = 0.0075 * mesh::bounding_box(model.surface.vertices).longest_side();
+    const auto at = [&](int i) { return model.spheres[i].center; };
     const auto lies_inside = [&](int a, int b, int c) {
+        const double shortest = std::min({(at(a) - at(b)).norm(), (at(b) - at(c)).norm(), (at(c) - at(a)).norm()});
         constexpr int samples = 6;
         for (int i = 0; i <= samples; ++i) {
             for (int j = 0; i + j <= samples; ++j) {
-                const Vec3 x = (i * model.spheres[a].center + j * model.spheres[b].center +
-                                (samples - i - j) * model.spheres[c].center) /
-                               samples;
-                if (out_by(tree, x) > tolerance) return false;
+                const Vec3 x = (i * at(a) + j * at(b) + (samples - i - j) * at(c)) / samples;
+                if (out_by(tree, x) > 0.1 * shortest) return false;
             }
         }
         return true;
