@@ -1,9 +1,11 @@
 // How well spheres and links follow bodies of all kinds: shapes made here, and the surfaces of a folder.
-// Usage: placement_bench [FOLDER of surfaces] [NAME of one body]. A table of skeletons by default options, then how
-// many spheres there are when the body is noisy, turned, meshed coarser and finer, and how coverage falls with spheres.
+// Usage: placement_bench [FOLDER of surfaces] [NAME of one body, or -]. A table of skeletons by default options and,
+// but for -, how many spheres there are when the body is noisy, turned, meshed coarser and finer, and how coverage
+// falls with spheres. Percentages are of the longest side.
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <filesystem>
@@ -31,7 +33,7 @@ struct Row {
 
 double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 
-std::string failure;
+std::string failure;  // of the last body that could not be placed
 
 std::optional<Row> place(const mesh::Surface& surface, const mesh::PlaneRegion& support, double share = 0.06,
                          const BuildOptions& options = {}) {
@@ -159,9 +161,9 @@ int main(int argc, char** argv) {
             }
         }
     }
-    const bool variants = only.empty() || only[0] != '-';
+    const bool variants = only != "-";
     print_head();
     for (const Shape& body : bodies) {
-        if (only.empty() || only[0] == '-' || body.name == only) study(body, variants);
+        if (only.empty() || !variants || body.name == only) study(body, variants);
     }
 }
