@@ -16,20 +16,31 @@ namespace {
 
 using Edges = std::set<std::pair<int, int>>;
 
-// The links, and the ground: held spheres are one piece with those that hold the same neighbour.
-Edges edges_of(const Model& model) {
+double out_by(const mesh::SurfaceTree& tree, const Vec3& point) {
+    return tree.inside(point) ? 0 : tree.closest(point).distance;
+}
+
+// The links, and the ground: held spheres are one piece with those that hold the same neighbour, or to which the body
+// leads straight.
+Edges edges_of(const Model& model, const mesh::SurfaceTree& tree) {
     Edges edges;
-    std::vector<std::set<int>> holders(model.spheres.size());
+    std::vector<std::set<int>> around(model.spheres.size());
     for (const Link& link : model.links) {
         edges.insert(std::minmax(link.a, link.b));
-        if (model.spheres[link.a].held) holders[link.b].insert(link.a);
-        if (model.spheres[link.b].held) holders[link.a].insert(link.b);
+        around[link.a].insert(link.b);
+        around[link.b].insert(link.a);
     }
-    for (const std::set<int>& around : holders) {
-        for (int i : around) {
-            for (int j : around) {
-                if (i < j) edges.emplace(i, j);
-            }
+    const auto joined = [&](int i, int j) {
+        if (std::any_of(around[i].begin(), around[i].end(), [&](int k) { return around[j].contains(k); })) return true;
+        const Vec3 a = model.spheres[i].center, b = model.spheres[j].center;
+        for (int k = 0; k <= 20; ++k) {
+            if (out_by(tree, a + k * (b - a) / 20) > 0.1 * (b - a).norm()) return false;
+        }
+        return true;
+    };
+    for (int i = 0; i < std::ssize(model.spheres); ++i) {
+        for (int j = i + 1; j < std::ssize(model.spheres); ++j) {
+            if (model.spheres[i].held && model.spheres[j].held && joined(i, j)) edges.emplace(i, j);
         }
     }
     return edges;
@@ -46,10 +57,6 @@ int count_components(std::size_t nodes, const Edges& edges) {
     int count = 0;
     for (std::size_t i = 0; i < nodes; ++i) count += parent[i] == static_cast<int>(i);
     return count;
-}
-
-double out_by(const mesh::SurfaceTree& tree, const Vec3& point) {
-    return tree.inside(point) ? 0 : tree.closest(point).distance;
 }
 
 using Triangle = std::array<int, 3>;
@@ -145,7 +152,7 @@ Measures measure(const Model& model, const mesh::SurfaceTree& tree) {
         found.worst_center = std::max(found.worst_center, out_by(tree, model.spheres[i].center));
     }
     found.links = static_cast<int>(model.links.size());
-    Edges edges = edges_of(model);
+    Edges edges = edges_of(model, tree);
     const std::vector<Triangle> triangles = triangles_of(model, tree, edges);
     found.components = count_components(model.spheres.size(), edges);
     found.loops =
