@@ -9,6 +9,8 @@
 #include "mesh/errors.h"
 #include "skeleton/placement/cover.h"
 #include "skeleton/placement/masses.h"
+#include "skeleton/placement/mend.h"
+#include "skeleton/placement/place.h"
 #include "skeleton/placement/sections.h"
 #include "skeleton/placement/skin.h"
 
@@ -18,11 +20,11 @@ namespace {
 constexpr int fineness = 60;  // tetrahedra a sphere, at least
 
 Body prepare(const mesh::Surface& surface, const mesh::SurfaceTree& tree, const mesh::VolumeMesh& volume,
-             const std::vector<mesh::Region>& supports, int spheres) {
+             const std::vector<mesh::Region>& supports, int spheres, double delta) {
     Body body;
     body.graph = make_tet_graph(volume, std::max(6000, fineness * spheres));
     body.ground = find_ground(body.graph, supports);
-    body.axis = medial_axis(surface, tree, 0.02 * mesh::bounding_box(surface.vertices).diagonal());
+    body.axis = medial_axis(surface, tree, std::min(0.02 * mesh::bounding_box(surface.vertices).diagonal(), delta));
     if (body.axis.radii.size() == 0)
         throw InvalidInput("no ball fits into the surface: is it closed, and does it look outward?");
     body.core = find_core(body.graph, body.axis);
@@ -30,21 +32,8 @@ Body prepare(const mesh::Surface& surface, const mesh::SurfaceTree& tree, const 
     for (int t = 0; t < body.graph.size(); ++t) {
         if (body.ground.held[t]) body.free_volumes(t) = 0;
     }
-    body.way = path_lengths(body.graph, body.ground.behind);
+    body.way = path_lengths(body.graph, body.core.at, body.ground.behind);
     return body;
-}
-
-// Lloyd's middles may lie outside a bent body or in a support: the nearest place of the cell is taken then.
-void keep_inside(const Body& body, const mesh::SurfaceTree& tree, const std::vector<mesh::Region>& supports,
-                 std::vector<Site>& sites) {
-    for (Site& site : sites) {
-        if (site.held || (tree.inside(site.at) && !mesh::contains(supports, site.at))) continue;
-        site.at = body.graph.centers.row(site.tet);
-    }
-}
-
-std::ptrdiff_t free_sites(const std::vector<Site>& sites) {
-    return std::count_if(sites.begin(), sites.end(), [](const Site& site) { return !site.held; });
 }
 
 // The surface's vertices that no support holds.
@@ -158,34 +147,36 @@ Model build_skeleton(const mesh::Surface& surface, const mesh::VolumeMesh& volum
     options.validate();
     material.validate();
     const mesh::SurfaceTree tree(surface);
-    Body body = prepare(surface, tree, volume, supports, options.spheres);
     const double delta =
         options.coverage > 0 ? options.coverage : 0.05 * mesh::bounding_box(surface.vertices).longest_side();
+    Body body = prepare(surface, tree, volume, supports, options.spheres, delta);
     BuildReport result;
     result.medial_centers = body.axis.centers;
     result.medial_radii = body.axis.radii;
 
     // How many, and how far apart. Many more than a chain can hold fill the body in layers.
-    int count =
-        options.spheres > 0 ? options.spheres : default_spheres(body.free_volumes, body.core, body.way.maxCoeff());
+    const int count = options.spheres > 0
+                          ? options.spheres
+                          : default_spheres(body.graph, body.free_volumes, body.core, body.way.maxCoeff());
     double spacing = spacing_of_spheres(body.free_volumes, body.core, count);
     if (spacing < 0.5 * mean_radius(body.free_volumes, body.core)) {
         body.core = fill_core(body.graph, body.core);
         spacing = spacing_of_spheres(body.free_volumes, body.core, count);
     }
 
-    // Where: spread evenly over the core.
-    std::vector<Site> sites = ground_sites(body.core, body.ground, spacing);
-    add_sites(body.graph, body.core, body.ground.held, count, sites);
-    relax_sites(body.graph, body.core, body.ground.held, spacing, sphere_shares(body.free_volumes, body.core, spacing),
-                sites);
-    keep_inside(body, tree, supports, sites);
+    // Where: spread evenly over the core, and where links could not follow the body else.
+    const Handles handles = find_handles(body.graph);
+    const double tolerance = 0.005 * mesh::bounding_box(surface.vertices).longest_side();
+    std::vector<Site> sites =
+        place_sites(body, tree, handles, supports, spacing, tolerance, count, options.spheres > 0);
 
     // What they leave uncovered gets balls of its own, apart from the others if that will do.
     const Points vertices = free_vertices(surface, supports);
     Model model;
+    std::vector<int> owner;
     const auto place_spheres = [&] {
         model.spheres = make_spheres(body, tree, supports, sites, spacing);
+        owner = share_out(body, sites, model.spheres);
         swell(vertices, delta, model.spheres);
         const Eigen::VectorXd distance = outside(model.spheres, vertices);
         result.coverage = std::max(0., vertices.rows() > 0 ? distance.maxCoeff() : 0);
@@ -196,6 +187,7 @@ Model build_skeleton(const mesh::Surface& surface, const mesh::VolumeMesh& volum
         const std::vector<Site> added =
             covering_sites(body, supports, sites, model.spheres, vertices, delta, gap * spacing);
         sites.insert(sites.end(), added.begin(), added.end());
+        mend_sites(body, tree, handles, tolerance, 2 * count + 8, sites);
         place_spheres();
     }
     if (result.coverage > delta) {
@@ -205,10 +197,11 @@ Model build_skeleton(const mesh::Surface& surface, const mesh::VolumeMesh& volum
                         free_sites(sites), result.coverage, delta));
     }
 
-    // Who belongs to whom: cells, masses, links, skin.
-    const std::vector<int> owner = share_out(body, sites, model.spheres);
+    // Who belongs to whom: masses, links, skin.
     set_masses(body.graph, owner, material.density, model.spheres);
     std::vector<Section> sections = find_sections(body.graph, body.core, owner, sites);
+    const auto dispensed = find_mending(body, tree, handles, owner, sites, tolerance).dispensed;
+    std::erase_if(sections, [&](const Section& s) { return dispensed.count({s.a, s.b}) != 0; });
     thicken_extras(sites, sections);
     model.links = make_links(sections, material, options.links);
     if (options.links == LinkKind::full) set_volume_stiffness(body, sites, material, model.spheres);

@@ -12,7 +12,7 @@ struct Body {
     Core core;
     Ground ground;
     Eigen::VectorXd free_volumes;  // zero where held (m) [mm^3]
-    Eigen::VectorXd way;           // through the body from the support (m) [mm]
+    Eigen::VectorXd way;           // along the core from the support (m) [mm]
 };
 
 }  // namespace palpate::skeleton

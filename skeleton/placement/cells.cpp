@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <numeric>
 #include <queue>
 #include <tuple>
 
@@ -44,11 +45,33 @@ void find_starts(const TetGraph& graph, const Core& core, const std::vector<int>
     }
 }
 
+// After sites moved a little: tetrahedra go over to neighbours' sites that are nearer, until none will.
+void regrow_cells(const TetGraph& graph, const Core& core, const std::vector<char>& held,
+                  const std::vector<Site>& sites, std::vector<int>& owner) {
+    Eigen::VectorXd distances(graph.size());
+    for (int t = 0; t < graph.size(); ++t) distances(t) = distance(graph, core, t, sites[owner[t]]);
+    std::vector<int> front(graph.size());
+    std::iota(front.begin(), front.end(), 0);
+    for (std::size_t i = 0; i < front.size(); ++i) {
+        const int t = front[i];
+        for (int c = 0; c < 4; ++c) {
+            const int u = graph.neighbors(t, c);
+            if (u < 0 || owner[u] == owner[t] || held[u] != held[t]) continue;
+            const double d = distance(graph, core, u, sites[owner[t]]);
+            if (d >= distances(u)) continue;
+            distances(u) = d;
+            owner[u] = owner[t];
+            front.push_back(u);
+        }
+    }
+}
+
 void settle(const TetGraph& graph, const Core& core, const std::vector<char>& held, double spacing,
             std::vector<Site>& sites) {
     double step = spacing;
+    std::vector<int> owner = grow_cells(graph, core, held, sites);
     for (int round = 0; round < 40 && step > 0.02 * spacing; ++round) {
-        const std::vector<int> owner = grow_cells(graph, core, held, sites);
+        if (round > 0) regrow_cells(graph, core, held, sites, owner);
         Points middle = Points::Zero(std::ssize(sites), 3);
         Eigen::VectorXd volume = Eigen::VectorXd::Zero(std::ssize(sites));
         for (int t = 0; t < graph.size(); ++t) {

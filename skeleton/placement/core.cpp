@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numbers>
 #include <numeric>
 
 namespace palpate::skeleton {
@@ -15,8 +16,8 @@ constexpr double runs_on = 0.42;  // a direction counts whose variance is at lea
 
 // Medial balls, largest first.
 struct Balls {
-    Points centers;
-    Eigen::VectorXd radii;
+    Eigen::Array<double, Eigen::Dynamic, 3> centers;
+    Eigen::ArrayXd radii;
 
     explicit Balls(const MedialAxis& axis) : centers(axis.centers.rows(), 3), radii(axis.radii.size()) {
         std::vector<int> order(axis.radii.size());
@@ -28,8 +29,14 @@ struct Balls {
         }
     }
 
-    double squared_distance(int ball, const Vec3& point) const {
-        return (centers.row(ball).transpose() - point).squaredNorm();
+    Vec3 center(int ball) const { return centers.row(ball).matrix(); }
+
+    double squared_distance(int ball, const Vec3& point) const { return (center(ball) - point).squaredNorm(); }
+
+    // From the first `count` balls.
+    Eigen::ArrayXd squared_distances(Eigen::Index count, const Vec3& point) const {
+        return (centers.col(0).head(count) - point.x()).square() + (centers.col(1).head(count) - point.y()).square() +
+               (centers.col(2).head(count) - point.z()).square();
     }
 
     // The largest ball that holds a point; where none does (in a sharp corner), the one that comes nearest.
@@ -39,21 +46,42 @@ struct Balls {
             if (squared_distance(i, point) <= 1.002 * radii(i) * radii(i)) return i;
         }
         Eigen::Index nearest = 0;
-        ((centers.rowwise() - point.transpose()).rowwise().norm() - radii).minCoeff(&nearest);
+        (squared_distances(n, point).sqrt() - radii).minCoeff(&nearest);
         return static_cast<int>(nearest);
     }
 
     // Of the balls that hold a point and are about as large as the given one: that with the nearest centre.
     int nearest_like(int ball, const Vec3& point) const {
+        const auto smaller = [&](double radius, double least) { return radius >= least; };
+        const auto end = std::lower_bound(radii.begin(), radii.end(), 0.9 * radii(ball), smaller);
+        const Eigen::ArrayXd squared = squared_distances(end - radii.begin(), point);
         int best = ball;
         double least = squared_distance(ball, point);
-        for (int i = 0; i < radii.size() && radii(i) >= 0.9 * radii(ball); ++i) {
-            const double squared = squared_distance(i, point);
-            if (squared >= least || squared > radii(i) * radii(i)) continue;
+        for (int i = 0; i < squared.size(); ++i) {
+            if (squared(i) >= least || squared(i) > radii(i) * radii(i)) continue;
             best = i;
-            least = squared;
+            least = squared(i);
         }
         return best;
+    }
+
+    // Balls of about the same place and size as one before them are stood for by that one.
+    std::vector<int> representatives(const std::vector<char>& used) const {
+        std::vector<int> stands(used.size()), kept;
+        for (int b = 0; b < std::ssize(used); ++b) {
+            stands[b] = b;
+            if (!used[b]) continue;
+            const auto like = [&](int k) {
+                return radii(b) > 0.95 * radii(k) && squared_distance(k, center(b)) < 0.04 * radii(k) * radii(k);
+            };
+            const auto found = std::find_if(kept.begin(), kept.end(), like);
+            if (found != kept.end()) {
+                stands[b] = *found;
+            } else {
+                kept.push_back(b);
+            }
+        }
+        return stands;
     }
 };
 
@@ -64,7 +92,7 @@ int ball_of(const Balls& balls, const Vec3& point, std::vector<int>& onward) {
     Vec3 inner = point;
     int ball = balls.largest_at(point);
     for (int step = 0; step < 8; ++step) {
-        const Vec3 center = balls.centers.row(ball);
+        const Vec3 center = balls.center(ball);
         if (onward[ball] < 0) onward[ball] = balls.largest_at(center);
         const int larger = onward[ball];
         if (balls.radii(larger) < 1.3 * balls.radii(ball)) break;
@@ -128,12 +156,18 @@ Core find_core(const TetGraph& graph, const MedialAxis& axis) {
     const Balls balls(axis);
     const bool filled = graph.volumes.sum() < lump * std::pow(balls.radii(0), 3);
     std::vector<int> ball(graph.size()), onward(balls.radii.size(), -1);
-    std::map<int, int> nearest;  // of each ball in use: the tetrahedron at its centre
+    std::vector<char> used(balls.radii.size());
     for (int t = 0; t < graph.size(); ++t) {
         const Vec3 center = graph.centers.row(t);
-        const int b = ball[t] = filled ? balls.largest_at(center) : ball_of(balls, center, onward);
+        ball[t] = filled ? balls.largest_at(center) : ball_of(balls, center, onward);
+        used[ball[t]] = 1;
+    }
+    const std::vector<int> stands = balls.representatives(used);
+    std::map<int, int> nearest;  // of each ball in use: the tetrahedron at its centre
+    for (int t = 0; t < graph.size(); ++t) {
+        const int b = ball[t] = stands[ball[t]];
         const auto [found, fresh] = nearest.try_emplace(b, t);
-        const Vec3 best = graph.centers.row(found->second);
+        const Vec3 center = graph.centers.row(t), best = graph.centers.row(found->second);
         if (!fresh && balls.squared_distance(b, center) < balls.squared_distance(b, best)) found->second = t;
     }
 
@@ -144,7 +178,7 @@ Core find_core(const TetGraph& graph, const MedialAxis& axis) {
     for (const auto& [b, start] : nearest) {
         const int k = index[b] = static_cast<int>(core.neighborhoods.size());
         Neighborhood here;
-        here.middle = balls.centers.row(b);
+        here.middle = balls.center(b);
         here.radius = balls.radii(b);
         if (!filled) look_round(graph, start, here, seen, k);
         core.neighborhoods.push_back(here);
@@ -187,21 +221,38 @@ double spacing_of_spheres(const Eigen::VectorXd& volumes, const Core& core, int 
     return high;
 }
 
-int default_spheres(const Eigen::VectorXd& volumes, const Core& core, double reach) {
-    Vec3 share = Vec3::Zero();      // of the volume, by dimensions
-    double length = 0, radius = 0;  // of the limbs
+int default_spheres(const TetGraph& graph, const Eigen::VectorXd& volumes, const Core& core, double reach) {
+    Vec3 share = Vec3::Zero();       // of the volume, by dimensions
+    double radius = 0, squares = 0;  // of the limbs: of their balls, of their material's distance from the core
     for (int t = 0; t < volumes.size(); ++t) {
         const Neighborhood& n = core.of(t);
         share(n.dimensions - 1) += volumes(t);
         if (n.dimensions > 1) continue;
-        length += volumes(t) / n.section();
         radius += volumes(t) * n.radius;
+        squares += volumes(t) * (graph.centers.row(t) - core.at.row(t)).squaredNorm();
     }
-    double count = (60 * share(1) + 120 * share(2)) / share.sum();
+    double length = 0;  // of the limbs
     if (share(0) > 0) {
+        // Edges and ends have small balls of their own, which would count as much length.
         radius /= share(0);
-        count += length / std::clamp(reach / 14, 0.6 * radius, 2 * radius);
+        for (int t = 0; t < volumes.size(); ++t) {
+            const double r = std::max(core.of(t).radius, 0.75 * radius);
+            if (core.of(t).dimensions == 1) length += volumes(t) / Neighborhood{.dimensions = 1, .radius = r}.section();
+        }
+        // Balls miss the middle of a section by up to their spacing; its moment tells its size on the whole:
+        // a circle's mean square is r^2 / 2, so its area 2 pi times that, and a square's nearly.
+        const double size = std::sqrt(2 * std::numbers::pi / 3.5 * squares / share(0));
+        length *= std::pow(radius / size, 2);
+        radius = size;
     }
+
+    // A few per cent of another kind are a limb's end or a plate's rim: they are no part to be counted.
+    share /= share.sum();
+    Vec3 part;
+    for (int d = 0; d < 3; ++d) part(d) = share(d) * std::clamp((share(d) - 0.05) / 0.1, 0., 1.);
+    part /= part.sum();
+    double count = 60 * part(1) + 120 * part(2);
+    if (part(0) > 0) count += part(0) / share(0) * length / std::clamp(reach / 14, 0.6 * radius, 2 * radius);
     return std::max(4, static_cast<int>(std::lround(count)));
 }
 

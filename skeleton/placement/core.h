@@ -42,8 +42,8 @@ Eigen::VectorXd sphere_shares(const Eigen::VectorXd& volumes, const Core& core, 
 double spacing_of_spheres(const Eigen::VectorXd& volumes, const Core& core, int spheres);
 
 /// A good number of spheres for the shape: 120 for a lump, 60 for a plate, 10 to 20 for a limb; parts count by their
-/// share. `reach`: the longest way from the support through the body [mm].
-int default_spheres(const Eigen::VectorXd& volumes, const Core& core, double reach);
+/// share, those of next to nothing not at all. `reach`: the longest way from the support along the core [mm].
+int default_spheres(const TetGraph& graph, const Eigen::VectorXd& volumes, const Core& core, double reach);
 
 /// Mean of the largest balls' radii over the volume [mm].
 double mean_radius(const Eigen::VectorXd& volumes, const Core& core);

@@ -1,7 +1,9 @@
 #include "skeleton/placement/cover.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
+#include <utility>
 
 namespace palpate::skeleton {
 namespace {
@@ -11,27 +13,35 @@ constexpr double swelling = 0.5;  // of the distance that points may lie outside
 
 // Few of the allowed balls that hold the points.
 std::vector<int> cover(const MedialAxis& axis, const std::vector<char>& allowed, const Points& points,
-                       std::vector<int> left, double delta) {
-    const auto holds = [&](Eigen::Index ball, int point) {
-        return (points.row(point) - axis.centers.row(ball)).norm() <= axis.radii(ball) + delta;
-    };
-    std::vector<int> chosen;
-    while (!left.empty()) {
-        int best = -1;
-        std::ptrdiff_t most = 0;
-        for (int b = 0; b < axis.radii.size(); ++b) {
-            if (!allowed[b]) continue;
-            const auto held = std::count_if(left.begin(), left.end(), [&](int p) { return holds(b, p); });
-            if (held < most || held == 0) continue;
-            if (held == most && best >= 0 && axis.radii(b) <= axis.radii(best)) continue;
-            most = held;
-            best = b;
+                       const std::vector<int>& wanted, double delta) {
+    const auto n = static_cast<int>(axis.radii.size());
+    std::vector<std::vector<int>> held_by(n), holders(wanted.size());
+    for (int b = 0; b < n; ++b) {
+        if (!allowed[b]) continue;
+        for (std::size_t p = 0; p < wanted.size(); ++p) {
+            if ((points.row(wanted[p]) - axis.centers.row(b)).norm() > axis.radii(b) + delta) continue;
+            held_by[b].push_back(static_cast<int>(p));
+            holders[p].push_back(b);
         }
-        if (best < 0) break;
-        chosen.push_back(best);
-        std::erase_if(left, [&](int p) { return holds(best, p); });
     }
-    return chosen;
+    std::vector<std::ptrdiff_t> left(n);  // how many that nobody holds yet each ball holds
+    std::transform(held_by.begin(), held_by.end(), left.begin(),
+                   [](const auto& points_of) { return points_of.size(); });
+    std::vector<char> done(wanted.size());
+    std::vector<int> chosen;
+    for (;;) {
+        int best = -1;
+        for (int b = 0; b < n; ++b) {
+            if (left[b] == 0) continue;
+            if (best < 0 || std::pair(left[b], axis.radii(b)) > std::pair(left[best], axis.radii(best))) best = b;
+        }
+        if (best < 0) return chosen;
+        chosen.push_back(best);
+        for (int p : held_by[best]) {
+            if (std::exchange(done[p], 1)) continue;
+            for (int b : holders[p]) --left[b];
+        }
+    }
 }
 
 }  // namespace
@@ -102,9 +112,13 @@ std::vector<Site> covering_sites(const Body& body, const std::vector<mesh::Regio
     std::vector<Site> added;
     for (int ball : cover(body.axis, allowed, points, uncovered, (1 + 0.9 * swelling) * delta)) {
         const Eigen::RowVector3d center = body.axis.centers.row(ball);
+        // The nearest tetrahedron that is still to be had.
+        Eigen::VectorXd squares = (body.graph.centers.rowwise() - center).rowwise().squaredNorm();
+        for (Eigen::Index t = 0; t < squares.size(); ++t) {
+            if (taken[t]) squares(t) = std::numeric_limits<double>::infinity();
+        }
         Eigen::Index tet = 0;
-        (body.graph.centers.rowwise() - center).rowwise().squaredNorm().minCoeff(&tet);
-        if (taken[tet]) continue;
+        if (!std::isfinite(squares.minCoeff(&tet))) break;
         taken[tet] = 1;
         added.push_back({center, static_cast<int>(tet), false, true});
     }

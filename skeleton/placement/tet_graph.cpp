@@ -7,6 +7,7 @@
 #include <limits>
 #include <map>
 #include <queue>
+#include <utility>
 
 #include "mesh/errors.h"
 
@@ -90,6 +91,20 @@ TetGraph::Quads find_neighbors(const TetGraph& graph) {
     return neighbors;
 }
 
+// Whether neighbours lead from the first tetrahedron to each (m).
+std::vector<char> reachable(const TetGraph& graph) {
+    std::vector<char> seen(graph.size());
+    std::vector<int> front{0};
+    seen[0] = 1;
+    for (std::size_t i = 0; i < front.size(); ++i) {
+        for (int c = 0; c < 4; ++c) {
+            const int u = graph.neighbors(front[i], c);
+            if (u >= 0 && !std::exchange(seen[u], 1)) front.push_back(u);
+        }
+    }
+    return seen;
+}
+
 }  // namespace
 
 std::array<int, 3> TetGraph::face_nodes(int tet, int corner) const {
@@ -117,10 +132,10 @@ TetGraph make_tet_graph(const mesh::VolumeMesh& body, int least) {
         graph.volumes(t) = volume(graph.nodes, {c(0), c(1), c(2), c(3)});
     }
 
-    const Eigen::VectorXd path = path_lengths(graph, {0});
-    const auto apart = std::find_if(path.begin(), path.end(), [](double d) { return d > 1e300; });
-    if (apart != path.end()) {
-        const Vec3 at = graph.centers.row(apart - path.begin());
+    const std::vector<char> together = reachable(graph);
+    const auto apart = std::find(together.begin(), together.end(), 0);
+    if (apart != together.end()) {
+        const Vec3 at = graph.centers.row(apart - together.begin());
         throw InvalidInput(
             fmt::format("the body is in several pieces, one of them near ({:.4g}, {:.4g}, {:.4g}) mm: "
                         "a skeleton is made for one piece, so join them or keep one",
@@ -129,7 +144,7 @@ TetGraph make_tet_graph(const mesh::VolumeMesh& body, int least) {
     return graph;
 }
 
-Eigen::VectorXd path_lengths(const TetGraph& graph, const std::vector<int>& from) {
+Eigen::VectorXd path_lengths(const TetGraph& graph, const Points& at, const std::vector<int>& from) {
     using Entry = std::pair<double, int>;
     Eigen::VectorXd length = Eigen::VectorXd::Constant(graph.size(), std::numeric_limits<double>::infinity());
     std::priority_queue<Entry, std::vector<Entry>, std::greater<>> front;
@@ -144,7 +159,7 @@ Eigen::VectorXd path_lengths(const TetGraph& graph, const std::vector<int>& from
         for (int c = 0; c < 4; ++c) {
             const int u = graph.neighbors(t, c);
             if (u < 0) continue;
-            const double further = d + (graph.centers.row(u) - graph.centers.row(t)).norm();
+            const double further = d + (at.row(u) - at.row(t)).norm();
             if (further >= length(u)) continue;
             length(u) = further;
             front.emplace(further, u);

@@ -29,7 +29,7 @@ struct TetGraph {
 /// @throws InvalidInput when the body is in several pieces.
 TetGraph make_tet_graph(const mesh::VolumeMesh& body, int least);
 
-/// Length of the shortest path over neighbours from the given tetrahedra to each (m) [mm].
-Eigen::VectorXd path_lengths(const TetGraph& graph, const std::vector<int>& from);
+/// Length of the shortest path over neighbours from the given tetrahedra to each (m) [mm]; they lie `at` (m x 3).
+Eigen::VectorXd path_lengths(const TetGraph& graph, const Points& at, const std::vector<int>& from);
 
 }  // namespace palpate::skeleton

@@ -216,7 +216,7 @@ TEST(BuildSkeleton, AnUncalibratedChainBendsLikeABeam) {
 /// A thick limb's square end gets spheres of its own for its corners. Pushed at a corner, the end face stays a face:
 /// its vertices lie within a tenth of the deflection round where the face's mean motion and turn put them.
 TEST(BuildSkeleton, AnEndPushedAtItsCornerKeepsItsShape) {
-    const Built built = build(block(Vec3(100, 30, 30), {20, 6, 6}));
+    const Built built = build(block(Vec3(100, 30, 30), {20, 6, 6}), {.coverage = 3});
     ASSERT_GT(loops(built.model), 0) << "corners without spheres of their own test nothing";
     const fem::Material material;
     const double force = 2 * 3 * material.young * std::pow(30., 4) / 12 / std::pow(100., 3);  // [N], 2 mm by Euler
