@@ -1,0 +1,31 @@
+#include "pipeline/quality/calibrated.h"
+
+#include <chrono>
+
+#include "identify/compare.h"
+#include "identify/identify.h"
+
+namespace palpate::pipeline {
+
+CalibratedQuality calibrate_for_quality(const skeleton::Model& model, const ProbedQuality& body, skeleton::Law law,
+                                        int threads, const Progress& progress) {
+    identify::IdentifyOptions options;
+    options.law = law == skeleton::Law::linear ? identify::LawChoice::linear : identify::LawChoice::large_rotation;
+    options.particles = 10;
+    options.threads = threads;
+    const auto start = std::chrono::steady_clock::now();
+    identify::IdentifyResult found = identify::identify(model, body.fit, options, progress);
+    CalibratedQuality result;
+    result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    result.notes = std::move(found.notes);
+    result.model = std::move(found.model);
+
+    const identify::Comparison fitted = compare(result.model, body.fit, threads);
+    result.fit = summarise(deviations(body.fit, fitted.predicted));
+    const identify::Comparison held_out = compare(result.model, body.held_out, threads);
+    result.held_out = summarise(deviations(body.held_out, held_out.predicted));
+    result.not_borne = static_cast<int>(held_out.not_borne.size());
+    return result;
+}
+
+}  // namespace palpate::pipeline
