@@ -6,6 +6,7 @@
 #include <iterator>
 #include <limits>
 #include <map>
+#include <numeric>
 #include <set>
 #include <vector>
 
@@ -20,8 +21,8 @@ double out_by(const mesh::SurfaceTree& tree, const Vec3& point) {
     return tree.inside(point) ? 0 : tree.closest(point).distance;
 }
 
-// The links, and the ground: held spheres are one piece with those that hold the same neighbour, or to which the body
-// leads straight.
+// The links, and the ground: held spheres are one piece with those that hold the same neighbour, and such pieces are
+// one where the body leads straight from one to the other.
 Edges edges_of(const Model& model, const mesh::SurfaceTree& tree) {
     Edges edges;
     std::vector<std::set<int>> around(model.spheres.size());
@@ -30,19 +31,29 @@ Edges edges_of(const Model& model, const mesh::SurfaceTree& tree) {
         around[link.a].insert(link.b);
         around[link.b].insert(link.a);
     }
-    const auto joined = [&](int i, int j) {
-        if (std::any_of(around[i].begin(), around[i].end(), [&](int k) { return around[j].contains(k); })) return true;
+    const auto neighbors = [&](int i, int j) {
+        return std::any_of(around[i].begin(), around[i].end(), [&](int k) { return around[j].contains(k); });
+    };
+    const auto straight = [&](int i, int j) {
         const Vec3 a = model.spheres[i].center, b = model.spheres[j].center;
         for (int k = 0; k <= 20; ++k) {
             if (out_by(tree, a + k * (b - a) / 20) > 0.1 * (b - a).norm()) return false;
         }
         return true;
     };
-    for (int i = 0; i < std::ssize(model.spheres); ++i) {
-        for (int j = i + 1; j < std::ssize(model.spheres); ++j) {
-            if (model.spheres[i].held && model.spheres[j].held && joined(i, j)) edges.emplace(i, j);
+    std::vector<int> piece(model.spheres.size());
+    std::iota(piece.begin(), piece.end(), 0);
+    const auto join = [&](const auto& joined) {
+        for (int i = 0; i < std::ssize(model.spheres); ++i) {
+            for (int j = i + 1; j < std::ssize(model.spheres); ++j) {
+                if (!model.spheres[i].held || !model.spheres[j].held || !joined(i, j)) continue;
+                edges.emplace(i, j);
+                std::replace(piece.begin(), piece.end(), int{piece[j]}, int{piece[i]});
+            }
         }
-    }
+    };
+    join(neighbors);
+    join([&](int i, int j) { return piece[i] != piece[j] && straight(i, j); });
     return edges;
 }
 
