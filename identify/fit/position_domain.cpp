@@ -1,5 +1,6 @@
 #include "identify/fit/position_domain.h"
 
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <numbers>

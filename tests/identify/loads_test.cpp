@@ -19,28 +19,25 @@ Vec3 total_force(const skeleton::Load& load) {
     return sum;
 }
 
-Vec3 center(const skeleton::Load& load) {
-    Vec3 sum = Vec3::Zero();
-    double weight = 0;
-    for (const skeleton::PointForce& force : load.forces) {
-        sum += force.force.norm() * force.at.rest;
-        weight += force.force.norm();
-    }
-    return sum / weight;
-}
 
 TEST(ContactLoads, APatchCarriesTheForceEvenlyRoundItsPoint) {
     const skeleton::Model model = slab();
     const Vec3 point(40, 35, 10), force(1, -2, -3);
     const skeleton::Load load = ContactLoads(model)({{point, force, 12}});
     EXPECT_LT((total_force(load) - force).norm(), 1e-12);  // rounding
-    EXPECT_LT((center(load) - point).norm(), 0.5);         // pieces of a third of the radius, cut at the rim
-    double inertia = 0;
-    for (const auto& f : load.forces) {
-        EXPECT_LE((f.at.rest - point).norm(), 12);
-        EXPECT_DOUBLE_EQ(f.at.rest.z(), 10);
-        inertia += f.force.norm() / force.norm() * (f.at.rest - point).squaredNorm();
+    ASSERT_EQ(load.forces.size(), 1U);
+    EXPECT_LT((load.forces[0].at.rest - point).norm(), 0.5);  // pieces of a third of the radius, cut at the rim
+    ASSERT_EQ(load.presses.size(), 1U);
+    EXPECT_EQ(load.presses[0].force, force);
+    EXPECT_LT((load.presses[0].normal - Vec3::UnitZ()).norm(), 1e-9);
+    double inertia = 0, shares = 0;
+    for (const auto& [at, share] : load.presses[0].patch) {
+        EXPECT_LE((at - point).norm(), 12);
+        EXPECT_DOUBLE_EQ(at.z(), 10);
+        inertia += share * (at - point).squaredNorm();
+        shares += share;
     }
+    EXPECT_NEAR(shares, 1, 1e-12);
     EXPECT_NEAR(inertia, 12 * 12 / 2.0, 8);  // of a disc r^2 / 2, a tenth for the rim
 }
 
