@@ -111,7 +111,8 @@ std::vector<Link> make_links(const std::vector<Section>& sections, const fem::Ma
 void set_volume_stiffness(const Body& body, const std::vector<Site>& sites, const fem::Material& material,
                           std::vector<Sphere>& spheres) {
     for (std::size_t i = 0; i < sites.size(); ++i) {
-        if (!sites[i].held && body.core.of(sites[i].tet).dimensions == 3) spheres[i].volume = std::max(0., material.lame_lambda());
+        if (!sites[i].held && body.core.of(sites[i].tet).dimensions == 3)
+            spheres[i].volume = std::max(0., material.lame_lambda());
     }
 }
 

@@ -15,7 +15,8 @@ Mat3 twice_symmetric(const Mat3& A) { return A + A.transpose(); }
 
 }  // namespace
 
-// A step turns q_i to exp(t_i) q_i, and with it the mean by m = sum B_i t_i to first order, B_i = w_i (c_i - [v_i]) / n.
+// A step turns q_i to exp(t_i) q_i, and with it the mean by m = sum B_i t_i to first order, B_i = w_i (c_i - [v_i]) /
+// n.
 CarriedPoint::CarriedPoint(const Attachment& point, const State& rest, const State& state) {
     of_.reserve(point.shares.size());
     Vec3 X = Vec3::Zero(), x = Vec3::Zero();
@@ -101,8 +102,7 @@ Eigen::MatrixXd CarriedPoint::curvature(const Vec3& f) const {
         const Mat3& B_i = of_[i].mean_turn;
         for (int j = 0; j < k; ++j) {
             const Mat3& B_j = of_[j].mean_turn;
-            result.block<3, 3>(6 * i + 3, 6 * j + 3) =
-                B_i.transpose() * (H * B_j + Y[j]) + Y[i].transpose() * B_j;
+            result.block<3, 3>(6 * i + 3, 6 * j + 3) = B_i.transpose() * (H * B_j + Y[j]) + Y[i].transpose() * B_j;
             const Mat3 mixed = B_i.transpose() * Z[j];
             result.block<3, 3>(6 * i + 3, 6 * j) = mixed;
             result.block<3, 3>(6 * j, 6 * i + 3) = mixed.transpose();

@@ -31,12 +31,12 @@ public:
 private:
     struct Carrier {
         int sphere;
-        double w;         // weight
-        Vec3 y;           // x_i - x [mm]
-        double c;         // (c, v): q_i q^-1
+        double w;  // weight
+        Vec3 y;    // x_i - x [mm]
+        double c;  // (c, v): q_i q^-1
         Vec3 v;
         Mat3 moves, turns;  // C_i, in space
-        Mat3 mean_turn;   // how the mean turn follows that of the sphere
+        Mat3 mean_turn;     // how the mean turn follows that of the sphere
         Jacobian jacobian;
     };
     std::vector<Carrier> of_;

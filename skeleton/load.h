@@ -15,16 +15,16 @@ struct PointForce {
 
 /// A force that is spread over a patch of the surface: what dents are made of.
 struct Press {
-    Vec3 force = Vec3::Zero();                       // [N]
-    Vec3 normal = Vec3::Zero();                      // of the surface there, outward, unit
-    double radius = 0;                               // [mm], > 0
-    std::vector<std::pair<Vec3, double>> patch;      // points of it at rest and their shares, at least one
+    Vec3 force = Vec3::Zero();                   // [N]
+    Vec3 normal = Vec3::Zero();                  // of the surface there, outward, unit
+    double radius = 0;                           // [mm], > 0
+    std::vector<std::pair<Vec3, double>> patch;  // points of it at rest and their shares, at least one
 };
 
 /// What acts on a skeleton from outside.
 struct Load {
     std::vector<PointForce> forces;
-    std::vector<Press> presses;     // the same forces where they dent the surface; they do no work on the spheres
+    std::vector<Press> presses;   // the same forces where they dent the surface; they do no work on the spheres
     Vec3 gravity = Vec3::Zero();  // [mm/s^2], on the spheres' masses
 };
 
@@ -34,7 +34,8 @@ Eigen::VectorXd external_force(const Model& model, const State& state, const Loa
 /// Work of the dead forces on the way from rest [N mm]; external_force is its derivative.
 double external_work(const Model& model, const State& state, const Load& load);
 
-/// A block (a, b) of a second derivative by the steps of two spheres, a <= b; where a < b its transpose stands at (b, a).
+/// A block (a, b) of a second derivative by the steps of two spheres, a <= b; where a < b its transpose stands at (b,
+/// a).
 struct CurvatureBlock {
     int a = 0, b = 0;
     Eigen::Matrix<double, 6, 6> block;

@@ -59,8 +59,9 @@ struct Link {
 /// A sphere's share in carrying a point.
 struct Share {
     int sphere = 0;
-    double weight = 0;                                                         // of the sphere in the mean motion
-    Eigen::Matrix<double, 3, 6> follow = Eigen::Matrix<double, 3, 6>::Zero();  // d point / d step of the sphere, at rest
+    double weight = 0;  // of the sphere in the mean motion
+    Eigen::Matrix<double, 3, 6> follow =
+        Eigen::Matrix<double, 3, 6>::Zero();  // d point / d step of the sphere, at rest
 };
 
 /// Where a point of the body hangs: on one sphere or several, whose weights add up to 1. It follows their mean motion

@@ -4,8 +4,8 @@
 
 namespace palpate::skeleton {
 
-/// Where the stiffnesses of a model stand in one vector k: elongation, flexion and torsion of each link (3L); then, when
-/// its links are full, flexion_2, shear and shear_2 of each (3L), and the volume's of each sphere (N).
+/// Where the stiffnesses of a model stand in one vector k: elongation, flexion and torsion of each link (3L); then,
+/// when its links are full, flexion_2, shear and shear_2 of each (3L), and the volume's of each sphere (N).
 class StiffnessOrder {
 public:
     explicit StiffnessOrder(const Model& model)

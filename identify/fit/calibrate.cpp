@@ -147,7 +147,7 @@ Calibration calibrate(const skeleton::Model& model, const std::vector<StateReadi
     // one multiplier a kind; a second time with the model error that the first fit left
     report(progress, "uniform fit", 0.1);
     PositionDomain uniform(model, law, group_stiffness(model, Scope::uniform, options.fixed), readings,
-                                 options.threads);
+                           options.threads);
     Calibrator::Stage stage = calibrator.fit_uniform(uniform, first_error);
     stage = calibrator.fit_uniform(uniform, model_error_after(uniform, stage.fit, stage.prior));
     double model_error = stage.model_error;

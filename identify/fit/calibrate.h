@@ -23,7 +23,8 @@ struct Calibration {
 /// 2. one multiplier a kind of stiffness, round the common factor that fits best (closed form), sd of ln 3; twice, as
 /// the
 ///    first fit tells the model error of the second;
-///    after each fit, here and below, the dents round contacts that explain most of what is left (linear least squares);
+///    after each fit, here and below, the dents round contacts that explain most of what is left (linear least
+///    squares);
 /// 3. zones: likewise, sd of ln 3; links: round the uniform fit, sd of ln 0.7; again twice.
 /// @pre some of the readings tell about stiffness.
 Calibration calibrate(const skeleton::Model& model, const std::vector<StateReadings>& readings,

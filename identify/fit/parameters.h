@@ -13,9 +13,9 @@ namespace palpate::identify {
 struct Parameter {
     std::string name;  // "elongation", "flexion:zone2", "torsion:link17"
     skeleton::Stiffness kind = skeleton::Stiffness::elongation;
-    int link = -1;             // the one that it belongs to; -1: several, or a sphere
-    std::vector<int> owners;   // links, or spheres, whose stiffness of this kind it multiplies
-    double stiffness = 0;      // geometric mean of theirs in the model [N/mm, N mm/rad or MPa]
+    int link = -1;            // the one that it belongs to; -1: several, or a sphere
+    std::vector<int> owners;  // links, or spheres, whose stiffness of this kind it multiplies
+    double stiffness = 0;     // geometric mean of theirs in the model [N/mm, N mm/rad or MPa]
 };
 
 /// k(theta) = k0 o exp(M theta), M (stiffnesses x P) with at most one 1 in a row. The model's stiffnesses stand as
@@ -31,9 +31,9 @@ struct Parameters {
     Eigen::VectorXd units() const;                                           // what a multiplier of 1 stands for (P)
 };
 
-/// Which stiffnesses share a multiplier: those of a kind, in all the model, in a zone, or of each link and sphere alone;
-/// volumes have no zones. Flexion in a link's two planes is one kind here, and so is shear: their ratio is the section's.
-/// Those of the kinds in `fixed`, and those that are zero, stay as they are.
+/// Which stiffnesses share a multiplier: those of a kind, in all the model, in a zone, or of each link and sphere
+/// alone; volumes have no zones. Flexion in a link's two planes is one kind here, and so is shear: their ratio is the
+/// section's. Those of the kinds in `fixed`, and those that are zero, stay as they are.
 /// @throws InvalidInput when nothing is left to identify.
 Parameters group_stiffness(const skeleton::Model& model, Scope scope,
                            const std::vector<skeleton::Stiffness>& fixed = {});

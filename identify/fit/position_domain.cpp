@@ -186,8 +186,7 @@ bool PositionDomain::fit_dents(const Eigen::VectorXd& theta, Prediction& predict
     Eigen::Matrix<double, 6, 6> H = Eigen::Matrix<double, 6, 6>::Zero();
     Eigen::Matrix<double, 6, 1> g = Eigen::Matrix<double, 6, 1>::Zero();
     for (int s = 0; s < static_cast<int>(states_.size()); ++s) {
-        const Eigen::VectorXd error =
-            errors_of(states_[s], prediction.markers[s] - dented(s, dent_));  // without dents
+        const Eigen::VectorXd error = errors_of(states_[s], prediction.markers[s] - dented(s, dent_));  // without dents
         const Eigen::MatrixXd weighted = weights_[s].asDiagonal() * dents_[s];
         H += dents_[s].transpose() * weighted;
         g += weighted.transpose() * error;

@@ -60,9 +60,9 @@ public:
     double log_constant() const { return log_constant_; }
     NormalEquations normal_equations(const Eigen::VectorXd& theta, const Prediction& prediction) const;
 
-    /// The dents' amplitudes that explain most of what a prediction leaves, in force from then on: linear least squares,
-    /// and a prior sd of what a half space of the links' modulus gives way by, 1 / E. `prediction`, at theta, is brought up
-    /// to date. False where nothing is pressed, or links have no sections that tell a modulus.
+    /// The dents' amplitudes that explain most of what a prediction leaves, in force from then on: linear least
+    /// squares, and a prior sd of what a half space of the links' modulus gives way by, 1 / E. `prediction`, at theta,
+    /// is brought up to date. False where nothing is pressed, or links have no sections that tell a modulus.
     bool fit_dents(const Eigen::VectorXd& theta, Prediction& prediction);
     const Eigen::Matrix<double, 6, 1>& dent() const { return dent_; }
 

@@ -70,8 +70,8 @@ skeleton::Load ContactLoads::operator()(const std::vector<mesh::Contact>& contac
         for (std::size_t i = 0; i < patch.size(); ++i) parts.emplace_back(patch[i].area / area, &points[i]);
         load.forces.push_back({skeleton::blend(parts), contact.force});
         if (!tree_ || !(contact.radius > 0)) continue;
-        skeleton::Press press{contact.force, mesh::mean_normal(model_.surface, contact.point, contact.radius),
-                              contact.radius, {}};
+        skeleton::Press press{
+            contact.force, mesh::mean_normal(model_.surface, contact.point, contact.radius), contact.radius, {}};
         for (const PatchPoint& point : patch) press.patch.emplace_back(point.position, point.area / area);
         load.presses.push_back(std::move(press));
     }

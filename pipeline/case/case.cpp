@@ -50,7 +50,8 @@ void read_volume(const YamlFields& yaml, Case& c) {
 void read_skeleton(const YamlFields& yaml, Case& c) {
     read_if(yaml, "spheres", c.skeleton.spheres, [&](auto& key) { return yaml.integer(key, 0, 100000); });
     read_if(yaml, "coverage", c.skeleton.coverage, [&](auto& key) { return yaml.number(key, 0, 1e9); });
-    read_if(yaml, "links", c.skeleton.links, [&](auto& key) { return parse(link_kinds, yaml.text(key), yaml.where(key)); });
+    read_if(yaml, "links", c.skeleton.links,
+            [&](auto& key) { return parse(link_kinds, yaml.text(key), yaml.where(key)); });
     read_if(yaml, "zones", c.skeleton.zones, [&](auto& key) { return yaml.integer(key, 1, 1000); });
     yaml.finish();
 }

@@ -75,8 +75,8 @@ std::string to_yaml(const Case& c) {
         "  coverage: {}         # [mm] no surface further outside the spheres; 0: 5 % of the longest side\n"
         "  links: {}            # full; burion2008: the paper's elongation, flexion, torsion\n"
         "  zones: {}\n",
-        c.edge_length, c.linear_elements, c.skeleton.spheres, c.skeleton.coverage, name_of(link_kinds, c.skeleton.links),
-        c.skeleton.zones);
+        c.edge_length, c.linear_elements, c.skeleton.spheres, c.skeleton.coverage,
+        name_of(link_kinds, c.skeleton.links), c.skeleton.zones);
     if (c.mesh) {
         const ProbeOptions& p = c.probing;
         text += fmt::format(

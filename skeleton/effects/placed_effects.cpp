@@ -82,32 +82,30 @@ PlacedEffects::Energy PlacedEffects::energy(const State& state, double share) co
 
 Eigen::VectorXd PlacedEffects::force(const State& state, double share) const {
     Eigen::VectorXd f = Eigen::VectorXd::Zero(6 * state.x.rows());
-    for_each_point(state, share,
-                   [&](const Point&, const CarriedPoint& at, const fem::PointTerms& terms, double weight) {
-                       for (int i = 0; i < at.shares(); ++i)
-                           f.segment<6>(Eigen::Index{6} * at.sphere(i)) -=
-                               at.jacobian(i).transpose() * (weight * terms.gradient);
-                   });
+    for_each_point(
+        state, share, [&](const Point&, const CarriedPoint& at, const fem::PointTerms& terms, double weight) {
+            for (int i = 0; i < at.shares(); ++i)
+                f.segment<6>(Eigen::Index{6} * at.sphere(i)) -= at.jacobian(i).transpose() * (weight * terms.gradient);
+        });
     if (pressure_ != 0) cavities_.add_gradient(state, share * pressure_, f);
     return f;
 }
 
 std::vector<PlacedEffects::Block> PlacedEffects::curvature(const State& state, double share) const {
     std::vector<Block> blocks(pairs_.size(), Block::Zero());
-    for_each_point(state, share,
-                   [&](const Point& point, const CarriedPoint& at, const fem::PointTerms& terms, double weight) {
-                       if (weight == 0) return;
-                       // by the point's motion, and by how that motion turns
-                       const Eigen::MatrixXd turning = at.curvature(weight * terms.gradient);
-                       auto pair = point.pairs.begin();
-                       for (int i = 0; i < at.shares(); ++i)
-                           for (int j = 0; j < at.shares(); ++j) {
-                               if (at.sphere(i) > at.sphere(j)) continue;
-                               blocks[*pair++] += at.jacobian(i).transpose() * (weight * terms.hessian) *
-                                                      at.jacobian(j) +
-                                                  turning.block<6, 6>(6 * i, 6 * j);
-                           }
-                   });
+    for_each_point(
+        state, share, [&](const Point& point, const CarriedPoint& at, const fem::PointTerms& terms, double weight) {
+            if (weight == 0) return;
+            // by the point's motion, and by how that motion turns
+            const Eigen::MatrixXd turning = at.curvature(weight * terms.gradient);
+            auto pair = point.pairs.begin();
+            for (int i = 0; i < at.shares(); ++i)
+                for (int j = 0; j < at.shares(); ++j) {
+                    if (at.sphere(i) > at.sphere(j)) continue;
+                    blocks[*pair++] += at.jacobian(i).transpose() * (weight * terms.hessian) * at.jacobian(j) +
+                                       turning.block<6, 6>(6 * i, 6 * j);
+                }
+        });
     if (pressure_ != 0 && !is_dead_) {
         auto next = cavity_blocks_.begin();
         cavities_.for_each_block(state,

@@ -204,8 +204,7 @@ void read_skin(const JsonField& field, Model& model) {
 Model read_model(const std::filesystem::path& file) {
     const nlohmann::ordered_json json = parse(file);
     const JsonField root(json, file.string());
-    root.allow_only({"format", "name", "law", "spheres", "links", "effects", "skin", "dent", "supports",
-                     "provenance"});
+    root.allow_only({"format", "name", "law", "spheres", "links", "effects", "skin", "dent", "supports", "provenance"});
     root["format"].choice({"palpate-model/1"});
 
     Model model;

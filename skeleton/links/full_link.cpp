@@ -73,8 +73,10 @@ void FullLink::add_curvature(const Strains& factors, Mat12& H) const {
     add_symmetric(by_b, w_b, dx_b, H);
     add_symmetric(-by_b, w_b, dx_a, H);
     // Axis and arm of a half turn together, (w x f) . (w x r) = |w|^2 f . r - (w . f) (w . r), and each by itself.
-    H.block<3, 3>(w_a, w_a) += turning_curvature(f_a, arm_a_) - turning_curvature(mean, arm_a_) + 0.5 * turning_curvature(f_a, gap_);
-    H.block<3, 3>(w_b, w_b) += turning_curvature(mean, arm_b_) - turning_curvature(f_b, arm_b_) + 0.5 * turning_curvature(f_b, gap_);
+    H.block<3, 3>(w_a, w_a) +=
+        turning_curvature(f_a, arm_a_) - turning_curvature(mean, arm_a_) + 0.5 * turning_curvature(f_a, gap_);
+    H.block<3, 3>(w_b, w_b) +=
+        turning_curvature(mean, arm_b_) - turning_curvature(f_b, arm_b_) + 0.5 * turning_curvature(f_b, gap_);
     Mat3 both = f_b * arm_a_.transpose() - arm_b_ * f_a.transpose();
     both.diagonal().array() += f_a.dot(arm_b_) - f_b.dot(arm_a_);
     both *= 0.5;

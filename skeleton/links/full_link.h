@@ -13,9 +13,9 @@ namespace palpate::skeleton {
 ///   shear       s = (R_a f_1 + R_b f_1) / 2 . d,  shear_2 with f_2      [mm]
 ///   torsion     s = 2 v . R_a f_0                                       [rad]
 ///   flexion     s = 2 v . R_a f_2, in the plane of shear,  flexion_2 with f_1
-/// The energy of each is 1/2 k s^2: conservative, the same after any rigid motion, and polynomial in rotations: 2 |v| is
-/// twice the sine of half the angle. A straight beam's segment with k = E A / L, E I / L, G J / L and, across,
-/// 1 / (L / (kappa G A) + L^3 / (12 E I)) is exact for small displacements of its ends.
+/// The energy of each is 1/2 k s^2: conservative, the same after any rigid motion, and polynomial in rotations: 2 |v|
+/// is twice the sine of half the angle. A straight beam's segment with k = E A / L, E I / L, G J / L and, across, 1 /
+/// (L / (kappa G A) + L^3 / (12 E I)) is exact for small displacements of its ends.
 class FullLink {
 public:
     using Strains = Eigen::Matrix<double, 6, 1>;
@@ -34,10 +34,10 @@ public:
     void add_hessian(const Strains& k, Mat12& H) const;
 
 private:
-    Vec3 arm_a_, arm_b_, gap_;                 // R_a (at - X_a), R_b (at - X_b), d
-    Mat3 axes_a_, axes_b_;                     // columns R_a f_i, R_b f_i
-    Mat3 turns_;                               // columns: how 2 v . R_a f_i changes with w_b - w_a
-    Vec3 halves_;                              // v . R_a f_i
+    Vec3 arm_a_, arm_b_, gap_;  // R_a (at - X_a), R_b (at - X_b), d
+    Mat3 axes_a_, axes_b_;      // columns R_a f_i, R_b f_i
+    Mat3 turns_;                // columns: how 2 v . R_a f_i changes with w_b - w_a
+    Vec3 halves_;               // v . R_a f_i
     Strains strains_;
     Eigen::Matrix<double, 12, 6> gradients_;
 };

@@ -119,10 +119,10 @@ FullLink PlacedLinks::full_link(size_t l, const State& state) const {
 
 LinkTerms PlacedLinks::terms(size_t l, const State& state, bool with_hessian, const FibreStates& before) const {
     const Link& link = links_[l];
-    LinkTerms terms =
-        link.section ? full_link_terms(full_link(l, state), with_hessian)
-                     : link_terms(link.length, directions_[l], state.x.row(link.a).transpose(), state.R[link.a],
-                                  state.x.row(link.b).transpose(), state.R[link.b], with_hessian);
+    LinkTerms terms = link.section
+                          ? full_link_terms(full_link(l, state), with_hessian)
+                          : link_terms(link.length, directions_[l], state.x.row(link.a).transpose(), state.R[link.a],
+                                       state.x.row(link.b).transpose(), state.R[link.b], with_hessian);
     if (!plain_) add_effects(l, state, before, with_hessian, terms);
     return terms;
 }

@@ -154,8 +154,7 @@ void PlacedVolumes::add_forces(const State& state, std::vector<Eigen::Triplet<do
     }
 }
 
-void PlacedVolumes::add_linear_forces(const Eigen::VectorXd& step,
-                                      std::vector<Eigen::Triplet<double>>& entries) const {
+void PlacedVolumes::add_linear_forces(const Eigen::VectorXd& step, std::vector<Eigen::Triplet<double>>& entries) const {
     // At rest nothing has swollen but by links that rest at another length than their spheres' distance.
     const std::vector<Swelling> all = swellings(rest_);
     for (const Cell& cell : cells_) {

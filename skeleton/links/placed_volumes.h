@@ -9,8 +9,8 @@
 
 namespace palpate::skeleton {
 
-/// What keeps the spheres' cells at their volume. The faces of a cell are the sections of its links, and each moves with
-/// half of its link's elongation s (FullLink), so at unit stiffness a sphere's energy is
+/// What keeps the spheres' cells at their volume. The faces of a cell are the sections of its links, and each moves
+/// with half of its link's elongation s (FullLink), so at unit stiffness a sphere's energy is
 ///   1/2 V theta^2,  theta = 1/2 sum_l A_l s_l / V:
 /// Hooke's law has a first constant of Lame beside what the links bear. Paper's links have no sections, and no such
 /// energy. Conservative, and the same after any rigid motion. Effects that scale the material's stiffness scale it too.

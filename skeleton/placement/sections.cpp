@@ -47,8 +47,8 @@ std::map<std::pair<int, int>, Integrals> integrate(const TetGraph& graph, const 
     return all;
 }
 
-// A unit vector across `along` that is nearest to `vector`, which must not lie along it; its sign does not depend on that
-// of `vector`.
+// A unit vector across `along` that is nearest to `vector`, which must not lie along it; its sign does not depend on
+// that of `vector`.
 Vec3 across_of(const Vec3& along, const Vec3& vector) {
     Vec3 across = vector - vector.dot(along) * along;
     if (!(across.norm() > 1e-3)) {
@@ -147,8 +147,8 @@ Vec3 start_of_paper_link(const Section& s, const fem::Material& material) {
     const double E = material.young, mu = material.shear_modulus();
 
     // In a lump the links are a lattice: a section carries tension and shear alike, kE = kS. Hooke's law would have it
-    // so with 2 mu A / L and a volume term apart; these links have none, so E A / L, which gives Young's modulus itself.
-    // A shift by s across the link turns both ends by s / L against it:
+    // so with 2 mu A / L and a volume term apart; these links have none, so E A / L, which gives Young's modulus
+    // itself. A shift by s across the link turns both ends by s / L against it:
     //   kF (s / L)^2 = kS s^2 / 2, so kF = kS L^2 / 2.
     if (s.is_lump()) {
         const double kE = E * s.area / s.length;

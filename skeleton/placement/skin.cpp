@@ -15,10 +15,10 @@
 namespace palpate::skeleton {
 namespace {
 
-constexpr int carriers = 6;           // spheres that carry a vertex
-constexpr double reach = 0.45;        // sd of the weights, of the links' median length
-constexpr double ridge = 1e-3;        // of the mean square of what spheres move
-constexpr int hops = 2;               // over links, to the spheres that may carry a vertex
+constexpr int carriers = 6;     // spheres that carry a vertex
+constexpr double reach = 0.45;  // sd of the weights, of the links' median length
+constexpr double ridge = 1e-3;  // of the mean square of what spheres move
+constexpr int hops = 2;         // over links, to the spheres that may carry a vertex
 
 using Mat36 = Eigen::Matrix<double, 3, 6>;
 using Mat6 = Eigen::Matrix<double, 6, 6>;
@@ -79,8 +79,7 @@ Condensed condense(const mesh::VolumeMesh& body, const fem::Material& material, 
                                    {.threads = threads});
     const Eigen::MatrixXd C = elastic.solve(Eigen::SparseMatrix<double>(E.transpose()));
 
-    const Eigen::SparseMatrix<double, Eigen::RowMajor> shape =
-        fem::interpolation(quadratic, model.surface.vertices);
+    const Eigen::SparseMatrix<double, Eigen::RowMajor> shape = fem::interpolation(quadratic, model.surface.vertices);
     Eigen::MatrixXd Y(3 * shape.rows(), C.cols());
     Y.setZero();
     for (Eigen::Index v = 0; v < shape.rows(); ++v) {
@@ -89,7 +88,8 @@ Condensed condense(const mesh::VolumeMesh& body, const fem::Material& material, 
         }
     }
     // Each load counts by what it moves, not by how many Newtons it has.
-    const Eigen::VectorXd scale = (Y.colwise().squaredNorm() / static_cast<double>(Y.rows())).cwiseMax(1e-300).cwiseInverse();
+    const Eigen::VectorXd scale =
+        (Y.colwise().squaredNorm() / static_cast<double>(Y.rows())).cwiseMax(1e-300).cwiseInverse();
     const Eigen::MatrixXd Q = E * C;
     result.PP = Q * scale.asDiagonal() * Q.transpose();
     result.YP = Y * (scale.asDiagonal() * Q.transpose());
@@ -179,7 +179,8 @@ private:
         }
     }
 
-    void follow_the_body(Eigen::Index vertex, const std::vector<std::pair<double, int>>& near, Attachment& point) const {
+    void follow_the_body(Eigen::Index vertex, const std::vector<std::pair<double, int>>& near,
+                         Attachment& point) const {
         // what the free spheres move beside their mean: features F of the steps of all that carry the vertex
         const int k = static_cast<int>(point.shares.size());
         Vec3 X = Vec3::Zero();

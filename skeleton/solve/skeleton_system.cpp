@@ -231,7 +231,8 @@ void SkeletonSystem::fail_at(const BlockCholesky::BadPivot& pivot, const Eigen::
     for (size_t l = 0; l < body_.links.size(); ++l)
         for (int s = 0; s < links_.order().per_link(); ++s) {
             const Link& link = body_.links[l];
-            if ((link.a == sphere || link.b == sphere) && k[links_.order().of_link(static_cast<Eigen::Index>(l), s)] == 0)
+            if ((link.a == sphere || link.b == sphere) &&
+                k[links_.order().of_link(static_cast<Eigen::Index>(l), s)] == 0)
                 slack += fmt::format("{}{} of links[{}] (spheres {} and {})", slack.empty() ? "" : ", ",
                                      stiffness_names[s], l, link.a, link.b);
         }

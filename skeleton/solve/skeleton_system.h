@@ -75,15 +75,15 @@ private:
     PlacedLinks links_;
     FibreStates before_;
     double effect_share_ = 1;
-    double effect_load_ = 0, effect_stiffness_ = 0;  // largest at rest [N, N/mm]
-    std::vector<int> coupling_of_pair_;              // of the effects, -1: one sphere alone, or an end is held
-    std::vector<int> coupling_of_cell_;              // the same, of the pairs of the volumes
-    std::vector<int> free_;                          // spheres
-    std::vector<int> block_of_;                      // place in `free_` of each sphere, -1: held
-    std::vector<int> coupling_of_;                   // of each link, -1: an end is held
-    std::vector<std::array<int, 2>> couplings_;      // of free spheres, by their places
+    double effect_load_ = 0, effect_stiffness_ = 0;        // largest at rest [N, N/mm]
+    std::vector<int> coupling_of_pair_;                    // of the effects, -1: one sphere alone, or an end is held
+    std::vector<int> coupling_of_cell_;                    // the same, of the pairs of the volumes
+    std::vector<int> free_;                                // spheres
+    std::vector<int> block_of_;                            // place in `free_` of each sphere, -1: held
+    std::vector<int> coupling_of_;                         // of each link, -1: an end is held
+    std::vector<std::array<int, 2>> couplings_;            // of free spheres, by their places
     std::map<std::array<int, 2>, int> place_of_coupling_;  // of each pair of spheres a < b
-    double length_ = 1, reach_ = 0;                  // largest coordinate [mm]
+    double length_ = 1, reach_ = 0;                        // largest coordinate [mm]
     BlockCholesky::Vec6 metric_;
     BlockCholesky matrix_;
 };

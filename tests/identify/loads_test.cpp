@@ -19,7 +19,6 @@ Vec3 total_force(const skeleton::Load& load) {
     return sum;
 }
 
-
 TEST(ContactLoads, APatchCarriesTheForceEvenlyRoundItsPoint) {
     const skeleton::Model model = slab();
     const Vec3 point(40, 35, 10), force(1, -2, -3);

@@ -81,7 +81,8 @@ struct SmallBody {
             model.spheres.push_back(sphere);
             if (i > 0) model.links.push_back({i - 1, i, 10, Vec3(3, 50, 15), 0});
         }
-        for (const auto& vertex : model.surface.vertices.rowwise()) model.skin.push_back(skeleton::attach_to_links(model, vertex));
+        for (const auto& vertex : model.surface.vertices.rowwise())
+            model.skin.push_back(skeleton::attach_to_links(model, vertex));
         return model;
     }
     std::unique_ptr<SkeletonBody> skeleton() const { return std::make_unique<SkeletonBody>(chain(), markers, young); }

@@ -42,8 +42,7 @@ TEST(CarriedPoint, AtRestItMovesAsToldToFirstOrder) {
     const State rest = rest_state(model);
     const CarriedPoint carried(point, rest, rest);
     EXPECT_LT((carried.x() - point.rest).norm(), 1e-13);
-    for (int i = 0; i < carried.shares(); ++i)
-        EXPECT_LT((carried.jacobian(i) - point.shares[i].follow).norm(), 1e-12);
+    for (int i = 0; i < carried.shares(); ++i) EXPECT_LT((carried.jacobian(i) - point.shares[i].follow).norm(), 1e-12);
 }
 
 TEST(CarriedPoint, RigidMotionsAreFollowedExactly) {
@@ -95,9 +94,9 @@ TEST(CarriedPoint, JacobianAndCurvatureAreDerivatives) {
         const auto value = [&](double t) {
             return f.dot(CarriedPoint(point, rest, advance(state, t * h * along)).x());
         };
-        EXPECT_NEAR((8 * (value(1) - value(-1)) - value(2) + value(-2)) / (12 * h), slope, 1e-8 * (1 + std::abs(slope)));
-        const double second =
-            (-value(2) + 16 * value(1) - 30 * value(0) + 16 * value(-1) - value(-2)) / (12 * h * h);
+        EXPECT_NEAR((8 * (value(1) - value(-1)) - value(2) + value(-2)) / (12 * h), slope,
+                    1e-8 * (1 + std::abs(slope)));
+        const double second = (-value(2) + 16 * value(1) - 30 * value(0) + 16 * value(-1) - value(-2)) / (12 * h * h);
         EXPECT_NEAR(own.dot(H * own), second, 1e-5 * (1 + std::abs(second)));
     }
 }

@@ -72,8 +72,7 @@ TEST(FullLink, GradientIsTheEnergysDerivative) {
         const LinkTerms terms = ends.terms();
         for (int c = 0; c < 12; ++c) {
             const Vec12 step = h * Vec12::Unit(c);
-            const Stiffnesses numeric =
-                (ends.moved(step).terms().energy - ends.moved(-step).terms().energy) / (2 * h);
+            const Stiffnesses numeric = (ends.moved(step).terms().energy - ends.moved(-step).terms().energy) / (2 * h);
             EXPECT_LT((terms.gradient.row(c).transpose() - numeric).norm(), 1e-7 * (1 + numeric.norm()));
         }
     }

@@ -31,8 +31,7 @@ TEST(PlacedVolumes, ForceIsMinusTheEnergysDerivative) {
     const double h = 1e-5;
     for (int c = 0; c < model.dofs(); ++c) {
         const Eigen::VectorXd step = h * Eigen::VectorXd::Unit(model.dofs(), c);
-        const double numeric =
-            (energy(model, advance(state, step)) - energy(model, advance(state, -step))) / (2 * h);
+        const double numeric = (energy(model, advance(state, step)) - energy(model, advance(state, -step))) / (2 * h);
         EXPECT_NEAR(-f[c], numeric, 1e-6 * (1 + f.norm()));
     }
 }
@@ -46,9 +45,9 @@ TEST(PlacedVolumes, TangentIsMinusTheResidualsDerivativeInEquilibrium) {
     const double h = 1e-5;
     for (int c = 0; c < model.dofs(); ++c) {
         const Eigen::VectorXd step = h * Eigen::VectorXd::Unit(model.dofs(), c);
-        const Eigen::VectorXd numeric = (residual(model, advance(found.state, -step), load) -
-                                         residual(model, advance(found.state, step), load)) /
-                                        (2 * h);
+        const Eigen::VectorXd numeric =
+            (residual(model, advance(found.state, -step), load) - residual(model, advance(found.state, step), load)) /
+            (2 * h);
         for (int i = 0; i < model.dofs(); ++i) {
             if (!model.spheres[i / 6].held) EXPECT_NEAR(J(i, c), numeric[i], 2e-6 * J.norm());
         }

@@ -38,7 +38,8 @@ TEST(PointSets, SupportIsItsSkinOnTheNearestHeldSpheres) {
         ASSERT_TRUE(model.spheres[point.shares[0].sphere].held);
         for (const Sphere& sphere : model.spheres) {
             if (!sphere.held) continue;
-            EXPECT_LE((model.spheres[point.shares[0].sphere].center - point.rest).norm(), (sphere.center - point.rest).norm());
+            EXPECT_LE((model.spheres[point.shares[0].sphere].center - point.rest).norm(),
+                      (sphere.center - point.rest).norm());
         }
     }
 }

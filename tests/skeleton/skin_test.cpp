@@ -89,9 +89,8 @@ TEST(MakeSkin, BendsAsAnArcWithoutCreases) {
 }
 
 TEST(MakeSkin, TwistsWithoutPinching) {
-    const Points twisted = skin_along([&](double x) {
-        return std::pair(Vec3(x, 0, 0), Mat3(rotation(x / 160 * std::numbers::pi * Vec3::UnitX())));
-    });
+    const Points twisted = skin_along(
+        [&](double x) { return std::pair(Vec3(x, 0, 0), Mat3(rotation(x / 160 * std::numbers::pi * Vec3::UnitX()))); });
     for (Eigen::Index v = 0; v < twisted.rows(); ++v) {
         const Vec3 X = limb().surface.vertices.row(v);
         const double before = std::hypot(X.y() - 8, X.z() - 8), after = twisted.row(v).tail<2>().norm();

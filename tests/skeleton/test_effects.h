@@ -45,7 +45,8 @@ private:
 inline Model lattice_with_skin() {
     Model model = make_lattice({4, 2, 2});
     model.surface = mesh::make_box({-4, -4, -4}, {34, 14, 14}, {4, 4, 4});
-    for (const auto& vertex : model.surface.vertices.rowwise()) model.skin.push_back(attach_to_links(model, vertex.transpose()));
+    for (const auto& vertex : model.surface.vertices.rowwise())
+        model.skin.push_back(attach_to_links(model, vertex.transpose()));
     model.skin[5] = between(model, 0, 15, 0.4, model.skin[5].rest);
     model.supports = {mesh::PlaneRegion{{-4, 0, 0}, {1, 0, 0}, 0.1}};
     return model;
