@@ -9,6 +9,7 @@
 #include "pipeline/case/case.h"
 #include "pipeline/console.h"
 #include "pipeline/forge/options.h"
+#include "pipeline/quality/ladder.h"
 
 namespace palpate::pipeline::commands {
 
@@ -53,6 +54,7 @@ Outcome mesh_body(const MeshOptions& options, const Common& common);
 struct SkeletonOptions {
     std::filesystem::path input, output;
     CaseOverrides say;
+    std::optional<QualityOptions> quality = {};  // absent: it is not measured
 };
 Outcome skeleton(const SkeletonOptions& options, const Common& common);
 

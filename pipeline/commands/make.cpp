@@ -3,9 +3,11 @@
 #include <algorithm>
 
 #include "mesh/errors.h"
+#include "mesh/io/atomic_file.h"
 #include "mesh/io/vtk_files.h"
 #include "pipeline/case/subject.h"
 #include "pipeline/commands/common.h"
+#include "pipeline/quality/quality_files.h"
 #include "pipeline/reference/body.h"
 #include "skeleton/model_io.h"
 
@@ -28,6 +30,25 @@ Body body_of(const Subject& subject, double edge_length) {
 
 fs::path or_default(const fs::path& said, const std::string& fallback) {
     return said.empty() ? fs::path(fallback) : said;
+}
+
+/// Where quality is told, beside a model: arm.json has arm_quality.json, .csv and .svg.
+fs::path quality_file(const fs::path& model, const char* extension) {
+    return model.parent_path() / (model.stem().string() + "_quality" + extension);
+}
+
+/// Measures a model, writes what comes of it beside the model, and tells it in the outcome.
+void add_quality(const Subject& subject, const Body& body, const skeleton::Model& model, const fs::path& output,
+                 QualityOptions options, int threads, Outcome& outcome) {
+    options.threads = threads;
+    const Quality quality = measure_quality(subject, body, model, options, Console::progress());
+    tell(quality.notes);
+    mesh::write_text(quality_file(output, ".json"), quality_json(quality).dump(1) + "\n");
+    mesh::write_text(quality_file(output, ".csv"), quality_csv(quality));
+    mesh::write_text(quality_file(output, ".svg"), quality_plot(quality, subject.settings.name));
+    outcome.text += fmt::format("\n{}Written to {} (.json, .csv, .svg).\n", quality_table(quality),
+                                quality_file(output, "").string());
+    outcome.json["quality"] = quality_json(quality);
 }
 
 }  // namespace
@@ -60,6 +81,12 @@ Outcome skeleton(const SkeletonOptions& options, const Common& common) {
         throw InvalidInput(fmt::format("{}: a model is written as .json; name the file so", output.string()));
     }
     refuse_to_overwrite(output, common.force);
+    if (options.quality) {
+        options.quality->validate();
+        for (const char* extension : {".json", ".csv", ".svg"}) {
+            refuse_to_overwrite(quality_file(output, extension), common.force);
+        }
+    }
     const Subject subject = read_subject(read_case(options.input, options.say));
     tell(subject.assumptions);
     const Body body = body_of(subject, subject.settings.edge_length);
@@ -77,6 +104,7 @@ Outcome skeleton(const SkeletonOptions& options, const Common& common) {
                     output.string(), model.spheres.size(), held, model.links.size(), report.coverage);
     outcome.json = {{"file", output.string()},     {"spheres", model.spheres.size()}, {"held", held},
                     {"links", model.links.size()}, {"coverage_mm", report.coverage},  {"notes", report.notes}};
+    if (options.quality) add_quality(subject, body, model, output, *options.quality, common.threads, outcome);
     return outcome;
 }
 

@@ -47,12 +47,28 @@ void Verbs::add_mesh(CLI::App& app) {
 
 void Verbs::add_skeleton(CLI::App& app) {
     auto* sub = verb(app, "skeleton", "Medial axis, spheres, links and skin, with start stiffness from the sections.",
-                     "  palpate skeleton liver.stl -o model.json\n  palpate skeleton finger.stl --spheres 12\n",
-                     [this] { return commands::skeleton(skeleton, common); });
+                     "  palpate skeleton liver.stl -o model.json\n  palpate skeleton finger.stl --spheres 12\n"
+                     "  palpate skeleton liver.stl -o model.json --quality --quality-spheres 16,64,256\n",
+                     [this] {
+                         if (with_quality) skeleton.quality = quality;
+                         return commands::skeleton(skeleton, common);
+                     });
     sub->add_option("INPUT", skeleton.input, "A mesh, a case.yaml, or a measurement set")->required();
     sub->add_option("-o,--output", skeleton.output, "The model; model.json by default");
     add_body_flags(sub, skeleton.say);
     add_skeleton_flags(sub, skeleton.say);
+    auto* measured = sub->add_flag("--quality", with_quality,
+                                   "Measures how well skeletons follow the body, at several numbers of spheres")
+                         ->group("Quality");
+    sub->add_option("--quality-spheres", quality.spheres, "These numbers, in place of 8,16,32,64,128,256,512")
+        ->delimiter(',')
+        ->check(CLI::Range(1, 20000))
+        ->needs(measured)
+        ->group("Quality");
+    sub->add_option("--quality-probes", quality.fit, "Probes that are fitted to; 12 more judge")
+        ->check(CLI::Range(1, 1000))
+        ->needs(measured)
+        ->group("Quality");
 }
 
 void Verbs::add_report(CLI::App& app) {

@@ -17,6 +17,8 @@ struct Verbs {
     commands::CheckOptions check;
     commands::MeshOptions mesh;
     commands::SkeletonOptions skeleton;
+    QualityOptions quality;     // of it,
+    bool with_quality = false;  // where it is asked for
     commands::ProbeCommandOptions probe;
     commands::IdentifyCommandOptions identify;
     commands::CompareOptions compare;

@@ -91,18 +91,17 @@ ProbedQuality probe(const bench::BenchBody& body, fem::Law law, const Options& o
     return probed;
 }
 
-Row measure(const bench::BenchBody& body, const pipeline::Body& mesh, int spheres, const ProbedQuality& linear,
-            const ProbedQuality* large, const Options& options) {
+int free_spheres(const skeleton::Model& model) {
+    return static_cast<int>(std::ranges::count(model.spheres, false, &skeleton::Sphere::held));
+}
+
+Row measure(const bench::BenchBody& body, const pipeline::Body& mesh, const skeleton::Model& model,
+            const ProbedQuality& linear, const ProbedQuality* large, const Options& options) {
     Row row;
     row.body = body.name;
     row.triangles = static_cast<int>(mesh.surface.triangles.rows());
-    skeleton::Model model;
-    row.seconds_build = seconds([&] {
-        model = skeleton::build_skeleton(mesh.surface, mesh.volume, body.subject.material, body.subject.supports,
-                                         {.spheres = spheres});
-    });
-    row.held = static_cast<int>(std::ranges::count(model.spheres, true, &skeleton::Sphere::held));
-    row.spheres = static_cast<int>(model.spheres.size()) - row.held;
+    row.spheres = free_spheres(model);
+    row.held = static_cast<int>(model.spheres.size()) - row.spheres;
     row.links = model.links.size();
     row.shape = pipeline::shape_quality(model);
     row.graph = pipeline::graph_quality(model);
@@ -119,7 +118,7 @@ Row measure(const bench::BenchBody& body, const pipeline::Body& mesh, int sphere
     if (!options.skip_coarse) {
         try {
             row.coarse = bench::coarse_body(body.subject, linear, row.spheres);
-        } catch (const SolverFailure& failure) {
+        } catch (const std::runtime_error& failure) {
             std::cerr << fmt::format("{}: no coarse body: {}", body.name, failure.what()) << std::endl;
         }
     }
@@ -138,7 +137,14 @@ std::vector<Row> measure_body(const std::string& name, const Options& options) {
     std::vector<Row> rows;
     for (const int spheres : options.spheres.empty() ? body.spheres : options.spheres) {
         try {
-            rows.push_back(measure(body, mesh, spheres, linear, large ? &*large : nullptr, options));
+            skeleton::Model model;
+            const double taken = seconds([&] {
+                model = skeleton::build_skeleton(mesh.surface, mesh.volume, body.subject.material,
+                                                 body.subject.supports, {.spheres = spheres});
+            });
+            if (std::ranges::count(rows, free_spheres(model), &Row::spheres) > 0) continue;  // as by default
+            rows.push_back(measure(body, mesh, model, linear, large ? &*large : nullptr, options));
+            rows.back().seconds_build = taken;
         } catch (const std::exception& e) {
             std::cerr << fmt::format("{}, {} spheres: left out: {}", name, spheres, e.what()) << std::endl;
         }

@@ -1,5 +1,6 @@
 #include "skeleton/coarse.h"
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -23,6 +24,24 @@ struct CoarseMesh {
     int free = 0;            // nodes
 };
 
+/// Do the held nodes stop rigid motion: three that are not in line?
+bool are_enough(const mesh::VolumeMesh& mesh, const std::vector<char>& held) {
+    Mat3 spread = Mat3::Zero();
+    Vec3 middle = Vec3::Zero();
+    double count = 0;
+    for (std::size_t i = 0; i < held.size(); ++i) {
+        if (!held[i]) continue;
+        const Vec3 node = mesh.nodes.row(static_cast<Eigen::Index>(i));
+        spread += node * node.transpose();
+        middle += node;
+        ++count;
+    }
+    if (count < 3) return false;
+    spread -= middle * middle.transpose() / count;
+    const double size = mesh::bounding_box(mesh.nodes).longest_side();
+    return Eigen::SelfAdjointEigenSolver<Mat3>(spread).eigenvalues()[1] > 1e-6 * size * size;
+}
+
 std::optional<CoarseMesh> mesh_at(const mesh::Surface& surface, const std::vector<mesh::Region>& supports,
                                   double edge) {
     try {
@@ -31,7 +50,7 @@ std::optional<CoarseMesh> mesh_at(const mesh::Surface& surface, const std::vecto
         result.held = mesh::contains(supports, result.volume.nodes);
         const auto held = static_cast<int>(std::ranges::count(result.held, 1));
         result.free = static_cast<int>(result.held.size()) - held;
-        if (held < 3) return std::nullopt;
+        if (!are_enough(result.volume, result.held)) return std::nullopt;
         return result;
     } catch (const SolverFailure&) {  // too coarse to be sound
         return std::nullopt;
