@@ -27,7 +27,7 @@ skeleton::Model make_lattice(const std::string& name, const Eigen::Vector3i& n, 
             for (int k = 0; k < n.z(); ++k) {
                 model.spheres.push_back(lattice_sphere(spacing * Vec3(i, j, k)));
                 const auto join = [&](int other) {
-                    model.links.push_back({index(i, j, k), other, spacing, Vec3(2, 750, 500), zone});
+                    model.links.push_back({index(i, j, k), other, spacing, Vec3(2, 750, 500), zone, 0, {}});
                 };
                 if (i + 1 < n.x()) join(index(i + 1, j, k));
                 if (j + 1 < n.y()) join(index(i, j + 1, k));

@@ -27,7 +27,7 @@ inline skeleton::Model make_lattice(const Eigen::Vector3i& n, int zones = 1) {
                 sphere.held = i == 0;
                 model.spheres.push_back(sphere);
                 const auto join = [&](int other, int zone) {
-                    model.links.push_back({index(i, j, k), other, spacing, Vec3(2, 750, 500), zone});
+                    model.links.push_back({index(i, j, k), other, spacing, Vec3(2, 750, 500), zone, 0, {}});
                 };
                 if (i + 1 < n.x()) join(index(i + 1, j, k), i * zones / (n.x() - 1));
                 if (j + 1 < n.y()) join(index(i, j + 1, k), std::min(zones - 1, i * zones / (n.x() - 1)));

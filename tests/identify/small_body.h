@@ -79,7 +79,7 @@ struct SmallBody {
             sphere.inertia = 17 * sphere.mass * Mat3::Identity();
             sphere.held = i == 0;
             model.spheres.push_back(sphere);
-            if (i > 0) model.links.push_back({i - 1, i, 10, Vec3(3, 50, 15), 0});
+            if (i > 0) model.links.push_back({i - 1, i, 10, Vec3(3, 50, 15), 0, 0, {}});
         }
         for (const auto& vertex : model.surface.vertices.rowwise())
             model.skin.push_back(skeleton::attach_to_links(model, vertex));

@@ -48,7 +48,8 @@ TEST(MakeSkin, WhatASupportHoldsStays) {
     const Equilibrium found = equilibrium(pulled, testing::force_at(pulled, 14, {0.01, 0.02, 0}));
     const Points moved = observe(pulled, found, pulled.skin) - pulled.surface.vertices;
     for (Eigen::Index v = 0; v < moved.rows(); ++v) {
-        if (pulled.surface.vertices(v, 0) < 1e-3) EXPECT_LT(moved.row(v).norm(), 1e-12);
+        if (pulled.surface.vertices(v, 0) > 1e-3) continue;
+        EXPECT_LT(moved.row(v).norm(), 1e-12);
     }
 }
 
