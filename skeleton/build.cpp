@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "mesh/errors.h"
+#include "skeleton/attach.h"
 #include "skeleton/placement/cover.h"
 #include "skeleton/placement/masses.h"
 #include "skeleton/placement/mend.h"
@@ -209,7 +210,11 @@ Model build_skeleton(const mesh::Surface& surface, const mesh::VolumeMesh& volum
     set_zones(body, sites, options.zones, model.links);
     model.surface = surface;
     model.supports = supports;
-    model.skin = make_skin(volume, material, body.graph, owner, model);
+    if (options.condense) {
+        model.skin = make_skin(volume, material, body.graph, owner, model);
+    } else {
+        for (const auto& vertex : surface.vertices.rowwise()) model.skin.push_back(attach_to_links(model, vertex));
+    }
     model.provenance["skeleton"] =
         fmt::format("{} free and {} held spheres, {} links, coverage {:.4g} mm", free_sites(sites),
                     std::ssize(sites) - free_sites(sites), model.links.size(), result.coverage);

@@ -15,10 +15,12 @@
 namespace palpate::skeleton {
 namespace {
 
-constexpr int carriers = 6;     // spheres that carry a vertex
-constexpr double reach = 0.45;  // sd of the weights, of the links' median length
-constexpr double ridge = 1e-3;  // of the mean square of what spheres move
-constexpr int hops = 2;         // over links, to the spheres that may carry a vertex
+constexpr int carriers = 6;           // spheres that carry a vertex
+constexpr double reach = 0.45;        // sd of the weights, of the links' median length
+constexpr double ridge = 1e-3;        // of the mean square of what spheres move
+constexpr int most_nodes = 8000;      // of a body whose elements are made quadratic
+constexpr double most_poisson = 0.4;  // that linear ones bear without locking
+constexpr int hops = 2;               // over links, to the spheres that may carry a vertex
 
 using Mat36 = Eigen::Matrix<double, 3, 6>;
 using Mat6 = Eigen::Matrix<double, 6, 6>;
@@ -73,13 +75,17 @@ Condensed condense(const mesh::VolumeMesh& body, const fem::Material& material, 
     Condensed result;
     int free = 0;
     for (const Sphere& sphere : model.spheres) result.place.push_back(sphere.held ? -1 : free++);
-    const mesh::VolumeMesh quadratic = mesh::to_quadratic(body);
-    const Eigen::SparseMatrix<double> E = mean_motions(quadratic, graph, owner, model, result.place);
-    const fem::ElasticBody elastic(quadratic, material, mesh::contains(model.supports, quadratic.nodes),
+    // A skin from a wrong Poisson's ratio is somewhat worse, and one from hundreds of thousands of nodes too slow.
+    const bool is_large = !body.is_quadratic() && body.nodes.rows() > most_nodes;
+    const mesh::VolumeMesh elements = is_large ? body : mesh::to_quadratic(body);
+    fem::Material of_elements = material;
+    if (is_large) of_elements.poisson = std::min(material.poisson, most_poisson);
+    const Eigen::SparseMatrix<double> E = mean_motions(elements, graph, owner, model, result.place);
+    const fem::ElasticBody elastic(elements, of_elements, mesh::contains(model.supports, elements.nodes),
                                    {.threads = threads});
     const Eigen::MatrixXd C = elastic.solve(Eigen::SparseMatrix<double>(E.transpose()));
 
-    const Eigen::SparseMatrix<double, Eigen::RowMajor> shape = fem::interpolation(quadratic, model.surface.vertices);
+    const Eigen::SparseMatrix<double, Eigen::RowMajor> shape = fem::interpolation(elements, model.surface.vertices);
     Eigen::MatrixXd Y(3 * shape.rows(), C.cols());
     Y.setZero();
     for (Eigen::Index v = 0; v < shape.rows(); ++v) {

@@ -42,7 +42,9 @@ std::optional<Row> place(const mesh::Surface& surface, const mesh::PlaneRegion& 
         const double start = now();
         Meshed body = meshed(surface, share);
         const double middle = now();
-        row.model = build_skeleton(body.surface, body.volume, {}, {support}, options);
+        BuildOptions without_skin = options;
+        without_skin.condense = false;
+        row.model = build_skeleton(body.surface, body.volume, {}, {support}, without_skin);
         row.mesh = middle - start;
         row.build = now() - middle;
         row.measures = measure(row.model, mesh::SurfaceTree(body.surface));

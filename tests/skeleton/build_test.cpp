@@ -220,8 +220,9 @@ TEST(BuildSkeleton, AnEndPushedAtItsCornerKeepsItsShape) {
     ASSERT_GT(loops(built.model), 0) << "corners without spheres of their own test nothing";
     const fem::Material material;
     const double force = 2 * 3 * material.young * std::pow(30., 4) / 12 / std::pow(100., 3);  // [N], 2 mm by Euler
-    const Equilibrium bent =
-        equilibrium(built.model, {.forces = {{attach(built.model, Vec3(100, 30, 30)), Vec3(0, 0, -force)}}});
+    Load load;
+    load.forces.push_back({attach(built.model, Vec3(100, 30, 30)), Vec3(0, 0, -force)});
+    const Equilibrium bent = equilibrium(built.model, load);
 
     std::vector<Attachment> end;
     for (const Attachment& vertex : built.model.skin) {

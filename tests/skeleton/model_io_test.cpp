@@ -202,7 +202,7 @@ TEST_F(ModelFile, EveryFaultIsNamed) {
     EXPECT_EQ(top(R"("provenance": [])"), "provenance: is '[]', but must be an object");
     EXPECT_EQ(top(R"("skni": [])"),
               "the field 'skni' is not known (did you mean 'skin'?); known are 'format', 'name', 'law', 'spheres', "
-              "'links', 'effects', 'skin', 'supports', 'provenance'");
+              "'links', 'effects', 'skin', 'dent', 'supports', 'provenance'");
 }
 
 TEST_F(ModelFile, FaultsOfEffectsAreNamed) {

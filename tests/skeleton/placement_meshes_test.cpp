@@ -23,7 +23,7 @@ TEST_P(Meshes, GetASkeletonThatFollowsThem) {
     const Meshed body = meshed(surface);
     const mesh::SurfaceTree tree(body.surface);
     const double size = mesh::bounding_box(body.surface.vertices).longest_side();
-    const Model model = build_skeleton(body.surface, body.volume, {}, {end_clamp(surface)}, {});
+    const Model model = build_skeleton(body.surface, body.volume, {}, {end_clamp(surface)}, {.condense = false});
     const Measures found = measure(model, tree);
     EXPECT_EQ(found.components, 1);
     EXPECT_EQ(found.duplicates, 0);

@@ -21,7 +21,9 @@ Placed place(const mesh::Surface& surface, const mesh::PlaneRegion& support, dou
              const BuildOptions& options = {}) {
     const Meshed body = meshed(surface, share);
     Placed placed;
-    placed.model = build_skeleton(body.surface, body.volume, {}, {support}, options);
+    BuildOptions without_skin = options;
+    without_skin.condense = false;
+    placed.model = build_skeleton(body.surface, body.volume, {}, {support}, without_skin);
     placed.measures = measure(placed.model, mesh::SurfaceTree(body.surface));
     placed.size = mesh::bounding_box(body.surface.vertices).longest_side();
     return placed;
