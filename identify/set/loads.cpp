@@ -65,6 +65,7 @@ skeleton::Load ContactLoads::operator()(const std::vector<mesh::Contact>& contac
         double area = 0;
         for (const PatchPoint& point : patch) area += point.area;
         std::vector<skeleton::Attachment> points;
+        points.reserve(patch.size());
         for (const PatchPoint& point : patch) points.push_back(attach_(point.position));
         std::vector<std::pair<double, const skeleton::Attachment*>> parts;
         for (std::size_t i = 0; i < patch.size(); ++i) parts.emplace_back(patch[i].area / area, &points[i]);
