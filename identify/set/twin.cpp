@@ -27,7 +27,8 @@ MeasurementSet simulate_measurements(const skeleton::Model& model, std::vector<L
     const Eigen::VectorXd k = stiffness_vector(model);
     for (std::size_t s = 0; s < set.states.size(); ++s) {
         LoadState& state = set.states[s];
-        const Points positions = observed(model, solver.solve(k, loads(set, state)), loads(set, state), points);
+        const skeleton::Load load = loads(set, state);
+        const Points positions = observed(model, solver.solve(k, load), load, points);
         RandomStream random(seed, s, 0);
         state.readings.clear();
         for (int i = 0; i < static_cast<int>(points.size()); ++i) {

@@ -4,7 +4,6 @@
 #include <array>
 
 #include "skeleton/links/turning_curvature.h"
-#include "skeleton/state.h"
 
 namespace palpate::skeleton {
 
@@ -97,6 +96,17 @@ void FullLink::add_curvature(const Strains& factors, Mat12& H) const {
 void FullLink::add_hessian(const Strains& k, Mat12& H) const {
     H.noalias() += gradients_ * k.asDiagonal() * gradients_.transpose();
     add_curvature(k.cwiseProduct(strains_), H);
+}
+
+FullLink full_link(const Link& link, const State& rest, const State& state) {
+    return {*link.section,
+            link.length,
+            rest.x.row(link.a).transpose(),
+            rest.x.row(link.b).transpose(),
+            state.x.row(link.a).transpose(),
+            state.R[link.a],
+            state.x.row(link.b).transpose(),
+            state.R[link.b]};
 }
 
 LinkTerms full_link_terms(const FullLink& link, bool with_hessian) {

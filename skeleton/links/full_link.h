@@ -1,6 +1,7 @@
 #pragma once
 
 #include "skeleton/link_energy.h"
+#include "skeleton/state.h"
 
 namespace palpate::skeleton {
 
@@ -41,6 +42,9 @@ private:
     Strains strains_;
     Eigen::Matrix<double, 12, 6> gradients_;
 };
+
+/// A link of a model in a state; `rest`: the model's. @pre the link is full.
+FullLink full_link(const Link& link, const State& rest, const State& state);
 
 /// Energies of a full link at unit stiffness, and their derivatives.
 LinkTerms full_link_terms(const FullLink& link, bool with_hessian);

@@ -105,22 +105,10 @@ void PlacedLinks::add_effects(size_t l, const State& state, const FibreStates& b
         for (Eigen::Index s = 0; s < terms.energy.size(); ++s) terms.hessian[s] *= scales_[l];
 }
 
-FullLink PlacedLinks::full_link(size_t l, const State& state) const {
-    const Link& link = links_[l];
-    return {*link.section,
-            link.length,
-            rest_.x.row(link.a).transpose(),
-            rest_.x.row(link.b).transpose(),
-            state.x.row(link.a).transpose(),
-            state.R[link.a],
-            state.x.row(link.b).transpose(),
-            state.R[link.b]};
-}
-
 LinkTerms PlacedLinks::terms(size_t l, const State& state, bool with_hessian, const FibreStates& before) const {
     const Link& link = links_[l];
     LinkTerms terms = link.section
-                          ? full_link_terms(full_link(l, state), with_hessian)
+                          ? full_link_terms(full_link(link, rest_, state), with_hessian)
                           : link_terms(link.length, directions_[l], state.x.row(link.a).transpose(), state.R[link.a],
                                        state.x.row(link.b).transpose(), state.R[link.b], with_hessian);
     if (!plain_) add_effects(l, state, before, with_hessian, terms);
@@ -134,7 +122,7 @@ Mat12 PlacedLinks::hessian(size_t l, const Stiffnesses& k, const State& state, c
     if (!plain_) with_torsion[2] += torsion_ * k[1];
     Mat12 H = Mat12::Zero();
     if (link.section)
-        full_link(l, state).add_hessian(with_torsion, H);
+        full_link(link, rest_, state).add_hessian(with_torsion, H);
     else
         H = link_hessian(with_torsion, link.length, directions_[l], x_a, state.R[link.a], x_b, state.R[link.b]);
     if (plain_) return H;

@@ -51,7 +51,6 @@ private:
     StretchTerms fibre_terms(size_t link, int j, double stretch, bool with_second, const FibreStates& before) const;
     void add_effects(size_t link, const State& state, const FibreStates& before, bool with_hessian,
                      LinkTerms& terms) const;
-    FullLink full_link(size_t link, const State& state) const;
     template <typename ForcesOf>
     Eigen::SparseMatrix<double> assembled(const ForcesOf& forces_of,
                                           std::vector<Eigen::Triplet<double>> of_volumes) const;

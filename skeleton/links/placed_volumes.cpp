@@ -12,17 +12,6 @@ namespace {
 
 constexpr int elongation = static_cast<int>(Stiffness::elongation);
 
-FullLink placed(const Link& link, const State& rest, const State& state) {
-    return {*link.section,
-            link.length,
-            rest.x.row(link.a).transpose(),
-            rest.x.row(link.b).transpose(),
-            state.x.row(link.a).transpose(),
-            state.R[link.a],
-            state.x.row(link.b).transpose(),
-            state.R[link.b]};
-}
-
 }  // namespace
 
 PlacedVolumes::PlacedVolumes(const Model& model, const fem::Effects& effects)
@@ -66,7 +55,7 @@ std::vector<PlacedVolumes::Swelling> PlacedVolumes::swellings(const State& state
     std::vector<Swelling> result(links_.size());
     for (std::size_t l = 0; l < links_.size(); ++l) {
         if (pair_of_link_[3 * l] < 0) continue;
-        const FullLink link = placed(links_[l], rest_, state);
+        const FullLink link = full_link(links_[l], rest_, state);
         const double half = 0.5 * links_[l].section->area;
         result[l] = {half * link.strains()[elongation], half * link.gradients().col(elongation)};
     }
@@ -133,7 +122,7 @@ std::vector<PlacedVolumes::Block> PlacedVolumes::curvature(const Eigen::VectorXd
         FullLink::Strains factors = FullLink::Strains::Zero();
         factors[elongation] = 0.5 * links_[l].section->area * pressures[l];
         Mat12 H = Mat12::Zero();
-        placed(links_[l], rest_, state).add_curvature(factors, H);
+        full_link(links_[l], rest_, state).add_curvature(factors, H);
         blocks[pair_of_link_[3 * l]] += H.topRightCorner<6, 6>();
         blocks[pair_of_link_[3 * l + 1]] += H.topLeftCorner<6, 6>();
         blocks[pair_of_link_[3 * l + 2]] += H.bottomRightCorner<6, 6>();
@@ -169,7 +158,7 @@ void PlacedVolumes::add_linear_forces(const Eigen::VectorXd& step, std::vector<E
             FullLink::Strains factors = FullLink::Strains::Zero();
             factors[elongation] = 0.5 * links_[l].section->area * change;
             Mat12 H = Mat12::Zero();
-            placed(links_[l], rest_, rest_).add_curvature(factors, H);
+            full_link(links_[l], rest_, rest_).add_curvature(factors, H);
             Vec12 own;
             own << step.segment<6>(Eigen::Index{6} * links_[l].a), step.segment<6>(Eigen::Index{6} * links_[l].b);
             const Vec12 more = H * own;

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 
 #include "fem/elastic_body.h"
 #include "fem/interpolation.h"
@@ -71,7 +70,7 @@ Eigen::SparseMatrix<double> mean_motions(const mesh::VolumeMesh& body, const Tet
 }
 
 Condensed condense(const mesh::VolumeMesh& body, const fem::Material& material, const TetGraph& graph,
-                   const std::vector<int>& owner, const Model& model, int threads) {
+                   const std::vector<int>& owner, const Model& model) {
     Condensed result;
     int free = 0;
     for (const Sphere& sphere : model.spheres) result.place.push_back(sphere.held ? -1 : free++);
@@ -81,8 +80,7 @@ Condensed condense(const mesh::VolumeMesh& body, const fem::Material& material, 
     fem::Material of_elements = material;
     if (is_large) of_elements.poisson = std::min(material.poisson, most_poisson);
     const Eigen::SparseMatrix<double> E = mean_motions(elements, graph, owner, model, result.place);
-    const fem::ElasticBody elastic(elements, of_elements, mesh::contains(model.supports, elements.nodes),
-                                   {.threads = threads});
+    const fem::ElasticBody elastic(elements, of_elements, mesh::contains(model.supports, elements.nodes));
     const Eigen::MatrixXd C = elastic.solve(Eigen::SparseMatrix<double>(E.transpose()));
 
     const Eigen::SparseMatrix<double, Eigen::RowMajor> shape = fem::interpolation(elements, model.surface.vertices);
@@ -259,8 +257,8 @@ Attachment on_held(const Model& model, const Vec3& x) {
 }  // namespace
 
 std::vector<Attachment> make_skin(const mesh::VolumeMesh& body, const fem::Material& material, const TetGraph& graph,
-                                  const std::vector<int>& owner, const Model& model, int threads) {
-    const Condensed condensed = condense(body, material, graph, owner, model, threads);
+                                  const std::vector<int>& owner, const Model& model) {
+    const Condensed condensed = condense(body, material, graph, owner, model);
     const SkinMaker maker(model, condensed);
     const std::vector<char> held = mesh::contains(model.supports, model.surface.vertices);
     std::vector<Attachment> skin;

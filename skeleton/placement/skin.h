@@ -20,6 +20,6 @@ namespace palpate::skeleton {
 /// `owner`: the sphere of each of the graph's tetrahedra, as share_out has it; the graph's tetrahedra are equal parts
 /// of the body's, in their order. The model has its spheres, links and surface.
 std::vector<Attachment> make_skin(const mesh::VolumeMesh& body, const fem::Material& material, const TetGraph& graph,
-                                  const std::vector<int>& owner, const Model& model, int threads = 1);
+                                  const std::vector<int>& owner, const Model& model);
 
 }  // namespace palpate::skeleton
