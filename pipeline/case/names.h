@@ -24,12 +24,11 @@ inline constexpr Names<identify::LawChoice, 3> law_choices{{{"automatic", identi
                                                             {"linear", identify::LawChoice::linear},
                                                             {"large-rotation", identify::LawChoice::large_rotation}}};
 
-inline constexpr Names<skeleton::Stiffness, 7> stiffnesses{{{"elongation", skeleton::Stiffness::elongation},
+/// Those that are identified: flexion and shear stand for both planes, see skeleton::as_identified.
+inline constexpr Names<skeleton::Stiffness, 5> stiffnesses{{{"elongation", skeleton::Stiffness::elongation},
                                                             {"flexion", skeleton::Stiffness::flexion},
                                                             {"torsion", skeleton::Stiffness::torsion},
-                                                            {"flexion_2", skeleton::Stiffness::flexion_2},
                                                             {"shear", skeleton::Stiffness::shear},
-                                                            {"shear_2", skeleton::Stiffness::shear_2},
                                                             {"volume", skeleton::Stiffness::volume}}};
 inline constexpr Names<skeleton::LinkKind, 2> link_kinds{
     {{"full", skeleton::LinkKind::full}, {"burion2008", skeleton::LinkKind::burion2008}}};

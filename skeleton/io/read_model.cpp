@@ -50,6 +50,9 @@ Sphere read_sphere(const JsonField& field, const std::vector<mesh::Region>& supp
     sphere.held = field.has("held") ? field["held"].boolean() : mesh::contains(supports, sphere.center);
     if (field.has("cell")) sphere.cell = field["cell"].positive_number();
     if (field.has("volume")) sphere.volume = field["volume"].number_at_least(0);
+    if (sphere.volume > 0 && !(sphere.cell > 0))
+        field["volume"].complain(
+            "is a stiffness against changes of the cell's volume: give the field 'cell' too [mm^3]");
     return sphere;
 }
 
@@ -87,6 +90,12 @@ Link read_link(const JsonField& field, const std::vector<Sphere>& spheres) {
     link.stiffness.resize(full ? 6 : 3);
     for (int s = 0; s < link.stiffness.size(); ++s) link.stiffness[s] = field[stiffness_names[s]].number_at_least(0);
     if (full) link.section = read_section(field, link, spheres);
+    for (const char* of_section : {"at", "across", "area"}) {
+        if (full || !field.has(of_section)) continue;
+        field[of_section].complain(
+            "is of a full link's section, but the link is the paper's: give it flexion_2, shear and shear_2, or take "
+            "this away");
+    }
     if (field.has("zone")) link.zone = field["zone"].index(1'000'000);
     if (field.has("gyration")) link.gyration = field["gyration"].positive_number();
     return link;

@@ -194,6 +194,12 @@ TEST_F(ModelFile, EveryFaultIsNamed) {
     EXPECT_EQ(complaint(two_spheres("", ", \"gyration\": 0")),
               "links[0].gyration: is '0', but must be a number above 0");
     EXPECT_EQ(complaint(two_spheres("", ", \"shear\": 2")), "links[0]: the field 'flexion_2' is missing");
+    EXPECT_EQ(complaint(two_spheres("", ", \"area\": 2")),
+              "links[0].area: is of a full link's section, but the link is the paper's: give it flexion_2, shear and "
+              "shear_2, or take this away");
+    EXPECT_EQ(complaint(two_spheres(", \"volume\": 2")),
+              "spheres[0].volume: is a stiffness against changes of the cell's volume: give the field 'cell' too "
+              "[mm^3]");
     EXPECT_EQ(complaint(two_spheres("", R"(}, {"a": 1, "b": 0, "elongation": 1, "flexion": 1, "torsion": 1)")),
               "links[1]: joins spheres 0 and 1, as links[0] does already; keep one of them");
     const auto top = [&](const std::string& extra) { return complaint(two_spheres("", "", ", " + extra)); };
