@@ -77,6 +77,8 @@ public:
 
 private:
     Prediction predict_linear(const Eigen::VectorXd& k) const;
+    /// Measured less modelled, zero for a missing coordinate (3m).
+    Eigen::VectorXd errors(int s, const Points& markers) const;
     Points dented(int s, const Eigen::Matrix<double, 6, 1>& dent) const;  // (m x 3) [mm]
     /// A state's readings pulled back to the forces: X = T^-1 P^T (6N x 3m), and X W X^T (6N x 6N).
     struct PullBack {
