@@ -10,8 +10,6 @@
 
 namespace palpate::fem {
 
-namespace {
-
 /// Something made when it is first asked for, by whichever thread.
 template <class Value>
 class Lazy {
@@ -26,6 +24,8 @@ private:
     mutable std::once_flag once_;
     mutable std::unique_ptr<const Value> value_;
 };
+
+namespace {
 
 BodyShape shape_of(mesh::VolumeMesh mesh, std::vector<char> held, Dilatation dilatation) {
     assert(held.size() == static_cast<std::size_t>(mesh.nodes.rows()));

@@ -69,6 +69,9 @@ void Console::set_up(Verbosity verbosity) {
 }
 
 void Console::notice(const std::string& text) { spdlog::info("{}", text); }
+void Console::notices(const std::vector<std::string>& texts) {
+    for (const std::string& text : texts) notice(text);
+}
 void Console::warning(const std::string& text) { spdlog::warn("warning: {}", text); }
 void Console::error(const std::string& text) { spdlog::error("error: {}", text); }
 void Console::detail(const std::string& text) { spdlog::debug("{}", text); }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "mesh/progress.h"
 
@@ -16,6 +17,7 @@ public:
 
     /// An assumption or a decision that the user did not ask for and should know.
     static void notice(const std::string& text);
+    static void notices(const std::vector<std::string>& texts);
     static void warning(const std::string& text);
     static void error(const std::string& text);
     static void detail(const std::string& text);  // with -v only

@@ -59,7 +59,7 @@ public:
     skeleton::FibreStates fibres;
 };
 
-const skeleton::FibreStates& memory_of(const Action& action) {
+const skeleton::FibreStates& fibres_before(const Action& action) {
     static const skeleton::FibreStates none;
     const auto* own = dynamic_cast<const FibreMemory*>(action.memory.get());
     return own ? own->fibres : none;
@@ -101,7 +101,7 @@ struct SkeletonBody::Impl {
     /// A configuration as the statics know it.
     Equilibrium equilibrium_of(const Eigen::VectorXd& q, const Setting& setting, const Action& action = {}) const {
         Equilibrium at;
-        at.before = memory_of(action);
+        at.before = fibres_before(action);
         if (static_cast<Law>(setting.law) == Law::linear) {
             at.step = q;
             at.state = skeleton::advance(skeleton::rest_state(by_law[0]), q);
@@ -221,7 +221,7 @@ Eigen::VectorXd SkeletonBody::equilibrium(const Setting& setting, const Action& 
                                           const Eigen::VectorXd* start) const {
     skeleton::StaticsSolver solver(impl_->model(setting), impl_->effects(setting, action));
     const skeleton::Load load = impl_->load(action);
-    const skeleton::FibreStates& before = memory_of(action);
+    const skeleton::FibreStates& before = fibres_before(action);
     if (!is_nonlinear(setting)) return solver.solve(stiffness(setting), load, {}, nullptr, before).step;
     std::optional<State> from;
     if (start) from = unpack(*start);
@@ -356,7 +356,7 @@ Eigen::MatrixXd SkeletonBody::tangent_times(const Eigen::VectorXd& q, const Sett
     skeleton::set_stiffness(model, stiffness(setting));
     const skeleton::Load load = is_nonlinear(setting) ? impl_->load(action) : skeleton::Load{};
     return skeleton::tangent(model, impl_->tangent_state(q, setting), load, impl_->effects(setting, action),
-                             memory_of(action)) *
+                             fibres_before(action)) *
            steps;
 }
 

@@ -36,7 +36,7 @@ identify::MeasurementSet understood(const identify::MeasurementSet& set, const s
 
 std::unique_ptr<identify::ReferenceBody> reference_of(const identify::MeasurementSet& set, double edge_length) {
     Reference reference = make_reference(set, edge_length, Console::progress());
-    for (const std::string& note : reference.notes) Console::notice(note);
+    Console::notices(reference.notes);
     if (!reference.body) {
         throw InvalidInput("the body cannot be made of finite elements: " + reference.why_none);
     }

@@ -18,13 +18,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-void tell(const std::vector<std::string>& lines) {
-    for (const std::string& line : lines) Console::notice(line);
-}
-
 Body body_of(const Subject& subject, double edge_length) {
     Body body = make_body(subject.surface, {edge_length, subject.settings.linear_elements}, Console::progress());
-    tell(body.notes);
+    Console::notices(body.notes);
     return body;
 }
 
@@ -42,7 +38,7 @@ void add_quality(const Subject& subject, const Body& body, const skeleton::Model
                  QualityOptions options, int threads, Outcome& outcome) {
     options.threads = threads;
     const Quality quality = measure_quality(subject, body, model, options, Console::progress());
-    tell(quality.notes);
+    Console::notices(quality.notes);
     mesh::write_text(quality_file(output, ".json"), quality_json(quality).dump(1) + "\n");
     mesh::write_text(quality_file(output, ".csv"), quality_csv(quality));
     mesh::write_text(quality_file(output, ".svg"), quality_plot(quality, subject.settings.name));
@@ -60,7 +56,7 @@ Outcome mesh_body(const MeshOptions& options, const Common& common) {
     }
     refuse_to_overwrite(output, common.force);
     const Subject subject = read_subject(read_case(options.input, options.say));
-    tell(subject.assumptions);
+    Console::notices(subject.assumptions);
     const Body body = body_of(subject, subject.settings.edge_length);
     mesh::write_vtu(output, body.volume);
     Outcome outcome;
@@ -88,13 +84,13 @@ Outcome skeleton(const SkeletonOptions& options, const Common& common) {
         }
     }
     const Subject subject = read_subject(read_case(options.input, options.say));
-    tell(subject.assumptions);
+    Console::notices(subject.assumptions);
     const Body body = body_of(subject, subject.settings.edge_length);
     skeleton::BuildReport report;
     skeleton::Model model = skeleton::build_skeleton(body.surface, body.volume, subject.material, subject.supports,
                                                      subject.settings.skeleton, &report);
     model.name = subject.settings.name;
-    tell(report.notes);
+    Console::notices(report.notes);
     skeleton::write_model_vtp(fs::path(output).replace_extension(".vtp"), model);
     skeleton::write_model(output, model);
     const auto held = std::count_if(model.spheres.begin(), model.spheres.end(), [](auto& s) { return s.held; });

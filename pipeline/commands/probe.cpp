@@ -19,10 +19,6 @@ struct Probing {
     std::uint64_t seed = 1;
 };
 
-void tell(const std::vector<std::string>& lines) {
-    for (const std::string& line : lines) Console::notice(line);
-}
-
 Probing probing_of_model(const ProbeCommandOptions& options) {
     Probing probing;
     if (options.say.probes) probing.how.probes = *options.say.probes;
@@ -39,7 +35,7 @@ Probing probing_of_body(const ProbeCommandOptions& options) {
     if (!options.say.probes) settings.probing.probes = ProbeOptions{}.probes;
     settings.probing.held_out = 0;
     const Subject subject = read_subject(settings);
-    tell(subject.assumptions);
+    Console::notices(subject.assumptions);
     return {finite_element_specimen(subject, options.forge, Console::progress()), subject.settings.probing,
             subject.settings.identify.seed};
 }
@@ -84,9 +80,9 @@ Outcome probe(const ProbeCommandOptions& options, const Common& common) {
     if (options.say.noise) how.noise = options.say.noise;
     if (!how.noise && probing.how.noise > 0) how.noise = probing.how.noise;
 
-    tell(specimen.notes);
+    Console::notices(specimen.notes);
     const Forged forged = forge(specimen, probing.how, how, probing.seed, common.threads, Console::progress());
-    tell(forged.notes);
+    Console::notices(forged.notes);
     const bool has_fields = !specimen.is_skeleton();
     tell_hidden(forged, has_fields);
     identify::write_measurement_set(output, forged.set, [&](const fs::path& folder) {

@@ -36,7 +36,7 @@ public:
           folder_(options.output, common.force) {}
 
     Outcome execute() {
-        for (const std::string& assumption : subject_.assumptions) Console::notice(assumption);
+        Console::notices(subject_.assumptions);
         mesh::write_text(folder_.path() / "case.yaml", to_yaml(subject_.settings));
         folder_.note("seed", subject_.settings.identify.seed);
         folder_.note("assumptions", subject_.assumptions);
@@ -107,7 +107,7 @@ private:
                               skeleton::Model model = skeleton::build_skeleton(surface_, body_, subject_.material,
                                                                                subject_.supports, c.skeleton, &report);
                               model.name = c.name;
-                              for (const std::string& note : report.notes) Console::notice(note);
+                              Console::notices(report.notes);
                               skeleton::write_model(file, model);
                               skeleton::write_model_vtp(folder_.path() / "skeleton/skeleton.vtp", model);
                               mesh::write_vtp_lines(folder_.path() / "skeleton/medial_axis.vtp", report.medial_centers,
@@ -213,7 +213,7 @@ private:
                 identify::IdentifyResult found = identify::identify(model_, fit_, options, Console::progress());
                 // In small strain both laws agree, and a real-time model is to be bent far.
                 if (!subject_.set) found.model.law = skeleton::Law::large_rotation;
-                for (const std::string& note : found.notes) Console::notice(note);
+                Console::notices(found.notes);
                 write_identification(folder_.path() / "identify", found);
                 return summary_json(found);
             });

@@ -12,7 +12,7 @@
 namespace palpate::pipeline {
 namespace {
 
-constexpr double width = 640;  // [px]
+constexpr double widest = 640;  // [px]
 
 /// Five points of the colour map viridis (van der Walt & Smith 2015), told apart by colour-blind readers too.
 std::string colour(double share) {
@@ -45,7 +45,7 @@ public:
         const Points seen = points * rows_.transpose();
         low_ = seen.colwise().minCoeff();
         const Eigen::RowVector3d size = seen.colwise().maxCoeff() - seen.colwise().minCoeff();
-        scale_ = (width - 20) / std::max(size[0], size[1]);
+        scale_ = (widest - 20) / std::max(size[0], size[1]);
         height_ = 20 + scale_ * size[1];
         top_ = low_[1] + size[1];
         width_ = 20 + scale_ * size[0];

@@ -51,15 +51,4 @@ inline Eigen::VectorXd nodal(const mesh::VolumeMesh& mesh, const std::function<V
     return u;
 }
 
-/// The message of the exception that `work` throws, which has to be of type E.
-template <class E, class Work>
-std::string message_of(Work&& work) {
-    try {
-        work();
-    } catch (const E& error) {
-        return error.what();
-    }
-    return "nothing was thrown";
-}
-
 }  // namespace palpate::fem

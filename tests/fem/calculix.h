@@ -10,7 +10,6 @@
 #include "bodies.h"
 #include "fem/material.h"
 
-// After bodies.h, whose message_of lives in another namespace.
 #include "tests/temporary_folder.h"
 
 namespace palpate::fem {

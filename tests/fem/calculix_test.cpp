@@ -13,7 +13,7 @@ double sag(const Eigen::VectorXd& u) { return -u.reshaped(3, u.size() / 3).row(2
 
 // CalculiX prints 7 digits and stops at half a per cent of the mean force, after a last correction of a millionth or
 // so. Its standard quadratic tetrahedra take the volume as the displacements have it: Dilatation::full.
-constexpr double tolerance = 1e-4;
+constexpr double four_digits = 1e-4;
 
 TEST(CalculiX, CantileverBendsAlike) {
     if (!calculix::installed()) GTEST_SKIP() << calculix::missing;
@@ -28,7 +28,7 @@ TEST(CalculiX, CantileverBendsAlike) {
     const Eigen::VectorXd theirs = calculix::run(input, beam.mesh.nodes.rows()).back();
     EXPECT_GT(sag(theirs), 0.3 * 50);
     EXPECT_LT(relative(beam.body(Dilatation::full).equilibrium({Law::neo_hooke, material, {}}, f).u, theirs),
-              tolerance);
+              four_digits);
 }
 
 TEST(CalculiX, BarSagsAlikeUnderItsWeight) {
@@ -43,7 +43,7 @@ TEST(CalculiX, BarSagsAlikeUnderItsWeight) {
     EXPECT_GT(sag(theirs), 0.1 * 40);
     const BodySetting setting{Law::neo_hooke, material, {.points = {std::make_shared<Weight>(Vec3(0, 0, -g))}}};
     const Eigen::VectorXd none = Eigen::VectorXd::Zero(theirs.size());
-    EXPECT_LT(relative(beam.body(Dilatation::full).equilibrium(setting, none).u, theirs), tolerance);
+    EXPECT_LT(relative(beam.body(Dilatation::full).equilibrium(setting, none).u, theirs), four_digits);
 }
 
 }  // namespace

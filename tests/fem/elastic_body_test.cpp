@@ -5,6 +5,7 @@
 #include "bodies.h"
 #include "fem/patch_load.h"
 #include "mesh/errors.h"
+#include "tests/messages.h"
 
 namespace palpate::fem {
 namespace {

@@ -1,6 +1,7 @@
 #include "beam.h"
 #include "mesh/errors.h"
 #include "point_potentials.h"
+#include "tests/messages.h"
 
 namespace palpate::fem {
 namespace {

@@ -6,6 +6,7 @@
 #include "fem/elastic_body.h"
 #include "mesh/errors.h"
 #include "point_potentials.h"
+#include "tests/messages.h"
 
 namespace palpate::fem {
 namespace {

@@ -6,6 +6,7 @@
 
 #include "bodies.h"
 #include "mesh/errors.h"
+#include "tests/messages.h"
 
 namespace palpate::fem {
 namespace {

@@ -7,6 +7,7 @@
 #include "fem/large_deformation/point_law.h"
 #include "mesh/errors.h"
 #include "point_potentials.h"
+#include "tests/messages.h"
 
 namespace palpate::fem {
 namespace {

@@ -20,14 +20,14 @@
 namespace palpate::identify {
 namespace {
 
-struct Case {
+struct BodyCase {
     std::string name;
     bool is_skeleton;
     int law;
     bool effects;
 };
 
-class BodyModelLaws : public testing::TestWithParam<Case> {
+class BodyModelLaws : public testing::TestWithParam<BodyCase> {
 protected:
     BodyModelLaws() {
         body_.markers = SmallBody::with_pins();
@@ -318,8 +318,8 @@ TEST(PressureInACavity, ActsAsTheSameEffectDoesAndOnNothingAsAWhole) {
     }
 }
 
-std::vector<Case> all_cases() {
-    std::vector<Case> cases;
+std::vector<BodyCase> all_cases() {
+    std::vector<BodyCase> cases;
     for (const bool effects : {false, true}) {
         const std::string suffix = effects ? "WithEffects" : "";
         cases.push_back({"ReferenceLinear" + suffix, false, 0, effects});

@@ -7,17 +7,17 @@
 namespace palpate::identify {
 namespace {
 
-constexpr double rounding = 1e-15;  // of sums of three shares
+constexpr double share_rounding = 1e-15;  // of sums of three shares
 
 TEST(ErrorBudget, SharesAddUp) {
     for (const double error : {0.1, 1.0, 7.0}) {
         for (const double noise : {0.0, 0.5, 3.0}) {
             for (const double left : {0.0, 0.6, 20.0}) {
                 const ErrorBudget b = share_out_error(error, noise, left);
-                EXPECT_NEAR(b.noise + b.reduction + b.missing_physics, 1, rounding);
+                EXPECT_NEAR(b.noise + b.reduction + b.missing_physics, 1, share_rounding);
                 for (const double share : {b.noise, b.reduction, b.missing_physics}) {
-                    EXPECT_GE(share, -rounding);
-                    EXPECT_LE(share, 1 + rounding);
+                    EXPECT_GE(share, -share_rounding);
+                    EXPECT_LE(share, 1 + share_rounding);
                 }
             }
         }
@@ -27,9 +27,9 @@ TEST(ErrorBudget, SharesAddUp) {
 /// Noise 1, coarseness 3 and physics 6 of a mean square error of 10: variances of independent errors add.
 TEST(ErrorBudget, RecoversIndependentParts) {
     const ErrorBudget b = share_out_error(10, 1, 1 + 6);
-    EXPECT_NEAR(b.noise, 0.1, rounding);
-    EXPECT_NEAR(b.missing_physics, 0.6, rounding);
-    EXPECT_NEAR(b.reduction, 0.3, rounding);
+    EXPECT_NEAR(b.noise, 0.1, share_rounding);
+    EXPECT_NEAR(b.missing_physics, 0.6, share_rounding);
+    EXPECT_NEAR(b.reduction, 0.3, share_rounding);
 }
 
 TEST(ErrorBudget, AnErrorBelowTheNoiseIsNoise) { EXPECT_EQ(share_out_error(0.9, 1, 5).noise, 1); }

@@ -31,23 +31,23 @@ Vec3 force_at(const std::vector<mesh::Contact>& load, const mesh::Contact& place
     return sum;
 }
 
-constexpr double rounding = 1e-14;
+constexpr double creep_rounding = 1e-14;
 
 TEST(CreptLoad, OfALoadThatIsHeldGrowsWithTheCompliance) {
     for (const double t : {0.0, 0.5, 4.0, 100.0}) {
-        EXPECT_LT((force_at(crept_load({{t, {push}}}, creep), push) - J(t) * push.force).norm(), rounding);
+        EXPECT_LT((force_at(crept_load({{t, {push}}}, creep), push) - J(t) * push.force).norm(), creep_rounding);
     }
     EXPECT_DOUBLE_EQ(J(1e6), 1.6);
     // however often it is read
     const std::vector<HeldLoad> often{{1, {push}}, {3, {push}}, {7, {push}}};
-    EXPECT_LT((force_at(crept_load(often, creep), push) - J(7) * push.force).norm(), rounding);
+    EXPECT_LT((force_at(crept_load(often, creep), push) - J(7) * push.force).norm(), creep_rounding);
 }
 
 TEST(CreptLoad, OfALoadThatWasTakenOffFades) {
     // on from 0 to 5, off since: J(t) - J(t - 5)
     for (const double t : {5.0, 6.0, 20.0}) {
         const Vec3 left = force_at(crept_load({{5, {push}}, {t, {}}}, creep), push);
-        EXPECT_LT((left - (J(t) - J(t - 5)) * push.force).norm(), rounding) << t;
+        EXPECT_LT((left - (J(t) - J(t - 5)) * push.force).norm(), creep_rounding) << t;
     }
     EXPECT_LT(force_at(crept_load({{5, {push}}, {200, {}}}, creep), push).norm(), 1e-12);  // 50 tau
 }
@@ -55,16 +55,16 @@ TEST(CreptLoad, OfALoadThatWasTakenOffFades) {
 TEST(CreptLoad, OfTwoLevelsIsTheirSuperposition) {
     // F till 3, then 2 F: the first since 0, one more since 3
     const Vec3 load = force_at(crept_load({{3, {push}}, {10, {scaled(push, 2)}}}, creep), push);
-    EXPECT_LT((load - (J(10) + J(7)) * push.force).norm(), rounding);
+    EXPECT_LT((load - (J(10) + J(7)) * push.force).norm(), creep_rounding);
     // and back to none
     const Vec3 after = force_at(crept_load({{3, {push}}, {10, {scaled(push, 2)}}, {12, {}}}, creep), push);
-    EXPECT_LT((after - (J(12) + J(9) - 2 * J(2)) * push.force).norm(), rounding);
+    EXPECT_LT((after - (J(12) + J(9) - 2 * J(2)) * push.force).norm(), creep_rounding);
 }
 
 TEST(CreptLoad, OfTwoContactsIsThatOfEach) {
     const auto load = crept_load({{3, {push, other}}, {10, {other}}}, creep);
-    EXPECT_LT((force_at(load, push) - (J(10) - J(7)) * push.force).norm(), rounding);
-    EXPECT_LT((force_at(load, other) - J(10) * other.force).norm(), rounding);
+    EXPECT_LT((force_at(load, push) - (J(10) - J(7)) * push.force).norm(), creep_rounding);
+    EXPECT_LT((force_at(load, other) - J(10) * other.force).norm(), creep_rounding);
 }
 
 TEST(CreptLoad, WithoutCreepIsTheLoadItself) {
@@ -79,10 +79,10 @@ TEST(CreptLoad, OfASetBeginsAnewWithEachProbe) {
                   LoadState{.probe = 2, .time = 5, .contacts = {other}}};
     const MeasurementSet elastic = as_elastic(set, creep);
     ASSERT_EQ(elastic.states.size(), 3u);
-    EXPECT_LT((force_at(elastic.states[0].contacts, push) - J(3) * push.force).norm(), rounding);
-    EXPECT_LT((force_at(elastic.states[1].contacts, push) - (J(10) - J(7)) * push.force).norm(), rounding);
+    EXPECT_LT((force_at(elastic.states[0].contacts, push) - J(3) * push.force).norm(), creep_rounding);
+    EXPECT_LT((force_at(elastic.states[1].contacts, push) - (J(10) - J(7)) * push.force).norm(), creep_rounding);
     EXPECT_EQ(force_at(elastic.states[2].contacts, push).norm(), 0);
-    EXPECT_LT((force_at(elastic.states[2].contacts, other) - J(5) * other.force).norm(), rounding);
+    EXPECT_LT((force_at(elastic.states[2].contacts, other) - J(5) * other.force).norm(), creep_rounding);
 }
 
 TEST(CreepingBody, MovesAsAnElasticOneUnderTheLoadsThatItAmountsTo) {

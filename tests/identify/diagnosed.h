@@ -3,7 +3,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <functional>
 #include <string>
 
 #include "identify/diagnose/diagnose.h"
@@ -40,15 +39,6 @@ protected:
     static double told(const Candidate& c, const std::string& name) {
         return std::ranges::find(c.told.effect.parameters, name, &skeleton::EffectParameter::name)->value;
     }
-    static std::string message_of(const std::function<void()>& call) {
-        try {
-            call();
-        } catch (const InvalidInput& error) {
-            return error.what();
-        }
-        return "no InvalidInput";
-    }
-
     SmallBody body_;
     std::unique_ptr<ReferenceBody> model_ = body_.reference();
 };

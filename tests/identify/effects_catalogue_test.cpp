@@ -8,6 +8,7 @@
 
 #include "mesh/errors.h"
 #include "small_body.h"
+#include "tests/messages.h"
 
 namespace palpate::identify {
 namespace {
@@ -19,15 +20,6 @@ const std::set<std::string> promised{
     "gravity",  "stiffening", "anisotropy",        "inclusion", "volume",     "torsion",      "shear",      "contact",
     "pressure", "prestress",  "compliant-support", "viscosity", "plasticity", "misalignment", "force-gain", "outliers"};
 const std::set<std::string> probe_kinds{"load", "orientation", "pressure", "dwell", "unload", "repeat", "fiducials"};
-
-std::string message_of_find(const std::string& name) {
-    try {
-        find_effect(name);
-    } catch (const InvalidInput& error) {
-        return error.what();
-    }
-    return "nothing was thrown";
-}
 
 class EveryEffect : public testing::TestWithParam<std::shared_ptr<const Effect>> {
 protected:
@@ -220,10 +212,12 @@ TEST(Catalogue, NamesAreAllDifferent) {
 }
 
 TEST(Catalogue, AWrongNameGetsASuggestion) {
-    EXPECT_EQ(
-        message_of_find("gravitiy").rfind("there is no effect 'gravitiy'; did you mean 'gravity'? Known are: ", 0), 0u);
-    EXPECT_THAT(message_of_find("outlier"), HasSubstr("did you mean 'outliers'?"));
-    for (const auto& effect : catalogue()) EXPECT_THAT(message_of_find("x"), HasSubstr(effect->name()));
+    EXPECT_EQ(message_of([] {
+                  find_effect("gravitiy");
+              }).rfind("there is no effect 'gravitiy'; did you mean 'gravity'? Known are: ", 0),
+              0u);
+    EXPECT_THAT(message_of([] { find_effect("outlier"); }), HasSubstr("did you mean 'outliers'?"));
+    for (const auto& effect : catalogue()) EXPECT_THAT(message_of([] { find_effect("x"); }), HasSubstr(effect->name()));
 }
 
 }  // namespace

@@ -1,13 +1,13 @@
 #include <gtest/gtest.h>
 
-#include <functional>
-
+#include "domains.h"
 #include "identify/compare.h"
 #include "identify/fit/fit.h"
 #include "identify/fit/node_configuration.h"
 #include "identify/identify.h"
 #include "lattice.h"
 #include "mesh/errors.h"
+#include "tests/messages.h"
 
 // Models that carry effects: played, identified and compared.
 
@@ -45,19 +45,6 @@ IdentifyOptions quick() {
     options.scope = Scope::uniform;
     options.particles = 50;
     return options;
-}
-
-PositionDomain make_domain(const skeleton::Model& model, Scope scope, const MeasurementSet& set) {
-    return {model, model.law, group_stiffness(model, scope), collect_readings(model, set), 1};
-}
-
-std::string message_of(const std::function<void()>& call) {
-    try {
-        call();
-    } catch (const InvalidInput& error) {
-        return error.what();
-    }
-    return "no exception";
 }
 
 class WithEffect : public testing::TestWithParam<std::vector<skeleton::Effect>> {};

@@ -2,6 +2,7 @@
 
 #include <random>
 
+#include "domains.h"
 #include "identify/fit/position_domain.h"
 #include "lattice.h"
 #include "skeleton/effects/anisotropy.h"
@@ -33,10 +34,6 @@ skeleton::Model lattice_under_all(Law law) {
     model.law = law;
     model.effects = link_effects;
     return model;
-}
-
-PositionDomain make_domain(const skeleton::Model& model, Scope scope, const MeasurementSet& set) {
-    return {model, model.law, group_stiffness(model, scope), collect_readings(model, set), 1};
 }
 
 // --- Calibration --------------------------------------------------------------------------------------------------

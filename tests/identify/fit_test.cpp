@@ -12,13 +12,13 @@
 namespace palpate::identify {
 namespace {
 
-struct Case {
+struct SignatureCase {
     std::string effect;  // or "" for the stiffness alone
     bool is_skeleton;
     int law;
 };
 
-class Signature : public testing::TestWithParam<Case> {
+class Signature : public testing::TestWithParam<SignatureCase> {
 protected:
     Signature() {
         const bool has_memory = !GetParam().effect.empty() && find_effect(GetParam().effect)->has_memory();
@@ -120,8 +120,8 @@ TEST_P(Signature, IsTheSameFromSeveralThreads) {
               answers(*model_, problem_, truth_, one, {own}, 2).front());
 }
 
-std::vector<Case> all_cases() {
-    std::vector<Case> cases;
+std::vector<SignatureCase> signature_cases() {
+    std::vector<SignatureCase> cases;
     const auto add = [&](const char* effect, bool is_skeleton) {
         for (int law = 0; law < (is_skeleton ? 2 : 3); ++law) cases.push_back({effect, is_skeleton, law});
     };
@@ -142,13 +142,13 @@ std::vector<Case> all_cases() {
     return cases;
 }
 
-std::string name_of(const testing::TestParamInfo<Case>& about) {
+std::string name_of(const testing::TestParamInfo<SignatureCase>& about) {
     std::string name = about.param.effect.empty() ? "stiffness" : about.param.effect;
     std::erase(name, '-');
     return (about.param.is_skeleton ? "skeleton_" : "reference_") + std::to_string(about.param.law) + "_" + name;
 }
 
-INSTANTIATE_TEST_SUITE_P(AllEffects, Signature, testing::ValuesIn(all_cases()), name_of);
+INSTANTIATE_TEST_SUITE_P(AllEffects, Signature, testing::ValuesIn(signature_cases()), name_of);
 
 }  // namespace
 }  // namespace palpate::identify

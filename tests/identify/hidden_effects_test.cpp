@@ -13,7 +13,7 @@ using testing::ElementsAre;
 using testing::IsEmpty;
 using testing::UnorderedElementsAre;
 
-struct Case {
+struct HiddenCase {
     std::string effect;
     Eigen::VectorXd values;  // the fit's numbers
     double force;            // of the probes, as a multiple of their own [N]
@@ -21,7 +21,7 @@ struct Case {
 };
 
 /// Effects large enough for the bar to show them: its fibres and its stiffening matter to strains of some 10 %.
-std::vector<Case> all_cases() {
+std::vector<HiddenCase> hidden_cases() {
     return {{"stiffening", numbers({1, 0}), 0.2},
             {"anisotropy", numbers({1.5, 0.48, 0.6, 0.64}), 0.2},
             {"inclusion", numbers({27, 5, 5, std::log(6.7), std::log(4)}), 0.1},
@@ -32,7 +32,7 @@ std::vector<Case> all_cases() {
             {"plasticity", numbers({std::log(0.03), std::log(0.3)}), 0.1, 4}};
 }
 
-class HiddenEffect : public testing::TestWithParam<Case> {
+class HiddenEffect : public testing::TestWithParam<HiddenCase> {
 protected:
     HiddenEffect() {
         if (GetParam().effect == "pressure") body_ = SmallBody::hollow();
@@ -90,7 +90,7 @@ TEST_P(HiddenEffect, LeftOutOfTheCatalogueIsNotExplained) {
     EXPECT_FALSE(found.explained);
 }
 
-INSTANTIATE_TEST_SUITE_P(OfABody, HiddenEffect, testing::ValuesIn(all_cases()),
+INSTANTIATE_TEST_SUITE_P(OfABody, HiddenEffect, testing::ValuesIn(hidden_cases()),
                          [](const auto& about) { return about.param.effect; });
 
 // --- A Poisson's ratio that the set declares ----------------------------------------------------------------------

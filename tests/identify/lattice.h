@@ -38,6 +38,11 @@ inline skeleton::Model make_lattice(const Eigen::Vector3i& n, int zones = 1) {
     return model;
 }
 
+inline skeleton::Model with_law(skeleton::Model model, skeleton::Law law) {
+    model.law = law;
+    return model;
+}
+
 /// The same with kE and kF of each zone.
 inline skeleton::Model with_truth(skeleton::Model model, const std::vector<double>& kE, const std::vector<double>& kF) {
     for (skeleton::Link& link : model.links) {

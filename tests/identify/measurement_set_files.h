@@ -8,6 +8,7 @@
 #include "mesh/errors.h"
 #include "mesh/io/vtk_files.h"
 #include "mesh/read_surface.h"
+#include "tests/messages.h"
 #include "tests/temporary_folder.h"
 
 namespace palpate::identify {

@@ -3,6 +3,7 @@
 #include <string>
 
 #include "tests/identify/measurement_set_files.h"
+#include "tests/messages.h"
 
 namespace palpate::identify {
 namespace {

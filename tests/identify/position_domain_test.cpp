@@ -10,11 +10,6 @@ namespace {
 
 using skeleton::Law;
 
-skeleton::Model with_law(skeleton::Model model, Law law) {
-    model.law = law;
-    return model;
-}
-
 PositionDomain make_domain(const skeleton::Model& model, Law law, Scope scope, const MeasurementSet& set) {
     return {model, law, group_stiffness(model, scope), collect_readings(model, set), 1};
 }

@@ -12,13 +12,13 @@
 namespace palpate::identify {
 namespace {
 
-struct Case {
+struct ScreenCase {
     std::string name;
     bool is_skeleton;
     int law;
 };
 
-class Screening : public testing::TestWithParam<Case> {
+class Screening : public testing::TestWithParam<ScreenCase> {
 protected:
     Screening() {
         if (GetParam().is_skeleton) {
@@ -197,9 +197,10 @@ TEST_P(Screening, OfViscosityIsTheDerivativeByTheCreep) {
 }
 
 INSTANTIATE_TEST_SUITE_P(AllModels, Screening,
-                         testing::Values(Case{"ReferenceLinear", false, 0}, Case{"ReferenceSvk", false, 1},
-                                         Case{"ReferenceNeoHooke", false, 2}, Case{"SkeletonLinear", true, 0},
-                                         Case{"SkeletonLargeRotation", true, 1}),
+                         testing::Values(ScreenCase{"ReferenceLinear", false, 0}, ScreenCase{"ReferenceSvk", false, 1},
+                                         ScreenCase{"ReferenceNeoHooke", false, 2},
+                                         ScreenCase{"SkeletonLinear", true, 0},
+                                         ScreenCase{"SkeletonLargeRotation", true, 1}),
                          [](const auto& about) { return about.param.name; });
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "tests/identify/measurement_set_files.h"
+#include "tests/messages.h"
 
 namespace palpate::identify {
 namespace {

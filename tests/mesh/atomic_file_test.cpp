@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "mesh/errors.h"
+#include "tests/messages.h"
 #include "tests/temporary_folder.h"
 
 namespace palpate::mesh {

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/mesh/faulty_surfaces.h"
-#include "tests/temporary_folder.h"
+#include "tests/messages.h"
 
 namespace palpate::mesh {
 namespace {

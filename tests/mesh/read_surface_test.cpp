@@ -7,6 +7,7 @@
 
 #include "mesh/errors.h"
 #include "mesh/surface.h"
+#include "tests/messages.h"
 #include "tests/temporary_folder.h"
 
 namespace palpate::mesh {

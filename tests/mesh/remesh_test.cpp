@@ -8,7 +8,7 @@
 #include "mesh/errors.h"
 #include "mesh/topology/creases.h"
 #include "tests/mesh/faulty_surfaces.h"
-#include "tests/temporary_folder.h"
+#include "tests/messages.h"
 
 namespace palpate::mesh {
 namespace {

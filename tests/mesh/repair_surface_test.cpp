@@ -5,7 +5,7 @@
 #include "mesh/check_surface.h"
 #include "mesh/errors.h"
 #include "tests/mesh/faulty_surfaces.h"
-#include "tests/temporary_folder.h"
+#include "tests/messages.h"
 
 namespace palpate::mesh {
 namespace {

@@ -15,7 +15,7 @@
 #include "mesh/smooth/follow_boundary.h"
 #include "mesh/smooth/move_nodes.h"
 #include "mesh/tetrahedralise.h"
-#include "tests/temporary_folder.h"
+#include "tests/messages.h"
 
 namespace palpate::mesh {
 namespace {

@@ -11,7 +11,7 @@
 #include "mesh/errors.h"
 #include "mesh/io/child_process.h"
 #include "tests/mesh/faulty_surfaces.h"
-#include "tests/temporary_folder.h"
+#include "tests/messages.h"
 
 namespace palpate::mesh {
 namespace {

@@ -5,6 +5,7 @@
 #include "mesh/errors.h"
 #include "mesh/io/atomic_file.h"
 #include "mesh/read_surface.h"
+#include "tests/messages.h"
 #include "tests/temporary_folder.h"
 
 namespace palpate::mesh {

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "mesh/errors.h"
+#include "tests/messages.h"
 #include "tests/temporary_folder.h"
 
 namespace palpate::mesh {

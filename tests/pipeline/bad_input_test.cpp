@@ -6,6 +6,7 @@
 #include "mesh/errors.h"
 #include "mesh/read_surface.h"
 #include "pipeline/commands/common.h"
+#include "tests/messages.h"
 #include "tests/temporary_folder.h"
 
 namespace palpate::pipeline {

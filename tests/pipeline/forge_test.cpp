@@ -10,7 +10,7 @@
 #include "pipeline/forge/draft.h"
 #include "pipeline/forge/readings.h"
 #include "pipeline/forge/sequence.h"
-#include "tests/temporary_folder.h"
+#include "tests/messages.h"
 
 namespace palpate::pipeline {
 namespace {

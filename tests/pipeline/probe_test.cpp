@@ -13,6 +13,7 @@
 #include "mesh/read_surface.h"
 #include "pipeline/commands/common.h"
 #include "skeleton/effects/effect.h"
+#include "tests/messages.h"
 #include "tests/temporary_folder.h"
 
 namespace palpate::pipeline {

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "test_effects.h"
+#include "tests/messages.h"
 
 namespace palpate::skeleton {
 namespace {
@@ -12,7 +13,6 @@ using testing::force_at;
 using testing::gravity;
 using testing::make_chain;
 using testing::make_lattice;
-using testing::message_of;
 using testing::Slope;
 using testing::with_effects;
 

@@ -6,6 +6,7 @@
 
 #include "mesh/errors.h"
 #include "test_models.h"
+#include "tests/messages.h"
 
 namespace palpate::skeleton {
 namespace {
@@ -17,11 +18,7 @@ using testing::make_lattice;
 using testing::random_state;
 using testing::random_vector;
 using testing::sphere_at;
-
-Model with_law(Model model, Law law) {
-    model.law = law;
-    return model;
-}
+using testing::with_law;
 
 // A couple on a sphere by two opposite forces on arms of 1 mm: m = arm x force, twice.
 Load couple_at(const Model& model, int sphere, const Vec3& arm, const Vec3& force) {
@@ -33,16 +30,6 @@ Load couple_at(const Model& model, int sphere, const Vec3& arm, const Vec3& forc
 }
 
 double largest_distance(const Points& a, const Points& b) { return (a - b).rowwise().norm().maxCoeff(); }
-
-template <typename Error, typename Action>
-std::string message_of(const Action& action) {
-    try {
-        action();
-    } catch (const Error& error) {
-        return error.what();
-    }
-    return "nothing was thrown";
-}
 
 // --- One link: closed forms ---------------------------------------------------------------------------------------
 

@@ -3,6 +3,7 @@
 #include <thread>
 
 #include "test_effects.h"
+#include "tests/messages.h"
 
 namespace palpate::skeleton {
 namespace {
@@ -10,7 +11,6 @@ namespace {
 using testing::force_at;
 using testing::gravity;
 using testing::make_chain;
-using testing::message_of;
 using testing::with_effects;
 
 // Numbers that every effect takes, in the units of the catalogue.

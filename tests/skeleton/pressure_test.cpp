@@ -3,13 +3,13 @@
 #include "skeleton/effects/cavities.h"
 #include "skeleton/effects/placed_effects.h"
 #include "test_effects.h"
+#include "tests/messages.h"
 
 namespace palpate::skeleton {
 namespace {
 
 using testing::lattice_with_skin;
 using testing::make_chain;
-using testing::message_of;
 using testing::random_state;
 using testing::with_cavity;
 using testing::with_law;

@@ -9,11 +9,7 @@ namespace {
 using testing::at_sphere;
 using testing::force_at;
 using testing::make_lattice;
-
-Model with_law(Model model, Law law) {
-    model.law = law;
-    return model;
-}
+using testing::with_law;
 
 TEST(StaticsSolver, AnswersAsTheFreeFunctionWhateverItSolvedBefore) {
     for (const Law law : {Law::linear, Law::large_rotation}) {

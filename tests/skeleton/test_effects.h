@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cmath>
-#include <functional>
 
 #include "mesh/errors.h"
 #include "test_models.h"
@@ -13,11 +12,6 @@ inline Effect gravity(const Vec3& g) {
 }
 
 inline Effect compliant_support(double stiffness) { return {"compliant-support", {{"stiffness", stiffness, "N/mm"}}}; }
-
-inline Model with_law(Model model, Law law) {
-    model.law = law;
-    return model;
-}
 
 inline Model with_effects(Model model, std::vector<Effect> effects) {
     model.effects = std::move(effects);
@@ -63,15 +57,6 @@ inline Model with_cavity(Model model, const Vec3& center, double radius) {
     skin.triangles.bottomRows(wall.triangles.rows()) = wall.triangles.rowwise().reverse().array() + static_cast<int>(n);
     for (const auto& vertex : wall.vertices.rowwise()) model.skin.push_back(attach_to_links(model, vertex.transpose()));
     return model;
-}
-
-inline std::string message_of(const std::function<void()>& call) {
-    try {
-        call();
-    } catch (const InvalidInput& error) {
-        return error.what();
-    }
-    return "nothing was thrown";
 }
 
 }  // namespace palpate::skeleton::testing

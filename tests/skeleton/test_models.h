@@ -8,6 +8,11 @@
 
 namespace palpate::skeleton::testing {
 
+inline Model with_law(Model model, Law law) {
+    model.law = law;
+    return model;
+}
+
 inline Vec3 random_vector(std::mt19937_64& engine, double size) {
     std::uniform_real_distribution<double> uniform(-size, size);
     const double x = uniform(engine), y = uniform(engine), z = uniform(engine);
