@@ -8,56 +8,55 @@
 namespace palpate::identify {
 namespace {
 
-constexpr int batch = 8;  // states whose normal equations are held at once, whatever the threads
+constexpr int batch = 8;             // states whose parts are held at once, whatever the threads
+constexpr Eigen::Index strip = 128;  // rows of H that are made at once, and stay in the cache
 
-/// Adds the lower half of factor G^T S G, of a symmetric S (n x n) and a sparse G (n x P), by strips that stay in the
-/// cache.
-void add_congruence(double factor, const Eigen::MatrixXd& S, const Eigen::SparseMatrix<double>& G, Eigen::MatrixXd& H) {
+/// Adds to rows begin .. begin + strip of H, not above the diagonal, those of factor G^T S G, with a symmetric S (n x
+/// n) and a sparse G (n x P).
+void add_congruence(double factor, const Eigen::MatrixXd& S, const Eigen::SparseMatrix<double>& G, Eigen::Index begin,
+                    Eigen::MatrixXd& H) {
     using Entry = Eigen::SparseMatrix<double>::InnerIterator;
-    constexpr Eigen::Index width = 128;
-    for (Eigen::Index begin = 0; begin < G.cols(); begin += width) {
-        const Eigen::Index end = std::min(begin + width, G.cols());
-        // rows begin..end of G^T S
-        Eigen::MatrixXd SG = Eigen::MatrixXd::Zero(S.rows(), end - begin);
-        for (Eigen::Index p = begin; p < end; ++p) {
-            for (Entry g(G, p); g; ++g) SG.col(p - begin) += factor * g.value() * S.col(g.row());
-        }
-        const Eigen::MatrixXd GS = SG.transpose();
-        // times the columns of G, not above the diagonal
-        for (Eigen::Index p = 0; p < end; ++p) {
-            const Eigen::Index first = std::max(begin, p), count = end - first;
-            for (Entry g(G, p); g; ++g) H.col(p).segment(first, count) += g.value() * GS.col(g.row()).tail(count);
-        }
+    const Eigen::Index end = std::min(begin + strip, G.cols());
+    // rows of G^T S
+    Eigen::MatrixXd SG = Eigen::MatrixXd::Zero(S.rows(), end - begin);
+    for (Eigen::Index p = begin; p < end; ++p) {
+        for (Entry g(G, p); g; ++g) SG.col(p - begin) += factor * g.value() * S.col(g.row());
+    }
+    const Eigen::MatrixXd GS = SG.transpose();
+    // times the columns of G
+    for (Eigen::Index p = 0; p < end; ++p) {
+        const Eigen::Index first = std::max(begin, p), count = end - first;
+        for (Entry g(G, p); g; ++g) H.col(p).segment(first, count) += g.value() * GS.col(g.row()).tail(count);
     }
 }
 
+/// What a state adds to H: ratio G^T S G, or J^T W J itself where parameters are few and S is not there.
+struct Part {
+    Eigen::SparseMatrix<double> G;             // dr/dtheta (6N x P)
+    std::shared_ptr<const Eigen::MatrixXd> S;  // of the pull-back (6N x 6N)
+    double ratio = 1;
+    Eigen::MatrixXd H;
+    Eigen::VectorXd g;
+};
+
 }  // namespace
 
-NormalEquations PositionDomain::from_the_right(int s, const Eigen::SparseMatrix<double>& G_theta,
+Eigen::MatrixXd PositionDomain::from_the_right(int s, const Eigen::SparseMatrix<double>& G_theta,
                                                const Prediction& prediction,
                                                const skeleton::StaticsSolver& solver) const {
-    // J = P (T^-1 G_theta)
     const Eigen::MatrixXd J = observation(s, prediction) * solver.solve_tangent(Eigen::MatrixXd(G_theta));
-    const Eigen::VectorXd error = errors(s, prediction.markers[s]);
-    return {J.transpose() * weights_[s].asDiagonal() * J, -J.transpose() * weights_[s].cwiseProduct(error)};
+    return J.transpose() * weights_[s].asDiagonal() * J;
 }
 
-PositionDomain::PullBack PositionDomain::pull_back(int s, const Prediction& prediction,
-                                                   const skeleton::StaticsSolver& solver) const {
-    PullBack result{s, solver.solve_tangent(Eigen::MatrixXd(observation(s, prediction).transpose())), {}};
-    result.XWX.noalias() = result.X * (weights_[s].asDiagonal() * result.X.transpose());
-    return result;
-}
-
-NormalEquations PositionDomain::from_the_left(int s, const Eigen::SparseMatrix<double>& G_theta,
-                                              const Prediction& prediction, const PullBack& pull_back,
-                                              double ratio) const {
-    // J^T W J = G_theta^T (X W X^T) G_theta
-    const Eigen::VectorXd error = errors(s, prediction.markers[s]);
-    NormalEquations result{Eigen::MatrixXd::Zero(G_theta.cols(), G_theta.cols()), {}};
-    add_congruence(ratio, pull_back.XWX, G_theta, result.H);
-    result.g = -G_theta.transpose() * (pull_back.X * weights_[s].cwiseProduct(error));
-    return result;
+Eigen::MatrixXd PositionDomain::pull_back(int s, const Prediction& prediction,
+                                          const skeleton::StaticsSolver& solver) const {
+    const Eigen::SparseMatrix<double> P = observation(s, prediction);
+    if (P.rows() < P.cols()) {
+        const Eigen::MatrixXd X = solver.solve_tangent(Eigen::MatrixXd(P.transpose()));
+        return X * weights_[s].asDiagonal() * X.transpose();
+    }
+    const Eigen::SparseMatrix<double> PWP = P.transpose() * weights_[s].asDiagonal() * P;
+    return solver.solve_tangent(solver.solve_tangent(Eigen::MatrixXd(PWP)).transpose());
 }
 
 /// By the linear law states with the same markers share a pull-back but for one factor, where their weights do.
@@ -81,29 +80,42 @@ NormalEquations PositionDomain::normal_equations(const Eigen::VectorXd& theta, c
     if (linear) shared->factor_tangent(k, states_[0].load, prediction.equilibria[0]);
 
     // and states that read the same markers share the way back
-    std::optional<PullBack> common;
-    if (linear && P > 3 * states_[0].rest.rows()) common = pull_back(0, prediction, *shared);
+    std::shared_ptr<const Eigen::MatrixXd> common;
+    if (linear && P > 3 * states_[0].rest.rows()) {
+        common = std::make_shared<const Eigen::MatrixXd>(pull_back(0, prediction, *shared));
+    }
 
     for (int first = 0; first < states; first += batch) {
-        std::vector<NormalEquations> parts(std::min(batch, states - first));
+        std::vector<Part> parts(std::min(batch, states - first));
         for_each_in_parallel(static_cast<int>(parts.size()), threads_, [&](int i) {
             const int s = first + i;
-            const Eigen::SparseMatrix<double> G_theta = skeleton::link_forces(*model_, prediction.equilibria[s]) * dk;
+            Part& part = parts[i];
+            part.G = skeleton::link_forces(*model_, prediction.equilibria[s]) * dk;
             const SolverPool::Loan own(*solvers_);
             if (!linear) own->factor_tangent(k, states_[s].load, prediction.equilibria[s]);
             const skeleton::StaticsSolver& solver = linear ? *shared : *own;
+            // J^T d, J = -P T^-1 G
+            const Eigen::VectorXd error = weights_[s].cwiseProduct(errors(s, prediction.markers[s]));
+            part.g = -part.G.transpose() *
+                     solver.solve_tangent(Eigen::VectorXd(observation(s, prediction).transpose() * error)).col(0);
             if (P <= 3 * states_[s].rest.rows()) {
-                parts[i] = from_the_right(s, G_theta, prediction, solver);
-            } else if (const auto ratio = common ? weight_ratio(s, common->state) : std::nullopt) {
-                parts[i] = from_the_left(s, G_theta, prediction, *common, *ratio);
+                part.H = from_the_right(s, part.G, prediction, solver);
+            } else if (const auto ratio = common ? weight_ratio(s, 0) : std::nullopt) {
+                part.S = common;
+                part.ratio = *ratio;
             } else {
-                parts[i] = from_the_left(s, G_theta, prediction, pull_back(s, prediction, solver), 1);
+                part.S = std::make_shared<const Eigen::MatrixXd>(pull_back(s, prediction, solver));
             }
         });
-        for (const NormalEquations& part : parts) {
-            sum.H += part.H;
+        for (const Part& part : parts) {
             sum.g += part.g;
+            if (!part.S) sum.H += part.H;
         }
+        for_each_in_parallel(static_cast<int>((P + strip - 1) / strip), threads_, [&](int i) {
+            for (const Part& part : parts) {
+                if (part.S) add_congruence(part.ratio, *part.S, part.G, i * strip, sum.H);
+            }
+        });
     }
     sum.H.triangularView<Eigen::StrictlyUpper>() = sum.H.transpose();
     return sum;

@@ -80,18 +80,15 @@ private:
     /// Measured less modelled, zero for a missing coordinate (3m).
     Eigen::VectorXd errors(int s, const Points& markers) const;
     Points dented(int s, const Eigen::Matrix<double, 6, 1>& dent) const;  // (m x 3) [mm]
-    /// A state's readings pulled back to the forces: X = T^-1 P^T (6N x 3m), and X W X^T (6N x 6N).
-    struct PullBack {
-        int state = -1;
-        Eigen::MatrixXd X, XWX;
-    };
-    PullBack pull_back(int s, const Prediction& prediction, const skeleton::StaticsSolver& solver) const;
-    std::optional<double> weight_ratio(int s, int other) const;
-    /// Parts of the normal equations; from the left H holds its lower half only.
-    NormalEquations from_the_left(int s, const Eigen::SparseMatrix<double>& G_theta, const Prediction& prediction,
-                                  const PullBack& pull_back, double ratio) const;
-    NormalEquations from_the_right(int s, const Eigen::SparseMatrix<double>& G_theta, const Prediction& prediction,
+    /// J^T W J of a state from the right (P x P), J = P T^-1 G_theta.
+    Eigen::MatrixXd from_the_right(int s, const Eigen::SparseMatrix<double>& G_theta, const Prediction& prediction,
                                    const skeleton::StaticsSolver& solver) const;
+    /// A state's readings pulled back to the forces, for J^T W J = G_theta^T S G_theta: S = T^-1 P^T W P T^-1 (6N x
+    /// 6N), through X = T^-1 P^T where readings are few.
+    Eigen::MatrixXd pull_back(int s, const Prediction& prediction, const skeleton::StaticsSolver& solver) const;
+    /// S of one state over that of another: by the linear law states with the same markers share it but for this
+    /// factor, where their weights do.
+    std::optional<double> weight_ratio(int s, int other) const;
     Eigen::SparseMatrix<double> observation(int s, const Prediction& prediction) const;
 
     std::shared_ptr<const skeleton::Model> model_;

@@ -62,18 +62,23 @@ void add_data(vtkDataSet* target, const MeshData& data) {
     add_arrays(target->GetCellData(), data.cells, target->GetNumberOfCells());
 }
 
+/// By which the program knows its own files: those may be replaced.
+constexpr const char* signature = "<!-- made by palpate -->\n";
+
 template <class Writer>
 void write(const std::filesystem::path& file, vtkDataSet* data) {
-    write_whole(file, [&](const std::filesystem::path& temporary) {
-        vtkNew<Writer> writer;
-        const VtkErrors errors;
-        writer->SetFileName(temporary.c_str());
-        writer->SetInputData(data);
-        writer->SetDataModeToAppended();
-        writer->SetCompressorTypeToZLib();
-        if (writer->Write() == 0 || errors.heard() || writer->GetErrorCode() != 0)
-            throw IoError(fmt::format("{}: cannot be written. Is the folder writable, the disk full?", file.string()));
-    });
+    vtkNew<Writer> writer;
+    const VtkErrors errors;
+    writer->WriteToOutputStringOn();
+    writer->SetInputData(data);
+    writer->SetDataModeToAppended();
+    writer->SetCompressorTypeToZLib();
+    if (writer->Write() == 0 || errors.heard() || writer->GetErrorCode() != 0) {
+        throw IoError(fmt::format("{}: VTK cannot write it", file.string()));
+    }
+    std::string text = writer->GetOutputString();
+    text.insert(text.find('\n') + 1, signature);
+    write_text(file, text);
 }
 
 std::string xml_escaped(const std::string& text) {
@@ -129,10 +134,9 @@ void write_vtp_lines(const std::filesystem::path& file, const Points& points,
 }
 
 void write_pvd(const std::filesystem::path& file, const std::vector<SeriesStep>& steps) {
-    std::string text =
-        "<?xml version=\"1.0\"?>\n"
-        "<VTKFile type=\"Collection\" version=\"0.1\" byte_order=\"LittleEndian\">\n"
-        "  <Collection>\n";
+    std::string text = fmt::format("<?xml version=\"1.0\"?>\n{}", signature) +
+                       "<VTKFile type=\"Collection\" version=\"0.1\" byte_order=\"LittleEndian\">\n"
+                       "  <Collection>\n";
     for (const SeriesStep& step : steps) {
         const auto relative =
             std::filesystem::absolute(step.file).lexically_proximate(std::filesystem::absolute(file).parent_path());
