@@ -38,15 +38,6 @@ GaussianProposal laplace_proposal(const FitResult& fit) {
     return {fit.theta, hessian.matrixL().toDenseMatrix() / std::sqrt(wider)};
 }
 
-/// The model with multipliers on its stiffness.
-skeleton::Model with_stiffness(const skeleton::Model& model, const Parameters& parameters,
-                               const Eigen::VectorXd& multipliers, skeleton::Law law) {
-    skeleton::Model result = model;
-    set_stiffness(result, parameters.stiffness(multipliers.array().log()));
-    result.law = law;
-    return result;
-}
-
 void note_left_out(const MeasurementSet& set, IdentifyResult& result) {
     int unlabelled = 0;
     for (const LoadState& state : set.states) {
@@ -118,8 +109,7 @@ IdentifyResult identify_tempered(const skeleton::Model& model, const Measurement
     Eigen::Index best = 0;
     filter.log_density.maxCoeff(&best);
     result.best = stiffness.row(best);
-    result.model = with_stiffness(model, parameters, calibration.fit.theta.array().exp(), calibration.domain.law());
-    result.model.dent = calibration.domain.dent();
+    result.model = calibrated(model, calibration);
     for (FilterStep& step : filter.history) {
         step.particles = stiffness_of(parameters, step.particles);
         result.history.push_back(std::move(step));
@@ -156,9 +146,9 @@ IdentifyResult identify_burion2008(const skeleton::Model& model, const Measureme
     result.posterior = posterior_rows(parameters, filter.particles * units.asDiagonal(), filter.log_weights,
                                       stiffness_prior(parameters, options.search_low, options.search_high));
     result.best = filter.best.cwiseProduct(units);
-    const bool linear = options.law == LawChoice::linear;
-    result.model =
-        with_stiffness(model, parameters, filter.mean, linear ? skeleton::Law::linear : skeleton::Law::large_rotation);
+    result.model = model;
+    set_stiffness(result.model, parameters.stiffness(filter.mean.array().log()));
+    result.model.law = options.law == LawChoice::linear ? skeleton::Law::linear : skeleton::Law::large_rotation;
     for (FilterStep& step : filter.history) {
         step.particles = step.particles * units.asDiagonal();
         result.history.push_back(std::move(step));

@@ -227,12 +227,8 @@ private:
 
     /// The most probable stiffnesses, without particles.
     skeleton::Model fit_skeleton(const std::vector<skeleton::Effect>& effects, const MeasurementSet& set) const {
-        skeleton::Model model = with_effects(effects);
-        const Calibration found = calibrate(model, collect_readings(model, set), options_.identify, {});
-        model.law = found.domain.law();
-        skeleton::set_stiffness(model, found.domain.parameters().stiffness(found.fit.theta));
-        model.dent = found.domain.dent();
-        return model;
+        const skeleton::Model model = with_effects(effects);
+        return calibrated(model, calibrate(model, collect_readings(model, set), options_.identify, {}));
     }
 
     /// The last step once more, on all states and with particles: the model that is delivered.

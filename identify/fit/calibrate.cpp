@@ -9,6 +9,7 @@
 
 #include "identify/fit/lived.h"
 #include "mesh/errors.h"
+#include "skeleton/statics.h"
 
 namespace palpate::identify {
 namespace {
@@ -182,6 +183,14 @@ Calibration calibrate(const skeleton::Model& model, const std::vector<StateReadi
     if (!fit.converged) calibrator.note("the fit stopped before it settled: take the posterior with care");
     return {std::move(domain), std::move(prior),       std::move(fit),
             model_error,       calibrator.equilibria_, std::move(calibrator.notes_)};
+}
+
+skeleton::Model calibrated(const skeleton::Model& model, const Calibration& calibration) {
+    skeleton::Model result = model;
+    set_stiffness(result, calibration.domain.parameters().stiffness(calibration.fit.theta));
+    result.law = calibration.domain.law();
+    result.dent = calibration.domain.dent();
+    return result;
 }
 
 }  // namespace palpate::identify

@@ -3,7 +3,7 @@
 #include <chrono>
 
 #include "identify/compare.h"
-#include "identify/identify.h"
+#include "identify/fit/calibrate.h"
 
 namespace palpate::pipeline {
 
@@ -11,14 +11,13 @@ CalibratedQuality calibrate_for_quality(const skeleton::Model& model, const Prob
                                         int threads, const Progress& progress) {
     identify::IdentifyOptions options;
     options.law = law == skeleton::Law::linear ? identify::LawChoice::linear : identify::LawChoice::large_rotation;
-    options.particles = 10;
     options.threads = threads;
     const auto start = std::chrono::steady_clock::now();
-    identify::IdentifyResult found = identify::identify(model, body.fit, options, progress);
+    identify::Calibration found = identify::calibrate(model, collect_readings(model, body.fit), options, progress);
     CalibratedQuality result;
     result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     result.notes = std::move(found.notes);
-    result.model = std::move(found.model);
+    result.model = identify::calibrated(model, found);
 
     const identify::Comparison fitted = compare(result.model, body.fit, threads);
     result.fit = summarise(deviations(body.fit, fitted.predicted));

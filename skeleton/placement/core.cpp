@@ -10,7 +10,9 @@
 namespace palpate::skeleton {
 namespace {
 
-constexpr double lump = 20;       // V / r^3 below this: a lump all over (ball 4.2, cube 8, square bar 4 per width)
+// V / r^3 below this: a lump all over. A ball has 4.2, a cube 8, a square bar 4 per width, a round limb 6.3 per
+// diameter: one of three diameters errs as little as a chain as filled with ten times the spheres.
+constexpr double lump = 16;
 constexpr double view = 4;        // a neighbourhood reaches this many radii
 constexpr double runs_on = 0.42;  // a direction counts whose variance is at least this share of the largest
 
