@@ -107,8 +107,9 @@ Specimen skeleton_specimen(const skeleton::Model& model, const ProbeOptions& pro
     specimen.most_force = std::numeric_limits<double>::infinity();
     specimen.stiffness = stiffness_of(model);
     const skeleton::Law law = options.law ? skeleton::Law::linear : model.law;
-    specimen.setting = {static_cast<int>(law), Eigen::Vector3d::Zero(), skeleton::physics_of(model.effects)};
     specimen.model = std::make_unique<identify::SkeletonBody>(model, set.markers, specimen.stiffness);
+    const Eigen::VectorXd as_told = Eigen::VectorXd::Zero(std::ssize(specimen.model->parameters()));
+    specimen.setting = {static_cast<int>(law), as_told, skeleton::physics_of(model.effects)};
     return specimen;
 }
 
