@@ -11,8 +11,8 @@ namespace {
 constexpr int batch = 8;             // states whose parts are held at once, whatever the threads
 constexpr Eigen::Index strip = 128;  // rows of H that are made at once, and stay in the cache
 
-/// Adds to rows begin .. begin + strip of H, not above the diagonal, those of factor G^T S G, with a symmetric S (n x
-/// n) and a sparse G (n x P).
+/// Adds to rows begin .. begin + strip of H, not above the diagonal, those of factor G^T S G.
+/// S: symmetric (n x n), G: sparse (n x P).
 void add_congruence(double factor, const Eigen::MatrixXd& S, const Eigen::SparseMatrix<double>& G, Eigen::Index begin,
                     Eigen::MatrixXd& H) {
     using Entry = Eigen::SparseMatrix<double>::InnerIterator;

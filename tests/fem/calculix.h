@@ -9,7 +9,6 @@
 
 #include "bodies.h"
 #include "fem/material.h"
-
 #include "tests/temporary_folder.h"
 
 namespace palpate::fem {
