@@ -74,7 +74,8 @@ void write(const std::filesystem::path& file, vtkDataSet* data) {
     writer->SetDataModeToAppended();
     writer->SetCompressorTypeToZLib();
     if (writer->Write() == 0 || errors.heard() || writer->GetErrorCode() != 0) {
-        throw IoError(fmt::format("{}: VTK cannot encode it. Is there too little memory? Longer edges make a smaller mesh", file.string()));
+        throw IoError(fmt::format(
+            "{}: VTK cannot encode it. Is there too little memory? Longer edges make a smaller mesh", file.string()));
     }
     std::string text = writer->GetOutputString();
     text.insert(text.find('\n') + 1, signature);
