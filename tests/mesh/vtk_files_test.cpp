@@ -97,6 +97,21 @@ std::string text_vtu(const std::string& connectivity, const std::string& offsets
            "</Cells></Piece></UnstructuredGrid></VTKFile>";
 }
 
+TEST(Vtk, FilesSayWhoMadeThem) {
+    // so that a command may replace what it wrote before
+    const TemporaryFolder folder;
+    write_vtu(folder / "body.vtu", uneven_bar());
+    write_pvd(folder / "series.pvd", {{0, folder / "body.vtu"}});
+    for (const char* name : {"body.vtu", "series.pvd"}) {
+        std::ifstream in(folder / name, std::ios::binary);
+        std::string line;
+        std::getline(in, line);
+        EXPECT_EQ(line.rfind("<?xml", 0), 0u) << name;
+        std::getline(in, line);
+        EXPECT_EQ(line, "<!-- made by palpate -->") << name;
+    }
+}
+
 TEST(Vtu, OfOtherProgramsIsRead) {
     const TemporaryFolder folder;
     const VolumeMesh mesh = read_vtu(folder.write("body.vtu", text_vtu("0 1 2 3", "4", "10")));
