@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -21,22 +20,10 @@ namespace {
 
 constexpr int default_particles = 200, default_burion_particles = 600;
 constexpr double calibration_share = 0.4;  // of the progress
+constexpr int many_parameters = 100;       // the mode is far from the mean's neighbourhood, in more dimensions
 
 /// Beyond so many sphere equilibria for one look at all particles, large rotations are stood in for.
 constexpr double dear_evaluations = 3e4;
-
-/// N(MAP, (1 + 1 / P) H^-1): somewhat wider than Laplace's approximation, by less the more parameters there are, so
-/// that the effective sample size stands it.
-GaussianProposal laplace_proposal(const FitResult& fit) {
-    const Eigen::LLT<Eigen::MatrixXd> hessian(fit.hessian);
-    if (hessian.info() != Eigen::Success) {
-        throw SolverFailure(
-            "the posterior's precision at the fit is not positive definite; take fewer parameters "
-            "(zones or uniform)");
-    }
-    const double wider = 1 + 1 / static_cast<double>(fit.theta.size());
-    return {fit.theta, hessian.matrixL().toDenseMatrix() / std::sqrt(wider)};
-}
 
 void note_left_out(const MeasurementSet& set, IdentifyResult& result) {
     int unlabelled = 0;
@@ -93,9 +80,14 @@ IdentifyResult identify_tempered(const skeleton::Model& model, const Measurement
     };
 
     // particles from the fit's neighbourhood to the posterior
+    GaussianProposal proposal = laplace_proposal(calibration.fit, prior);
+    int centring = 0;  // times that all equilibria were solved
+    if (parameters.size() > many_parameters) {
+        centring = centre(proposal, domain, prior, calibration.fit.prediction, options.seed, options.threads);
+    }
     TemperedOptions filter_options{.particles = particles, .seed = options.seed, .threads = options.threads};
     TemperedResult filter = tempered_filter(
-        log_density, laplace_proposal(calibration.fit), filter_options, [&](std::string_view what, double fraction) {
+        log_density, proposal, filter_options, [&](std::string_view what, double fraction) {
             report(progress, what, calibration_share + (1 - calibration_share) * fraction);
         });
 
@@ -116,7 +108,7 @@ IdentifyResult identify_tempered(const skeleton::Model& model, const Measurement
     }
     result.log_evidence = filter.log_evidence;
     result.acceptance = filter.acceptance;
-    result.equilibria = calibration.equilibria + filter.evaluations * static_cast<int>(domain.states().size());
+    result.equilibria = calibration.equilibria + (centring + filter.evaluations) * static_cast<int>(domain.states().size());
     return result;
 }
 

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -26,19 +25,10 @@ LogNormalPrior prior_round(const Eigen::VectorXd& mean, double sd) {
     return {mean, Eigen::VectorXd::Constant(mean.size(), sd)};
 }
 
-/// Parameters that the measurements, rather than the prior, decide: tr(H (H + 1 / sd^2)^-1). [MacKay 1992]
-double effective_parameters(const FitResult& fit, const LogNormalPrior& prior) {
-    // = P - sum (1 / sd^2) (H + 1 / sd^2)^-1_ii, and the inverse's diagonal is that of L^-T L^-1
-    const auto P = fit.theta.size();
-    const Eigen::LLT<Eigen::MatrixXd> llt(fit.hessian);
-    const Eigen::MatrixXd inverse_L = llt.matrixL().solve(Eigen::MatrixXd::Identity(P, P));
-    return static_cast<double>(P) - inverse_L.colwise().squaredNorm().dot(prior.sd.cwiseAbs2().cwiseInverse());
-}
-
 /// Relative model error that a fit leaves, as an unfitted reading would see it.
-double model_error_after(const PositionDomain& domain, const FitResult& fit, const LogNormalPrior& prior) {
+double model_error_after(const PositionDomain& domain, const FitResult& fit) {
     const double readings = domain.effective_coordinates();
-    const double fitted = std::min(effective_parameters(fit, prior), 0.75 * readings);
+    const double fitted = std::min(fit.spectrum.effective(), 0.75 * readings);
     return std::max(least_error,
                     domain.estimate_model_error(fit.prediction) * std::sqrt(readings / (readings - fitted)));
 }
@@ -150,7 +140,7 @@ Calibration calibrate(const skeleton::Model& model, const std::vector<StateReadi
     PositionDomain uniform(model, law, group_stiffness(model, Scope::uniform, options.fixed), readings,
                            options.threads);
     Calibrator::Stage stage = calibrator.fit_uniform(uniform, first_error);
-    stage = calibrator.fit_uniform(uniform, model_error_after(uniform, stage.fit, stage.prior));
+    stage = calibrator.fit_uniform(uniform, model_error_after(uniform, stage.fit));
     double model_error = stage.model_error;
 
     PositionDomain domain = uniform;
@@ -170,7 +160,7 @@ Calibration calibrate(const skeleton::Model& model, const std::vector<StateReadi
         report(progress, "first fit", 0.2);
         fit = calibrator.fit(domain, prior, start);
         Calibrator::fit_dents(domain, fit);
-        model_error = std::min(model_error, model_error_after(domain, fit, prior));
+        model_error = std::min(model_error, model_error_after(domain, fit));
         report(progress, "second fit", 0.6);
         domain.set_model_error(model_error);
         fit = calibrator.fit(domain, prior, fit.theta);

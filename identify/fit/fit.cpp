@@ -1,6 +1,5 @@
 #include "identify/fit/fit.h"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -33,6 +32,37 @@ std::optional<Prediction> try_prediction(const PositionDomain& domain, int threa
     }
 }
 
+constexpr double forcing = 1e-3;     // of a step's equations, that may be left of the gradient
+constexpr int stale = 12;            // products, after which the spectrum is found anew
+constexpr int halvings = 20;         // of a step
+constexpr double enough_fall = 1e-4; // of what the slope promises [Armijo]
+
+struct Step {
+    Eigen::VectorXd dv;
+    double promised;  // fall of half of chi^2 and prior
+    int products;
+};
+
+/// (1 + A) dv = -g by conjugate gradients, preconditioned by the spectrum of an A nearby.
+Step gauss_newton_step(const SymmetricProduct& A, const Eigen::VectorXd& g, const Spectrum& near) {
+    Step step{Eigen::VectorXd::Zero(g.size()), 0, 0};
+    Eigen::VectorXd r = -g, z = near.inverse_of_one_more(r), p = z;
+    double rz = r.dot(z);
+    while (step.products < g.size() && r.norm() > forcing * g.norm()) {
+        const Eigen::VectorXd q = A(p) + p;
+        ++step.products;
+        const double length = rz / p.dot(q);
+        step.dv += length * p;
+        step.promised += length * rz / 2;
+        r -= length * q;
+        z = near.inverse_of_one_more(r);
+        const double rz_next = r.dot(z);
+        p = z + rz_next / rz * p;
+        rz = rz_next;
+    }
+    return step;
+}
+
 }  // namespace
 
 double LogNormalPrior::half_square(const Eigen::VectorXd& theta) const {
@@ -43,6 +73,10 @@ double LogNormalPrior::log_density(const Eigen::VectorXd& theta) const {
     return -half_square(theta) - (sd.array() * std::sqrt(2 * std::numbers::pi)).log().sum();
 }
 
+SymmetricProduct whitened_curvature(const Slopes& slopes, const LogNormalPrior& prior) {
+    return [&](const Eigen::MatrixXd& V) { return prior.coloured(slopes.curvature_times(prior.coloured(V))); };
+}
+
 FitResult fit_map(const PositionDomain& domain, const LogNormalPrior& prior, const Eigen::VectorXd& start, int threads,
                   const FitOptions& options) {
     FitResult fit;
@@ -50,58 +84,53 @@ FitResult fit_map(const PositionDomain& domain, const LogNormalPrior& prior, con
     fit.prediction = first_prediction(domain, threads, fit.theta);
     fit.chi_squared = domain.chi_squared(fit.prediction);
     fit.evaluations = 1;
-    const Eigen::VectorXd precision = prior.sd.cwiseAbs2().cwiseInverse();
 
-    double damping = 1e-3, growth = 2;
-    bool moved = true;
-    NormalEquations equations;
-    Eigen::VectorXd gradient;
+    std::optional<Slopes> slopes;
+    int products = stale + 1;  // of the last step
     while (fit.iterations < options.iterations) {
-        // Gauss-Newton's quadratic of half of chi^2 and prior
-        if (moved) {
-            equations = domain.normal_equations(fit.theta, fit.prediction);
-            gradient = equations.g + precision.cwiseProduct(fit.theta - prior.mean);
-            fit.hessian = equations.H + Eigen::MatrixXd(precision.asDiagonal());
-        }
+        // Gauss-Newton's quadratic of half of chi^2 and prior, and the step to its least
+        slopes.reset();  // its solvers serve again
+        slopes.emplace(domain.slopes(fit.theta, fit.prediction));
+        const SymmetricProduct A = whitened_curvature(*slopes, prior);
+        const Eigen::VectorXd v = (fit.theta - prior.mean).cwiseQuotient(prior.sd);
+        const Eigen::VectorXd g = prior.coloured(slopes->gradient()) + v;
+        if (products > stale) fit.spectrum = leading_spectrum(A, domain.parameters().size(), {}, fit.spectrum.vectors);
+        const Step step = gauss_newton_step(A, g, fit.spectrum);
+        products = step.products;
         ++fit.iterations;
-
-        // a damped step, no ratio larger than e
-        const Eigen::MatrixXd damped = fit.hessian + Eigen::MatrixXd((damping * fit.hessian.diagonal()).asDiagonal());
-        Eigen::VectorXd step = damped.llt().solve(-gradient);
-        step /= std::max(1.0, step.cwiseAbs().maxCoeff());
-        const double promised = -(gradient.dot(step) + 0.5 * step.dot(fit.hessian * step));
-        if (promised < options.tolerance) {
+        if (step.promised < options.tolerance) {
             fit.converged = true;
             break;
         }
 
-        // accept it when half of chi^2 and prior falls
-        const Eigen::VectorXd theta = fit.theta + step;
-        std::optional<Prediction> trial = try_prediction(domain, threads, theta, fit.prediction);
-        ++fit.evaluations;
-        double gain = -1, chi_squared = 0;
-        if (trial) {
-            chi_squared = domain.chi_squared(*trial);
-            gain = (0.5 * (fit.chi_squared - chi_squared) + prior.half_square(fit.theta) - prior.half_square(theta)) /
-                   promised;
-        }
-        moved = gain > 0;
-        if (moved) {
+        // as far along it as half of chi^2 and prior falls
+        const Eigen::VectorXd whole = prior.coloured(step.dv);
+        double share = 1 / std::max(1.0, whole.cwiseAbs().maxCoeff());
+        bool moved = false;
+        for (int halving = 0; halving < halvings && !moved; ++halving, share /= 2) {
+            const Eigen::VectorXd theta = fit.theta + share * whole;
+            std::optional<Prediction> trial = try_prediction(domain, threads, theta, fit.prediction);
+            ++fit.evaluations;
+            if (!trial) continue;
+            const double chi_squared = domain.chi_squared(*trial);
+            const double fall =
+                (fit.chi_squared - chi_squared) / 2 + prior.half_square(fit.theta) - prior.half_square(theta);
+            moved = fall > enough_fall * share * step.promised;
+            if (!moved) continue;
             fit.theta = theta;
             fit.prediction = std::move(*trial);
             fit.chi_squared = chi_squared;
-            damping *= std::max(1.0 / 10, 1 - std::pow(2 * gain - 1, 3));
-            growth = 2;
-        } else {
-            if (damping > 1e12) break;
-            damping *= growth;
-            growth *= 2;
         }
+        if (!moved) break;
     }
-    if (moved && !fit.converged) {
-        equations = domain.normal_equations(fit.theta, fit.prediction);
-        fit.hessian = equations.H + Eigen::MatrixXd(precision.asDiagonal());
+
+    // what is known there
+    if (!fit.converged) {
+        slopes.reset();
+        slopes.emplace(domain.slopes(fit.theta, fit.prediction));
     }
+    fit.spectrum = leading_spectrum(whitened_curvature(*slopes, prior), domain.parameters().size(), {},
+                                    fit.spectrum.vectors);
     return fit;
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "identify/fit/position_domain.h"
+#include "identify/fit/spectrum.h"
 
 namespace palpate::identify {
 
@@ -10,7 +11,13 @@ struct LogNormalPrior {
 
     double half_square(const Eigen::VectorXd& theta) const;  // half the squared distance in sd
     double log_density(const Eigen::VectorXd& theta) const;
+    /// From coordinates in which the prior is N(0, 1), v, and slopes by theta to slopes by v: sd o X.
+    Eigen::MatrixXd coloured(const Eigen::MatrixXd& X) const { return sd.asDiagonal() * X; }
 };
+
+/// J^T J of a domain's errors by v, theta = mean + sd o v: its eigenvalues tell how much more the measurements know of
+/// a direction than the prior.
+SymmetricProduct whitened_curvature(const Slopes& slopes, const LogNormalPrior& prior);
 
 struct FitOptions {
     int iterations = 60;
@@ -20,16 +27,20 @@ struct FitOptions {
 /// The most probable theta (MAP).
 struct FitResult {
     Eigen::VectorXd theta;
-    Prediction prediction;    // there
-    double chi_squared = 0;   // of the errors there
-    Eigen::MatrixXd hessian;  // Gauss-Newton's, of half the chi^2 and the prior (P x P)
+    Prediction prediction;   // there
+    double chi_squared = 0;  // of the errors there
+    Spectrum spectrum;       // of the whitened curvature there
     int iterations = 0;
     int evaluations = 0;  // of all equilibria
     bool converged = false;
 };
 
-/// Levenberg-Marquardt on half of chi^2 and prior, damped as Nielsen [1999] has it, in log multipliers: stiffness stays
-/// positive by itself, and a step is a ratio. A trial without equilibrium counts as no improvement.
+/// Gauss-Newton on half of chi^2 and prior, with backtracking, in log multipliers: stiffness stays positive by itself,
+/// and a step is a ratio, of no more than e. A trial without equilibrium counts as no improvement.
+///
+/// In coordinates in which the prior is N(0, 1) the equations of a step are (1 + A) dv = -g, A = J^T J. Measurements
+/// tell about few directions, so A has few eigenvalues that matter beside 1: these are found once [Spectrum], and
+/// precondition conjugate gradients from then on, which end after a few products, however many parameters there are.
 /// @throws SolverFailure when there is no equilibrium at the start, not even with stiffnesses hundreds of times larger.
 FitResult fit_map(const PositionDomain& domain, const LogNormalPrior& prior, const Eigen::VectorXd& start, int threads,
                   const FitOptions& options = {});

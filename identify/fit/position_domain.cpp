@@ -188,11 +188,6 @@ double PositionDomain::chi_squared(const Prediction& prediction) const {
     return sum;
 }
 
-Eigen::SparseMatrix<double> PositionDomain::observation(int s, const Prediction& prediction) const {
-    if (law() == skeleton::Law::linear) return P_[s];
-    return observation_jacobian(*model_, prediction.equilibria[s], states_[s].points);
-}
-
 double PositionDomain::common_factor(const Eigen::VectorXd& theta) const {
     if (!goes_as_inverse_) return 0;
 

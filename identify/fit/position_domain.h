@@ -1,10 +1,10 @@
 #pragma once
 
 #include <memory>
-#include <optional>
 #include <vector>
 
 #include "identify/fit/parameters.h"
+#include "identify/fit/slopes.h"
 #include "identify/fit/solver_pool.h"
 #include "identify/set/readings.h"
 
@@ -16,18 +16,7 @@ struct Prediction {
     std::vector<Points> markers;                    // of each state (m x 3) [mm]
 };
 
-/// Gauss-Newton's view of half the chi^2 of the errors d = (measured - modelled) / sigma.
-struct NormalEquations {
-    Eigen::MatrixXd H;  // J^T J (P x P), J = d d / d theta
-    Eigen::VectorXd g;  // J^T d (P)
-};
-
 /// Errors of the markers at the model's own equilibria, and their derivatives by theta, the log multipliers.
-///
-/// In equilibrium r(x, k) = f_ext + G k = 0, effects in the links (G) and others (f_ext) included, so dx/dk = T^-1 G
-/// with the tangent T = -dr/dx, and a marker moves by P T^-1 G: exact derivatives for one factorisation a state (linear
-/// law: one in all), through P T^-1 G dk/dtheta from the right where parameters are few, through (T^-1 P^T)^T from the
-/// left where readings are.
 ///
 /// A reading's sigma. A coarse model errs by more than the noise, and alike for neighbouring markers: a thousand
 /// vertices must not count as a thousand independent readings. So a state's readings together count as about six
@@ -58,7 +47,8 @@ public:
     double chi_squared(const Prediction& prediction) const;
     /// ln of the likelihood's constant: - sum ln(sigma sqrt(2 pi)).
     double log_constant() const { return log_constant_; }
-    NormalEquations normal_equations(const Eigen::VectorXd& theta, const Prediction& prediction) const;
+    /// Of the errors, at theta with its equilibria. @pre the domain outlives them.
+    Slopes slopes(const Eigen::VectorXd& theta, const Prediction& prediction) const;
 
     /// The dents' amplitudes that explain most of what a prediction leaves, in force from then on: linear least
     /// squares, and a prior sd of what a half space of the links' modulus gives way by, 1 / E. `prediction`, at theta,
@@ -80,16 +70,6 @@ private:
     /// Measured less modelled, zero for a missing coordinate (3m).
     Eigen::VectorXd errors(int s, const Points& markers) const;
     Points dented(int s, const Eigen::Matrix<double, 6, 1>& dent) const;  // (m x 3) [mm]
-    /// J^T W J of a state from the right (P x P), J = P T^-1 G_theta.
-    Eigen::MatrixXd from_the_right(int s, const Eigen::SparseMatrix<double>& G_theta, const Prediction& prediction,
-                                   const skeleton::StaticsSolver& solver) const;
-    /// A state's readings pulled back to the forces, for J^T W J = G_theta^T S G_theta: S = T^-1 P^T W P T^-1 (6N x
-    /// 6N), through X = T^-1 P^T where readings are few.
-    Eigen::MatrixXd pull_back(int s, const Prediction& prediction, const skeleton::StaticsSolver& solver) const;
-    /// S of one state over that of another: by the linear law states with the same markers share it but for this
-    /// factor, where their weights do.
-    std::optional<double> weight_ratio(int s, int other) const;
-    Eigen::SparseMatrix<double> observation(int s, const Prediction& prediction) const;
 
     std::shared_ptr<const skeleton::Model> model_;
     std::shared_ptr<SolverPool> solvers_;

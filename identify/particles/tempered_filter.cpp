@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 
 #include "identify/parallel.h"
 #include "identify/particles/random.h"
@@ -30,22 +29,13 @@ struct Cloud {
 class Filter {
 public:
     Filter(const LogDensity& log_density, const GaussianProposal& proposal, const TemperedOptions& options)
-        : log_density_(log_density), proposal_(proposal), options_(options) {
-        constexpr double log_root_two_pi = 0.5 * std::numbers::ln2 + 0.57236494292470008707;  // + ln sqrt(pi)
-        log_peak_ =
-            proposal.L.diagonal().array().log().sum() - log_root_two_pi * static_cast<double>(proposal.mean.size());
-    }
-
-    /// theta of each column of z.
-    Eigen::MatrixXd parameters(const Eigen::MatrixXd& z) const {
-        return proposal_.L.transpose().triangularView<Eigen::Upper>().solve(z).colwise() + proposal_.mean;
-    }
+        : log_density_(log_density), proposal_(proposal), options_(options), log_peak_(proposal.log_peak()) {}
 
     double log_proposal(const Eigen::VectorXd& z) const { return log_peak_ - z.squaredNorm() / 2; }
 
     /// ln pi - ln q of each column of z.
     Eigen::VectorXd log_ratio(const Eigen::MatrixXd& z) const {
-        const Eigen::MatrixXd theta = parameters(z);
+        const Eigen::MatrixXd theta = proposal_.parameters(z);
         Eigen::VectorXd ratio(z.cols());
         for_each_in_parallel(static_cast<int>(z.cols()), options_.threads, [&](int i) {
             const double value = log_density_(theta.col(i));
@@ -93,14 +83,14 @@ public:
     }
 
     FilterStep record(const Cloud& cloud, double b, const Eigen::VectorXd& log_weights) const {
-        return {b, effective_samples(log_weights), parameters(cloud.z).transpose(), log_weights};
+        return {b, effective_samples(log_weights), proposal_.parameters(cloud.z).transpose(), log_weights};
     }
 
 private:
     const LogDensity& log_density_;
     const GaussianProposal& proposal_;
     const TemperedOptions& options_;
-    double log_peak_ = 0;  // ln q(mean)
+    double log_peak_;  // ln q(mean)
 };
 
 /// Weights after going from temperature b by db: w (pi / q)^db.

@@ -5,15 +5,10 @@
 #include <vector>
 
 #include "identify/identify.h"
+#include "identify/particles/proposal.h"
 #include "mesh/progress.h"
 
 namespace palpate::identify {
-
-/// N(mean, (L L^T)^-1), where the filter's particles come from.
-struct GaussianProposal {
-    Eigen::VectorXd mean;  // (P)
-    Eigen::MatrixXd L;     // Cholesky factor of the precision, lower triangular (P x P)
-};
 
 /// Logarithm of the unnormalised posterior density, likelihood times prior; -inf where there is none. Called from
 /// several threads at once.
@@ -43,7 +38,7 @@ struct TemperedResult {
 /// b = 0 to 1. [Neal 2001; Del Moral, Doucet, Jasra 2006]
 ///
 /// Each temperature: b grows until the effective sample size falls to `least_effective` N (by bisection); low-variance
-/// resampling; moves by preconditioned Crank-Nicolson in q's whitened coordinates z, theta = mean + L^-T z,
+/// resampling; moves by preconditioned Crank-Nicolson in q's whitened coordinates z,
 ///   z' = sqrt(1 - s^2) z + s xi,  xi ~ N(0, 1),
 /// which are reversible under q, so that a move is accepted by the tempered correction (pi / q)^b alone and does not
 /// die with the dimension [Cotter, Roberts, Stuart, White 2013]; s keeps 20-40 % of the moves accepted. They go on

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <functional>
+
+namespace palpate::identify {
+
+/// Leading eigenpairs of a symmetric matrix that is positive semidefinite.
+struct Spectrum {
+    Eigen::VectorXd values;   // (r), largest first
+    Eigen::MatrixXd vectors;  // orthonormal (P x r)
+
+    /// (1 + V diag(values) V^T)^-1 x: the inverse of the matrix plus one, but for the values that are left out.
+    Eigen::MatrixXd inverse_of_one_more(const Eigen::MatrixXd& X) const;
+    /// tr(A (1 + A)^-1): of parameters, how many the measurements rather than the prior decide. [MacKay 1992]
+    double effective() const { return (values.array() / (1 + values.array())).sum(); }
+};
+
+/// A V, of V (P x n).
+using SymmetricProduct = std::function<Eigen::MatrixXd(const Eigen::MatrixXd& V)>;
+
+struct SpectrumOptions {
+    double least = 0.05;     // of the eigenvalues that are sought
+    double residual = 0.05;  // |A v - a v| over a that counts as found
+    int exact = 96;          // matrices up to so large are taken apart whole
+    int largest = 600;       // subspace at most
+};
+
+/// Eigenpairs above `least` by a growing subspace: Rayleigh and Ritz, and from the eight worst residuals on. Without
+/// `start` (P x any) from eight random columns, always the same.
+Spectrum leading_spectrum(const SymmetricProduct& A, int P, const SpectrumOptions& options = {},
+                          const Eigen::MatrixXd& start = {});
+
+}  // namespace palpate::identify
