@@ -86,8 +86,8 @@ IdentifyResult identify_tempered(const skeleton::Model& model, const Measurement
         centring = centre(proposal, domain, prior, calibration.fit.prediction, options.seed, options.threads);
     }
     TemperedOptions filter_options{.particles = particles, .seed = options.seed, .threads = options.threads};
-    TemperedResult filter = tempered_filter(
-        log_density, proposal, filter_options, [&](std::string_view what, double fraction) {
+    TemperedResult filter =
+        tempered_filter(log_density, proposal, filter_options, [&](std::string_view what, double fraction) {
             report(progress, what, calibration_share + (1 - calibration_share) * fraction);
         });
 
@@ -108,7 +108,8 @@ IdentifyResult identify_tempered(const skeleton::Model& model, const Measurement
     }
     result.log_evidence = filter.log_evidence;
     result.acceptance = filter.acceptance;
-    result.equilibria = calibration.equilibria + (centring + filter.evaluations) * static_cast<int>(domain.states().size());
+    result.equilibria =
+        calibration.equilibria + (centring + filter.evaluations) * static_cast<int>(domain.states().size());
     return result;
 }
 

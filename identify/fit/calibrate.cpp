@@ -18,6 +18,7 @@ constexpr double link_sd = 0.7;       // of ln of one link's, round the uniform 
 constexpr double first_error = 0.03;  // relative model error to begin with
 constexpr double least_error = 1e-4;  // the model error never falls below it: no model is exact
 constexpr double settled = 1e-4;      // of half the chi^2: a hundredth of a posterior's sd
+constexpr double nearly = 1e-2;       // the same, of a fit that another follows
 constexpr int steps_with_memory = 8;  // of a fit whose states are lived through
 constexpr int states_for_law = 12;    // that choose the law, the most displaced ones
 
@@ -62,7 +63,7 @@ public:
             PositionDomain domain(model_, law, group_stiffness(model_, Scope::uniform, options_.fixed), sample,
                                   options_.threads);
             try {
-                return fit_uniform(domain, first_error).fit.chi_squared;
+                return first_uniform_fit(domain).fit.chi_squared;
             } catch (const SolverFailure&) {
                 return std::nullopt;
             }
@@ -86,11 +87,24 @@ public:
     };
 
     /// One multiplier a kind, round the best common factor; then the dents that explain most of what is left.
-    Stage fit_uniform(PositionDomain& domain, double model_error) {
+    Stage first_uniform_fit(PositionDomain& domain) {
+        domain.set_model_error(first_error);
+        const Eigen::VectorXd zero = Eigen::VectorXd::Zero(domain.parameters().size());
+        const Eigen::VectorXd center = zero.array() + domain.common_factor(zero);
+        const LogNormalPrior prior = prior_round(center, wide_sd);
+        Stage stage{prior, fit(domain, prior, center, nearly), first_error};
+        fit_dents(domain, stage.fit);
+        return stage;
+    }
+
+    /// Again, with the dents and the model error that the first fit left.
+    Stage second_uniform_fit(PositionDomain& domain, const Stage& first) {
+        const double model_error = model_error_after(domain, first.fit);
         domain.set_model_error(model_error);
         const Eigen::VectorXd zero = Eigen::VectorXd::Zero(domain.parameters().size());
         const Eigen::VectorXd center = zero.array() + domain.common_factor(zero);
-        Stage stage{prior_round(center, wide_sd), fit(domain, prior_round(center, wide_sd), center), model_error};
+        const LogNormalPrior prior = prior_round(center, wide_sd);
+        Stage stage{prior, fit(domain, prior, first.fit.theta, settled), model_error};
         fit_dents(domain, stage.fit);
         return stage;
     }
@@ -99,8 +113,9 @@ public:
         if (domain.fit_dents(fit.theta, fit.prediction)) fit.chi_squared = domain.chi_squared(fit.prediction);
     }
 
-    FitResult fit(const PositionDomain& domain, const LogNormalPrior& prior, const Eigen::VectorXd& start) {
-        FitOptions how{.tolerance = settled};
+    FitResult fit(const PositionDomain& domain, const LogNormalPrior& prior, const Eigen::VectorXd& start,
+                  double tolerance) {
+        FitOptions how{.tolerance = tolerance};
         // Slopes leave out what the states before would have left: the last digits take long.
         if (remembers(readings_)) how.iterations = std::min(how.iterations, steps_with_memory);
         FitResult result = fit_map(domain, prior, start, options_.threads, how);
@@ -139,8 +154,7 @@ Calibration calibrate(const skeleton::Model& model, const std::vector<StateReadi
     report(progress, "uniform fit", 0.1);
     PositionDomain uniform(model, law, group_stiffness(model, Scope::uniform, options.fixed), readings,
                            options.threads);
-    Calibrator::Stage stage = calibrator.fit_uniform(uniform, first_error);
-    stage = calibrator.fit_uniform(uniform, model_error_after(uniform, stage.fit));
+    Calibrator::Stage stage = calibrator.second_uniform_fit(uniform, calibrator.first_uniform_fit(uniform));
     double model_error = stage.model_error;
 
     PositionDomain domain = uniform;
@@ -158,12 +172,12 @@ Calibration calibrate(const skeleton::Model& model, const std::vector<StateReadi
                     : prior_round(spread_kinds(domain.parameters(), uniform.parameters(), prior.mean), wide_sd);
         domain.set_model_error(model_error);
         report(progress, "first fit", 0.2);
-        fit = calibrator.fit(domain, prior, start);
+        fit = calibrator.fit(domain, prior, start, nearly);
         Calibrator::fit_dents(domain, fit);
         model_error = std::min(model_error, model_error_after(domain, fit));
         report(progress, "second fit", 0.6);
         domain.set_model_error(model_error);
-        fit = calibrator.fit(domain, prior, fit.theta);
+        fit = calibrator.fit(domain, prior, fit.theta, settled);
         Calibrator::fit_dents(domain, fit);
     } else {
         domain.set_model_error(model_error);

@@ -32,34 +32,36 @@ std::optional<Prediction> try_prediction(const PositionDomain& domain, int threa
     }
 }
 
-constexpr double forcing = 1e-3;     // of a step's equations, that may be left of the gradient
-constexpr int stale = 12;            // products, after which the spectrum is found anew
-constexpr int halvings = 20;         // of a step
-constexpr double enough_fall = 1e-4; // of what the slope promises [Armijo]
+constexpr double forcing = 1e-3;        // of a step's equations, that may be left of the gradient
+constexpr int stale = 12;               // products, after which the spectrum is found anew
+constexpr double enough_fall = 1e-4;    // of what the slope promises [Armijo]
+constexpr double first_damping = 1e-3;  // of the largest eigenvalue
+constexpr double most_damping = 1e9;    // the same
 
 struct Step {
     Eigen::VectorXd dv;
-    double promised;  // fall of half of chi^2 and prior
-    int products;
+    double promised = 0;  // fall of half of chi^2 and prior
+    int products = 0;
 };
 
-/// (1 + A) dv = -g by conjugate gradients, preconditioned by the spectrum of an A nearby.
-Step gauss_newton_step(const SymmetricProduct& A, const Eigen::VectorXd& g, const Spectrum& near) {
-    Step step{Eigen::VectorXd::Zero(g.size()), 0, 0};
-    Eigen::VectorXd r = -g, z = near.inverse_of_one_more(r), p = z;
+/// (1 + damping + A) dv = -g by conjugate gradients, preconditioned by the spectrum of an A nearby.
+Step damped_step(const SymmetricProduct& A, const Eigen::VectorXd& g, double damping, const Spectrum& near) {
+    Step step{Eigen::VectorXd::Zero(g.size())};
+    Eigen::VectorXd r = -g, z = near.inverse(1 + damping, r), p = z;
     double rz = r.dot(z);
     while (step.products < g.size() && r.norm() > forcing * g.norm()) {
-        const Eigen::VectorXd q = A(p) + p;
+        const Eigen::VectorXd q = A(p) + (1 + damping) * p;
         ++step.products;
         const double length = rz / p.dot(q);
         step.dv += length * p;
-        step.promised += length * rz / 2;
         r -= length * q;
-        z = near.inverse_of_one_more(r);
+        z = near.inverse(1 + damping, r);
         const double rz_next = r.dot(z);
         p = z + rz_next / rz * p;
         rz = rz_next;
     }
+    // -g dv - dv (1 + A) dv / 2, and (1 + A) dv = -g - r - damping dv
+    step.promised = (step.dv.dot(r - g) + damping * step.dv.squaredNorm()) / 2;
     return step;
 }
 
@@ -86,51 +88,68 @@ FitResult fit_map(const PositionDomain& domain, const LogNormalPrior& prior, con
     fit.evaluations = 1;
 
     std::optional<Slopes> slopes;
-    int products = stale + 1;  // of the last step
+    double damping = -1, growth = 2;
+    double reach = 1;    // of a step: less where slopes alone promise too much
+    bool moved = true;   // or the slopes still hold
+    bool known = false;  // the spectrum, well enough
+    Eigen::VectorXd g;
     while (fit.iterations < options.iterations) {
-        // Gauss-Newton's quadratic of half of chi^2 and prior, and the step to its least
-        slopes.reset();  // its solvers serve again
-        slopes.emplace(domain.slopes(fit.theta, fit.prediction));
+        // Gauss-Newton's quadratic of half of chi^2 and prior, in v
+        if (moved) {
+            slopes.reset();  // its solvers serve again
+            slopes.emplace(domain.slopes(fit.theta, fit.prediction));
+            g = prior.coloured(slopes->gradient()) + (fit.theta - prior.mean).cwiseQuotient(prior.sd);
+        }
         const SymmetricProduct A = whitened_curvature(*slopes, prior);
-        const Eigen::VectorXd v = (fit.theta - prior.mean).cwiseQuotient(prior.sd);
-        const Eigen::VectorXd g = prior.coloured(slopes->gradient()) + v;
-        if (products > stale) fit.spectrum = leading_spectrum(A, domain.parameters().size(), {}, fit.spectrum.vectors);
-        const Step step = gauss_newton_step(A, g, fit.spectrum);
-        products = step.products;
+        if (!known) fit.spectrum = leading_spectrum(A, domain.parameters().size(), {}, fit.spectrum.vectors);
+        const double largest = fit.spectrum.values.size() > 0 ? fit.spectrum.values[0] : 1;
+        if (damping < 0) damping = first_damping * largest;
         ++fit.iterations;
-        if (step.promised < options.tolerance) {
+
+        // its least, damped; none left to gain without damping is the end
+        const Step step = damped_step(A, g, damping, fit.spectrum);
+        known = step.products <= std::min<Eigen::Index>(stale, g.size() / 8);
+        if (g.dot(fit.spectrum.inverse(1, g).col(0)) / 2 < options.tolerance) {
             fit.converged = true;
             break;
         }
 
-        // as far along it as half of chi^2 and prior falls
+        // some of the way there, no ratio larger than e
         const Eigen::VectorXd whole = prior.coloured(step.dv);
-        double share = 1 / std::max(1.0, whole.cwiseAbs().maxCoeff());
-        bool moved = false;
-        for (int halving = 0; halving < halvings && !moved; ++halving, share /= 2) {
-            const Eigen::VectorXd theta = fit.theta + share * whole;
-            std::optional<Prediction> trial = try_prediction(domain, threads, theta, fit.prediction);
-            ++fit.evaluations;
-            if (!trial) continue;
-            const double chi_squared = domain.chi_squared(*trial);
-            const double fall =
-                (fit.chi_squared - chi_squared) / 2 + prior.half_square(fit.theta) - prior.half_square(theta);
-            moved = fall > enough_fall * share * step.promised;
-            if (!moved) continue;
+        const double share = std::min(reach, 1 / whole.cwiseAbs().maxCoeff());
+        const Eigen::VectorXd theta = fit.theta + share * whole;
+        std::optional<Prediction> trial = try_prediction(domain, threads, theta, fit.prediction);
+        ++fit.evaluations;
+        double fall = -1, chi_squared = 0;  // of half of chi^2 and prior
+        if (trial) {
+            chi_squared = domain.chi_squared(*trial);
+            fall = (fit.chi_squared - chi_squared) / 2 + prior.half_square(fit.theta) - prior.half_square(theta);
+        }
+        moved = fall > enough_fall * share * step.promised;
+        if (moved) {
+            // a parabola through both ends, 2 promised steep at the start, tells where its least lies
+            const double promised = step.promised * share * (2 - share);
+            const double bend = 2 * step.promised * share - fall;
+            reach = bend > 0 ? std::clamp(step.promised * share * share / bend, 0.1, 1.0) : 1;
             fit.theta = theta;
             fit.prediction = std::move(*trial);
             fit.chi_squared = chi_squared;
+            damping *= std::max(1.0 / 10, 1 - std::pow(2 * fall / promised - 1, 3));
+            growth = 2;
+        } else {
+            if (damping > most_damping * largest) break;
+            damping = std::max(damping, first_damping) * growth;
+            growth *= 2;
         }
-        if (!moved) break;
     }
 
     // what is known there
-    if (!fit.converged) {
+    if (moved && !fit.converged) {
         slopes.reset();
         slopes.emplace(domain.slopes(fit.theta, fit.prediction));
     }
-    fit.spectrum = leading_spectrum(whitened_curvature(*slopes, prior), domain.parameters().size(), {},
-                                    fit.spectrum.vectors);
+    fit.spectrum =
+        leading_spectrum(whitened_curvature(*slopes, prior), domain.parameters().size(), {}, fit.spectrum.vectors);
     return fit;
 }
 

@@ -28,8 +28,8 @@ public:
     Slopes(std::vector<State> states, Loans loans, int threads)
         : states_(std::move(states)), loans_(std::move(loans)), threads_(threads) {}
 
-    Eigen::VectorXd gradient() const;                                    // of half the chi^2, J^T d (P)
-    Eigen::MatrixXd curvature_times(const Eigen::MatrixXd& V) const;     // J^T J V, of V (P x n)
+    Eigen::VectorXd gradient() const;                                 // of half the chi^2, J^T d (P)
+    Eigen::MatrixXd curvature_times(const Eigen::MatrixXd& V) const;  // J^T J V, of V (P x n)
     int parameters() const { return static_cast<int>(states_.front().G.cols()); }
 
 private:

@@ -36,10 +36,10 @@ Eigen::MatrixXd random_columns(int P) {
 
 }  // namespace
 
-Eigen::MatrixXd Spectrum::inverse_of_one_more(const Eigen::MatrixXd& X) const {
-    if (values.size() == 0) return X;
-    const Eigen::VectorXd share = values.array() / (1 + values.array());
-    return X - vectors * (share.asDiagonal() * (vectors.transpose() * X));
+Eigen::MatrixXd Spectrum::inverse(double shift, const Eigen::MatrixXd& X) const {
+    if (values.size() == 0) return X / shift;
+    const Eigen::VectorXd share = values.array() / (shift + values.array());
+    return (X - vectors * (share.asDiagonal() * (vectors.transpose() * X))) / shift;
 }
 
 Spectrum leading_spectrum(const SymmetricProduct& A, int P, const SpectrumOptions& options,
@@ -58,17 +58,16 @@ Spectrum leading_spectrum(const SymmetricProduct& A, int P, const SpectrumOption
         const Eigen::VectorXd& values = ritz.eigenvalues();
         const Eigen::MatrixXd left = AQ * Y - Q * (Y * values.asDiagonal());
 
-        // found, when all that are sought are, and one that is not sought shows that there are no more
-        const Eigen::VectorXd off =
-            left.colwise().norm().transpose().array() / values.array().max(options.least) - options.residual;
-        const auto sought = (values.array() >= options.least).count();
-        const bool found = sought < Q.cols() && (sought == 0 || off.tail(sought).maxCoeff() <= 0);
+        // found, when all that may lie above `least` are: an eigenvalue lies within the residual of each of Ritz's
+        const Eigen::ArrayXd off = left.colwise().norm().transpose().array();
+        const Eigen::ArrayXd allowed = options.residual * values.array().max(options.least);
+        const bool found = (values.array() + off < options.least || off <= allowed).all();
         if (found || Q.cols() >= std::min(P, options.largest)) return above(options.least, values, Q * Y);
 
         // on from the worst
         std::vector<Eigen::Index> order(static_cast<std::size_t>(Q.cols()));
         std::iota(order.begin(), order.end(), 0);
-        std::ranges::stable_sort(order, [&](auto a, auto b) { return off[a] > off[b]; });
+        std::ranges::stable_sort(order, [&](auto a, auto b) { return off[a] / allowed[a] > off[b] / allowed[b]; });
         order.resize(std::min<std::size_t>(order.size(), block));
         const Eigen::MatrixXd more = beside(Q, left(Eigen::all, order));
         if (more.cols() == 0) return above(options.least, values, Q * Y);

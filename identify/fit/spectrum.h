@@ -10,8 +10,8 @@ struct Spectrum {
     Eigen::VectorXd values;   // (r), largest first
     Eigen::MatrixXd vectors;  // orthonormal (P x r)
 
-    /// (1 + V diag(values) V^T)^-1 x: the inverse of the matrix plus one, but for the values that are left out.
-    Eigen::MatrixXd inverse_of_one_more(const Eigen::MatrixXd& X) const;
+    /// (shift + V diag(values) V^T)^-1 X: the inverse of the matrix plus a shift > 0, but for the values left out.
+    Eigen::MatrixXd inverse(double shift, const Eigen::MatrixXd& X) const;
     /// tr(A (1 + A)^-1): of parameters, how many the measurements rather than the prior decide. [MacKay 1992]
     double effective() const { return (values.array() / (1 + values.array())).sum(); }
 };

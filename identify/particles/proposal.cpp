@@ -10,8 +10,8 @@
 namespace palpate::identify {
 namespace {
 
-constexpr int centring_steps = 3;
-constexpr int pairs = 16;                        // of draws, the same in each step
+constexpr int centring_steps = 2;
+constexpr int pairs = 8;                           // of draws, the same in each step
 constexpr std::uint64_t centring_round = 1 << 30;  // of the random streams, beyond any move's
 
 }  // namespace
@@ -60,7 +60,7 @@ int centre(GaussianProposal& proposal, const PositionDomain& domain, const LogNo
         });
         if (stands.sum() == 0) return step + 1;
         const Eigen::VectorXd mean_slope = slopes.rowwise().sum() / stands.sum();
-        proposal.mean -= prior.coloured(proposal.spectrum.inverse_of_one_more(mean_slope));
+        proposal.mean -= prior.coloured(proposal.spectrum.inverse(1, mean_slope));
     }
     return centring_steps * 2 * pairs;
 }

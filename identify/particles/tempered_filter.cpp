@@ -18,6 +18,9 @@ namespace {
 /// in modes of their own.
 constexpr double particles_per_parameter = 4;
 
+/// Copies part so much further after the last temperature, as their spread is what is told.
+constexpr double further_at_the_end = 2;
+
 /// The cloud in whitened coordinates, a column per particle.
 struct Cloud {
     Eigen::MatrixXd z;          // (P x N)
@@ -194,6 +197,7 @@ bool temper(const Filter& filter, const TemperedOptions& options, Mover& mover, 
         }
         const bool parted = mover.part(cloud, b, spread);
         if (!parted && particles_per_parameter * static_cast<double>(cloud.z.rows()) > cloud.size()) return false;
+        if (b == 1) mover.part(cloud, b, further_at_the_end * spread);
         report(progress, "particles", b);
     }
     return true;

@@ -78,7 +78,7 @@ TEST_P(WithEffect, DerivativesMatchFiniteDifferences) {
             const MeasurementSet set = make_twin(make_truth(GetParam(), law), 0.05);
             const PositionDomain domain = make_domain(make_start(GetParam(), law), scope, set);
             const Eigen::VectorXd theta = 0.1 * Eigen::VectorXd::LinSpaced(domain.parameters().size(), -1, 1);
-            const Eigen::VectorXd g = domain.normal_equations(theta, domain.predict(theta, 1)).g;
+            const Eigen::VectorXd g = domain.slopes(theta, domain.predict(theta, 1)).gradient();
             for (Eigen::Index p = 0; p < theta.size(); p += 5) {
                 constexpr double h = 1e-5;
                 const Eigen::VectorXd step = h * Eigen::VectorXd::Unit(theta.size(), p);

@@ -51,7 +51,7 @@ TEST_P(CalibrationWithEffects, GradientIsThatOfChiSquared) {
         simulate_measurements(truth, push_spheres(model, {{0, 0, -2}, {4, 3, 0}, {10, 0, 0}}), markers, 0.05);
     const PositionDomain domain = make_domain(model, scope, set);
     const Eigen::VectorXd theta = 0.1 * Eigen::VectorXd::LinSpaced(domain.parameters().size(), -1, 1);
-    const Eigen::VectorXd gradient = domain.normal_equations(theta, domain.predict(theta, 1)).g;
+    const Eigen::VectorXd gradient = domain.slopes(theta, domain.predict(theta, 1)).gradient();
 
     constexpr double h = 1e-5;
     Eigen::VectorXd numeric(theta.size());
