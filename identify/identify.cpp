@@ -41,7 +41,7 @@ bool is_dear(const PositionDomain& domain, const skeleton::Model& model, int par
 }
 
 IdentifyResult identify_tempered(const skeleton::Model& model, const MeasurementSet& set,
-                                 const IdentifyOptions& options, const Progress& progress) {
+                                 const IdentifyOptions& options, const Progress& progress, const UniformFit* near) {
     const std::vector<StateReadings> readings = collect_readings(model, set);
     if (std::ranges::none_of(readings, &StateReadings::tells_stiffness)) {
         throw InvalidInput(
@@ -52,9 +52,9 @@ IdentifyResult identify_tempered(const skeleton::Model& model, const Measurement
     }
 
     // the most probable stiffness
-    Calibration calibration = calibrate(model, readings, options, [&](std::string_view what, double fraction) {
-        report(progress, what, calibration_share * fraction);
-    });
+    Calibration calibration = calibrate(
+        model, readings, options,
+        [&](std::string_view what, double fraction) { report(progress, what, calibration_share * fraction); }, near);
     IdentifyResult result;
     result.notes = std::move(calibration.notes);
     const LogNormalPrior& prior = calibration.prior;
@@ -166,12 +166,12 @@ void IdentifyOptions::validate() const {
 }
 
 IdentifyResult identify(const skeleton::Model& model, const MeasurementSet& set, const IdentifyOptions& options,
-                        const Progress& progress) {
+                        const Progress& progress, const UniformFit* near) {
     options.validate();
     const MeasurementSet readable = with_markers_of_fields(set);
     IdentifyResult result = options.method == Method::burion2008
                                 ? identify_burion2008(model, readable, options, progress)
-                                : identify_tempered(model, readable, options, progress);
+                                : identify_tempered(model, readable, options, progress, near);
     note_left_out(set, result);
     return result;
 }

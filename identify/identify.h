@@ -64,11 +64,14 @@ struct IdentifyResult {
     std::vector<std::string> notes;  // what a user should know, in words
 };
 
+struct UniformFit;
+
 /// Finds the stiffness of every link, so that the model follows the measurements. The model gets the most probable
 /// stiffnesses together: their means one by one, of skewed distributions that hang together, are a stiffer body, which
 /// follows the measurements several times worse.
+/// `near`: a uniform fit to other readings of the same model saves some time.
 /// @throws InvalidInput when the set holds no loaded state with readings, or none of what the method needs.
 IdentifyResult identify(const skeleton::Model& model, const MeasurementSet& set, const IdentifyOptions& options,
-                        const Progress& progress = {});
+                        const Progress& progress = {}, const UniformFit* near = nullptr);
 
 }  // namespace palpate::identify

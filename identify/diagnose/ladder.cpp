@@ -153,7 +153,10 @@ private:
 
         // The skeleton with the same physics, fitted to what is left of the measurements.
         const MeasurementSet part = understood(fitted_, step.effects, found.outliers.readings);
-        step.model = fit_skeleton(step.effects, part);
+        const skeleton::Model model = with_effects(step.effects);
+        const Calibration calibration = fit_skeleton(model, part);
+        near_ = calibration.coarse;
+        step.model = calibrated(model, calibration);
         const Comparison on_fitted = compare(step.model, part, options_.identify.threads);
         step.skeleton = {.rms_mm = on_fitted.rms, .relative = on_fitted.relative};
         hold_out(effects, found, step, body);
@@ -178,7 +181,11 @@ private:
 
             const std::vector<skeleton::Effect> said = told(own);
             const MeasurementSet part = understood(fold.fitted, said, own.outliers.readings);
-            const skeleton::Model model = is_fitted ? step.model : fit_skeleton(said, part);
+            skeleton::Model model = step.model;
+            if (!is_fitted) {
+                model = with_effects(said);
+                model = calibrated(model, fit_skeleton(model, part, &near_));
+            }
             const double rms = compare(model, understood(unseen, said, {}), options_.identify.threads).rms;
             skeleton_squares += N * rms * rms;
         }
@@ -226,9 +233,9 @@ private:
     }
 
     /// The most probable stiffnesses, without particles.
-    skeleton::Model fit_skeleton(const std::vector<skeleton::Effect>& effects, const MeasurementSet& set) const {
-        const skeleton::Model model = with_effects(effects);
-        return calibrated(model, calibrate(model, collect_readings(model, set), options_.identify, {}));
+    Calibration fit_skeleton(const skeleton::Model& model, const MeasurementSet& set,
+                             const UniformFit* near = nullptr) const {
+        return calibrate(model, collect_readings(model, set), options_.identify, {}, near);
     }
 
     /// The last step once more, on all states and with particles: the model that is delivered.
@@ -239,7 +246,7 @@ private:
         LadderStep& last = result_.steps.back();
         last.effects = told(whole);
         last.set = understood(set_, last.effects, whole.outliers.readings);
-        result_.identified = identify(with_effects(last.effects), last.set, options_.identify, progress_);
+        result_.identified = identify(with_effects(last.effects), last.set, options_.identify, progress_, &near_);
         last.model = result_.identified.model;
         last.comparison = compare(last.model, last.set, options_.identify.threads);
     }
@@ -256,6 +263,7 @@ private:
     };
     std::vector<Fold> folds_;
     MeasurementSet fitted_;  // what the rungs are fitted to
+    UniformFit near_;        // the skeleton's, on the last rung
     Ladder result_;
 };
 

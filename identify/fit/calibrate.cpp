@@ -17,10 +17,10 @@ constexpr double wide_sd = 3;         // of ln multipliers that many links share
 constexpr double link_sd = 0.7;       // of ln of one link's, round the uniform fit
 constexpr double first_error = 0.03;  // relative model error to begin with
 constexpr double least_error = 1e-4;  // the model error never falls below it: no model is exact
-constexpr double settled = 1e-4;      // of half the chi^2: a hundredth of a posterior's sd
-constexpr double nearly = 1e-2;       // the same, of a fit that another follows
+// of half the chi^2: a hundredth of a posterior's sd; a tenth where another fit follows
+constexpr FitOptions settled{.tolerance = 1e-4}, nearly{.tolerance = 1e-2, .final_spectrum = false};
 constexpr int steps_with_memory = 8;  // of a fit whose states are lived through
-constexpr int states_for_law = 12;    // that choose the law, the most displaced ones
+constexpr int states_at_first = 12;   // that choose the law, the most displaced ones
 
 LogNormalPrior prior_round(const Eigen::VectorXd& mean, double sd) {
     return {mean, Eigen::VectorXd::Constant(mean.size(), sd)};
@@ -50,63 +50,57 @@ public:
     Calibrator(const skeleton::Model& model, const std::vector<StateReadings>& readings, const IdentifyOptions& options)
         : model_(model), readings_(readings), options_(options) {}
 
-    skeleton::Law choose_law() {
-        if (options_.law == LawChoice::linear) return skeleton::Law::linear;
-        if (options_.law == LawChoice::large_rotation) return skeleton::Law::large_rotation;
+    /// A uniform fit to some of the states, under the law that explains them best where it is to be chosen.
+    UniformFit first_look() {
+        if (options_.law == LawChoice::linear) return first_look(skeleton::Law::linear);
+        if (options_.law == LawChoice::large_rotation) return first_look(skeleton::Law::large_rotation);
         if (remembers(readings_)) {
             note("law: large rotation; by the linear one nothing yields");
-            return skeleton::Law::large_rotation;
+            return first_look(skeleton::Law::large_rotation);
         }
 
-        const std::vector<StateReadings> sample = most_displaced(readings_, states_for_law);
-        const auto chi_squared = [&](skeleton::Law law) -> std::optional<double> {
-            PositionDomain domain(model_, law, group_stiffness(model_, Scope::uniform, options_.fixed), sample,
-                                  options_.threads);
-            try {
-                return first_uniform_fit(domain).fit.chi_squared;
-            } catch (const SolverFailure&) {
-                return std::nullopt;
-            }
-        };
-        const std::optional<double> linear = chi_squared(skeleton::Law::linear);
-        const std::optional<double> large = chi_squared(skeleton::Law::large_rotation);
+        const std::optional<UniformFit> linear = try_first_look(skeleton::Law::linear);
+        const std::optional<UniformFit> large = try_first_look(skeleton::Law::large_rotation);
         if (!large) {
             note("law: linear; by large rotations no equilibrium was found under the measured loads");
-            return skeleton::Law::linear;
+            return linear ? *linear : first_look(skeleton::Law::linear);
         }
-        const bool is_linear = linear && *linear < *large;
+        const bool is_linear = linear && linear->chi_squared < large->chi_squared;
         note(fmt::format("law: {}, chosen by fit (chi^2 {:.4g} linear, {:.4g} large rotation)",
-                         is_linear ? "linear" : "large rotation", linear.value_or(missing), *large));
-        return is_linear ? skeleton::Law::linear : skeleton::Law::large_rotation;
+                         is_linear ? "linear" : "large rotation", linear ? linear->chi_squared : missing,
+                         large->chi_squared));
+        return is_linear ? *linear : *large;
     }
-
-    struct Stage {
-        LogNormalPrior prior;
-        FitResult fit;
-        double model_error;
-    };
 
     /// One multiplier a kind, round the best common factor; then the dents that explain most of what is left.
-    Stage first_uniform_fit(PositionDomain& domain) {
+    UniformFit first_look(skeleton::Law law) {
+        // a body that yields has lived through all of them
+        const std::vector<StateReadings> sample =
+            remembers(readings_) ? readings_ : most_displaced(readings_, states_at_first);
+        PositionDomain domain = uniform_domain(model_, law, sample);
         domain.set_model_error(first_error);
-        const Eigen::VectorXd zero = Eigen::VectorXd::Zero(domain.parameters().size());
-        const Eigen::VectorXd center = zero.array() + domain.common_factor(zero);
-        const LogNormalPrior prior = prior_round(center, wide_sd);
-        Stage stage{prior, fit(domain, prior, center, nearly), first_error};
-        fit_dents(domain, stage.fit);
-        return stage;
+        const LogNormalPrior prior = uniform_prior(domain);
+        FitResult result = fit(domain, prior, prior.mean, nearly);
+        fit_dents(domain, result);
+        return {law, result.theta, domain.dent(), model_error_after(domain, result), result.chi_squared};
     }
 
-    /// Again, with the dents and the model error that the first fit left.
-    Stage second_uniform_fit(PositionDomain& domain, const Stage& first) {
-        const double model_error = model_error_after(domain, first.fit);
-        domain.set_model_error(model_error);
+    std::optional<UniformFit> try_first_look(skeleton::Law law) {
+        try {
+            return first_look(law);
+        } catch (const SolverFailure&) {
+            return std::nullopt;
+        }
+    }
+
+    PositionDomain uniform_domain(const skeleton::Model& model, skeleton::Law law,
+                                  const std::vector<StateReadings>& readings) const {
+        return {model, law, group_stiffness(model, Scope::uniform, options_.fixed), readings, options_.threads};
+    }
+
+    static LogNormalPrior uniform_prior(const PositionDomain& domain) {
         const Eigen::VectorXd zero = Eigen::VectorXd::Zero(domain.parameters().size());
-        const Eigen::VectorXd center = zero.array() + domain.common_factor(zero);
-        const LogNormalPrior prior = prior_round(center, wide_sd);
-        Stage stage{prior, fit(domain, prior, first.fit.theta, settled), model_error};
-        fit_dents(domain, stage.fit);
-        return stage;
+        return prior_round(zero.array() + domain.common_factor(zero), wide_sd);
     }
 
     static void fit_dents(PositionDomain& domain, FitResult& fit) {
@@ -114,13 +108,22 @@ public:
     }
 
     FitResult fit(const PositionDomain& domain, const LogNormalPrior& prior, const Eigen::VectorXd& start,
-                  double tolerance) {
-        FitOptions how{.tolerance = tolerance};
+                  FitOptions how) {
         // Slopes leave out what the states before would have left: the last digits take long.
         if (remembers(readings_)) how.iterations = std::min(how.iterations, steps_with_memory);
         FitResult result = fit_map(domain, prior, start, options_.threads, how);
         equilibria_ += result.evaluations * static_cast<int>(domain.states().size());
         return result;
+    }
+
+    /// The model error that a uniform fit to some of the states leaves on all of them.
+    double model_error_of(const UniformFit& fit, const PositionDomain& domain) {
+        try {
+            equilibria_ += static_cast<int>(domain.states().size());
+            return std::max(least_error, domain.estimate_model_error(domain.predict(fit.theta, options_.threads)));
+        } catch (const SolverFailure&) {  // under a load that was not among those
+            return fit.model_error;
+        }
     }
 
     void note(std::string words) { notes_.push_back(std::move(words)); }
@@ -145,26 +148,29 @@ Eigen::VectorXd spread_kinds(const Parameters& fine, const Parameters& uniform, 
 }  // namespace
 
 Calibration calibrate(const skeleton::Model& model, const std::vector<StateReadings>& readings,
-                      const IdentifyOptions& options, const Progress& progress) {
+                      const IdentifyOptions& options, const Progress& progress, const UniformFit* near) {
     Calibrator calibrator(model, readings, options);
     report(progress, "law", 0);
-    const skeleton::Law law = calibrator.choose_law();
+    UniformFit coarse = near ? *near : calibrator.first_look();
 
-    // one multiplier a kind; a second time with the model error that the first fit left
+    // one multiplier a kind, with the dents and the model error that a first fit left
     report(progress, "uniform fit", 0.1);
-    PositionDomain uniform(model, law, group_stiffness(model, Scope::uniform, options.fixed), readings,
-                           options.threads);
-    Calibrator::Stage stage = calibrator.second_uniform_fit(uniform, calibrator.first_uniform_fit(uniform));
-    double model_error = stage.model_error;
+    skeleton::Model dented = model;
+    dented.dent = coarse.dent;
+    PositionDomain domain = calibrator.uniform_domain(dented, coarse.law, readings);
+    if (!near) coarse.model_error = calibrator.model_error_of(coarse, domain);
+    domain.set_model_error(coarse.model_error);
+    LogNormalPrior prior = Calibrator::uniform_prior(domain);
+    FitResult fit = calibrator.fit(domain, prior, coarse.theta, settled);
+    Calibrator::fit_dents(domain, fit);
+    coarse = {coarse.law, fit.theta, domain.dent(), coarse.model_error, fit.chi_squared};
 
-    PositionDomain domain = uniform;
-    LogNormalPrior prior = stage.prior;
-    FitResult fit = std::move(stage.fit);
+    double model_error = coarse.model_error;
     if (options.scope != Scope::uniform) {
-        // finer, from the uniform fit; again twice
-        skeleton::Model dented = model;
+        // finer, from the uniform fit; twice, as the first fit tells the model error of the second
+        const PositionDomain uniform = std::move(domain);
         dented.dent = uniform.dent();
-        domain = PositionDomain(dented, law, group_stiffness(model, options.scope, options.fixed), readings,
+        domain = PositionDomain(dented, coarse.law, group_stiffness(model, options.scope, options.fixed), readings,
                                 options.threads);
         const Eigen::VectorXd start = spread_kinds(domain.parameters(), uniform.parameters(), fit.theta);
         prior = options.scope == Scope::links
@@ -177,16 +183,17 @@ Calibration calibrate(const skeleton::Model& model, const std::vector<StateReadi
         model_error = std::min(model_error, model_error_after(domain, fit));
         report(progress, "second fit", 0.6);
         domain.set_model_error(model_error);
-        fit = calibrator.fit(domain, prior, fit.theta, settled);
+        FitOptions from_there = settled;
+        const Spectrum spectrum = std::move(fit.spectrum);
+        from_there.near = &spectrum;
+        fit = calibrator.fit(domain, prior, fit.theta, from_there);
         Calibrator::fit_dents(domain, fit);
-    } else {
-        domain.set_model_error(model_error);
     }
     calibrator.note(
         fmt::format("relative model error: {:.2g} % of the displacement, beyond the noise", 100 * model_error));
     if (!fit.converged) calibrator.note("the fit stopped before it settled: take the posterior with care");
     return {std::move(domain), std::move(prior),       std::move(fit),
-            model_error,       calibrator.equilibria_, std::move(calibrator.notes_)};
+            std::move(coarse), calibrator.equilibria_, std::move(calibrator.notes_)};
 }
 
 skeleton::Model calibrated(const skeleton::Model& model, const Calibration& calibration) {

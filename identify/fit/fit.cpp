@@ -34,8 +34,9 @@ std::optional<Prediction> try_prediction(const PositionDomain& domain, int threa
 
 constexpr double forcing = 1e-3;        // of a step's equations, that may be left of the gradient
 constexpr int stale = 12;               // products, after which the spectrum is found anew
-constexpr double enough_fall = 1e-4;    // of what the slope promises [Armijo]
-constexpr double first_damping = 1e-3;  // of the largest eigenvalue
+constexpr double enough_fall = 0.05;    // of what a step promises
+constexpr double good_fall = 0.5;       // the same, to damp less from then on
+constexpr double first_damping = 1e-3;  // after a step that fell short, of the largest eigenvalue
 constexpr double most_damping = 1e9;    // the same
 
 struct Step {
@@ -88,10 +89,11 @@ FitResult fit_map(const PositionDomain& domain, const LogNormalPrior& prior, con
     fit.evaluations = 1;
 
     std::optional<Slopes> slopes;
-    double damping = -1, growth = 2;
-    double reach = 1;    // of a step: less where slopes alone promise too much
-    bool moved = true;   // or the slopes still hold
-    bool known = false;  // the spectrum, well enough
+    double damping = 0;
+    double reach = 1;                      // of a step: less where slopes alone promise too much
+    bool moved = true;                     // or the slopes still hold
+    bool known = options.near != nullptr;  // the spectrum, well enough
+    if (known) fit.spectrum = *options.near;
     Eigen::VectorXd g;
     while (fit.iterations < options.iterations) {
         // Gauss-Newton's quadratic of half of chi^2 and prior, in v
@@ -103,7 +105,6 @@ FitResult fit_map(const PositionDomain& domain, const LogNormalPrior& prior, con
         const SymmetricProduct A = whitened_curvature(*slopes, prior);
         if (!known) fit.spectrum = leading_spectrum(A, domain.parameters().size(), {}, fit.spectrum.vectors);
         const double largest = fit.spectrum.values.size() > 0 ? fit.spectrum.values[0] : 1;
-        if (damping < 0) damping = first_damping * largest;
         ++fit.iterations;
 
         // its least, damped; none left to gain without damping is the end
@@ -125,31 +126,32 @@ FitResult fit_map(const PositionDomain& domain, const LogNormalPrior& prior, con
             chi_squared = domain.chi_squared(*trial);
             fall = (fit.chi_squared - chi_squared) / 2 + prior.half_square(fit.theta) - prior.half_square(theta);
         }
-        moved = fall > enough_fall * share * step.promised;
+        const double promised = step.promised * share * (2 - share);
+        moved = fall > enough_fall * promised;
         if (moved) {
             // a parabola through both ends, 2 promised steep at the start, tells where its least lies
-            const double promised = step.promised * share * (2 - share);
             const double bend = 2 * step.promised * share - fall;
             reach = bend > 0 ? std::clamp(step.promised * share * share / bend, 0.1, 1.0) : 1;
             fit.theta = theta;
             fit.prediction = std::move(*trial);
             fit.chi_squared = chi_squared;
-            damping *= std::max(1.0 / 10, 1 - std::pow(2 * fall / promised - 1, 3));
-            growth = 2;
+            if (fall > good_fall * promised)
+                damping = damping > first_damping * first_damping * largest ? damping / 10 : 0;
         } else {
             if (damping > most_damping * largest) break;
-            damping = std::max(damping, first_damping) * growth;
-            growth *= 2;
+            damping = std::max(4 * damping, first_damping * largest);
         }
     }
 
     // what is known there
-    if (moved && !fit.converged) {
-        slopes.reset();
-        slopes.emplace(domain.slopes(fit.theta, fit.prediction));
+    if (options.final_spectrum) {
+        if (moved && !fit.converged) {
+            slopes.reset();
+            slopes.emplace(domain.slopes(fit.theta, fit.prediction));
+        }
+        fit.spectrum =
+            leading_spectrum(whitened_curvature(*slopes, prior), domain.parameters().size(), {}, fit.spectrum.vectors);
     }
-    fit.spectrum =
-        leading_spectrum(whitened_curvature(*slopes, prior), domain.parameters().size(), {}, fit.spectrum.vectors);
     return fit;
 }
 

@@ -21,7 +21,9 @@ SymmetricProduct whitened_curvature(const Slopes& slopes, const LogNormalPrior& 
 
 struct FitOptions {
     int iterations = 60;
-    double tolerance = 1e-8;  // stop when the next step promises to lower half the chi^2 by less
+    double tolerance = 1e-8;         // stop when the next step promises to lower half the chi^2 by less
+    const Spectrum* near = nullptr;  // of a fit nearby
+    bool final_spectrum = true;      // else one on the way is left, good enough to count effective parameters
 };
 
 /// The most probable theta (MAP).
@@ -40,7 +42,8 @@ struct FitResult {
 ///
 /// In coordinates in which the prior is N(0, 1) the equations of a step are (1 + A) dv = -g, A = J^T J. Measurements
 /// tell about few directions, so A has few eigenvalues that matter beside 1: these are found once [Spectrum], and
-/// precondition conjugate gradients from then on, which end after a few products, however many parameters there are.
+/// precondition conjugate gradients from then on, which end after a few products, however many parameters there are. A
+/// step that falls short is damped [Levenberg 1944], and one that fell further than slopes promise shortens the next.
 /// @throws SolverFailure when there is no equilibrium at the start, not even with stiffnesses hundreds of times larger.
 FitResult fit_map(const PositionDomain& domain, const LogNormalPrior& prior, const Eigen::VectorXd& start, int threads,
                   const FitOptions& options = {});
