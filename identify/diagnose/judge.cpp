@@ -53,13 +53,17 @@ std::string put_together_of_aliases(const Explained& explained) {
 }
 
 std::string objection_to(const Diagnosis& diagnosis, const Explained& explained, const DiagnoseOptions& options) {
-    const double least = least_next_to_noise(*explained.effects.front(), diagnosis.problem, options);
-    const bool is_noise = explained.effects.size() == 1 && is_enough(diagnosis.baseline, options);
-    if (is_noise && is_likely(explained, options) && explained.log_bayes_factor < least) {
-        return fmt::format(
-            "what is left without it is noise, and its ln Bayes factor of {:.0f} is less than the {:.0f} "
-            "that errors of mesh and rig may bring about",
-            explained.log_bayes_factor, least);
+    if (explained.effects.size() == 1 && is_likely(explained, options)) {
+        const bool is_noise = is_enough(diagnosis.baseline, options);
+        const Effect& effect = *explained.effects.front();
+        const double least = is_noise ? least_next_to_noise(effect, diagnosis.problem, options)
+                                      : feigned_by_mesh(effect, diagnosis.problem, options);
+        if (explained.log_bayes_factor < least) {
+            return fmt::format(
+                "{}its ln Bayes factor of {:.0f} is less than the {:.0f} that errors of mesh and rig may "
+                "bring about",
+                is_noise ? "what is left without it is noise, and " : "", explained.log_bayes_factor, least);
+        }
     }
     std::string aliases = put_together_of_aliases(explained);
     if (!aliases.empty()) return aliases;
@@ -118,11 +122,14 @@ bool is_enough(const Refit& fit, const DiagnoseOptions& options) {
     return fit.whitened_rms <= options.most_left && fit.strain <= options.most_strain;
 }
 
-double least_next_to_noise(const Effect& effect, const Problem& problem, const DiagnoseOptions& options) {
-    const double least = 2 * options.least_evidence;
-    if (!effect.is_like_mesh_error()) return least;
+double feigned_by_mesh(const Effect& effect, const Problem& problem, const DiagnoseOptions& options) {
+    if (!effect.is_like_mesh_error()) return 0;
     const double in_sigmas = options.mesh_error * problem.displacement().cwiseQuotient(problem.sigma).norm();
-    return std::max(least, 0.5 * in_sigmas * in_sigmas);
+    return 0.5 * in_sigmas * in_sigmas;
+}
+
+double least_next_to_noise(const Effect& effect, const Problem& problem, const DiagnoseOptions& options) {
+    return std::max(2 * options.least_evidence, feigned_by_mesh(effect, problem, options));
 }
 
 double least_next_to_effect(const Effect& effect, double brought, const Problem& problem,
