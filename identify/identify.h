@@ -14,7 +14,7 @@ namespace palpate::identify {
 enum class Scope { uniform, zones, links };
 
 enum class Method {
-    tempered,    // particles from a Laplace proposal, tempered to the posterior; measured positions
+    tempered,    // particles from a Gaussian near the fit, tempered to the posterior; measured positions
     burion2008,  // Algorithm 1 as printed, in log weights; net forces and torques
 };
 

@@ -10,9 +10,41 @@
 namespace palpate::identify {
 namespace {
 
-constexpr int centring_steps = 2;
-constexpr int pairs = 8;                           // of draws, the same in each step
+constexpr int centring_looks = 4;                  // at the posterior's slopes, at most
+constexpr double centred = 0.1;                    // of ln pi, that the next step would gain
+constexpr int pairs = 8;                           // of draws, the same at each look
 constexpr std::uint64_t centring_round = 1 << 30;  // of the random streams, beyond any move's
+
+/// ln pi of a domain and a prior, and its slopes by v, theta = mean + sd o v; averages over draws of a proposal.
+struct Look {
+    int stands = 0;            // draws with an equilibrium
+    double log_density = 0;    // mean over them, but for a constant
+    Eigen::VectorXd downhill;  // (P)
+};
+
+Look look_round(const GaussianProposal& proposal, const Eigen::MatrixXd& z, const PositionDomain& domain,
+                const LogNormalPrior& prior, const Prediction& near, int threads) {
+    const Eigen::MatrixXd theta = proposal.parameters(z);
+    Eigen::MatrixXd slopes = Eigen::MatrixXd::Zero(theta.rows(), theta.cols());
+    Eigen::ArrayXd log_density = Eigen::ArrayXd::Zero(theta.cols());
+    Eigen::ArrayXi stands = Eigen::ArrayXi::Zero(theta.cols());
+    for_each_in_parallel(static_cast<int>(theta.cols()), threads, [&](int i) {
+        try {
+            const Prediction prediction = domain.predict(theta.col(i), 1, &near);
+            slopes.col(i) = prior.coloured(domain.slopes(theta.col(i), prediction).gradient()) +
+                            (theta.col(i) - prior.mean).cwiseQuotient(prior.sd);
+            log_density[i] = -domain.chi_squared(prediction) / 2 - prior.half_square(theta.col(i));
+            stands[i] = 1;
+        } catch (const SolverFailure&) {  // such a body would not stand
+        }
+    });
+    Look look;
+    look.stands = stands.sum();
+    if (look.stands == 0) return look;
+    look.log_density = log_density.sum() / look.stands;
+    look.downhill = slopes.rowwise().sum() / look.stands;
+    return look;
+}
 
 }  // namespace
 
@@ -45,24 +77,24 @@ int centre(GaussianProposal& proposal, const PositionDomain& domain, const LogNo
         z.col(2 * i) = RandomStream(seed, centring_round, i).normals(P);
         z.col(2 * i + 1) = -z.col(2 * i);
     }
-    for (int step = 0; step < centring_steps; ++step) {
-        const Eigen::MatrixXd theta = proposal.parameters(z);
-        Eigen::MatrixXd slopes = Eigen::MatrixXd::Zero(P, z.cols());
-        Eigen::ArrayXi stands = Eigen::ArrayXi::Zero(z.cols());
-        for_each_in_parallel(static_cast<int>(z.cols()), threads, [&](int i) {
-            try {
-                const Prediction prediction = domain.predict(theta.col(i), 1, &near);
-                slopes.col(i) = prior.coloured(domain.slopes(theta.col(i), prediction).gradient()) +
-                                (theta.col(i) - prior.mean).cwiseQuotient(prior.sd);
-                stands[i] = 1;
-            } catch (const SolverFailure&) {  // such a body would not stand
-            }
-        });
-        if (stands.sum() == 0) return step + 1;
-        const Eigen::VectorXd mean_slope = slopes.rowwise().sum() / stands.sum();
-        proposal.mean -= prior.coloured(proposal.spectrum.inverse(1, mean_slope));
+    Look here = look_round(proposal, z, domain, prior, near, threads);
+    int looks = 1;
+    double share = 1;
+    while (here.stands > 0 && looks < centring_looks) {
+        const Eigen::VectorXd step = proposal.spectrum.inverse(1, here.downhill);
+        if (share * here.downhill.dot(step) < centred) break;
+        GaussianProposal there = proposal;
+        there.mean -= share * prior.coloured(step);
+        Look look = look_round(there, z, domain, prior, near, threads);
+        ++looks;
+        if (look.stands >= here.stands && look.log_density > here.log_density) {
+            proposal = std::move(there);
+            here = std::move(look);
+        } else {
+            share /= 4;
+        }
     }
-    return centring_steps * 2 * pairs;
+    return looks * 2 * pairs;
 }
 
 }  // namespace palpate::identify

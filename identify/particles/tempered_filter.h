@@ -42,14 +42,13 @@ struct TemperedResult {
 ///   z' = sqrt(1 - s^2) z + s xi,  xi ~ N(0, 1),
 /// which are reversible under q, so that a move is accepted by the tempered correction (pi / q)^b alone and does not
 /// die with the dimension [Cotter, Roberts, Stuart, White 2013]; s keeps 20-40 % of the moves accepted. They go on
-/// until copies have parted: until the squares of their ways add up to half of that between two particles. The last
-/// particles stay weighted.
+/// until copies have parted: until the squares of their ways add up to half of that between two particles; the last
+/// ones, which stay weighted, further.
 ///
-/// Where `moves` of them do not part the copies and there are fewer than four particles a parameter (thousands of
-/// parameters, a posterior unlike q in many of them), resampling
-/// would leave a handful of particles in many copies, and intervals far too narrow. Then nothing is weighed: all
-/// particles of q are moved by the posterior's own rule, twice `moves`, and stay equal; the evidence is then
-/// Laplace's, pi / q at the mean.
+/// Where `moves` of them do not part the copies and there are fewer than four particles a parameter (a posterior unlike
+/// q in many of its parameters), resampling would leave a handful of particles in many copies, and intervals far too
+/// narrow. Then nothing is weighed: all particles of q are moved by the posterior's own rule, twice `moves`, and stay
+/// equal; the evidence is then Laplace's, pi / q at the mean.
 ///
 /// The numbers depend on the seed, not on the threads.
 /// @throws SolverFailure when no particle has a density, or `temperatures` do not reach the posterior.

@@ -34,8 +34,7 @@ void add_identify_flags(CLI::App* verb, CaseOverrides& say) {
     verb->add_option("--parameters", say.parameters, "What is identified: uniform, zones, links")
         ->check(CLI::IsMember({"uniform", "zones", "links"}))
         ->group("Identification");
-    verb->add_option("--method", say.method,
-                     "tempered: particles tempered from a Laplace proposal; burion2008: Algorithm 1")
+    verb->add_option("--method", say.method, "tempered: particles tempered from the fit; burion2008: Algorithm 1")
         ->check(CLI::IsMember({"tempered", "burion2008"}))
         ->group("Identification");
     verb->add_option("--particles", say.particles, "Number of particles")
