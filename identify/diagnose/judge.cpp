@@ -52,17 +52,25 @@ std::string put_together_of_aliases(const Explained& explained) {
     return {};
 }
 
+/// Of what is beyond the noise without an effect, more is left with it than not. Thousands of readings make evidence of
+/// little.
+bool leaves_more_than_it_explains(const Refit& without, const Refit& with) {
+    const double before = without.whitened_rms * without.whitened_rms, after = with.whitened_rms * with.whitened_rms;
+    return after - 1 > before - after;
+}
+
 std::string objection_to(const Diagnosis& diagnosis, const Explained& explained, const DiagnoseOptions& options) {
+    const Effect& first = *explained.effects.front();
     if (explained.effects.size() == 1 && is_likely(explained, options)) {
-        const bool is_noise = is_enough(diagnosis.baseline, options);
-        const Effect& effect = *explained.effects.front();
-        const double least = is_noise ? least_next_to_noise(effect, diagnosis.problem, options)
-                                      : feigned_by_mesh(effect, diagnosis.problem, options);
-        if (explained.log_bayes_factor < least) {
+        const double least = least_next_to_noise(first, diagnosis.problem, options);
+        if (!is_enough(diagnosis.baseline, options)) {
+            if (first.is_like_mesh_error() && leaves_more_than_it_explains(diagnosis.baseline, explained.fit))
+                return "it leaves more, beyond the noise, than it explains, as errors of a mesh do";
+        } else if (explained.log_bayes_factor < least) {
             return fmt::format(
-                "{}its ln Bayes factor of {:.0f} is less than the {:.0f} that errors of mesh and rig may "
-                "bring about",
-                is_noise ? "what is left without it is noise, and " : "", explained.log_bayes_factor, least);
+                "what is left without it is noise, and its ln Bayes factor of {:.0f} is less than the {:.0f} "
+                "that errors of mesh and rig may bring about",
+                explained.log_bayes_factor, least);
         }
     }
     std::string aliases = put_together_of_aliases(explained);
@@ -122,14 +130,11 @@ bool is_enough(const Refit& fit, const DiagnoseOptions& options) {
     return fit.whitened_rms <= options.most_left && fit.strain <= options.most_strain;
 }
 
-double feigned_by_mesh(const Effect& effect, const Problem& problem, const DiagnoseOptions& options) {
-    if (!effect.is_like_mesh_error()) return 0;
-    const double in_sigmas = options.mesh_error * problem.displacement().cwiseQuotient(problem.sigma).norm();
-    return 0.5 * in_sigmas * in_sigmas;
-}
-
 double least_next_to_noise(const Effect& effect, const Problem& problem, const DiagnoseOptions& options) {
-    return std::max(2 * options.least_evidence, feigned_by_mesh(effect, problem, options));
+    const double least = 2 * options.least_evidence;
+    if (!effect.is_like_mesh_error()) return least;
+    const double in_sigmas = options.mesh_error * problem.displacement().cwiseQuotient(problem.sigma).norm();
+    return std::max(least, 0.5 * in_sigmas * in_sigmas);
 }
 
 double least_next_to_effect(const Effect& effect, double brought, const Problem& problem,

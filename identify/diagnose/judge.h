@@ -10,12 +10,9 @@ bool is_likely(const Explained& explained, const DiagnoseOptions& options);
 /// Is what a fit leaves noise, with no nuisance strained?
 bool is_enough(const Refit& fit, const DiagnoseOptions& options);
 
-/// ln Bayes factor that errors of the mesh, a share of the displacement, may bring to an effect that is like them; 0 to
-/// others. Many readings make much of little: half the square of what they see of it.
-double feigned_by_mesh(const Effect& effect, const Problem& problem, const DiagnoseOptions& options);
-
 /// ln Bayes factor that an effect has to bring where what is left without it is noise already: twice as much as
-/// elsewhere, and more than errors of the mesh may feign.
+/// elsewhere, and one that is like an error of the mesh more than such errors may feign, which are a share of the
+/// displacement.
 double least_next_to_noise(const Effect& effect, const Problem& problem, const DiagnoseOptions& options);
 
 /// The same next to effects that leave noise and brought some evidence: more than their own idealisation (even springs,
