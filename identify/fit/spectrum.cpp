@@ -11,7 +11,7 @@
 namespace palpate::identify {
 namespace {
 
-constexpr int block = 8;  // columns that are multiplied at once
+constexpr int block = 8;  // columns that are multiplied at once, at least
 
 /// An orthonormal basis of what the columns of X add to those of Q.
 Eigen::MatrixXd beside(const Eigen::MatrixXd& Q, Eigen::MatrixXd X) {
@@ -68,7 +68,7 @@ Spectrum leading_spectrum(const SymmetricProduct& A, int P, const SpectrumOption
         std::vector<Eigen::Index> order(static_cast<std::size_t>(Q.cols()));
         std::iota(order.begin(), order.end(), 0);
         std::ranges::stable_sort(order, [&](auto a, auto b) { return off[a] / allowed[a] > off[b] / allowed[b]; });
-        order.resize(std::min<std::size_t>(order.size(), block));
+        order.resize(std::min<std::size_t>(order.size(), std::max<std::size_t>(block, order.size() / 4)));
         const Eigen::MatrixXd more = beside(Q, left(Eigen::all, order));
         if (more.cols() == 0) return above(options.least, values, Q * Y);
         const Eigen::MatrixXd A_more = A(more);

@@ -26,8 +26,8 @@ struct SpectrumOptions {
     int largest = 600;       // subspace at most
 };
 
-/// Eigenpairs above `least` by a growing subspace: Rayleigh and Ritz, and from the eight worst residuals on. Without
-/// `start` (P x any) from eight random columns, always the same.
+/// Eigenpairs above `least` by a growing subspace: Rayleigh and Ritz, and from the worst residuals on, a quarter
+/// more each time. Without `start` (P x any) from eight random columns, always the same.
 Spectrum leading_spectrum(const SymmetricProduct& A, int P, const SpectrumOptions& options = {},
                           const Eigen::MatrixXd& start = {});
 
