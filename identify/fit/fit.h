@@ -43,7 +43,7 @@ struct FitResult {
 /// In coordinates in which the prior is N(0, 1) the equations of a step are (1 + A) dv = -g, A = J^T J. Measurements
 /// tell about few directions, so A has few eigenvalues that matter beside 1: these are found once [Spectrum], and
 /// precondition conjugate gradients from then on, which end after a few products, however many parameters there are. A
-/// step that falls short is damped [Levenberg 1944], and one that fell further than slopes promise shortens the next.
+/// step that falls short is damped [Levenberg 1944], and one that fell less than slopes promise shortens the next.
 /// @throws SolverFailure when there is no equilibrium at the start, not even with stiffnesses hundreds of times larger.
 FitResult fit_map(const PositionDomain& domain, const LogNormalPrior& prior, const Eigen::VectorXd& start, int threads,
                   const FitOptions& options = {});

@@ -30,7 +30,6 @@ public:
 
     Eigen::VectorXd gradient() const;                                 // of half the chi^2, J^T d (P)
     Eigen::MatrixXd curvature_times(const Eigen::MatrixXd& V) const;  // J^T J V, of V (P x n)
-    int parameters() const { return static_cast<int>(states_.front().G.cols()); }
 
 private:
     std::vector<State> states_;
