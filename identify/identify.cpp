@@ -132,7 +132,10 @@ IdentifyResult identify_burion2008(const skeleton::Model& model, const Measureme
         .search_low = options.search_low,
         .search_high = options.search_high,
         .seed = options.seed};
-    BurionResult filter = burion2008(domain.forces, domain.torques, filter_options, progress);
+    const MeasurementModel errors_of = [&](const Eigen::MatrixXd& X) -> ParticleErrors {
+        return {squared_errors(domain.forces, X), squared_errors(domain.torques, X)};
+    };
+    BurionResult filter = burion2008(errors_of, parameters.size(), filter_options, progress);
 
     IdentifyResult result;
     const Eigen::VectorXd units = parameters.units();

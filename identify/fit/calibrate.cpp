@@ -15,6 +15,7 @@ namespace {
 
 constexpr double wide_sd = 3;         // of ln multipliers that many links share
 constexpr double link_sd = 0.7;       // of ln of one link's, round the uniform fit
+constexpr double own_weight = 1;      // of a link in its prior, as much as that of the neighbours at one end
 constexpr double first_error = 0.03;  // relative model error to begin with
 constexpr double least_error = 1e-4;  // the model error never falls below it: no model is exact
 // of half the chi^2: a hundredth of a posterior's sd; a tenth where another fit follows
@@ -23,7 +24,15 @@ constexpr int steps_with_memory = 8;  // of a fit whose states are lived through
 constexpr int states_at_first = 12;   // that choose the law, the most displaced ones
 
 LogNormalPrior prior_round(const Eigen::VectorXd& mean, double sd) {
-    return {mean, Eigen::VectorXd::Constant(mean.size(), sd)};
+    return {mean, Eigen::VectorXd::Constant(mean.size(), sd), nullptr};
+}
+
+/// Of single links and volumes, alike where they meet.
+LogNormalPrior neighbourly_prior(const skeleton::Model& model, const Parameters& parameters,
+                                 const Eigen::VectorXd& mean) {
+    LogNormalPrior prior = prior_round(mean, link_sd);
+    prior.field = std::make_shared<MarkovField>(parameters.size(), neighbours(model, parameters), own_weight);
+    return prior;
 }
 
 /// Relative model error that a fit leaves, as an unfitted reading would see it.
@@ -174,7 +183,7 @@ Calibration calibrate(const skeleton::Model& model, const std::vector<StateReadi
                                 options.threads);
         const Eigen::VectorXd start = spread_kinds(domain.parameters(), uniform.parameters(), fit.theta);
         prior = options.scope == Scope::links
-                    ? prior_round(start, link_sd)
+                    ? neighbourly_prior(model, domain.parameters(), start)
                     : prior_round(spread_kinds(domain.parameters(), uniform.parameters(), prior.mean), wide_sd);
         domain.set_model_error(model_error);
         report(progress, "first fit", 0.2);

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <optional>
 
 #include "mesh/errors.h"
@@ -68,16 +67,8 @@ Step damped_step(const SymmetricProduct& A, const Eigen::VectorXd& g, double dam
 
 }  // namespace
 
-double LogNormalPrior::half_square(const Eigen::VectorXd& theta) const {
-    return 0.5 * (theta - mean).cwiseQuotient(sd).squaredNorm();
-}
-
-double LogNormalPrior::log_density(const Eigen::VectorXd& theta) const {
-    return -half_square(theta) - (sd.array() * std::sqrt(2 * std::numbers::pi)).log().sum();
-}
-
 SymmetricProduct whitened_curvature(const Slopes& slopes, const LogNormalPrior& prior) {
-    return [&](const Eigen::MatrixXd& V) { return prior.coloured(slopes.curvature_times(prior.coloured(V))); };
+    return [&](const Eigen::MatrixXd& V) { return prior.slopes_by_v(slopes.curvature_times(prior.coloured(V))); };
 }
 
 FitResult fit_map(const PositionDomain& domain, const LogNormalPrior& prior, const Eigen::VectorXd& start, int threads,
@@ -100,7 +91,7 @@ FitResult fit_map(const PositionDomain& domain, const LogNormalPrior& prior, con
         if (moved) {
             slopes.reset();  // its solvers serve again
             slopes.emplace(domain.slopes(fit.theta, fit.prediction));
-            g = prior.coloured(slopes->gradient()) + (fit.theta - prior.mean).cwiseQuotient(prior.sd);
+            g = prior.slopes_by_v(slopes->gradient()) + prior.whitened(fit.theta);
         }
         const SymmetricProduct A = whitened_curvature(*slopes, prior);
         if (!known) fit.spectrum = leading_spectrum(A, domain.parameters().size(), {}, fit.spectrum.vectors);

@@ -1,22 +1,13 @@
 #pragma once
 
+#include "identify/fit/log_normal_prior.h"
 #include "identify/fit/position_domain.h"
 #include "identify/fit/spectrum.h"
 
 namespace palpate::identify {
 
-/// What is believed of theta before the measurements: independent normal distributions.
-struct LogNormalPrior {
-    Eigen::VectorXd mean, sd;  // of the log multipliers (P)
-
-    double half_square(const Eigen::VectorXd& theta) const;  // half the squared distance in sd
-    double log_density(const Eigen::VectorXd& theta) const;
-    /// From coordinates in which the prior is N(0, 1), v, and slopes by theta to slopes by v: sd o X.
-    Eigen::MatrixXd coloured(const Eigen::MatrixXd& X) const { return sd.asDiagonal() * X; }
-};
-
-/// J^T J of a domain's errors by v, theta = mean + sd o v: its eigenvalues tell how much more the measurements know of
-/// a direction than the prior.
+/// J^T J of a domain's errors by v, theta = mean + C v: its eigenvalues tell how much more the measurements know of a
+/// direction than the prior.
 SymmetricProduct whitened_curvature(const Slopes& slopes, const LogNormalPrior& prior);
 
 struct FitOptions {

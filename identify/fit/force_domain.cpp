@@ -1,17 +1,22 @@
 #include "identify/fit/force_domain.h"
 
-#include <Eigen/Cholesky>
+#include <Eigen/SparseCholesky>
 #include <cmath>
+
+#include "mesh/errors.h"
 
 namespace palpate::identify {
 namespace {
 
-ForceStatistics zero_statistics(int P) { return {Eigen::MatrixXd::Zero(P, P), Eigen::VectorXd::Zero(P), 0}; }
+constexpr double dense_share = 0.1;  // of H's entries, from which it is multiplied as a dense matrix
 
-void accumulate(ForceStatistics& statistics, const Eigen::MatrixXd& A, const Eigen::VectorXd& f) {
-    statistics.H.noalias() += A.transpose() * A;
-    statistics.g.noalias() += A.transpose() * f;
+ForceStatistics zero_statistics(int P) { return {Eigen::SparseMatrix<double>(P, P), Eigen::VectorXd::Zero(P), 0, 0}; }
+
+void accumulate(ForceStatistics& statistics, const Eigen::SparseMatrix<double>& A, const Eigen::VectorXd& f) {
+    statistics.H += Eigen::SparseMatrix<double>(A.transpose() * A);
+    statistics.g += A.transpose() * f;
     statistics.c += f.squaredNorm();
+    statistics.rows += static_cast<int>(f.size());
 }
 
 double mean_link_length(const skeleton::Model& model) {
@@ -20,92 +25,111 @@ double mean_link_length(const skeleton::Model& model) {
     return sum / static_cast<double>(model.links.size());
 }
 
-/// Rows of the free spheres, their forces or their torques over `length`.
-Eigen::VectorXi free_rows(const skeleton::Model& model, bool torques) {
-    std::vector<int> rows;
+/// Picks the rows of the free spheres, their forces or their torques, times `factor` (rows x 6N).
+Eigen::SparseMatrix<double> pick_free(const skeleton::Model& model, bool torques, double factor) {
+    std::vector<Eigen::Triplet<double>> entries;
+    int row = 0;
     for (int i = 0; i < static_cast<int>(model.spheres.size()); ++i) {
         if (model.spheres[i].held) continue;
-        for (int c = 0; c < 3; ++c) rows.push_back(6 * i + (torques ? 3 : 0) + c);
+        for (int c = 0; c < 3; ++c) entries.emplace_back(row++, 6 * i + (torques ? 3 : 0) + c, factor);
     }
-    return Eigen::Map<Eigen::VectorXi>(rows.data(), static_cast<Eigen::Index>(rows.size()));
+    Eigen::SparseMatrix<double> S(row, model.dofs());
+    S.setFromTriplets(entries.begin(), entries.end());
+    return S;
+}
+
+/// (H + weight) m + g - weight: half the slope of the quadratic and of a prior round 1.
+Eigen::VectorXd half_slope(const ForceStatistics& statistics, double weight, const Eigen::VectorXd& m) {
+    return statistics.H * m + statistics.g + weight * (m.array() - 1).matrix();
+}
+
+/// Where the slope of the free multipliers vanishes, the others at zero.
+Eigen::VectorXd unbounded(const ForceStatistics& statistics, double weight, const std::vector<char>& is_free) {
+    const auto P = statistics.g.size();
+    std::vector<Eigen::Triplet<double>> entries;
+    for (Eigen::Index p = 0, row = 0; p < P; ++p) {
+        if (is_free[p] != 0) entries.emplace_back(row++, p, 1.0);
+    }
+    Eigen::SparseMatrix<double> S(static_cast<Eigen::Index>(entries.size()), P), I(S.rows(), S.rows());
+    S.setFromTriplets(entries.begin(), entries.end());
+    I.setIdentity();
+    if (S.rows() == 0) return Eigen::VectorXd::Zero(P);
+    Eigen::SparseMatrix<double> H = S * statistics.H * S.transpose();
+    H += weight * I;
+    const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> ldlt(H);
+    if (ldlt.info() != Eigen::Success || !(ldlt.vectorD().minCoeff() > 0)) {
+        throw SolverFailure(
+            "the net forces leave some stiffnesses open altogether: no probe moves the links that they belong to");
+    }
+    return S.transpose() * ldlt.solve(S * (weight - statistics.g.array()).matrix());
 }
 
 }  // namespace
 
 ForceStatistics operator+(const ForceStatistics& a, const ForceStatistics& b) {
-    return {a.H + b.H, a.g + b.g, a.c + b.c};
+    return {a.H + b.H, a.g + b.g, a.c + b.c, a.rows + b.rows};
+}
+
+Eigen::VectorXd squared_errors(const ForceStatistics& statistics, const Eigen::MatrixXd& particles) {
+    // diagonal of X H X^T, + 2 X g + c
+    const bool dense = static_cast<double>(statistics.H.nonZeros()) > dense_share * std::pow(statistics.H.rows(), 2);
+    Eigen::MatrixXd XH;
+    if (dense) {
+        XH.noalias() = particles * Eigen::MatrixXd(statistics.H);
+    } else {
+        XH.noalias() = particles * statistics.H;
+    }
+    const Eigen::VectorXd e = XH.cwiseProduct(particles).rowwise().sum() + 2 * particles * statistics.g;
+    return (e.array() + statistics.c).max(0);
 }
 
 ForceDomain force_domain(const skeleton::Model& model, const Parameters& parameters,
                          const std::vector<MeasuredConfiguration>& measured) {
     const int P = parameters.size();
     ForceDomain result{zero_statistics(P), zero_statistics(P)};
-    const Eigen::VectorXi force_rows = free_rows(model, false), torque_rows = free_rows(model, true);
-    const double length = mean_link_length(model);
+    const Eigen::SparseMatrix<double> forces = pick_free(model, false, 1),
+                                      torques = pick_free(model, true, 1 / mean_link_length(model));
+
+    // k = D m + what stays as it is
+    const Eigen::SparseMatrix<double> D = parameters.derivative(parameters.k0);
+    const Eigen::VectorXd fixed = parameters.k0 - D * Eigen::VectorXd::Ones(P);
 
     for (const MeasuredConfiguration& configuration : measured) {
-        // r = G k + f_ext = A m + f: A gathers the columns that share a multiplier, f keeps what stays as it is
-        const Eigen::SparseMatrix<double> G = skeleton::link_forces(model, configuration.state);
-        Eigen::MatrixXd A = Eigen::MatrixXd::Zero(G.rows(), P);
-        Eigen::VectorXd f = skeleton::external_force(model, configuration.state, configuration.load) +
-                            skeleton::effect_force(model, configuration.state);
-        for (int e = 0; e < parameters.k0.size(); ++e) {
-            const int p = parameters.parameter_of[e];
-            if (p >= 0)
-                A.col(p) += parameters.k0[e] * G.col(e);
-            else
-                f += parameters.k0[e] * G.col(e);
-        }
-        accumulate(result.forces, A(force_rows, Eigen::all), f(force_rows));
-        accumulate(result.torques, A(torque_rows, Eigen::all) / length, f(torque_rows) / length);
+        // r = G k + f_ext = A m + f
+        const Eigen::SparseMatrix<double> G = skeleton::link_forces(model, configuration.state), A = G * D;
+        const Eigen::VectorXd f = skeleton::external_force(model, configuration.state, configuration.load) +
+                                  skeleton::effect_force(model, configuration.state) + G * fixed;
+        accumulate(result.forces, forces * A, forces * f);
+        accumulate(result.torques, torques * A, torques * f);
     }
     return result;
 }
 
 Eigen::VectorXd solve_force_domain(const ForceStatistics& statistics, double prior_share) {
-    // prior: weight (m - 1)^2 added to the quadratic
-    const int P = static_cast<int>(statistics.g.size());
+    constexpr int patience = 3;  // exchanges of all that need not better matters, before one at a time
+    const auto P = statistics.g.size();
     const double weight = prior_share * statistics.H.diagonal().mean();
-    const Eigen::MatrixXd H = statistics.H + weight * Eigen::MatrixXd::Identity(P, P);
-    const Eigen::VectorXd g = statistics.g.array() - weight;
+    const double rounding = 1e-15 * static_cast<double>(1 + P) * (1 + statistics.g.cwiseAbs().maxCoeff());
 
-    // active set: parameters become free one by one, where the quadratic falls most
-    Eigen::VectorXd m = Eigen::VectorXd::Zero(P);
-    std::vector<int> free;
-    const double rounding = 1e-15 * (1 + P) * g.cwiseAbs().maxCoeff();
-    for (int round = 0; round < 3 * P; ++round) {
-        const Eigen::VectorXd descent = -(H * m + g);
-        int next = -1;
-        for (int p = 0; p < P; ++p) {
-            const bool at_bound = m[p] <= 0;
-            if (at_bound && descent[p] > rounding && (next < 0 || descent[p] > descent[next])) next = p;
+    // conditions of Kuhn and Tucker: free multipliers are positive, the slope of those at zero points upwards
+    std::vector<char> is_free(static_cast<std::size_t>(P), 1);
+    Eigen::Index fewest = P + 1;
+    for (int round = 0, left = patience;; ++round) {
+        const Eigen::VectorXd m = unbounded(statistics, weight, is_free), slope = half_slope(statistics, weight, m);
+        std::vector<Eigen::Index> wrong;
+        for (Eigen::Index p = 0; p < P; ++p) {
+            if (is_free[p] != 0 ? m[p] < 0 : slope[p] < -rounding) wrong.push_back(p);
         }
-        if (next < 0) break;
-        free.push_back(next);
-
-        while (!free.empty()) {
-            const Eigen::VectorXd trial = H(free, free).ldlt().solve(-g(free));
-            if (trial.minCoeff() > 0) {
-                m(free) = trial;
-                break;
-            }
-            // as far as the bound of the first parameter that would turn negative; that one is held again
-            double t = 1;
-            int blocking = -1;
-            for (int i = 0; i < static_cast<int>(free.size()); ++i) {
-                const double now = m[free[i]];
-                if (trial[i] <= 0 && (blocking < 0 || now / (now - trial[i]) < t)) {
-                    t = now / (now - trial[i]);
-                    blocking = i;
-                }
-            }
-            const Eigen::VectorXd now = m(free);
-            m(free) = now + t * (trial - now);
-            m[free[blocking]] = 0;
-            free.erase(free.begin() + blocking);
+        const auto count = static_cast<Eigen::Index>(wrong.size());
+        if (count == 0 || round > 10 * P + patience) return m.cwiseMax(0);
+        if (count < fewest) {
+            fewest = count;
+            left = patience;
+        } else if (--left < 0) {
+            wrong = {wrong.back()};  // the last one alone: ends for certain [Murty 1974]
         }
+        for (const Eigen::Index p : wrong) is_free[p] = is_free[p] != 0 ? 0 : 1;
     }
-    return m;
 }
 
 }  // namespace palpate::identify

@@ -55,6 +55,39 @@ Eigen::VectorXd Parameters::units() const {
     return values;
 }
 
+std::vector<MarkovField::Edge> neighbours(const skeleton::Model& model, const Parameters& parameters) {
+    // of each kind: the multiplier of each link, or sphere, and which meet at each sphere
+    std::vector<MarkovField::Edge> edges;
+    for (int kind = 0; kind < static_cast<int>(std::size(skeleton::stiffness_names)); ++kind) {
+        const bool is_volume = static_cast<Stiffness>(kind) == Stiffness::volume;
+        std::vector<int> of_owner(is_volume ? model.spheres.size() : model.links.size(), -1);
+        for (int p = 0; p < parameters.size(); ++p) {
+            if (static_cast<int>(parameters.list[p].kind) == kind) of_owner[parameters.list[p].owners.front()] = p;
+        }
+        std::vector<std::vector<int>> meeting(model.spheres.size());
+        for (std::size_t l = 0; l < model.links.size(); ++l) {
+            const auto& [a, b] = std::pair(model.links[l].a, model.links[l].b);
+            const int at_a = is_volume ? of_owner[b] : of_owner[l], at_b = is_volume ? of_owner[a] : of_owner[l];
+            if (at_a >= 0) meeting[a].push_back(at_a);
+            if (at_b >= 0) meeting[b].push_back(at_b);
+        }
+        for (std::size_t i = 0; i < meeting.size(); ++i) {
+            const std::vector<int>& here = meeting[i];
+            if (is_volume && of_owner[i] < 0) continue;
+            for (std::size_t a = 0; a < here.size(); ++a) {
+                if (is_volume) {
+                    edges.push_back({of_owner[i], here[a], 1 / static_cast<double>(here.size())});
+                    continue;
+                }
+                for (std::size_t b = 0; b < a; ++b) {
+                    edges.push_back({here[a], here[b], 1 / static_cast<double>(here.size() - 1)});
+                }
+            }
+        }
+    }
+    return edges;
+}
+
 Parameters group_stiffness(const skeleton::Model& model, Scope scope, const std::vector<skeleton::Stiffness>& fixed) {
     Parameters result;
     result.k0 = skeleton::stiffness_vector(model);

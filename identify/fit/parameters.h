@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "identify/fit/markov_field.h"
 #include "identify/identify.h"
 #include "skeleton/model.h"
 
@@ -30,6 +31,11 @@ struct Parameters {
     Eigen::SparseMatrix<double> derivative(const Eigen::VectorXd& k) const;  // dk / dtheta
     Eigen::VectorXd units() const;                                           // what a multiplier of 1 stands for (P)
 };
+
+/// Which single links' multipliers are neighbours, of each kind: those of links that meet at a sphere, with weights
+/// that add up to 1 at each of a link's ends, and volumes of spheres that a link joins, with as much in all.
+/// @pre Scope::links.
+std::vector<MarkovField::Edge> neighbours(const skeleton::Model& model, const Parameters& parameters);
 
 /// Which stiffnesses share a multiplier: those of a kind, in all the model, in a zone, or of each link and sphere
 /// alone; volumes have no zones. Flexion in a link's two planes is one kind here, and so is shear: their ratio is the

@@ -12,14 +12,6 @@ namespace {
 constexpr double effective_share = 0.2;  // of the particles, when the sigmas are found
 constexpr double mutation_of_spread = 1.0 / 3;
 
-/// Squared errors of all particles, summed over the measurements: sum_j e(Y_j, X_m)^2 (M).
-Eigen::VectorXd squared_errors(const ForceStatistics& statistics, const Eigen::MatrixXd& particles) {
-    // X H X^T's diagonal + 2 X g + c, one matrix product for all particles
-    const Eigen::MatrixXd XH = particles * statistics.H;
-    Eigen::VectorXd e = XH.cwiseProduct(particles).rowwise().sum() + 2 * particles * statistics.g;
-    return (e.array() + statistics.c).max(0);
-}
-
 /// The scale s for which exp(-e / 2 s) leaves the wanted effective sample size.
 double annealed_scale(const Eigen::VectorXd& e, double wanted) {
     const double lowest = e.minCoeff();
@@ -43,9 +35,9 @@ Eigen::VectorXd standard_deviation(const Eigen::MatrixXd& particles) {
 
 }  // namespace
 
-BurionResult burion2008(const ForceStatistics& forces, const ForceStatistics& torques, const BurionOptions& options,
+BurionResult burion2008(const MeasurementModel& errors_of, int P, const BurionOptions& options,
                         const Progress& progress) {
-    const int M = options.particles, P = static_cast<int>(forces.g.size());
+    const int M = options.particles;
     const double side = options.search_high - options.search_low;
     BurionResult result;
 
@@ -56,29 +48,31 @@ BurionResult burion2008(const ForceStatistics& forces, const ForceStatistics& to
         for (int p = 0; p < P; ++p) X(m, p) = options.search_low + side * random.uniform();
     }
 
-    // what a torque's error counts against a force's
-    const double torque_share = squared_errors(torques, X).mean() / squared_errors(forces, X).mean();
+    double torque_share = 0;  // what a torque's error counts against a force's; 0: not at all
     double best_error = std::numeric_limits<double>::infinity();
 
     // 3: for k = 1 to K
     for (int k = 1; k <= options.iterations; ++k) {
         // 4-7: net forces and torques on every node in the measured configurations, j = 1 to J: equations (7), (8)
-        const Eigen::VectorXd e_F = squared_errors(forces, X);
-        const Eigen::VectorXd e_T = squared_errors(torques, X);
+        const ParticleErrors e = errors_of(X);
+        if (k == 1 && e.torques.size() > 0) torque_share = e.torques.mean() / e.forces.mean();
+        Eigen::VectorXd both = e.forces;
+        if (torque_share > 0) both += e.torques / torque_share;
 
         // 8: likelihood weights, equations (6) and (9); the constants of (6) fall out in line 10
-        const double scale = annealed_scale(e_F + e_T / torque_share, effective_share * M);
+        const double scale = annealed_scale(both, effective_share * M);
         const double sigma_F = options.sigma_force > 0 ? options.sigma_force : scale;
         const double sigma_T = options.sigma_torque > 0 ? options.sigma_torque : scale * torque_share;
-        Eigen::VectorXd log_w = -e_F / (2 * sigma_F) - e_T / (2 * sigma_T);
+        Eigen::VectorXd log_w = -e.forces / (2 * sigma_F);
+        if (torque_share > 0) log_w -= e.torques / (2 * sigma_T);
 
         // 9-10: normalise weights, equation (2)
         normalise(log_w);
         result.history.push_back({static_cast<double>(k), effective_samples(log_w), X, log_w});
         Eigen::Index fittest = 0;
         log_w.maxCoeff(&fittest);
-        if (const double e = e_F[fittest] + e_T[fittest] / torque_share; e < best_error) {
-            best_error = e;
+        if (both[fittest] < best_error) {
+            best_error = both[fittest];
             result.best = X.row(fittest);
         }
 

@@ -15,7 +15,7 @@ constexpr double centred = 0.1;                    // of ln pi, that the next st
 constexpr int pairs = 8;                           // of draws, the same at each look
 constexpr std::uint64_t centring_round = 1 << 30;  // of the random streams, beyond any move's
 
-/// ln pi of a domain and a prior, and its slopes by v, theta = mean + sd o v; averages over draws of a proposal.
+/// ln pi of a domain and a prior, and its slopes by v, theta = mean + C v; averages over draws of a proposal.
 struct Look {
     int stands = 0;            // draws with an equilibrium
     double log_density = 0;    // mean over them, but for a constant
@@ -31,8 +31,8 @@ Look look_round(const GaussianProposal& proposal, const Eigen::MatrixXd& z, cons
     for_each_in_parallel(static_cast<int>(theta.cols()), threads, [&](int i) {
         try {
             const Prediction prediction = domain.predict(theta.col(i), 1, &near);
-            slopes.col(i) = prior.coloured(domain.slopes(theta.col(i), prediction).gradient()) +
-                            (theta.col(i) - prior.mean).cwiseQuotient(prior.sd);
+            slopes.col(i) =
+                prior.slopes_by_v(domain.slopes(theta.col(i), prediction).gradient()) + prior.whitened(theta.col(i));
             log_density[i] = -domain.chi_squared(prediction) / 2 - prior.half_square(theta.col(i));
             stands[i] = 1;
         } catch (const SolverFailure&) {  // such a body would not stand
@@ -55,18 +55,18 @@ Eigen::MatrixXd GaussianProposal::parameters(const Eigen::MatrixXd& z) const {
         const Eigen::VectorXd share = 1 - (1 + spectrum.values.array()).rsqrt();
         v -= spectrum.vectors * (share.asDiagonal() * (spectrum.vectors.transpose() * z));
     }
-    return (std::sqrt(wider) * (scale.asDiagonal() * v)).colwise() + mean;
+    return (std::sqrt(wider) * prior.coloured(v)).colwise() + mean;
 }
 
 double GaussianProposal::log_peak() const {
     const auto P = static_cast<double>(mean.size());
-    const double log_root = scale.array().log().sum() + 0.5 * P * std::log(wider) -
+    const double log_root = prior.log_root() + 0.5 * P * std::log(wider) -
                             0.5 * spectrum.values.array().log1p().sum();  // of the covariance's determinant
     return -log_root - 0.5 * P * std::log(2 * std::numbers::pi);
 }
 
 GaussianProposal laplace_proposal(const FitResult& fit, const LogNormalPrior& prior) {
-    return {fit.theta, prior.sd, fit.spectrum, 1 + 1 / static_cast<double>(fit.theta.size())};
+    return {fit.theta, prior, fit.spectrum, 1 + 1 / static_cast<double>(fit.theta.size())};
 }
 
 int centre(GaussianProposal& proposal, const PositionDomain& domain, const LogNormalPrior& prior,

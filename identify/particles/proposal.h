@@ -4,12 +4,12 @@
 
 namespace palpate::identify {
 
-/// N(mean, wider S (1 + A)^-1 S) with S = diag(scale) and A known by its leading eigenpairs, where the filter's
+/// N(mean, wider C (1 + A)^-1 C^T) with the prior's C, and A known by its leading eigenpairs, where the filter's
 /// particles come from; whitened coordinates z ~ N(0, 1).
 struct GaussianProposal {
-    Eigen::VectorXd mean;   // (P)
-    Eigen::VectorXd scale;  // the prior's sd (P)
-    Spectrum spectrum;      // of A, none: zero
+    Eigen::VectorXd mean;  // (P)
+    LogNormalPrior prior;  // of which C
+    Spectrum spectrum;     // of A, none: zero
     double wider = 1;
 
     /// theta of each column of z (P x n).

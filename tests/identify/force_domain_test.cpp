@@ -57,7 +57,7 @@ TEST(ForceDomain, SolutionSatisfiesTheConditionsOfKuhnAndTucker) {
         RandomStream random(1, 0, problem);
         Eigen::MatrixXd A(20, P);
         for (double& a : A.reshaped()) a = random.normal();
-        const ForceStatistics statistics{A.transpose() * A, A.transpose() * random.normals(20), 0};
+        const ForceStatistics statistics{(A.transpose() * A).sparseView(), A.transpose() * random.normals(20), 0};
         const Eigen::VectorXd m = solve_force_domain(statistics, 0);
         const Eigen::VectorXd gradient = statistics.H * m + statistics.g;
         for (int p = 0; p < P; ++p) {
@@ -69,7 +69,8 @@ TEST(ForceDomain, SolutionSatisfiesTheConditionsOfKuhnAndTucker) {
 }
 
 TEST(ForceDomain, OpenDirectionsStayAtTheModelsOwn) {
-    const ForceStatistics statistics{Eigen::Vector2d(4, 0).asDiagonal(), Eigen::Vector2d(-2, 0), 1};
+    const ForceStatistics statistics{Eigen::Matrix2d(Eigen::Vector2d(4, 0).asDiagonal()).sparseView(),
+                                     Eigen::Vector2d(-2, 0), 1};
     const Eigen::VectorXd m = solve_force_domain(statistics);
     EXPECT_NEAR(m[0], 0.5, 1e-9);  // the prior's share is 1e-11
     EXPECT_NEAR(m[1], 1, 1e-9);

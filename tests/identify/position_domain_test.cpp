@@ -101,7 +101,7 @@ TEST(PositionDomain, FitFindsTheTruthOfNoiselessTwins) {
             with_truth(model, kE, kF), push_spheres(model, six_forces(0.5, 10)), markers_on_spheres(model));
         PositionDomain domain = make_domain(model, law, Scope::zones, set);
         domain.set_model_error(1e-4);
-        const LogNormalPrior prior{Eigen::VectorXd::Zero(9), Eigen::VectorXd::Constant(9, 3)};
+        const LogNormalPrior prior{Eigen::VectorXd::Zero(9), Eigen::VectorXd::Constant(9, 3), nullptr};
         const FitResult fit = fit_map(domain, prior, Eigen::VectorXd::Zero(9), 1, {.tolerance = 1e-12});
         EXPECT_TRUE(fit.converged);
         for (int zone = 0; zone < 3; ++zone) {
@@ -120,7 +120,7 @@ TEST(PositionDomain, EachLinkOfAChainIsFound) {
         truth, push_spheres(model, {{0, 0, -0.3}, {2, 0, 0}, {0, 0.3, 0}, {1, 0, 0.2}}), markers_on_spheres(model));
     PositionDomain domain = make_domain(model, Law::large_rotation, Scope::links, set);
     domain.set_model_error(1e-4);
-    const LogNormalPrior prior{Eigen::VectorXd::Zero(15), Eigen::VectorXd::Constant(15, 3)};
+    const LogNormalPrior prior{Eigen::VectorXd::Zero(15), Eigen::VectorXd::Constant(15, 3), nullptr};
     const FitResult fit = fit_map(domain, prior, Eigen::VectorXd::Zero(15), 1, {.tolerance = 1e-12});
     const Eigen::VectorXd k = domain.parameters().stiffness(fit.theta);
     for (int l = 0; l < 5; ++l) {

@@ -19,12 +19,14 @@ TEST(GaussianProposal, HasTheCovarianceThatItSays) {
     Eigen::MatrixXd R(P, P);
     for (int p = 0; p < P; ++p) R.col(p) = RandomStream(2, 0, p).normals(P);
     const Eigen::MatrixXd A = R * R.transpose();
-    GaussianProposal proposal{Eigen::VectorXd::LinSpaced(P, -1, 1), Eigen::VectorXd::LinSpaced(P, 0.5, 2),
-                              leading_spectrum([&](const Eigen::MatrixXd& V) { return A * V; }, P), 1.5};
+    GaussianProposal proposal{Eigen::VectorXd::LinSpaced(P, -1, 1),
+                              {Eigen::VectorXd::Zero(P), Eigen::VectorXd::LinSpaced(P, 0.5, 2), nullptr},
+                              leading_spectrum([&](const Eigen::MatrixXd& V) { return A * V; }, P),
+                              1.5};
 
     const Eigen::MatrixXd root = proposal.parameters(Eigen::MatrixXd::Identity(P, P)).colwise() -
                                  proposal.parameters(Eigen::VectorXd::Zero(P)).col(0);
-    const Eigen::MatrixXd S = proposal.scale.asDiagonal();
+    const Eigen::MatrixXd S = proposal.prior.sd.asDiagonal();
     const Eigen::MatrixXd covariance = 1.5 * S * (A + Eigen::MatrixXd::Identity(P, P)).inverse() * S;
     EXPECT_LT((root * root.transpose() - covariance).norm(), 1e-12 * covariance.norm() * 100);  // rounding
     EXPECT_NEAR(proposal.log_peak(),
@@ -43,7 +45,7 @@ struct ManyLinks {
     ManyLinks() : set(measured()), domain(make_domain()) {
         domain.set_model_error(0.15);
         const int P = domain.parameters().size();
-        prior = {Eigen::VectorXd::Zero(P), Eigen::VectorXd::Constant(P, 0.7)};
+        prior = {Eigen::VectorXd::Zero(P), Eigen::VectorXd::Constant(P, 0.7), nullptr};
         fit = fit_map(domain, prior, prior.mean, 2);
     }
 
@@ -90,7 +92,7 @@ TEST(Centre, KeepsAGaussianPosteriorsMean) {
         simulate_measurements(model, push_spheres(model, six_forces(0.1, 1)), markers_on_spheres(model), 1e-6);
     PositionDomain domain(model, model.law, group_stiffness(model, Scope::uniform), collect_readings(model, set), 1);
     domain.set_model_error(1e-4);
-    const LogNormalPrior prior{Eigen::VectorXd::Zero(3), Eigen::VectorXd::Constant(3, 1e-5)};
+    const LogNormalPrior prior{Eigen::VectorXd::Zero(3), Eigen::VectorXd::Constant(3, 1e-5), nullptr};
     const FitResult fit = fit_map(domain, prior, prior.mean, 1);
     GaussianProposal proposal = laplace_proposal(fit, prior);
     centre(proposal, domain, prior, fit.prediction, 1, 1);

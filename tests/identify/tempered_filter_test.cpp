@@ -14,7 +14,7 @@ namespace palpate::identify {
 namespace {
 
 GaussianProposal round(const Eigen::VectorXd& mean, double sd) {
-    return {mean, Eigen::VectorXd::Constant(mean.size(), sd), {}, 1};
+    return {mean, {mean, Eigen::VectorXd::Constant(mean.size(), sd), nullptr}, {}, 1};
 }
 
 double log_normal_density(double x, double mean, double sd) {

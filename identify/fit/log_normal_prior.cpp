@@ -1,0 +1,30 @@
+#include "identify/fit/log_normal_prior.h"
+
+#include <cmath>
+#include <numbers>
+
+namespace palpate::identify {
+
+Eigen::VectorXd LogNormalPrior::whitened(const Eigen::VectorXd& theta) const {
+    const Eigen::VectorXd scaled = (theta - mean).cwiseQuotient(sd);
+    return field ? Eigen::VectorXd(field->whitened(scaled)) : scaled;
+}
+
+double LogNormalPrior::half_square(const Eigen::VectorXd& theta) const { return whitened(theta).squaredNorm() / 2; }
+
+double LogNormalPrior::log_density(const Eigen::VectorXd& theta) const {
+    return -half_square(theta) - log_root() - 0.5 * static_cast<double>(mean.size()) * std::log(2 * std::numbers::pi);
+}
+
+double LogNormalPrior::log_root() const { return sd.array().log().sum() + (field ? field->log_root() : 0); }
+
+Eigen::MatrixXd LogNormalPrior::coloured(const Eigen::MatrixXd& V) const {
+    return sd.asDiagonal() * (field ? field->coloured(V) : V);
+}
+
+Eigen::MatrixXd LogNormalPrior::slopes_by_v(const Eigen::MatrixXd& slopes) const {
+    const Eigen::MatrixXd scaled = sd.asDiagonal() * slopes;
+    return field ? field->transposed(scaled) : scaled;
+}
+
+}  // namespace palpate::identify

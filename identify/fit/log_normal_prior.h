@@ -1,0 +1,24 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <memory>
+
+#include "identify/fit/markov_field.h"
+
+namespace palpate::identify {
+
+/// What is believed of theta, log multipliers, before the measurements: normally distributed, independent or alike
+/// where neighbours are. theta = mean + C v, with v ~ N(0, 1), C = diag(sd) or diag(sd) times the field's.
+struct LogNormalPrior {
+    Eigen::VectorXd mean, sd;                  // (P)
+    std::shared_ptr<const MarkovField> field;  // over the parameters; none: independent
+
+    Eigen::VectorXd whitened(const Eigen::VectorXd& theta) const;  // v
+    double half_square(const Eigen::VectorXd& theta) const;        // |v|^2 / 2
+    double log_density(const Eigen::VectorXd& theta) const;
+    double log_root() const;                                           // ln |det C|
+    Eigen::MatrixXd coloured(const Eigen::MatrixXd& V) const;          // C V, from v to theta (P x any)
+    Eigen::MatrixXd slopes_by_v(const Eigen::MatrixXd& slopes) const;  // C^T X, from slopes by theta
+};
+
+}  // namespace palpate::identify
