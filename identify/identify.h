@@ -18,12 +18,20 @@ enum class Method {
     burion2008,  // Algorithm 1 as printed, in log weights; net forces and torques
 };
 
+/// What measurements are weighed by.
+enum class Domain {
+    by_method,  // tempered: position, burion2008: force
+    position,   // the model's equilibria next to the measured markers
+    force,      // the net forces that the model leaves in the measured configurations
+};
+
 /// Which law of equilibrium explains the measurements: told, or chosen by fit.
 enum class LawChoice { automatic, linear, large_rotation };
 
 struct IdentifyOptions {
     Scope scope = Scope::links;
     Method method = Method::tempered;
+    Domain domain = Domain::by_method;
     LawChoice law = LawChoice::automatic;
     int particles = 0;        // 0: 200 (tempered), 600 (burion2008)
     int iterations = 20;      // burion2008: K
@@ -53,11 +61,27 @@ struct FilterStep {
     Eigen::VectorXd log_weights;  // before resampling (particles), normalised
 };
 
+/// A maximum of the posterior.
+struct Mode {
+    double probability = 1;
+    Eigen::VectorXd stiffness;  // there, of each parameter, units as in the posterior
+};
+
+/// Of the logarithms of two parameters' stiffness, in the posterior.
+struct Correlation {
+    int a = 0, b = 0;  // rows of the posterior, a < b
+    double value = 0;
+};
+
 struct IdentifyResult {
-    skeleton::Model model;                // with the law and the most probable stiffness; burion2008: the mean
-    std::vector<PosteriorRow> posterior;  // a row per parameter
-    Eigen::VectorXd best;                 // the particle of highest weight (parameters)
+    skeleton::Model model;                  // with the law and the most probable stiffness; burion2008: the mean
+    std::vector<PosteriorRow> posterior;    // a row per parameter
+    Eigen::VectorXd best;                   // the particle of highest weight (parameters)
+    std::vector<Mode> modes;                // the most probable one first; none by burion2008
+    std::vector<Correlation> correlations;  // of 0.7 and more, the strongest first, at most 100
     std::vector<FilterStep> history;
+    std::vector<double> fit_trace;  // -ln density, but for a constant, at the start and after each step of the last fit
+    int states = 0, coordinates = 0;  // that were weighed
     double log_evidence = 0;
     double acceptance = 0;           // of the moves
     int equilibria = 0;              // solved

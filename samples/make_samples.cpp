@@ -17,7 +17,8 @@ int main(int argc, char** argv) {
     }
     const std::filesystem::path folder = argv[1];
     mesh::write_surface(folder / "organ/organ.stl", samples::make_organ());
-    for (const samples::Experiment& experiment : {samples::make_cube_experiment(), samples::make_sheet_experiment()}) {
+    for (const samples::Experiment& experiment :
+         {samples::make_cube_experiment(), samples::make_sheet_experiment(), samples::make_two_strings()}) {
         skeleton::write_model(folder / experiment.start.name / "start.json", experiment.start);
         identify::write_measurement_set(folder / experiment.start.name / "set", experiment.set);
     }

@@ -7,15 +7,13 @@
 #include <optional>
 
 #include "identify/fit/lived.h"
+#include "identify/fit/modes.h"
 #include "mesh/errors.h"
 #include "skeleton/statics.h"
 
 namespace palpate::identify {
 namespace {
 
-constexpr double wide_sd = 3;         // of ln multipliers that many links share
-constexpr double link_sd = 0.7;       // of ln of one link's, round the uniform fit
-constexpr double own_weight = 1;      // of a link in its prior, as much as that of the neighbours at one end
 constexpr double first_error = 0.03;  // relative model error to begin with
 constexpr double least_error = 1e-4;  // the model error never falls below it: no model is exact
 // of half the chi^2: a hundredth of a posterior's sd; a tenth where another fit follows
@@ -25,14 +23,6 @@ constexpr int states_at_first = 12;   // that choose the law, the most displaced
 
 LogNormalPrior prior_round(const Eigen::VectorXd& mean, double sd) {
     return {mean, Eigen::VectorXd::Constant(mean.size(), sd), nullptr};
-}
-
-/// Of single links and volumes, alike where they meet.
-LogNormalPrior neighbourly_prior(const skeleton::Model& model, const Parameters& parameters,
-                                 const Eigen::VectorXd& mean) {
-    LogNormalPrior prior = prior_round(mean, link_sd);
-    prior.field = std::make_shared<MarkovField>(parameters.size(), neighbours(model, parameters), own_weight);
-    return prior;
 }
 
 /// Relative model error that a fit leaves, as an unfitted reading would see it.
@@ -125,6 +115,14 @@ public:
         return result;
     }
 
+    /// The best of a fit and those from other starts, where these are cheap.
+    FitResult highest(const PositionDomain& domain, const LogNormalPrior& prior, FitResult fit) {
+        int evaluations = 0;
+        fit = find_modes(domain, prior, std::move(fit), options_.seed, options_.threads, evaluations).front();
+        equilibria_ += evaluations * static_cast<int>(domain.states().size());
+        return fit;
+    }
+
     /// The model error that a uniform fit to some of the states leaves on all of them.
     double model_error_of(const UniformFit& fit, const PositionDomain& domain) {
         try {
@@ -143,16 +141,6 @@ public:
     int equilibria_ = 0;
     std::vector<std::string> notes_;
 };
-
-/// The value of each kind of stiffness in a uniform fit, for the parameters of a finer scope.
-Eigen::VectorXd spread_kinds(const Parameters& fine, const Parameters& uniform, const Eigen::VectorXd& theta) {
-    Eigen::VectorXd result(fine.size());
-    for (int p = 0; p < fine.size(); ++p) {
-        const auto same = std::ranges::find(uniform.list, fine.list[p].kind, &Parameter::kind);
-        result[p] = theta[same - uniform.list.begin()];
-    }
-    return result;
-}
 
 }  // namespace
 
@@ -183,11 +171,12 @@ Calibration calibrate(const skeleton::Model& model, const std::vector<StateReadi
                                 options.threads);
         const Eigen::VectorXd start = spread_kinds(domain.parameters(), uniform.parameters(), fit.theta);
         prior = options.scope == Scope::links
-                    ? neighbourly_prior(model, domain.parameters(), start)
+                    ? LogNormalPrior{start, Eigen::VectorXd::Constant(start.size(), link_sd),
+                                     neighbourly_field(model, domain.parameters())}
                     : prior_round(spread_kinds(domain.parameters(), uniform.parameters(), prior.mean), wide_sd);
         domain.set_model_error(model_error);
         report(progress, "first fit", 0.2);
-        fit = calibrator.fit(domain, prior, start, nearly);
+        fit = calibrator.highest(domain, prior, calibrator.fit(domain, prior, start, nearly));
         Calibrator::fit_dents(domain, fit);
         model_error = std::min(model_error, model_error_after(domain, fit));
         report(progress, "second fit", 0.6);

@@ -32,7 +32,8 @@ struct Calibration {
 ///    best (closed form), sd of ln 3; under both laws, where it is to be chosen: smaller chi^2 wins. After each fit,
 ///    here and below, the dents round contacts that explain most of what is left (linear least squares);
 /// 2. the same on all states, with the model error that the first look left;
-/// 3. zones: likewise, sd of ln 3; links: round the uniform fit, sd of ln 0.7, alike where links meet, so that those that
+/// 3. zones: likewise, sd of ln 3; links: round the uniform fit, sd of ln 0.7, alike where links meet, so that those
+/// that
 ///    nothing tells about follow their neighbours; twice, as the first fit tells the model error of the second.
 /// `near`: the uniform fit to other readings of the same model, in place of the first look.
 /// @pre some of the readings tell about stiffness.

@@ -78,6 +78,8 @@ FitResult fit_map(const PositionDomain& domain, const LogNormalPrior& prior, con
     fit.prediction = first_prediction(domain, threads, fit.theta);
     fit.chi_squared = domain.chi_squared(fit.prediction);
     fit.evaluations = 1;
+    const auto half = [&] { return fit.chi_squared / 2 + prior.half_square(fit.theta); };
+    fit.trace.push_back(half());
 
     std::optional<Slopes> slopes;
     double damping = 0;
@@ -103,6 +105,7 @@ FitResult fit_map(const PositionDomain& domain, const LogNormalPrior& prior, con
         known = step.products <= std::min<Eigen::Index>(stale, g.size() / 8);
         if (g.dot(fit.spectrum.inverse(1, g).col(0)) / 2 < options.tolerance) {
             fit.converged = true;
+            fit.trace.push_back(fit.trace.back());
             break;
         }
 
@@ -126,9 +129,11 @@ FitResult fit_map(const PositionDomain& domain, const LogNormalPrior& prior, con
             fit.theta = theta;
             fit.prediction = std::move(*trial);
             fit.chi_squared = chi_squared;
+            fit.trace.push_back(half());
             if (fall > good_fall * promised)
                 damping = damping > first_damping * first_damping * largest ? damping / 10 : 0;
         } else {
+            fit.trace.push_back(fit.trace.back());
             if (damping > most_damping * largest) break;
             damping = std::max(4 * damping, first_damping * largest);
         }

@@ -24,7 +24,8 @@ struct FitResult {
     double chi_squared = 0;  // of the errors there
     Spectrum spectrum;       // of the whitened curvature there
     int iterations = 0;
-    int evaluations = 0;  // of all equilibria
+    std::vector<double> trace;  // half of chi^2 and prior at the start, and after each iteration (iterations + 1)
+    int evaluations = 0;        // of all equilibria
     bool converged = false;
 };
 

@@ -18,6 +18,13 @@ double LogNormalPrior::log_density(const Eigen::VectorXd& theta) const {
 
 double LogNormalPrior::log_root() const { return sd.array().log().sum() + (field ? field->log_root() : 0); }
 
+Eigen::SparseMatrix<double> LogNormalPrior::precision() const {
+    Eigen::SparseMatrix<double> inner(sd.size(), sd.size());
+    inner.setIdentity();
+    if (field) inner = field->precision();
+    return sd.cwiseInverse().asDiagonal() * inner * sd.cwiseInverse().asDiagonal();
+}
+
 Eigen::MatrixXd LogNormalPrior::coloured(const Eigen::MatrixXd& V) const {
     return sd.asDiagonal() * (field ? field->coloured(V) : V);
 }

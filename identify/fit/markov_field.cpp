@@ -1,13 +1,13 @@
 #include "identify/fit/markov_field.h"
 
-#include <algorithm>
+#include "mesh/errors.h"
 
 namespace palpate::identify {
 namespace {
 
 using Sparse = Eigen::SparseMatrix<double>;
 
-Sparse precision(int n, const std::vector<MarkovField::Edge>& edges, double own) {
+Sparse precision_of(int n, const std::vector<MarkovField::Edge>& edges, double own) {
     std::vector<Eigen::Triplet<double>> entries;
     for (int i = 0; i < n; ++i) entries.emplace_back(i, i, own);
     for (const auto& [a, b, weight] : edges) {
@@ -57,11 +57,19 @@ Eigen::VectorXd diagonal_of_inverse(const Sparse& L) {
 
 }  // namespace
 
-MarkovField::MarkovField(int n, const std::vector<Edge>& edges, double own) : llt_(precision(n, edges, own)) {
+MarkovField::MarkovField(const Sparse& precision)
+    : Q_(precision), llt_(Q_), d_(Eigen::VectorXd::Ones(precision.rows())) {
+    if (llt_.info() != Eigen::Success)
+        throw SolverFailure("the precision of a Gaussian field is not positive definite");
+}
+
+MarkovField::MarkovField(int n, const std::vector<Edge>& edges, double own) : MarkovField(precision_of(n, edges, own)) {
     const Sparse L = llt_.matrixL();
     const Eigen::VectorXd variances = llt_.permutationPinv() * diagonal_of_inverse(L);
     d_ = variances.cwiseSqrt();
 }
+
+Sparse MarkovField::precision() const { return d_.asDiagonal() * Q_ * d_.asDiagonal(); }
 
 Eigen::MatrixXd MarkovField::coloured(const Eigen::MatrixXd& V) const {
     return d_.cwiseInverse().asDiagonal() * (llt_.permutationPinv() * llt_.matrixU().solve(V)).eval();

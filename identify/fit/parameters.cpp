@@ -16,6 +16,8 @@ namespace {
 
 using skeleton::Stiffness;
 
+constexpr double own_weight = 1;  // of a link in its prior, as much as that of the neighbours at one end
+
 /// Of those that share a multiplier: 0 for all, the zone, or the link or sphere itself.
 int group_of(const skeleton::Model& model, Scope scope, Stiffness kind, int owner) {
     if (scope == Scope::uniform || (scope == Scope::zones && kind == Stiffness::volume)) return 0;
@@ -86,6 +88,19 @@ std::vector<MarkovField::Edge> neighbours(const skeleton::Model& model, const Pa
         }
     }
     return edges;
+}
+
+std::shared_ptr<const MarkovField> neighbourly_field(const skeleton::Model& model, const Parameters& parameters) {
+    return std::make_shared<MarkovField>(parameters.size(), neighbours(model, parameters), own_weight);
+}
+
+Eigen::VectorXd spread_kinds(const Parameters& fine, const Parameters& uniform, const Eigen::VectorXd& theta) {
+    Eigen::VectorXd result(fine.size());
+    for (int p = 0; p < fine.size(); ++p) {
+        const auto same = std::ranges::find(uniform.list, fine.list[p].kind, &Parameter::kind);
+        result[p] = theta[same - uniform.list.begin()];
+    }
+    return result;
 }
 
 Parameters group_stiffness(const skeleton::Model& model, Scope scope, const std::vector<skeleton::Stiffness>& fixed) {

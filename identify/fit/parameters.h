@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/SparseCore>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -36,6 +37,12 @@ struct Parameters {
 /// that add up to 1 at each of a link's ends, and volumes of spheres that a link joins, with as much in all.
 /// @pre Scope::links.
 std::vector<MarkovField::Edge> neighbours(const skeleton::Model& model, const Parameters& parameters);
+
+/// The field over them that makes neighbours alike: correlated by 0.38 along a chain, with variance 1.
+std::shared_ptr<const MarkovField> neighbourly_field(const skeleton::Model& model, const Parameters& parameters);
+
+/// The value of each kind of stiffness in a uniform fit, for the parameters of a finer scope.
+Eigen::VectorXd spread_kinds(const Parameters& fine, const Parameters& uniform, const Eigen::VectorXd& theta);
 
 /// Which stiffnesses share a multiplier: those of a kind, in all the model, in a zone, or of each link and sphere
 /// alone; volumes have no zones. Flexion in a link's two planes is one kind here, and so is shear: their ratio is the

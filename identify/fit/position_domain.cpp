@@ -188,6 +188,12 @@ double PositionDomain::chi_squared(const Prediction& prediction) const {
     return sum;
 }
 
+double PositionDomain::squared_distance(const Prediction& prediction) const {
+    double sum = 0;
+    for (int s = 0; s < static_cast<int>(states_.size()); ++s) sum += errors(s, prediction.markers[s]).squaredNorm();
+    return sum;
+}
+
 double PositionDomain::common_factor(const Eigen::VectorXd& theta) const {
     if (!goes_as_inverse_) return 0;
 

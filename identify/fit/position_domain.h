@@ -35,6 +35,7 @@ public:
     int coordinates() const;            // measured, in all
     int effective_coordinates() const;  // the same, at most six a state
     skeleton::Law law() const { return model_->law; }
+    int spheres() const { return static_cast<int>(model_->spheres.size()); }
 
     /// Sets all sigmas.
     void set_model_error(double rel);
@@ -45,6 +46,7 @@ public:
     /// @throws SolverFailure where there is none.
     Prediction predict(const Eigen::VectorXd& theta, int threads, const Prediction* start = nullptr) const;
     double chi_squared(const Prediction& prediction) const;
+    double squared_distance(const Prediction& prediction) const;  // between measured and modelled [mm^2]
     /// ln of the likelihood's constant: - sum ln(sigma sqrt(2 pi)).
     double log_constant() const { return log_constant_; }
     /// Of the errors, at theta with its equilibria. @pre the domain outlives them.

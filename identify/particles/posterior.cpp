@@ -1,6 +1,8 @@
 #include "identify/particles/posterior.h"
 
+#include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 
 #include "identify/particles/resampling.h"
@@ -9,6 +11,8 @@ namespace palpate::identify {
 namespace {
 
 constexpr double informed_share = 0.7;  // of the prior's sd
+constexpr double worth_knowing = 0.7;   // correlation
+constexpr std::size_t most_correlations = 100;
 
 struct Moments {
     double mean, sd;
@@ -33,6 +37,31 @@ StiffnessPrior stiffness_prior(const Parameters& parameters, const LogNormalPrio
 StiffnessPrior stiffness_prior(const Parameters& parameters, double low, double high) {
     return {parameters.units() * (low + high) / 2, parameters.units() * (high - low) / std::sqrt(12.0),
             Eigen::VectorXd::Constant(parameters.size(), std::numeric_limits<double>::infinity())};
+}
+
+std::vector<Correlation> strong_correlations(const Eigen::MatrixXd& particles, const Eigen::VectorXd& log_weights) {
+    // standardised logarithms, weights taken in: S^T S is the matrix of correlations, taken a strip at a time
+    const Eigen::VectorXd weights = log_weights.array().exp();
+    Eigen::MatrixXd S = particles.array().max(std::numeric_limits<double>::min()).log();
+    S.rowwise() -= (weights.transpose() * S).eval();
+    S = weights.cwiseSqrt().asDiagonal() * S;
+    S.colwise().normalize();
+    std::vector<Correlation> result;
+    constexpr Eigen::Index strip = 256;
+    for (Eigen::Index first = 0; first < S.cols(); first += strip) {
+        const Eigen::Index count = std::min(strip, S.cols() - first);
+        const Eigen::MatrixXd R = S.middleCols(first, count).transpose() * S;
+        for (Eigen::Index a = 0; a < count; ++a) {
+            for (Eigen::Index b = first + a + 1; b < S.cols(); ++b) {
+                if (std::abs(R(a, b)) >= worth_knowing) {
+                    result.push_back({static_cast<int>(first + a), static_cast<int>(b), R(a, b)});
+                }
+            }
+        }
+    }
+    std::ranges::stable_sort(result, std::greater{}, [](const Correlation& c) { return std::abs(c.value); });
+    if (result.size() > most_correlations) result.resize(most_correlations);
+    return result;
 }
 
 Eigen::MatrixXd stiffness_of(const Parameters& parameters, const Eigen::MatrixXd& theta) {
@@ -62,6 +91,31 @@ std::vector<PosteriorRow> posterior_rows(const Parameters& parameters, const Eig
         rows.push_back(std::move(row));
     }
     return rows;
+}
+
+void tell_particles(const Parameters& parameters, const LogNormalPrior& prior, const std::vector<Eigen::VectorXd>& tops,
+                    TemperedResult& filter, IdentifyResult& result) {
+    const Eigen::MatrixXd stiffness = stiffness_of(parameters, filter.particles);
+    result.posterior = posterior_rows(parameters, stiffness, filter.log_weights, stiffness_prior(parameters, prior));
+    result.correlations = strong_correlations(stiffness, filter.log_weights);
+    Eigen::Index best = 0;
+    filter.log_density.maxCoeff(&best);
+    result.best = stiffness.row(best);
+
+    for (const Eigen::VectorXd& top : tops) {
+        result.modes.push_back({0, parameters.units().array() * top.array().exp()});
+    }
+    for (std::size_t i = 0; i < filter.mode.size(); ++i) {
+        result.modes[filter.mode[i]].probability += std::exp(filter.log_weights[static_cast<Eigen::Index>(i)]);
+    }
+    std::ranges::stable_sort(result.modes, std::greater{}, &Mode::probability);
+
+    for (FilterStep& step : filter.history) {
+        step.particles = stiffness_of(parameters, step.particles);
+        result.history.push_back(std::move(step));
+    }
+    result.log_evidence = filter.log_evidence;
+    result.acceptance = filter.acceptance;
 }
 
 }  // namespace palpate::identify

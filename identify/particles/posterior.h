@@ -2,6 +2,7 @@
 
 #include "identify/fit/fit.h"
 #include "identify/identify.h"
+#include "identify/particles/tempered_filter.h"
 
 namespace palpate::identify {
 
@@ -24,7 +25,16 @@ StiffnessPrior stiffness_prior(const Parameters& parameters, double low, double 
 std::vector<PosteriorRow> posterior_rows(const Parameters& parameters, const Eigen::MatrixXd& particles,
                                          const Eigen::VectorXd& log_weights, const StiffnessPrior& prior);
 
+/// Pairs of parameters whose logarithms hang together by 0.7 or more among weighted particles (N x P) of stiffnesses,
+/// the strongest first, at most 100.
+std::vector<Correlation> strong_correlations(const Eigen::MatrixXd& particles, const Eigen::VectorXd& log_weights);
+
 /// Stiffnesses of particles of log multipliers (N x P).
 Eigen::MatrixXd stiffness_of(const Parameters& parameters, const Eigen::MatrixXd& theta);
+
+/// Puts into a result what a filter's particles of log multipliers say: rows, best, modes, correlations, history,
+/// evidence. `tops`: theta at the modes that its Gaussians stand at.
+void tell_particles(const Parameters& parameters, const LogNormalPrior& prior, const std::vector<Eigen::VectorXd>& tops,
+                    TemperedResult& filter, IdentifyResult& result);
 
 }  // namespace palpate::identify

@@ -58,6 +58,16 @@ Eigen::MatrixXd GaussianProposal::parameters(const Eigen::MatrixXd& z) const {
     return (std::sqrt(wider) * prior.coloured(v)).colwise() + mean;
 }
 
+Eigen::VectorXd GaussianProposal::whitened(const Eigen::VectorXd& theta) const {
+    // (1 + A)^(1/2) v = v + V ((1 + values)^(1/2) - 1) V^T v
+    Eigen::VectorXd v = prior.whitened(theta - mean + prior.mean);
+    if (spectrum.values.size() > 0) {
+        const Eigen::VectorXd share = (1 + spectrum.values.array()).sqrt() - 1;
+        v += spectrum.vectors * (share.asDiagonal() * (spectrum.vectors.transpose() * v));
+    }
+    return v / std::sqrt(wider);
+}
+
 double GaussianProposal::log_peak() const {
     const auto P = static_cast<double>(mean.size());
     const double log_root = prior.log_root() + 0.5 * P * std::log(wider) -

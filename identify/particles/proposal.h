@@ -14,6 +14,8 @@ struct GaussianProposal {
 
     /// theta of each column of z (P x n).
     Eigen::MatrixXd parameters(const Eigen::MatrixXd& z) const;
+    /// z of theta.
+    Eigen::VectorXd whitened(const Eigen::VectorXd& theta) const;
     /// The density's logarithm where z = 0; it falls by |z|^2 / 2.
     double log_peak() const;
 };

@@ -24,6 +24,7 @@ constexpr double further_at_the_end = 2;
 /// The cloud in whitened coordinates, a column per particle.
 struct Cloud {
     Eigen::MatrixXd z;          // (P x N)
+    std::vector<int> from;      // the Gaussian that they belong to (N)
     Eigen::VectorXd log_ratio;  // ln pi - ln q of each (N)
 
     int size() const { return static_cast<int>(z.cols()); }
@@ -31,28 +32,64 @@ struct Cloud {
 
 class Filter {
 public:
-    Filter(const LogDensity& log_density, const GaussianProposal& proposal, const TemperedOptions& options)
-        : log_density_(log_density), proposal_(proposal), options_(options), log_peak_(proposal.log_peak()) {}
+    Filter(const LogDensity& log_density, const std::vector<GaussianProposal>& proposals,
+           const TemperedOptions& options)
+        : log_density_(log_density), proposals_(proposals), options_(options) {
+        for (const GaussianProposal& q : proposals) log_peaks_.push_back(q.log_peak());
+    }
 
-    double log_proposal(const Eigen::VectorXd& z) const { return log_peak_ - z.squaredNorm() / 2; }
+    int modes() const { return static_cast<int>(proposals_.size()); }
+    int parameters() const { return static_cast<int>(proposals_.front().mean.size()); }
 
-    /// ln pi - ln q of each column of z.
-    Eigen::VectorXd log_ratio(const Eigen::MatrixXd& z) const {
-        const Eigen::MatrixXd theta = proposal_.parameters(z);
+    /// theta of each particle (P x N).
+    Eigen::MatrixXd theta_of(const Eigen::MatrixXd& z, const std::vector<int>& from) const {
+        Eigen::MatrixXd theta(z.rows(), z.cols());
+        for (int k = 0; k < modes(); ++k) {
+            std::vector<int> of_k;
+            for (int i = 0; i < static_cast<int>(from.size()); ++i) {
+                if (from[i] == k) of_k.push_back(i);
+            }
+            theta(Eigen::all, of_k) = proposals_[k].parameters(z(Eigen::all, of_k));
+        }
+        return theta;
+    }
+
+    /// ln q_k of each Gaussian at theta, which is z in that of `from` (modes).
+    Eigen::VectorXd log_proposals(const Eigen::VectorXd& theta, const Eigen::VectorXd& z, int from) const {
+        Eigen::VectorXd log_q(modes());
+        for (int k = 0; k < modes(); ++k) {
+            log_q[k] = log_peaks_[k] - (k == from ? z.squaredNorm() : proposals_[k].whitened(theta).squaredNorm()) / 2;
+        }
+        return log_q;
+    }
+
+    /// ln q of the mixture.
+    double log_proposal(const Eigen::VectorXd& theta, const Eigen::VectorXd& z, int from) const {
+        const Eigen::VectorXd log_q = log_proposals(theta, z, from);
+        const double largest = log_q.maxCoeff();
+        return largest + std::log((log_q.array() - largest).exp().mean());
+    }
+
+    /// ln pi - ln q of each particle.
+    Eigen::VectorXd log_ratio(const Eigen::MatrixXd& z, const std::vector<int>& from) const {
+        const Eigen::MatrixXd theta = theta_of(z, from);
         Eigen::VectorXd ratio(z.cols());
         for_each_in_parallel(static_cast<int>(z.cols()), options_.threads, [&](int i) {
             const double value = log_density_(theta.col(i));
-            ratio[i] = std::isfinite(value) ? value - log_proposal(z.col(i)) : -std::numeric_limits<double>::infinity();
+            ratio[i] = std::isfinite(value) ? value - log_proposal(theta.col(i), z.col(i), from[i])
+                                            : -std::numeric_limits<double>::infinity();
         });
         return ratio;
     }
 
+    /// As many of each Gaussian.
     Cloud draw() const {
-        Cloud cloud{Eigen::MatrixXd(proposal_.mean.size(), options_.particles), {}};
+        Cloud cloud{Eigen::MatrixXd(parameters(), options_.particles), {}, {}};
         for (int i = 0; i < options_.particles; ++i) {
-            cloud.z.col(i) = RandomStream(options_.seed, 0, i).normals(static_cast<int>(cloud.z.rows()));
+            cloud.z.col(i) = RandomStream(options_.seed, 0, i).normals(parameters());
+            cloud.from.push_back(i % modes());
         }
-        cloud.log_ratio = log_ratio(cloud.z);
+        cloud.log_ratio = log_ratio(cloud.z, cloud.from);
         return cloud;
     }
 
@@ -71,7 +108,7 @@ public:
             log_u[i] = std::log(1 - random.uniform());
             z.col(i) = keep * cloud.z.col(i) + step * random.normals(static_cast<int>(z.rows()));
         }
-        const Eigen::VectorXd ratio = log_ratio(z);
+        const Eigen::VectorXd ratio = log_ratio(z, cloud.from);
 
         int accepted = 0;
         double distance = 0;
@@ -86,14 +123,14 @@ public:
     }
 
     FilterStep record(const Cloud& cloud, double b, const Eigen::VectorXd& log_weights) const {
-        return {b, effective_samples(log_weights), proposal_.parameters(cloud.z).transpose(), log_weights};
+        return {b, effective_samples(log_weights), theta_of(cloud.z, cloud.from).transpose(), log_weights};
     }
 
 private:
     const LogDensity& log_density_;
-    const GaussianProposal& proposal_;
+    const std::vector<GaussianProposal>& proposals_;
     const TemperedOptions& options_;
-    double log_peak_;  // ln q(mean)
+    std::vector<double> log_peaks_;  // ln q_k(mean)
 };
 
 /// Weights after going from temperature b by db: w (pi / q)^db.
@@ -122,6 +159,7 @@ void resample(Cloud& cloud, Eigen::VectorXd& log_weights, double u) {
     const std::vector<int> chosen = low_variance_resample(log_weights, cloud.size(), u);
     for (int i = 0; i < cloud.size(); ++i) {
         cloud.z.col(i) = before.z.col(chosen[i]);
+        cloud.from[i] = before.from[chosen[i]];
         cloud.log_ratio[i] = before.log_ratio[chosen[i]];
     }
     log_weights.setConstant(-std::log(cloud.size()));
@@ -162,11 +200,22 @@ private:
     std::uint64_t round_ = 0;
 };
 
-/// Mean square distance of weighted particles from their mean, in z.
+/// Mean square distance of weighted particles from the mean of those of their Gaussian, in z.
 double spread_of(const Cloud& cloud, const Eigen::VectorXd& log_weights) {
     const Eigen::VectorXd weights = log_weights.array().exp();
-    const Eigen::VectorXd mean = cloud.z * weights;
-    return (cloud.z.colwise() - mean).colwise().squaredNorm() * weights;
+    const int modes = 1 + *std::ranges::max_element(cloud.from);
+    Eigen::MatrixXd sums = Eigen::MatrixXd::Zero(cloud.z.rows(), modes);
+    Eigen::VectorXd shares = Eigen::VectorXd::Zero(modes);
+    for (int i = 0; i < cloud.size(); ++i) {
+        sums.col(cloud.from[i]) += weights[i] * cloud.z.col(i);
+        shares[cloud.from[i]] += weights[i];
+    }
+    double spread = 0;
+    for (int i = 0; i < cloud.size(); ++i) {
+        if (weights[i] == 0) continue;
+        spread += weights[i] * (cloud.z.col(i) - sums.col(cloud.from[i]) / shares[cloud.from[i]]).squaredNorm();
+    }
+    return spread;
 }
 
 Eigen::VectorXd equal_weights(int n) { return Eigen::VectorXd::Constant(n, -std::log(n)); }
@@ -205,9 +254,9 @@ bool temper(const Filter& filter, const TemperedOptions& options, Mover& mover, 
 
 }  // namespace
 
-TemperedResult tempered_filter(const LogDensity& log_density, const GaussianProposal& proposal,
+TemperedResult tempered_filter(const LogDensity& log_density, const std::vector<GaussianProposal>& proposals,
                                const TemperedOptions& options, const Progress& progress) {
-    const Filter filter(log_density, proposal, options);
+    const Filter filter(log_density, proposals, options);
     Mover mover(filter, options.moves);
 
     // particles of the proposal, b = 0
@@ -228,7 +277,7 @@ TemperedResult tempered_filter(const LogDensity& log_density, const GaussianProp
             mover.once(cloud, 1);
             report(progress, "particles", static_cast<double>(i) / (2 * options.moves));
         }
-        result.log_evidence = filter.log_ratio(Eigen::MatrixXd::Zero(proposal.mean.size(), 1))[0];
+        result.log_evidence = filter.log_ratio(Eigen::MatrixXd::Zero(filter.parameters(), 1), {0})[0];
     }
 
     result.history.push_back(filter.record(cloud, 1, result.log_weights));
@@ -236,8 +285,13 @@ TemperedResult tempered_filter(const LogDensity& log_density, const GaussianProp
     result.acceptance = mover.acceptance();
     result.evaluations = (1 + mover.made()) * options.particles;
     result.log_density.resize(cloud.size());
+    result.mode.resize(static_cast<std::size_t>(cloud.size()));
     for (int i = 0; i < cloud.size(); ++i) {
-        result.log_density[i] = cloud.log_ratio[i] + filter.log_proposal(cloud.z.col(i));
+        const Eigen::VectorXd theta = result.particles.row(i);
+        result.log_density[i] = cloud.log_ratio[i] + filter.log_proposal(theta, cloud.z.col(i), cloud.from[i]);
+        Eigen::Index densest = 0;
+        filter.log_proposals(theta, cloud.z.col(i), cloud.from[i]).maxCoeff(&densest);
+        result.mode[i] = static_cast<int>(densest);
     }
     return result;
 }

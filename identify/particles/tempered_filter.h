@@ -27,6 +27,7 @@ struct TemperedResult {
     Eigen::MatrixXd particles;        // (N x P)
     Eigen::VectorXd log_weights;      // (N), normalised
     Eigen::VectorXd log_density;      // of each particle (N)
+    std::vector<int> mode;            // of each particle: the Gaussian of q that is densest there (N)
     double log_evidence = 0;          // ln of the integral of the density
     bool weighed = true;              // false: too many parameters for that, see below
     double acceptance = 0;            // of all moves
@@ -34,14 +35,17 @@ struct TemperedResult {
     std::vector<FilterStep> history;  // a step per temperature, the proposal's particles first
 };
 
-/// Particles of a posterior pi, tempered from a Gaussian proposal q: their density goes through q^(1-b) pi^b from
-/// b = 0 to 1. [Neal 2001; Del Moral, Doucet, Jasra 2006]
+/// Particles of a posterior pi, tempered from a proposal q, a mixture of equal parts of Gaussians q_k, one a mode that
+/// is known: their density goes through q^(1-b) pi^b from b = 0 to 1. [Neal 2001; Del Moral, Doucet, Jasra 2006]
 ///
 /// Each temperature: b grows until the effective sample size falls to `least_effective` N (by bisection); low-variance
-/// resampling; moves by preconditioned Crank-Nicolson in q's whitened coordinates z,
+/// resampling; moves by preconditioned Crank-Nicolson in the whitened coordinates z of the q_k that a particle came
+/// from,
 ///   z' = sqrt(1 - s^2) z + s xi,  xi ~ N(0, 1),
-/// which are reversible under q, so that a move is accepted by the tempered correction (pi / q)^b alone and does not
-/// die with the dimension [Cotter, Roberts, Stuart, White 2013]; s keeps 20-40 % of the moves accepted. They go on
+/// which are reversible under q_k, so that a move is accepted by the tempered correction (pi / q)^b alone and does not
+/// die with the dimension [Cotter, Roberts, Stuart, White 2013]; s keeps 20-40 % of the moves accepted. (A particle and
+/// its k have the density q_k (pi / q)^b, whose sum over k is q^(1-b) pi^b: so modes keep their weights, near or far
+/// from each other, though no particle goes from one to the other.) Moves go on
 /// until copies have parted: until the squares of their ways add up to half of that between two particles; the last
 /// ones, which stay weighted, further.
 ///
@@ -52,7 +56,7 @@ struct TemperedResult {
 ///
 /// The numbers depend on the seed, not on the threads.
 /// @throws SolverFailure when no particle has a density, or `temperatures` do not reach the posterior.
-TemperedResult tempered_filter(const LogDensity& log_density, const GaussianProposal& proposal,
+TemperedResult tempered_filter(const LogDensity& log_density, const std::vector<GaussianProposal>& proposals,
                                const TemperedOptions& options, const Progress& progress = {});
 
 }  // namespace palpate::identify

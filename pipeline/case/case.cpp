@@ -69,6 +69,7 @@ void read_probing(const YamlFields& yaml, ProbeOptions& probing) {
 void read_identify(const YamlFields& yaml, identify::IdentifyOptions& options) {
     if (yaml.has("parameters")) options.scope = parse(scopes, yaml.text("parameters"), yaml.where("parameters"));
     if (yaml.has("method")) options.method = parse(methods, yaml.text("method"), yaml.where("method"));
+    if (yaml.has("domain")) options.domain = parse(domains, yaml.text("domain"), yaml.where("domain"));
     if (yaml.has("law")) options.law = parse(law_choices, yaml.text("law"), yaml.where("law"));
     if (yaml.has("fixed")) {
         options.fixed.clear();
@@ -98,6 +99,7 @@ void read_expectation(const YamlFields& yaml, Expectation& expect) {
             item.finish();
         }
     }
+    read_if(yaml, "modes", expect.modes, [&](auto& key) { return yaml.integer(key, 1, 100); });
     read_if(yaml, "spheres_at_least", expect.spheres_at_least,
             [&](auto& key) { return yaml.integer(key, 1, 1000000); });
     if (yaml.has("verdict")) {
@@ -204,6 +206,7 @@ void override_case(Case& c, const CaseOverrides& say) {
     if (say.particles) c.identify.particles = *say.particles;
     if (!say.parameters.empty()) c.identify.scope = parse(scopes, say.parameters, "--parameters");
     if (!say.method.empty()) c.identify.method = parse(methods, say.method, "--method");
+    if (!say.domain.empty()) c.identify.domain = parse(domains, say.domain, "--domain");
     if (say.seed) c.identify.seed = *say.seed;
 }
 

@@ -41,6 +41,7 @@ struct Expectation {
     std::optional<double> relative_at_most;  // rms error over rms displacement, over all states
     std::optional<double> held_out_at_most;  // the same over states kept from the fit
     std::optional<int> spheres_at_least;
+    std::optional<int> modes;                             // of the posterior, none below 5 %
     std::optional<std::string> verdict;                   // of the diagnosis
     std::optional<std::vector<std::string>> explanation;  // the effects that it names, in any order
     std::optional<double> rms_at_most_mm;                 // of the skeleton, once they are in [mm]
@@ -78,7 +79,7 @@ struct CaseOverrides {
     std::string unit;  // mm, cm, m; empty: not said
     std::optional<double> longest, young, poisson, density, edge_length, noise, displacement, coverage;
     std::optional<int> spheres, zones, probes, markers, particles;
-    std::string parameters, method, links;  // empty: not said
+    std::string parameters, method, domain, links;  // empty: not said
     std::optional<std::uint64_t> seed;
     bool linear_elements = false, no_reference = false;
 };

@@ -33,6 +33,7 @@ std::string expectation_yaml(const Expectation& e) {
     for (const auto& p : e.parameters) {
         text += fmt::format("    - {{name: {}, value: {}, within: {}}}\n", quoted(p.name), p.value, p.within);
     }
+    if (e.modes) text += fmt::format("  modes: {}\n", *e.modes);
     if (e.spheres_at_least) text += fmt::format("  spheres_at_least: {}\n", *e.spheres_at_least);
     if (e.verdict) text += "  verdict: " + *e.verdict + "\n";
     if (e.explanation) text += "  explanation: [" + joined(*e.explanation) + "]\n";
@@ -94,6 +95,7 @@ std::string to_yaml(const Case& c) {
         "identify:\n"
         "  parameters: {}       # uniform, zones, links\n"
         "  method: {}           # tempered, burion2008\n"
+        "  domain: {}           # by-method, position, force\n"
         "  law: {}              # automatic, linear, large-rotation\n"
         "  fixed: [{}]           # elongation, flexion, torsion: taken as the model has them\n"
         "  particles: {}        # 0: 200 (tempered), 600 (burion2008)\n"
@@ -101,8 +103,8 @@ std::string to_yaml(const Case& c) {
         "  search_low: {}       # burion2008: search box, as multiples of the start stiffness\n"
         "  search_high: {}\n"
         "seed: {}\n",
-        name_of(scopes, i.scope), name_of(methods, i.method), name_of(law_choices, i.law), fixed_names(i), i.particles,
-        i.iterations, i.search_low, i.search_high, i.seed);
+        name_of(scopes, i.scope), name_of(methods, i.method), name_of(domains, i.domain), name_of(law_choices, i.law),
+        fixed_names(i), i.particles, i.iterations, i.search_low, i.search_high, i.seed);
     text += fmt::format(
         "diagnose:\n"
         "  reference: {}        # ask the body in finite elements what is missing\n"

@@ -28,6 +28,12 @@ std::string broken_parameter(const Expectation::Parameter& expected,
                        row->mean, row->unit, expected.value, 100 * expected.within, 100 * off);
 }
 
+std::string broken_modes(int expected, const json& modes) {
+    constexpr double least = 0.05;  // probability
+    const auto found = std::ranges::count_if(modes, [](const json& mode) { return mode["probability"] >= least; });
+    return found == expected ? "" : fmt::format("the posterior has {} modes, expected {}", found, expected);
+}
+
 std::string broken_verdict(const std::string& expected, const json& diagnosis) {
     if (diagnosis.is_null()) return fmt::format("there is no diagnosis, expected the verdict '{}'", expected);
     const std::string verdict = diagnosis["verdict"];
@@ -66,6 +72,7 @@ std::vector<std::string> broken_expectations(const Expectation& expect, const Ru
         if (!line.empty()) broken.push_back(line);
     };
     for (const auto& parameter : expect.parameters) keep(broken_parameter(parameter, results.posterior));
+    if (expect.modes) keep(broken_modes(*expect.modes, results.modes));
     if (expect.verdict) keep(broken_verdict(*expect.verdict, results.diagnosis));
     if (expect.explanation) keep(broken_explanation(*expect.explanation, results.diagnosis));
     return broken;

@@ -20,6 +20,9 @@ inline constexpr Names<identify::Scope, 3> scopes{
     {{"uniform", identify::Scope::uniform}, {"zones", identify::Scope::zones}, {"links", identify::Scope::links}}};
 inline constexpr Names<identify::Method, 2> methods{
     {{"tempered", identify::Method::tempered}, {"burion2008", identify::Method::burion2008}}};
+inline constexpr Names<identify::Domain, 3> domains{{{"by-method", identify::Domain::by_method},
+                                                     {"position", identify::Domain::position},
+                                                     {"force", identify::Domain::force}}};
 inline constexpr Names<identify::LawChoice, 3> law_choices{{{"automatic", identify::LawChoice::automatic},
                                                             {"linear", identify::LawChoice::linear},
                                                             {"large-rotation", identify::LawChoice::large_rotation}}};

@@ -69,6 +69,7 @@ struct IdentifyCommandOptions {
     std::filesystem::path model, set, output;
     CaseOverrides say;
     std::string law = "automatic";
+    std::vector<std::string> fixed;
     std::optional<double> search_low, search_high;
 };
 Outcome identify(const IdentifyCommandOptions& options, const Common& common);

@@ -52,6 +52,8 @@ Outcome identify(const IdentifyCommandOptions& options, const Common& common) {
     identify::IdentifyOptions how;
     if (!options.say.parameters.empty()) how.scope = parse(scopes, options.say.parameters, "--parameters");
     if (!options.say.method.empty()) how.method = parse(methods, options.say.method, "--method");
+    if (!options.say.domain.empty()) how.domain = parse(domains, options.say.domain, "--domain");
+    for (const std::string& kind : options.fixed) how.fixed.push_back(parse(stiffnesses, kind, "--fixed"));
     how.law = parse(law_choices, options.law, "--law");
     if (options.say.particles) how.particles = *options.say.particles;
     if (options.search_low) how.search_low = *options.search_low;
@@ -64,15 +66,7 @@ Outcome identify(const IdentifyCommandOptions& options, const Common& common) {
     Outcome outcome;
     outcome.json = summary_json(found);
     outcome.json["model"] = (output / "model.json").string();
-    outcome.text =
-        fmt::format("{}: {} parameters, {} of them informed by the measurements.\n", (output / "model.json").string(),
-                    found.posterior.size(), outcome.json["informed"].get<int>());
-    if (found.posterior.size() <= 30) {
-        for (const auto& row : found.posterior) {
-            outcome.text += fmt::format("  {:<20} {:>10.4g} +- {:.2g} {}\n", row.parameter, row.mean, row.sd, row.unit);
-        }
-    }
-    for (const std::string& note : found.notes) outcome.text += "  " + note + "\n";
+    outcome.text = fmt::format("{}:\n", (output / "model.json").string()) + identification_in_words(found);
     return outcome;
 }
 

@@ -208,7 +208,7 @@ private:
              settings,
              subject_.set ? subject_.files : std::vector<fs::path>{},
              subject_.set ? std::vector<std::string>{"skeleton"} : std::vector<std::string>{"skeleton", "measurements"},
-             {"identify/model.json", "identify/posterior.csv", "identify/history.pvd"}},
+             {"identify/model.json", "identify/posterior.csv", "identify/identify.json", "identify/history.pvd"}},
             [&] {
                 identify::IdentifyResult found = identify::identify(model_, fit_, options, Console::progress());
                 // In small strain both laws agree, and a real-time model is to be bent far.
@@ -256,6 +256,7 @@ private:
 
     Outcome conclude(RunResults results) const {
         results.posterior = read_posterior(folder_.path() / "identify/posterior.csv");
+        results.modes = json::parse(mesh::read_text(folder_.path() / "identify/identify.json"))["modes"];
         results.spheres = static_cast<int>(model_.spheres.size());
         results.links = static_cast<int>(model_.links.size());
         return outcome_of(subject_, results, folder_);

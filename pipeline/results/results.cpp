@@ -107,10 +107,21 @@ json summary_json(const identify::IdentifyResult& result) {
                                  {"q975", row.q975}});
         }
     }
+    json modes = json::array();
+    for (const identify::Mode& mode : result.modes) {
+        json entry = {{"probability", mode.probability}};
+        if (result.posterior.size() <= most_listed) {
+            for (std::size_t p = 0; p < result.posterior.size(); ++p) {
+                entry["stiffness"][result.posterior[p].parameter] = mode.stiffness[static_cast<Eigen::Index>(p)];
+            }
+        }
+        modes.push_back(std::move(entry));
+    }
     return {{"law", skeleton::law_names[static_cast<std::size_t>(result.model.law)]},
             {"parameters", result.posterior.size()},
             {"informed", informed},
             {"posterior", posterior},
+            {"modes", modes},
             {"log_evidence", known(result.log_evidence)},
             {"effective_samples", result.history.empty() ? 0.0 : result.history.back().effective_samples},
             {"acceptance", known(result.acceptance)},

@@ -14,6 +14,10 @@ void Verbs::add_identify(CLI::App& app) {
     sub->add_option("-o,--output", identify.output,
                     "Folder for model.json, posterior.csv, history.pvd; identified by default");
     add_identify_flags(sub, identify.say);
+    sub->add_option("--fixed", identify.fixed, "A kind of stiffness that stays as the model has it; repeatable")
+        ->expected(1)
+        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
+        ->group("Identification");
     sub->add_option("--law", identify.law, "Law of equilibrium; by fit by default")
         ->check(CLI::IsMember({"automatic", "linear", "large-rotation"}))
         ->group("Identification");

@@ -37,6 +37,11 @@ void add_identify_flags(CLI::App* verb, CaseOverrides& say) {
     verb->add_option("--method", say.method, "tempered: particles tempered from the fit; burion2008: Algorithm 1")
         ->check(CLI::IsMember({"tempered", "burion2008"}))
         ->group("Identification");
+    verb->add_option("--domain", say.domain,
+                     "What measurements are weighed by: position (markers; the default of tempered) or force\n"
+                     "(net forces in the measured configurations; the default of burion2008)")
+        ->check(CLI::IsMember({"position", "force"}))
+        ->group("Identification");
     verb->add_option("--particles", say.particles, "Number of particles")
         ->check(CLI::Range(2, 10'000'000))
         ->group("Identification");

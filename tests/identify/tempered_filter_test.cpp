@@ -13,8 +13,8 @@
 namespace palpate::identify {
 namespace {
 
-GaussianProposal round(const Eigen::VectorXd& mean, double sd) {
-    return {mean, {mean, Eigen::VectorXd::Constant(mean.size(), sd), nullptr}, {}, 1};
+std::vector<GaussianProposal> round(const Eigen::VectorXd& mean, double sd) {
+    return {{mean, {mean, Eigen::VectorXd::Constant(mean.size(), sd), nullptr}, {}, 1}};
 }
 
 double log_normal_density(double x, double mean, double sd) {
@@ -106,6 +106,31 @@ TEST(TemperedFilter, EqualModesKeepEqualWeights) {
         if (result.particles(i, 0) > 0) right += std::exp(result.log_weights[i]);
     }
     EXPECT_NEAR(right, 0.5, 5 * 0.5 / std::sqrt(500));  // five sigma, a quarter of the particles being independent
+}
+
+TEST(TemperedFilter, ModesOfDifferentWeightAndWidthAreWeighedFromAMixture) {
+    // 30 % in a narrow mode, 70 % in a wide one, forty sd apart; and two Gaussians that overlap count once
+    constexpr int P = 5;
+    const auto normal = [](const Eigen::VectorXd& theta, double mean, double sd) {
+        double sum = 0;
+        for (const double t : theta) sum += log_normal_density(t, mean, sd);
+        return sum;
+    };
+    const LogDensity density = [&](const Eigen::VectorXd& theta) {
+        const double a = std::log(0.3) + normal(theta, -2, 0.1), b = std::log(0.7) + normal(theta, 2, 0.4);
+        return std::max(a, b) + std::log1p(std::exp(-std::abs(a - b)));
+    };
+    const auto at = [](double mean, double sd) { return round(Eigen::VectorXd::Constant(P, mean), sd).front(); };
+    const std::vector<GaussianProposal> modes{at(-2.05, 0.12), at(2.1, 0.5), at(1.9, 0.4)};
+    const TemperedResult result = tempered_filter(density, modes, {.particles = 3000, .seed = 2});
+    double narrow = 0;
+    for (int i = 0; i < 3000; ++i) {
+        const double weight = std::exp(result.log_weights[i]);
+        if (result.particles(i, 0) < 0) narrow += weight;
+        EXPECT_TRUE(weight == 0 || (result.mode[i] == 0) == (result.particles(i, 0) < 0));
+    }
+    EXPECT_NEAR(narrow, 0.3, 0.05);            // five sigma of 3000 draws of which two thirds count
+    EXPECT_NEAR(result.log_evidence, 0, 0.1);  // the density's integral is 1
 }
 
 TEST(TemperedFilter, ThreadsDoNotChangeANumber) {

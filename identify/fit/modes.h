@@ -1,0 +1,19 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "identify/fit/fit.h"
+
+namespace palpate::identify {
+
+/// Maxima of the posterior, the highest first: `fit`, and what fits from eight more starts, drawn round the prior's
+/// mean, find beside it. Nearly equal ones count once, those that are negligible next to the highest not at all. Few
+/// measurements may be explained by several bodies, say by one and its mirror image; and a fit from the middle between
+/// two ends on the saddle there.
+/// Only where it is cheap, so that the answer comes at once: up to 64 parameters, and 4,000 spheres in all states; else
+/// `fit` alone. Adds to `evaluations` how often all equilibria were solved.
+std::vector<FitResult> find_modes(const PositionDomain& domain, const LogNormalPrior& prior, FitResult fit,
+                                  std::uint64_t seed, int threads, int& evaluations);
+
+}  // namespace palpate::identify

@@ -1,0 +1,105 @@
+#include <fmt/format.h>
+
+#include <cmath>
+#include <limits>
+
+#include "identify/fit/calibrate.h"
+#include "identify/fit/modes.h"
+#include "identify/methods/methods.h"
+#include "identify/particles/posterior.h"
+#include "identify/particles/tempered_filter.h"
+#include "identify/set/readings.h"
+#include "mesh/errors.h"
+
+namespace palpate::identify {
+namespace {
+
+constexpr double calibration_share = 0.4;  // of the progress
+constexpr int many_parameters = 100;       // the mode is far from the mean's neighbourhood, in more dimensions
+
+/// Beyond so many sphere equilibria for one look at all particles, large rotations are stood in for.
+constexpr double dear_evaluations = 3e4;
+
+/// Whether one look at all particles by the full law costs too much; counted, not timed, so that it never changes.
+bool is_dear(const PositionDomain& domain, int particles) {
+    return domain.law() == skeleton::Law::large_rotation &&
+           static_cast<double>(particles) * static_cast<double>(domain.states().size()) * domain.spheres() >
+               dear_evaluations;
+}
+
+}  // namespace
+
+IdentifyResult identify_tempered(const skeleton::Model& model, const MeasurementSet& set,
+                                 const IdentifyOptions& options, const Progress& progress, const UniformFit* near) {
+    // the most probable stiffness
+    Calibration calibration = calibrate(
+        model, telling_readings(model, set), options,
+        [&](std::string_view what, double fraction) { report(progress, what, calibration_share * fraction); }, near);
+    IdentifyResult result;
+    result.notes = std::move(calibration.notes);
+    const LogNormalPrior& prior = calibration.prior;
+    const Parameters& parameters = calibration.domain.parameters();
+
+    // other stiffnesses that explain the measurements as well
+    int evaluations = 0;  // of all equilibria
+    const std::vector<FitResult> modes =
+        find_modes(calibration.domain, prior, calibration.fit, options.seed, options.threads, evaluations);
+    calibration.fit = modes.front();
+
+    // what the particles are weighed by
+    const int particles = options.particles > 0 ? options.particles : default_particles;
+    const bool dear = is_dear(calibration.domain, particles);
+    if (dear) {
+        result.notes.emplace_back(
+            "particles: large rotations enter as a correction found at the fit, as solving for each "
+            "particle anew would take too long");
+    }
+    const PositionDomain domain =
+        dear ? calibration.domain.linearised(calibration.fit.theta, calibration.fit.prediction) : calibration.domain;
+    const LogDensity log_density = [&](const Eigen::VectorXd& theta) {
+        try {
+            const Prediction prediction = domain.predict(theta, 1, &calibration.fit.prediction);
+            return domain.log_constant() - 0.5 * domain.chi_squared(prediction) + prior.log_density(theta);
+        } catch (const SolverFailure&) {
+            return -std::numeric_limits<double>::infinity();  // such a body would not stand
+        }
+    };
+
+    // particles from the fits' neighbourhoods to the posterior
+    std::vector<GaussianProposal> proposals;
+    std::vector<Eigen::VectorXd> tops;
+    for (const FitResult& mode : modes) {
+        proposals.push_back(laplace_proposal(mode, prior));
+        tops.push_back(mode.theta);
+    }
+    if (parameters.size() > many_parameters) {
+        evaluations +=
+            centre(proposals.front(), domain, prior, calibration.fit.prediction, options.seed, options.threads);
+    }
+    const TemperedOptions how{.particles = particles, .seed = options.seed, .threads = options.threads};
+    TemperedResult filter = tempered_filter(log_density, proposals, how, [&](std::string_view what, double fraction) {
+        report(progress, what, calibration_share + (1 - calibration_share) * fraction);
+    });
+    evaluations += filter.evaluations;
+    if (!filter.weighed) {
+        result.notes.emplace_back(
+            "particles: too many parameters to weigh them; they are drawn from the fit's own "
+            "covariance and moved towards the posterior, and the evidence is Laplace's");
+    }
+
+    tell_particles(parameters, prior, tops, filter, result);
+    if (result.modes.size() > 1) {
+        result.notes.push_back(fmt::format(
+            "{} different stiffnesses explain the measurements, of which the model holds one: the particles "
+            "tell how probable each is",
+            result.modes.size()));
+    }
+    result.fit_trace = calibration.fit.trace;
+    result.states = static_cast<int>(domain.states().size());
+    result.coordinates = domain.coordinates();
+    result.model = calibrated(model, calibration);
+    result.equilibria = calibration.equilibria + evaluations * result.states;
+    return result;
+}
+
+}  // namespace palpate::identify

@@ -1,0 +1,421 @@
+// How well and how fast stiffness is identified: the paper's experiments by several methods, intervals, particles a
+// second, and thousands of links from what moves on the surface.
+//
+//   identify_bench experiments      the paper's two, at 0 to 5 % noise, beside least squares and global search
+//   identify_bench coverage         how often 95 % intervals hold the truth
+//   identify_bench particles        a second, next to a loop and to a matrix product
+//   identify_bench scaling          10^2 to 10^4 links
+//
+// Each prints a table in Markdown.
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <chrono>
+#include <unsupported/Eigen/NonLinearOptimization>
+#include <unsupported/Eigen/NumericalDiff>
+
+#include "identify/fit/force_domain.h"
+#include "identify/fit/node_configuration.h"
+#include "identify/fit/position_domain.h"
+#include "identify/identify.h"
+#include "identify/particles/random.h"
+#include "identify/set/twin.h"
+#include "mesh/errors.h"
+#include "pipeline/run_folder/peak_memory.h"
+#include "samples/lattice.h"
+
+#ifdef PALPATE_WITH_NLOPT
+#include <nlopt.hpp>
+#endif
+
+namespace {
+
+using namespace palpate;
+using namespace palpate::identify;
+
+class Watch {
+public:
+    double seconds() const { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count(); }
+
+private:
+    std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+/// One of the paper's experiments, measured with noise.
+struct Trial {
+    samples::Experiment experiment;
+    Scope scope;
+    MeasurementSet set;
+    std::vector<double> truth;  // of each parameter: kE and kF of each zone
+
+    Trial(const samples::Experiment& made, double noise_share, std::uint64_t seed)
+        : experiment(made), scope(made.elongation.size() > 1 ? Scope::zones : Scope::uniform), set(made.set) {
+        constexpr double spacing = 40;
+        for (std::size_t zone = 0; zone < made.elongation.size(); ++zone) {
+            truth.push_back(made.elongation[zone]);
+            truth.push_back(made.flexion[zone]);
+        }
+        if (noise_share == 0) return;
+        set.position_noise = noise_share * spacing;
+        for (std::size_t s = 0; s < set.states.size(); ++s) {
+            RandomStream random(seed, 1000, s);
+            for (Reading& reading : set.states[s].readings) {
+                reading.position += *set.position_noise * random.normals(3);
+            }
+        }
+    }
+
+    IdentifyOptions options(Method method, Domain domain, std::uint64_t seed) const {
+        IdentifyOptions how;
+        how.scope = scope;
+        how.method = method;
+        how.domain = domain;
+        how.law = LawChoice::large_rotation;
+        how.fixed = {skeleton::Stiffness::torsion};
+        how.seed = seed;
+        how.search_low = 0.05;
+        how.search_high = 2;
+        if (method == Method::burion2008) how.particles = scope == Scope::zones ? 900 : 600;
+        return how;
+    }
+
+    /// Errors of markers by log multipliers, for other people's optimisers.
+    PositionDomain domain() const {
+        PositionDomain result(experiment.start, skeleton::Law::large_rotation,
+                              group_stiffness(experiment.start, scope, {skeleton::Stiffness::torsion}),
+                              collect_readings(experiment.start, set), 1);
+        result.set_model_error(0);
+        return result;
+    }
+
+    double error_of(const Eigen::VectorXd& stiffness) const {
+        double sum = 0;
+        for (std::size_t p = 0; p < truth.size(); ++p) {
+            sum += std::pow(stiffness[static_cast<Eigen::Index>(p)] / truth[p] - 1, 2);
+        }
+        return std::sqrt(sum / static_cast<double>(truth.size()));
+    }
+};
+
+/// Modelled less measured markers, of one set.
+struct Residuals {
+    using Scalar = double;
+    using InputType = Eigen::VectorXd;
+    using ValueType = Eigen::VectorXd;
+    using JacobianType = Eigen::MatrixXd;
+    enum { InputsAtCompileTime = Eigen::Dynamic, ValuesAtCompileTime = Eigen::Dynamic };
+
+    const PositionDomain* domain;
+    int inputs() const { return domain->parameters().size(); }
+    int values() const {
+        int rows = 0;
+        for (const StateReadings& state : domain->states()) rows += static_cast<int>(3 * state.rest.rows());
+        return rows;
+    }
+    int operator()(const Eigen::VectorXd& theta, Eigen::VectorXd& r) const {
+        try {
+            const Prediction prediction = domain->predict(theta, 1);
+            Eigen::Index row = 0;
+            for (std::size_t s = 0; s < domain->states().size(); ++s) {
+                const Points off = prediction.markers[s] - domain->states()[s].measured;
+                r.segment(row, off.size()) = off.reshaped<Eigen::RowMajor>();
+                row += off.size();
+            }
+        } catch (const SolverFailure&) {
+            r.setConstant(1e3);
+        }
+        return 0;
+    }
+};
+
+Eigen::VectorXd levenberg_marquardt(const PositionDomain& domain) {
+    Eigen::NumericalDiff<Residuals> residuals(Residuals{&domain}, 1e-12);
+    Eigen::LevenbergMarquardt<Eigen::NumericalDiff<Residuals>> lm(residuals);
+    Eigen::VectorXd theta = Eigen::VectorXd::Zero(domain.parameters().size());
+    lm.minimize(theta);
+    return theta;
+}
+
+#ifdef PALPATE_WITH_NLOPT
+Eigen::VectorXd controlled_random_search(const PositionDomain& domain) {
+    const auto n = static_cast<unsigned>(domain.parameters().size());
+    nlopt::opt search(nlopt::GN_CRS2_LM, n);
+    search.set_lower_bounds(std::log(0.05));
+    search.set_upper_bounds(std::log(2));
+    search.set_ftol_rel(1e-8);
+    search.set_maxeval(20000);
+    search.set_min_objective(
+        [](unsigned count, const double* x, double*, void* data) {
+            const auto& d = *static_cast<const PositionDomain*>(data);
+            try {
+                return d.squared_distance(d.predict(Eigen::Map<const Eigen::VectorXd>(x, count), 1));
+            } catch (const SolverFailure&) {
+                return 1e9;
+            }
+        },
+        const_cast<PositionDomain*>(&domain));
+    std::vector<double> x(n, 0);
+    double least = 0;
+    search.optimize(x, least);
+    return Eigen::Map<Eigen::VectorXd>(x.data(), n);
+}
+#endif
+
+/// What a method found, and what it takes to be left open.
+struct Found {
+    Eigen::VectorXd stiffness;
+    double sd = std::numeric_limits<double>::quiet_NaN();  // rms of sd over stiffness, as told
+    double seconds = 0;
+};
+
+Found by_identify(const Trial& trial, Method method, Domain domain, std::uint64_t seed) {
+    const Watch watch;
+    const IdentifyResult result =
+        identify::identify(trial.experiment.start, trial.set, trial.options(method, domain, seed));
+    Found found{Eigen::VectorXd(static_cast<Eigen::Index>(trial.truth.size())), 0, watch.seconds()};
+    for (std::size_t p = 0; p < trial.truth.size(); ++p) {
+        const PosteriorRow& row = result.posterior[p];
+        found.stiffness[static_cast<Eigen::Index>(p)] = method == Method::burion2008 ? row.mean : row.q50;
+        found.sd += std::pow(row.sd / row.mean, 2) / static_cast<double>(trial.truth.size());
+    }
+    found.sd = std::sqrt(found.sd);
+    return found;
+}
+
+template <typename Optimiser>
+Found by_optimiser(const Trial& trial, Optimiser optimise) {
+    const PositionDomain domain = trial.domain();
+    const Watch watch;
+    const Eigen::VectorXd theta = optimise(domain);
+    const double seconds = watch.seconds();
+    return {domain.parameters().units().array() * theta.array().exp(), std::numeric_limits<double>::quiet_NaN(),
+            seconds};
+}
+
+void experiments(int repeats) {
+    using Run = std::function<Found(const Trial&, std::uint64_t)>;
+    const std::vector<std::pair<const char*, Run>> methods{
+        {"tempered, positions (default)",
+         [](const Trial& t, auto seed) { return by_identify(t, Method::tempered, Domain::position, seed); }},
+        {"tempered, forces",
+         [](const Trial& t, auto seed) { return by_identify(t, Method::tempered, Domain::force, seed); }},
+        {"Algorithm 1 as printed, forces",
+         [](const Trial& t, auto seed) { return by_identify(t, Method::burion2008, Domain::force, seed); }},
+        {"Levenberg-Marquardt (Eigen, finite differences), positions",
+         [](const Trial& t, auto) { return by_optimiser(t, levenberg_marquardt); }},
+#ifdef PALPATE_WITH_NLOPT
+        {"CRS2 (NLopt), positions", [](const Trial& t, auto) { return by_optimiser(t, controlled_random_search); }},
+#endif
+    };
+    fmt::print(
+        "| experiment | noise, % of spacing | method | error %, rms | told sd % | seconds, median "
+        "|\n|---|---|---|---|---|---|\n");
+    for (const auto& made : {samples::make_cube_experiment(), samples::make_sheet_experiment()}) {
+        for (const double noise : {0.0, 0.0005, 0.005, 0.01, 0.05}) {
+            for (const auto& [name, run] : methods) {
+                double errors = 0, sds = 0;
+                std::vector<double> seconds;
+                int failed = 0;
+                for (int i = 0; i < repeats; ++i) {
+                    const Trial trial(made, noise, 100 + i);
+                    try {
+                        const Found found = run(trial, 1 + i);
+                        errors += std::pow(trial.error_of(found.stiffness), 2);
+                        sds += found.sd;
+                        seconds.push_back(found.seconds);
+                    } catch (const SolverFailure&) {
+                        ++failed;
+                    }
+                }
+                const double n = repeats - failed;
+                std::ranges::sort(seconds);
+                fmt::print("| {} | {:g} | {}{} | {:.3g} | {:.3g} | {:.3g} |\n", made.elongation.size() > 1 ? "II" : "I",
+                           100 * noise, name, failed > 0 ? fmt::format(" ({} failed)", failed) : "",
+                           n > 0 ? 100 * std::sqrt(errors / n) : 0, n > 0 ? 100 * sds / n : 0,
+                           seconds.empty() ? 0 : seconds[seconds.size() / 2]);
+                std::fflush(stdout);
+            }
+        }
+    }
+}
+
+void coverage(int repeats) {
+    fmt::print(
+        "| experiment | noise, % of spacing | repeats | numbers in their 95 % intervals, % | sd of that | error %, rms "
+        "|\n|---|---|---|---|---|---|\n");
+    for (const auto& made : {samples::make_cube_experiment(), samples::make_sheet_experiment()}) {
+        for (const double noise : {0.0005, 0.005, 0.01, 0.05}) {
+            int inside = 0, all = 0;
+            double errors = 0;
+            for (int i = 0; i < repeats; ++i) {
+                const Trial trial(made, noise, 5000 + i);
+                const IdentifyResult result =
+                    identify::identify(made.start, trial.set, trial.options(Method::tempered, Domain::position, 1 + i));
+                for (std::size_t p = 0; p < trial.truth.size(); ++p) {
+                    const PosteriorRow& row = result.posterior[p];
+                    inside += row.q025 <= trial.truth[p] && trial.truth[p] <= row.q975 ? 1 : 0;
+                    errors += std::pow(row.q50 / trial.truth[p] - 1, 2);
+                    ++all;
+                }
+            }
+            const double share = static_cast<double>(inside) / all;
+            fmt::print("| {} | {:g} | {} | {:.1f} | {:.1f} | {:.3g} |\n", made.elongation.size() > 1 ? "II" : "I",
+                       100 * noise, repeats, 100 * share, 100 * std::sqrt(share * (1 - share) / repeats),
+                       100 * std::sqrt(errors / all));
+            std::fflush(stdout);
+        }
+    }
+}
+
+/// A cube's lattice of n spheres a side, links of smoothly varying stiffness, and what moves at its surface.
+struct Block {
+    skeleton::Model start, truth;
+    MeasurementSet set;
+
+    Block(int n, skeleton::Law law) {
+        constexpr double noise = 0.01;
+        start = samples::make_lattice("block", {n, n, n}, 1);
+        start.law = law;
+        truth = start;
+        for (skeleton::Link& link : truth.links) {
+            const Vec3 at = (truth.spheres[link.a].center + truth.spheres[link.b].center) / (2 * 40.0 * n);
+            link.stiffness[0] *= std::exp(0.5 * std::sin(7 * at.x()) * std::cos(5 * at.y()));
+            link.stiffness[1] *= std::exp(0.5 * std::cos(6 * at.x() + 3 * at.z()));
+        }
+        std::vector<Marker> markers;
+        const auto on_surface = [&](const Vec3& c) {
+            return (c.array() == 0).any() || (c.array() == 40.0 * (n - 1)).any();
+        };
+        for (const Marker& marker : markers_on_spheres(start)) {
+            if (on_surface(*marker.anchor)) markers.push_back(marker);
+        }
+        std::vector<LoadState> states;
+        for (int p = 0; p < 12; ++p) {
+            RandomStream random(3, 0, p);
+            Vec3 at = 40.0 * (Vec3(random.uniform(), random.uniform(), random.uniform()) * (n - 1)).array().round();
+            at[p % 3] = 40.0 * (n - 1);
+            const Vec3 force = 2.0 * random.normals(3).normalized();
+            states.push_back({.probe = p + 1, .contacts = {{at, force, 0}}});
+        }
+        set = simulate_measurements(truth, states, markers, noise, 1);
+    }
+};
+
+void particles() {
+    fmt::print(
+        "| parameters P | H | particles/s, matrix product | particles/s, a loop | of the machine's matrix product, % "
+        "|\n|---|---|---|---|---|\n");
+    const auto line = [](const ForceStatistics& s, const char* kind) {
+        const auto P = static_cast<int>(s.g.size());
+        const int N = std::max(256, std::min(1 << 16, 20'000'000 / P));
+        Eigen::MatrixXd X(N, P);
+        for (int p = 0; p < P; ++p) X.col(p) = RandomStream(1, 0, p).normals(N);
+        double check = 0;
+        const auto rate = [&](auto work, int count) {
+            const Watch watch;
+            int times = 0;
+            do {
+                check += work();
+                ++times;
+            } while (watch.seconds() < 1);
+            return count * times / watch.seconds();
+        };
+        const double batch = rate([&] { return squared_errors(s, X).sum(); }, N);
+        const int few = std::max(1, std::min(N, 100'000 / P));
+        const Eigen::MatrixXd H = s.H;
+        const double loop = rate(
+            [&] {
+                double sum = 0;
+                for (int i = 0; i < few; ++i) {
+                    for (int a = 0; a < P; ++a) {
+                        double row = 2 * s.g[a];
+                        for (int b = 0; b < P; ++b) row += H(a, b) * X(i, b);
+                        sum += row * X(i, a);
+                    }
+                }
+                return sum;
+            },
+            few);
+        Eigen::MatrixXd A = Eigen::MatrixXd::Random(1024, 1024), B = A, C = A;
+        const double peak = 2.0 * std::pow(1024, 3) *
+                            rate(
+                                [&] {
+                                    C.noalias() = A * B;
+                                    return C(0, 0);
+                                },
+                                1);
+        fmt::print("| {} | {} | {:.3g} | {:.3g} | {:.0f} |{}\n", P, kind, batch, loop, 100 * batch * 2.0 * P * P / peak,
+                   std::isfinite(check) ? "" : " ");
+        std::fflush(stdout);
+    };
+    for (const int P : {6, 100, 1000}) {
+        Eigen::MatrixXd R(P, P);
+        for (int p = 0; p < P; ++p) R.col(p) = RandomStream(2, 0, p).normals(P);
+        line({(R.transpose() * R).sparseView(), R.col(0), 1, P}, "dense");
+    }
+    const Block block(7, skeleton::Law::large_rotation);
+    const Parameters parameters = group_stiffness(block.start, Scope::links, {skeleton::Stiffness::torsion});
+    const MeasurementSet whole = simulate_measurements(block.truth, block.set.states, markers_on_spheres(block.start));
+    const ForceDomain domain = force_domain(block.start, parameters, measured_configurations(block.start, whole));
+    line(domain.forces, "of a lattice");
+}
+
+void scaling(int largest, int threads) {
+    fmt::print(
+        "| law | links | numbers | markers | seconds | peak memory, GB | median error of ln k: informed % | and prior "
+        "% | informed, % |\n|---|---|---|---|---|---|---|---|---|\n");
+    for (const skeleton::Law law : {skeleton::Law::linear, skeleton::Law::large_rotation}) {
+        for (const int n : {4, 8, 15}) {
+            if (3 * n * n * (n - 1) > largest) continue;
+            const Block block(n, law);
+            IdentifyOptions how;
+            how.law = law == skeleton::Law::linear ? LawChoice::linear : LawChoice::large_rotation;
+            how.fixed = {skeleton::Stiffness::torsion};
+            how.threads = threads;
+            const Watch watch;
+            const IdentifyResult result = identify::identify(block.start, block.set, how);
+            const double seconds = watch.seconds();
+            std::vector<double> errors, all;
+            for (const PosteriorRow& row : result.posterior) {
+                const int kind = row.parameter.starts_with("elongation") ? 0 : 1;
+                const double truth = block.truth.links[row.link].stiffness[kind];
+                const double error = std::abs(std::log(row.q50 / truth));
+                if (row.informed) errors.push_back(error);
+                all.push_back(std::abs(std::log(block.start.links[row.link].stiffness[kind] / truth)));
+            }
+            const auto median = [](std::vector<double> v) {
+                if (v.empty()) return 0.0;
+                std::ranges::nth_element(v, v.begin() + static_cast<std::ptrdiff_t>(v.size() / 2));
+                return v[v.size() / 2];
+            };
+            fmt::print("| {} | {} | {} | {} | {:.1f} | {:.2g} | {:.2g} | {:.2g} | {:.0f} |\n",
+                       skeleton::law_names[static_cast<std::size_t>(law)], block.start.links.size(),
+                       result.posterior.size(), block.set.markers.size(), seconds, pipeline::peak_memory_mb() / 1e3,
+                       100 * median(errors), 100 * median(all),
+                       100.0 * static_cast<double>(errors.size()) / static_cast<double>(result.posterior.size()));
+            for (const std::string& note : result.notes) fmt::print(stderr, "  {}\n", note);
+            std::fflush(stdout);
+        }
+    }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    CLI::App app{"How well and how fast stiffness is identified"};
+    int repeats = 20, largest = 10000, threads = 2;
+    app.require_subcommand(1);
+    auto* e = app.add_subcommand("experiments", "The paper's two, beside other methods");
+    e->add_option("--repeats", repeats, "Sets a row");
+    e->callback([&] { experiments(repeats); });
+    auto* c = app.add_subcommand("coverage", "How often 95 % intervals hold the truth");
+    c->add_option("--repeats", repeats, "Sets a row");
+    c->callback([&] { coverage(repeats); });
+    app.add_subcommand("particles", "A second")->callback([] { particles(); });
+    auto* s = app.add_subcommand("scaling", "Up to 10^4 links");
+    s->add_option("--largest", largest, "Links at most");
+    s->add_option("--threads", threads, "");
+    s->callback([&] { scaling(largest, threads); });
+    CLI11_PARSE(app, argc, argv);
+}
