@@ -19,6 +19,8 @@ constexpr double least_error = 1e-4;  // the model error never falls below it: n
 // of half the chi^2: a hundredth of a posterior's sd; a tenth where another fit follows
 constexpr FitOptions settled{.tolerance = 1e-4}, nearly{.tolerance = 1e-2, .final_spectrum = false};
 constexpr int steps_with_memory = 8;  // of a fit whose states are lived through
+constexpr int most_rounds = 6;        // of finer fits
+constexpr double falling = 0.8;       // of the model error, after a round
 constexpr int states_at_first = 12;   // that choose the law, the most displaced ones
 
 LogNormalPrior prior_round(const Eigen::VectorXd& mean, double sd) {
@@ -115,12 +117,16 @@ public:
         return result;
     }
 
-    /// The best of a fit and those from other starts, where these are cheap.
-    FitResult highest(const PositionDomain& domain, const LogNormalPrior& prior, FitResult fit) {
+    /// Puts the highest of a fit and those from other starts, where these are cheap, in its place; returns the rest.
+    template <typename Starts>
+    std::vector<FitResult> other_modes(const PositionDomain& domain, const LogNormalPrior& prior, FitResult& fit,
+                                       const Starts& starts) {
         int evaluations = 0;
-        fit = find_modes(domain, prior, std::move(fit), options_.seed, options_.threads, evaluations).front();
+        std::vector<FitResult> modes = find_modes(domain, prior, std::move(fit), starts, options_.threads, evaluations);
         equilibria_ += evaluations * static_cast<int>(domain.states().size());
-        return fit;
+        fit = std::move(modes.front());
+        modes.erase(modes.begin());
+        return modes;
     }
 
     /// The model error that a uniform fit to some of the states leaves on all of them.
@@ -163,8 +169,11 @@ Calibration calibrate(const skeleton::Model& model, const std::vector<StateReadi
     coarse = {coarse.law, fit.theta, domain.dent(), coarse.model_error, fit.chi_squared};
 
     double model_error = coarse.model_error;
-    if (options.scope != Scope::uniform) {
-        // finer, from the uniform fit; twice, as the first fit tells the model error of the second
+    std::vector<FitResult> others;
+    if (options.scope == Scope::uniform) {
+        others = calibrator.other_modes(domain, prior, fit, options.seed);
+    } else {
+        // finer, from the uniform fit
         const PositionDomain uniform = std::move(domain);
         dented.dent = uniform.dent();
         domain = PositionDomain(dented, coarse.law, group_stiffness(model, options.scope, options.fixed), readings,
@@ -176,22 +185,33 @@ Calibration calibrate(const skeleton::Model& model, const std::vector<StateReadi
                     : prior_round(spread_kinds(domain.parameters(), uniform.parameters(), prior.mean), wide_sd);
         domain.set_model_error(model_error);
         report(progress, "first fit", 0.2);
-        fit = calibrator.highest(domain, prior, calibrator.fit(domain, prior, start, nearly));
+        fit = calibrator.fit(domain, prior, start, nearly);
+        others = calibrator.other_modes(domain, prior, fit, options.seed);
         Calibrator::fit_dents(domain, fit);
-        model_error = std::min(model_error, model_error_after(domain, fit));
-        report(progress, "second fit", 0.6);
-        domain.set_model_error(model_error);
-        FitOptions from_there = settled;
-        const Spectrum spectrum = std::move(fit.spectrum);
-        from_there.near = &spectrum;
-        fit = calibrator.fit(domain, prior, fit.theta, from_there);
-        Calibrator::fit_dents(domain, fit);
+
+        // again with the model error that it left, as long as that falls
+        for (int round = 1;; ++round) {
+            report(progress, "finer fit", 0.4 + 0.6 * round / most_rounds);
+            const double before = std::exchange(model_error, std::min(model_error, model_error_after(domain, fit)));
+            const bool last = round == most_rounds || model_error > falling * before;
+            domain.set_model_error(model_error);
+            FitOptions from_there = last ? settled : nearly;
+            const Spectrum spectrum = std::move(fit.spectrum);
+            from_there.near = &spectrum;
+            fit = calibrator.fit(domain, prior, fit.theta, from_there);
+            Calibrator::fit_dents(domain, fit);
+            if (last) break;
+        }
+        std::vector<Eigen::VectorXd> starts;
+        for (const FitResult& other : others) starts.push_back(other.theta);
+        others = calibrator.other_modes(domain, prior, fit, starts);
     }
     calibrator.note(
         fmt::format("relative model error: {:.2g} % of the displacement, beyond the noise", 100 * model_error));
     if (!fit.converged) calibrator.note("the fit stopped before it settled: take the posterior with care");
-    return {std::move(domain), std::move(prior),       std::move(fit),
-            std::move(coarse), calibrator.equilibria_, std::move(calibrator.notes_)};
+    return {std::move(domain),           std::move(prior),  std::move(fit),
+            std::move(others),           std::move(coarse), calibrator.equilibria_,
+            std::move(calibrator.notes_)};
 }
 
 skeleton::Model calibrated(const skeleton::Model& model, const Calibration& calibration) {

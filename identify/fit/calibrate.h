@@ -22,8 +22,9 @@ struct Calibration {
     PositionDomain domain;  // with its model error set
     LogNormalPrior prior;
     FitResult fit;
-    UniformFit coarse;   // on the way
-    int equilibria = 0;  // solved
+    std::vector<FitResult> others;  // lower maxima of the posterior, or equal ones, see find_modes
+    UniformFit coarse;              // on the way
+    int equilibria = 0;             // solved
     std::vector<std::string> notes;
 };
 

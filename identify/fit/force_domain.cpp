@@ -1,5 +1,7 @@
 #include "identify/fit/force_domain.h"
 
+#include <cblas.h>
+
 #include <Eigen/SparseCholesky>
 #include <cmath>
 
@@ -75,7 +77,11 @@ Eigen::VectorXd squared_errors(const ForceStatistics& statistics, const Eigen::M
     const bool dense = static_cast<double>(statistics.H.nonZeros()) > dense_share * std::pow(statistics.H.rows(), 2);
     Eigen::MatrixXd XH;
     if (dense) {
-        XH.noalias() = particles * Eigen::MatrixXd(statistics.H);
+        const Eigen::MatrixXd H = statistics.H;
+        const auto N = static_cast<int>(particles.rows()), P = static_cast<int>(H.rows());
+        XH.resize(N, P);
+        cblas_dgemm(CblasColMajor, CblasNoTrans, CblasNoTrans, N, P, P, 1, particles.data(), N, H.data(), P, 0,
+                    XH.data(), N);
     } else {
         XH.noalias() = particles * statistics.H;
     }

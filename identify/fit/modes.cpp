@@ -12,6 +12,7 @@ namespace {
 
 constexpr int starts = 8;
 constexpr int most_parameters = 64, most_spheres = 4000;  // that several fits are made for
+constexpr double found = 1e-4;                            // of half the chi^2, that a fit has left to gain
 constexpr double widest_start = 1;                        // sd of ln stiffness
 constexpr double negligible = 20;                         // less of ln posterior density than the best
 constexpr double same = 0.3;                              // sd of the posterior between two ends of one ascent
@@ -25,7 +26,7 @@ bool is_cheap(const PositionDomain& domain) {
 std::optional<FitResult> try_fit(const PositionDomain& domain, const LogNormalPrior& prior,
                                  const Eigen::VectorXd& start, int threads) {
     try {
-        return fit_map(domain, prior, start, threads);
+        return fit_map(domain, prior, start, threads, {.tolerance = found});
     } catch (const SolverFailure&) {  // no equilibrium there
         return std::nullopt;
     }
@@ -42,13 +43,21 @@ double distance(const FitResult& mode, const FitResult& other, const LogNormalPr
 
 std::vector<FitResult> find_modes(const PositionDomain& domain, const LogNormalPrior& prior, FitResult fit,
                                   std::uint64_t seed, int threads, int& evaluations) {
-    std::vector<FitResult> modes{std::move(fit)};
-    if (!is_cheap(domain)) return modes;
+    std::vector<Eigen::VectorXd> from;
     LogNormalPrior drawn = prior;
     drawn.sd = prior.sd.cwiseMin(widest_start);
-    for (int i = 0; i < starts; ++i) {
+    for (int i = 0; i < starts && is_cheap(domain); ++i) {
         const Eigen::VectorXd z = RandomStream(seed, start_round, i).normals(domain.parameters().size());
-        std::optional<FitResult> mode = try_fit(domain, prior, prior.mean + drawn.coloured(z).col(0), threads);
+        from.emplace_back(prior.mean + drawn.coloured(z).col(0));
+    }
+    return find_modes(domain, prior, std::move(fit), from, threads, evaluations);
+}
+
+std::vector<FitResult> find_modes(const PositionDomain& domain, const LogNormalPrior& prior, FitResult fit,
+                                  const std::vector<Eigen::VectorXd>& from, int threads, int& evaluations) {
+    std::vector<FitResult> modes{std::move(fit)};
+    for (const Eigen::VectorXd& start : from) {
+        std::optional<FitResult> mode = try_fit(domain, prior, start, threads);
         if (!mode) continue;
         evaluations += mode->evaluations;
         const auto is_same = [&](const FitResult& other) { return distance(*mode, other, prior) < same; };

@@ -16,4 +16,8 @@ namespace palpate::identify {
 std::vector<FitResult> find_modes(const PositionDomain& domain, const LogNormalPrior& prior, FitResult fit,
                                   std::uint64_t seed, int threads, int& evaluations);
 
+/// The same from these starts beside `fit`.
+std::vector<FitResult> find_modes(const PositionDomain& domain, const LogNormalPrior& prior, FitResult fit,
+                                  const std::vector<Eigen::VectorXd>& starts, int threads, int& evaluations);
+
 }  // namespace palpate::identify

@@ -16,6 +16,7 @@ namespace palpate::identify {
 namespace {
 
 constexpr double readings_per_state = 6;  // that a state's coordinates count as, of the model error
+constexpr double noise_sd = 3;            // of chi^2, up to which what is left is noise
 
 double median(std::vector<double> values) {
     const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
@@ -102,13 +103,16 @@ void PositionDomain::set_model_error(double rel) {
 double PositionDomain::estimate_model_error(const Prediction& prediction) const {
     // rel^2 of each state; the median of a mean of six squares lies at 0.89 of its expectation
     std::vector<double> squares;
+    double chi_squared = 0;  // of the noise alone
     for (int s = 0; s < static_cast<int>(states_.size()); ++s) {
         const StateReadings& state = states_[s];
         const double noise = state.noise.unaryExpr(&noise_of).squaredNorm() / static_cast<double>(state.noise.size());
         const double left = errors(s, prediction.markers[s]).squaredNorm() / state.coordinates;
+        chi_squared += state.coordinates * left / noise;
         squares.push_back(std::max(0.0, left - noise) /
                           (square(state.displacement) + square(typical_displacement_ / 3)));
     }
+    if (chi_squared < coordinates() + noise_sd * std::sqrt(2.0 * coordinates())) return 0;
     return std::sqrt(median(squares) / 0.89);
 }
 

@@ -39,7 +39,8 @@ public:
 
     /// Sets all sigmas.
     void set_model_error(double rel);
-    /// The `rel` that explains what a prediction leaves beyond the noise: the median over the states.
+    /// The `rel` that explains what a prediction leaves beyond the noise: the median over the states. 0 where the noise
+    /// is enough: the six readings that a state counts as would be six of very noisy ones else.
     double estimate_model_error(const Prediction& prediction) const;
 
     /// Equilibria at k(theta). `start`: those of a neighbouring theta. Safe from several threads, with `threads` 1.

@@ -1,10 +1,10 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "identify/fit/calibrate.h"
-#include "identify/fit/modes.h"
 #include "identify/methods/methods.h"
 #include "identify/particles/posterior.h"
 #include "identify/particles/tempered_filter.h"
@@ -40,12 +40,6 @@ IdentifyResult identify_tempered(const skeleton::Model& model, const Measurement
     const LogNormalPrior& prior = calibration.prior;
     const Parameters& parameters = calibration.domain.parameters();
 
-    // other stiffnesses that explain the measurements as well
-    int evaluations = 0;  // of all equilibria
-    const std::vector<FitResult> modes =
-        find_modes(calibration.domain, prior, calibration.fit, options.seed, options.threads, evaluations);
-    calibration.fit = modes.front();
-
     // what the particles are weighed by
     const int particles = options.particles > 0 ? options.particles : default_particles;
     const bool dear = is_dear(calibration.domain, particles);
@@ -68,10 +62,13 @@ IdentifyResult identify_tempered(const skeleton::Model& model, const Measurement
     // particles from the fits' neighbourhoods to the posterior
     std::vector<GaussianProposal> proposals;
     std::vector<Eigen::VectorXd> tops;
-    for (const FitResult& mode : modes) {
+    const auto propose = [&](const FitResult& mode) {
         proposals.push_back(laplace_proposal(mode, prior));
         tops.push_back(mode.theta);
-    }
+    };
+    propose(calibration.fit);
+    std::ranges::for_each(calibration.others, propose);
+    int evaluations = 0;  // of all equilibria
     if (parameters.size() > many_parameters) {
         evaluations +=
             centre(proposals.front(), domain, prior, calibration.fit.prediction, options.seed, options.threads);

@@ -104,7 +104,9 @@ LabelledSet label_readings(const skeleton::Model& model, const MeasurementSet& s
     LabelledSet result{set, 0, 0};
     const auto unlabelled = std::ranges::count(labels(set), -1);
     if (unlabelled == 0) return result;
+    result.left_out = static_cast<int>(unlabelled);
     const MeasurementSet asked = asked_for(set);
+    if (std::ranges::all_of(asked.states, [](const LoadState& s) { return s.readings.empty(); })) return result;
     for (int round = 0; round < most_rounds; ++round) {
         const Comparison modelled = compare(fitted(model, result.set, options), asked, options.threads);
         MeasurementSet next = set;

@@ -224,6 +224,7 @@ Eigen::VectorXd equal_weights(int n) { return Eigen::VectorXd::Constant(n, -std:
 bool temper(const Filter& filter, const TemperedOptions& options, Mover& mover, Cloud& cloud, TemperedResult& result,
             const Progress& progress) {
     double b = 0;
+    bool copied = false;
     while (b < 1) {
         if (static_cast<int>(result.history.size()) > options.temperatures) {
             throw SolverFailure(
@@ -240,9 +241,12 @@ bool temper(const Filter& filter, const TemperedOptions& options, Mover& mover, 
         result.history.push_back(filter.record(cloud, b, result.log_weights));
         const double spread = spread_of(cloud, result.log_weights);
 
-        // equal weights again, but at the end, where nothing is gained by it
+        // equal weights again, but at the end, where nothing is gained by it; draws that were never copied stay as
+        // they are
+        if (b == 1 && !copied) break;
         if (b < 1) {
             resample(cloud, result.log_weights, RandomStream(options.seed, mover.next_round(), cloud.size()).uniform());
+            copied = true;
         }
         const bool parted = mover.part(cloud, b, spread);
         if (!parted && particles_per_parameter * static_cast<double>(cloud.z.rows()) > cloud.size()) return false;

@@ -143,8 +143,8 @@ Eigen::VectorXd controlled_random_search(const PositionDomain& domain) {
     nlopt::opt search(nlopt::GN_CRS2_LM, n);
     search.set_lower_bounds(std::log(0.05));
     search.set_upper_bounds(std::log(2));
-    search.set_ftol_rel(1e-8);
-    search.set_maxeval(20000);
+    search.set_ftol_rel(1e-6);
+    search.set_maxeval(3000);
     search.set_min_objective(
         [](unsigned count, const double* x, double*, void* data) {
             const auto& d = *static_cast<const PositionDomain*>(data);
