@@ -34,8 +34,8 @@ struct Calibration {
 ///    here and below, the dents round contacts that explain most of what is left (linear least squares);
 /// 2. the same on all states, with the model error that the first look left;
 /// 3. zones: likewise, sd of ln 3; links: round the uniform fit, sd of ln 0.7, alike where links meet, so that those
-/// that
-///    nothing tells about follow their neighbours; twice, as the first fit tells the model error of the second.
+///    that nothing tells about follow their neighbours; again with the model error that a fit left, as long as that
+///    falls. A model that could follow the measurements is taken at its word only when it does.
 /// `near`: the uniform fit to other readings of the same model, in place of the first look.
 /// @pre some of the readings tell about stiffness.
 Calibration calibrate(const skeleton::Model& model, const std::vector<StateReadings>& readings,
