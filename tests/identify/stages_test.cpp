@@ -10,8 +10,8 @@ namespace {
 
 using testing::ElementsAre;
 
-const mesh::Contact push{Vec3(1, 0, 0), Vec3(0, 0, -1), 2};
-const mesh::Contact stronger{Vec3(1, 0, 0), Vec3(0, 0, -2), 2};
+const mesh::Contact first_push{Vec3(1, 0, 0), Vec3(0, 0, -1), 2};
+const mesh::Contact second_push{Vec3(1, 0, 0), Vec3(0, 0, -2), 2};
 
 /// Unloaded; loaded twice, left alone; loaded otherwise, which nobody read, left alone; at rest.
 class Stages : public testing::Test {
@@ -19,8 +19,9 @@ protected:
     Stages() {
         set_.name = "two";
         for (int m = 0; m < 2; ++m) set_.markers.push_back({m, Vec3(m, 0, 0), {}});
-        set_.states = {state(0, 0, {}),         state(1, 1, {push}), state(1, 9, {push}), state(1, 20, {}),
-                       state(2, 1, {stronger}), state(2, 5, {}),     state(3, 0, {})};
+        set_.states = {state(0, 0, {}),  state(1, 1, {first_push}),  state(1, 9, {first_push}),
+                       state(1, 20, {}), state(2, 1, {second_push}), state(2, 5, {}),
+                       state(3, 0, {})};
         set_.states[4].readings.clear();
         merged_ = make_problem(set_, 0.1);
     }
@@ -47,7 +48,7 @@ TEST_F(Stages, AreAllStatesWhetherTheyWereReadOrNot) {
         EXPECT_EQ(merged_.stages[s].time, set_.states[s].time);
         EXPECT_EQ(merged_.stages[s].action.contacts.size(), set_.states[s].contacts.size());
     }
-    EXPECT_EQ(merged_.actions.size(), 2u);  // rest, and the push
+    EXPECT_EQ(merged_.actions.size(), 2u);  // rest, and the first_push
     EXPECT_FALSE(merged_.by_stage);
 }
 
