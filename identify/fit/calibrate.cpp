@@ -202,8 +202,8 @@ Calibration calibrate(const skeleton::Model& model, const std::vector<StateReadi
             Calibrator::fit_dents(domain, fit);
             if (last) break;
         }
-        std::vector<Eigen::VectorXd> starts;
-        for (const FitResult& other : others) starts.push_back(other.theta);
+        std::vector<Eigen::VectorXd> starts(others.size());
+        std::ranges::transform(others, starts.begin(), &FitResult::theta);
         others = calibrator.other_modes(domain, prior, fit, starts);
     }
     calibrator.note(

@@ -9,6 +9,7 @@ using Sparse = Eigen::SparseMatrix<double>;
 
 Sparse precision_of(int n, const std::vector<MarkovField::Edge>& edges, double own) {
     std::vector<Eigen::Triplet<double>> entries;
+    entries.reserve(static_cast<std::size_t>(n) + 4 * edges.size());
     for (int i = 0; i < n; ++i) entries.emplace_back(i, i, own);
     for (const auto& [a, b, weight] : edges) {
         entries.emplace_back(a, a, weight);
