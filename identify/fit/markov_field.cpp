@@ -87,8 +87,7 @@ Eigen::MatrixXd MarkovField::whitened(const Eigen::MatrixXd& X) const {
 }
 
 double MarkovField::log_root() const {
-    const Sparse L = llt_.matrixL();
-    return -L.diagonal().array().log().sum() - d_.array().log().sum();
+    return -llt_.matrixL().nestedExpression().diagonal().array().log().sum() - d_.array().log().sum();
 }
 
 }  // namespace palpate::identify
