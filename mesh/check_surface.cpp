@@ -18,29 +18,54 @@ constexpr double weld_distance = 1e-6;  // share of the diagonal
 
 struct EdgeUse {
     int forward = 0, backward = 0;  // triangles that run along it from the smaller vertex to the larger, and back
+    std::vector<int> triangles;
 };
 
+/// The triangles that a body may be made of; which rows they were; and, where somebody asks, where faults are.
+struct Proper {
+    Surface surface;
+    std::vector<int> rows;
+    std::vector<FaultPlace>* places;
+
+    void note(Fault fault, const Vec3& at, std::vector<int> triangles) const {
+        if (!places) return;
+        for (int& t : triangles) t = rows[static_cast<std::size_t>(t)];
+        places->push_back({fault, at, std::move(triangles)});
+    }
+};
+
+Vec3 center_of(const Surface& surface, int t) {
+    return surface.vertices(surface.triangles.row(t).transpose().eval(), Eigen::all).colwise().mean();
+}
+
 /// The triangles less those without area and less twins.
-Surface proper_triangles(const Surface& surface, SurfaceReport& report) {
+Proper proper_triangles(const Surface& surface, SurfaceReport& report, std::vector<FaultPlace>* places) {
     std::vector<char> keep(static_cast<std::size_t>(surface.triangles.rows()), 1);
     for (const int t : degenerate_triangles(surface)) {
         keep[static_cast<std::size_t>(t)] = 0;
         ++report.degenerate_triangles;
+        if (places) places->push_back({Fault::degenerate_triangle, center_of(surface, t), {t}});
     }
     std::set<std::array<int, 3>> known;
-    Surface result{surface.vertices, surface.triangles};
+    Proper proper{{surface.vertices, surface.triangles}, {}, places};
+    Triangles& kept = proper.surface.triangles;
     Eigen::Index count = 0;
     for (Eigen::Index t = 0; t < surface.triangles.rows(); ++t) {
         std::array<int, 3> key{surface.triangles(t, 0), surface.triangles(t, 1), surface.triangles(t, 2)};
         std::sort(key.begin(), key.end());
         if (!keep[static_cast<std::size_t>(t)]) continue;
-        if (known.insert(key).second)
-            result.triangles.row(count++) = surface.triangles.row(t);
-        else
-            ++report.duplicate_triangles;
+        if (known.insert(key).second) {
+            kept.row(count++) = surface.triangles.row(t);
+            proper.rows.push_back(static_cast<int>(t));
+            continue;
+        }
+        ++report.duplicate_triangles;
+        if (places)
+            places->push_back(
+                {Fault::duplicate_triangle, center_of(surface, static_cast<int>(t)), {static_cast<int>(t)}});
     }
-    result.triangles.conservativeResize(count, 3);
-    return result;
+    kept.conservativeResize(count, 3);
+    return proper;
 }
 
 /// How many loops or chains the edges make, counted as parts that hang together.
@@ -60,19 +85,28 @@ int count_loops(const std::vector<std::pair<int, int>>& edges) {
     return loops;
 }
 
-void check_edges(const Surface& surface, SurfaceReport& report) {
+void check_edges(const Proper& proper, SurfaceReport& report) {
+    const Surface& surface = proper.surface;
     std::map<std::pair<int, int>, EdgeUse> edges;
-    for (const auto& t : surface.triangles.rowwise())
+    for (int t = 0; t < surface.triangles.rows(); ++t)
         for (int i = 0; i < 3; ++i) {
-            const int a = t[i], b = t[(i + 1) % 3];
-            ++(a < b ? edges[{a, b}].forward : edges[{b, a}].backward);
+            const int a = surface.triangles(t, i), b = surface.triangles(t, (i + 1) % 3);
+            EdgeUse& use = edges[std::minmax(a, b)];
+            ++(a < b ? use.forward : use.backward);
+            if (proper.places) use.triangles.push_back(t);
         }
     std::vector<std::pair<int, int>> border;
     for (const auto& [edge, use] : edges) {
         const int total = use.forward + use.backward;
-        if (total == 1) border.push_back(edge);
-        report.non_manifold_edges += total > 2;
-        report.inconsistent_edges += total == 2 && use.forward != 1;
+        const bool is_border = total == 1, is_crowded = total > 2, is_torn = total == 2 && use.forward != 1;
+        if (is_border) border.push_back(edge);
+        report.non_manifold_edges += is_crowded;
+        report.inconsistent_edges += is_torn;
+        if (is_border || is_crowded || is_torn)
+            proper.note(is_border    ? Fault::hole
+                        : is_crowded ? Fault::non_manifold_edge
+                                     : Fault::inconsistent_edge,
+                        (surface.vertices.row(edge.first) + surface.vertices.row(edge.second)) / 2, use.triangles);
     }
     report.boundary_edges = static_cast<int>(border.size());
     report.holes = count_loops(border);
@@ -80,13 +114,26 @@ void check_edges(const Surface& surface, SurfaceReport& report) {
 }
 
 /// Vertices whose triangles are not one fan: of the edges across from the vertex, each touches the next.
-int count_non_manifold_vertices(const Surface& surface) {
+int count_non_manifold_vertices(const Proper& proper) {
+    const Surface& surface = proper.surface;
     std::vector<std::vector<std::pair<int, int>>> rim(static_cast<std::size_t>(surface.vertices.rows()));
     for (const auto& t : surface.triangles.rowwise())
         for (int i = 0; i < 3; ++i) rim[static_cast<std::size_t>(t[i])].emplace_back(t[(i + 1) % 3], t[(i + 2) % 3]);
     int count = 0;
-    for (const auto& edges : rim) count += count_loops(edges) > 1;
+    for (std::size_t v = 0; v < rim.size(); ++v) {
+        if (count_loops(rim[v]) < 2) continue;
+        ++count;
+        proper.note(Fault::non_manifold_vertex, surface.vertices.row(static_cast<Eigen::Index>(v)), {});
+    }
     return count;
+}
+
+int count_self_intersections(const Proper& proper) {
+    const auto pairs = self_intersections(proper.surface);
+    for (const auto& [a, b] : pairs)
+        proper.note(Fault::self_intersection, (center_of(proper.surface, a) + center_of(proper.surface, b)) / 2,
+                    {a, b});
+    return static_cast<int>(pairs.size());
 }
 
 /// Bodies must be turned outwards, cavities inwards.
@@ -105,7 +152,19 @@ bool SurfaceReport::sound() const {
            non_manifold_vertices == 0 && self_intersections == 0;
 }
 
-SurfaceReport check_surface(const Surface& surface) {
+const char* name_of(Fault fault) {
+    constexpr std::array names{"",
+                               "triangle without area",
+                               "triangle that stands there twice",
+                               "edge with more than two triangles",
+                               "edge whose triangles disagree about the outside",
+                               "open edge of a hole",
+                               "vertex in which parts of the surface touch",
+                               "pair of triangles that cross"};
+    return names[static_cast<std::size_t>(fault)];
+}
+
+SurfaceReport check_surface(const Surface& surface, std::vector<FaultPlace>* places) {
     SurfaceReport report;
     if (surface.triangles.rows() == 0) return report;
     report.box = bounding_box(surface.vertices);
@@ -114,15 +173,16 @@ SurfaceReport check_surface(const Surface& surface) {
     report.triangles = static_cast<int>(welded.surface.triangles.rows());
     report.duplicate_vertices = welded.merged;
 
-    const Surface proper = proper_triangles(welded.surface, report);
+    const Proper proper = proper_triangles(welded.surface, report, places);
     check_edges(proper, report);
     report.non_manifold_vertices = count_non_manifold_vertices(proper);
-    const std::vector<int> parts = connected_parts(proper);
+    const std::vector<int> parts = connected_parts(proper.surface);
     report.components = parts.empty() ? 0 : *std::max_element(parts.begin(), parts.end()) + 1;
-    report.self_intersections = static_cast<int>(self_intersections(proper).size());
-    report.area = area(proper);
-    report.volume = signed_volume(proper);
-    report.outward = is_outward(proper, report);
+    report.self_intersections = count_self_intersections(proper);
+    report.area = area(proper.surface);
+    report.volume = signed_volume(proper.surface);
+    report.outward = is_outward(proper.surface, report);
+    if (places) std::ranges::stable_sort(*places, {}, [](const FaultPlace& place) { return place.fault; });
     return report;
 }
 

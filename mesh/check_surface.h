@@ -28,7 +28,28 @@ struct SurfaceReport {
     bool sound() const;
 };
 
-SurfaceReport check_surface(const Surface& surface);
+enum class Fault {
+    degenerate_triangle = 1,
+    duplicate_triangle,
+    non_manifold_edge,
+    inconsistent_edge,
+    hole,  // an open edge of it
+    non_manifold_vertex,
+    self_intersection
+};
+
+/// "triangle without area" and so on.
+const char* name_of(Fault fault);
+
+/// Where a fault is.
+struct FaultPlace {
+    Fault fault;
+    Vec3 at;                     // [mm]
+    std::vector<int> triangles;  // that have it, rows of the surface
+};
+
+/// @param places when asked for: every fault that is counted, in the order of the kinds.
+SurfaceReport check_surface(const Surface& surface, std::vector<FaultPlace>* places = nullptr);
 
 /// One sentence per fault: what, how many, and what `repair` does about it. Empty for a sound surface.
 std::vector<std::string> describe_faults(const SurfaceReport& report);

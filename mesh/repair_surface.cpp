@@ -7,6 +7,9 @@
 
 #include "mesh/check_surface.h"
 #include "mesh/errors.h"
+#include "mesh/repair/cap_flat_holes.h"
+#include "mesh/repair/drop_fins.h"
+#include "mesh/repair/guarded.h"
 #include "mesh/repair/steps.h"
 #include "mesh/surface_tree.h"
 #include "mesh/topology/shells.h"
@@ -14,6 +17,8 @@
 
 namespace palpate::mesh {
 namespace {
+
+constexpr double allowed_thickening = 0.03;  // that a wrap may make, share of the volume
 
 /// The surface on its way, with what is wrong with it and what was done.
 class Repair {
@@ -28,6 +33,14 @@ public:
     const Surface& surface() const { return surface_; }
     const SurfaceReport& report() const { return report_; }
     bool sound() const { return report_.sound(); }
+
+    void drop_open_fins() {
+        if (report_.non_manifold_edges == 0) return;
+        const int edges = report_.non_manifold_edges;
+        take(drop_fins(surface_, dropped_));
+        if (report_.non_manifold_edges < edges)
+            say(fmt::format("fins without thickness dropped at {} edges", edges - report_.non_manifold_edges));
+    }
 
     void orient_and_stitch_sheets() {
         const SurfaceReport before = report_;
@@ -46,28 +59,30 @@ public:
 
     void fill_small_holes() {
         if (report_.boundary_edges == 0) return;
-        int filled = 0;
-        take(fill_holes(surface_, options_.largest_hole * box_.diagonal(), filled));
-        if (filled > 0) say(fmt::format("{} holes filled", filled));
+        const int holes = report_.holes;
+        const auto filled = guarded([&] { return fill_holes(surface_, options_.largest_hole * box_.diagonal()); });
+        if (filled) take(*filled);
+        if (report_.holes < holes) say(fmt::format("{} holes filled", holes - report_.holes));
+        cap_large_flat_holes();
     }
 
     void unite_overlapping_shells() {
         if (report_.self_intersections == 0 || report_.components < 2 || !report_.closed) return;
-        try {
-            const int parts = report_.components;
-            take(unite_shells(surface_));
-            united_ = true;
-            say(fmt::format("{} overlapping parts united into {}", parts, report_.components));
-        } catch (const SolverFailure&) {
-            return;  // the next steps see to it
-        }
+        const int parts = report_.components;
+        const auto united = guarded([&] { return unite_shells(surface_); });
+        if (!united) return;  // the next steps see to it
+        take(*united);
+        united_ = true;
+        say(fmt::format("{} overlapping parts united into {}", parts, report_.components));
     }
 
     void remove_self_intersections() {
         if (report_.self_intersections + report_.degenerate_triangles == 0) return;
         whole_ = surface_;
         const int crossings = report_.self_intersections, degenerate = report_.degenerate_triangles;
-        take(remove_crossings(surface_));
+        const auto without = guarded([&] { return remove_crossings(surface_); });
+        if (!without) return;
+        take(*without);
         if (report_.self_intersections < crossings)
             say(fmt::format("{} of {} crossing pairs of triangles removed", crossings - report_.self_intersections,
                             crossings));
@@ -91,12 +106,18 @@ public:
         for (Eigen::Index v = 0; v < input_.vertices.rows(); ++v) {
             if (!used[static_cast<std::size_t>(v)]) continue;
             const Vec3 point = input_.vertices.row(v);
+            if (was_dropped(point)) continue;
             const double distance = tree.closest(point).distance;
             const bool lost_wall =
                 (result_.wrapped || united_) && distance > box_.diagonal() / 50 && tree.inside(point);
             if (!lost_wall) largest = std::max(largest, distance);
         }
         return largest;
+    }
+    /// Of a fin, which is gone on purpose?
+    bool was_dropped(const Vec3& point) const {
+        return std::ranges::any_of(
+            dropped_, [&](const Vec3& of_fin) { return (of_fin - point).norm() <= options_.weld * box_.diagonal(); });
     }
     double allowed_distance() const { return options_.allowed_distance * box_.diagonal(); }
 
@@ -105,9 +126,10 @@ public:
         if (whole_.triangles.rows() > 0) take(whole_);
         // A coarse wrap costs little, and tells a sheet from a body already.
         const double coarse = box_.diagonal() / 25, alpha = box_.diagonal() / 100, offset = alpha / 20;
-        require_body(wrap(surface_, coarse, coarse / 20), coarse / 20);
-        Surface wrapped = wrap(surface_, alpha, offset);
+        require_body(wrapped_with(coarse, coarse / 20), coarse / 20);
+        Surface wrapped = wrapped_with(alpha, offset);
         require_body(wrapped, offset);
+        require_no_skin(wrapped, offset);
         result_.wrapped = true;
         say(fmt::format("wrapped with alpha = {:.4g} mm: details narrower than that and inner walls are gone", alpha));
 
@@ -118,7 +140,14 @@ public:
             if (near.distance < 2 * offset) vertex = near.position.transpose();
         }
         take(std::move(snapped));
-        if (!sound()) take(std::move(wrapped));
+        if (sound()) return;
+        const double thickened = offset * area(wrapped) / signed_volume(wrapped);
+        if (thickened > allowed_thickening)
+            throw InvalidInput(fmt::format(
+                "Repair: what can be wrapped round the surface is {:.0f} % larger than the body, whose walls are thin; "
+                "{:.0f} % is allowed. Mend the surface in a mesh editor.",
+                100 * thickened, 100 * allowed_thickening));
+        take(std::move(wrapped));
     }
 
 private:
@@ -131,6 +160,50 @@ private:
                         "thick. It is an open sheet, or has holes larger than {:.0f} % of its diagonal: close "
                         "them, or allow larger ones to be filled.",
                         thickness, 100 * options_.largest_hole));
+    }
+
+    Surface wrapped_with(double alpha, double offset) const {
+        if (const auto wrapped = guarded([&] { return wrap(surface_, alpha, offset); })) return *wrapped;
+        throw InvalidInput(
+            fmt::format("Repair: the surface cannot be wrapped within the limits on time and memory ({} triangles). "
+                        "Mend it in a mesh editor, or make it coarser.",
+                        surface_.triangles.rows()));
+    }
+
+    /// Where a part of the surface is open, the wrap goes in and leaves a skin there while the rest is a body.
+    void require_no_skin(const Surface& wrapped, double offset) const {
+        constexpr double allowed_share = 0.02;
+        const SurfaceTree tree(wrapped);
+        const Points normals = area_vectors(wrapped);
+        double skin = 0, all = 0;
+        Vec3 place = Vec3::Zero();
+        for (Eigen::Index t = 0; t < wrapped.triangles.rows(); ++t) {
+            const Vec3 center =
+                wrapped.vertices(wrapped.triangles.row(t).transpose().eval(), Eigen::all).colwise().mean();
+            const double triangle_area = normals.row(t).norm();
+            all += triangle_area;
+            if (tree.inside(center - 4 * offset * normals.row(t).transpose() / triangle_area)) continue;
+            skin += triangle_area;
+            place = center;
+        }
+        if (skin <= allowed_share * all) return;
+        throw InvalidInput(fmt::format(
+            "Repair: {:.0f} % of what can be wrapped round the surface is a skin less than {:.3g} mm thick, "
+            "for instance at ({:.4g}, {:.4g}, {:.4g}) mm: there it is an open sheet, or has holes larger "
+            "than {:.0f} % of its diagonal. Close them in a mesh editor.",
+            100 * skin / all, 4 * offset, place.x(), place.y(), place.z(), 100 * options_.largest_hole));
+    }
+
+    void cap_large_flat_holes() {
+        if (report_.boundary_edges == 0) return;
+        const SurfaceReport before = report_;
+        Surface open = surface_;
+        take(cap_flat_holes(surface_, options_.largest_flat_hole * box_.diagonal()));
+        if (report_.holes == before.holes || report_.self_intersections > before.self_intersections)
+            take(std::move(open));
+        else
+            say(fmt::format("{} flat holes, larger than {:.0f} % of the diagonal, closed by planes",
+                            before.holes - report_.holes, 100 * options_.largest_hole));
     }
 
     void say(std::string step) { result_.steps.push_back(std::move(step)); }
@@ -146,6 +219,7 @@ private:
     Surface surface_;
     Surface whole_;  // before anything was cut away
     bool united_ = false;
+    std::vector<Vec3> dropped_;  // vertices of fins
     SurfaceReport report_;
 };
 
@@ -179,6 +253,9 @@ void RepairOptions::validate() const {
             fmt::format("Repair: weld is {}; more than 0 and up to 0.01 of the diagonal is allowed.", weld));
     if (!(largest_hole >= 0 && largest_hole <= 1))
         throw InvalidInput(fmt::format("Repair: largest_hole is {}; 0 to 1 of the diagonal is allowed.", largest_hole));
+    if (!(largest_flat_hole >= 0 && largest_flat_hole <= 1))
+        throw InvalidInput(
+            fmt::format("Repair: largest_flat_hole is {}; 0 to 1 of the diagonal is allowed.", largest_flat_hole));
     if (!(allowed_distance > 0 && allowed_distance <= 1))
         throw InvalidInput(fmt::format(
             "Repair: allowed_distance is {}; more than 0 and up to 1 of the diagonal is allowed.", allowed_distance));
@@ -189,7 +266,9 @@ RepairResult repair_surface(const Surface& surface, const RepairOptions& options
     require_triangles(surface);
     RepairResult result;
     Repair repair(surface, options, result);
-    if (!repair.sound()) {
+    const bool was_sound = repair.sound() && !options.wrap;
+    if (!was_sound) {
+        repair.drop_open_fins();
         repair.orient_and_stitch_sheets();
         repair.fill_small_holes();
         require_volume(repair.report());
@@ -197,7 +276,7 @@ RepairResult repair_surface(const Surface& surface, const RepairOptions& options
         repair.remove_self_intersections();
         repair.fill_small_holes();
         repair.turn_shells_outward();
-        if (!repair.sound() || repair.distance() > repair.allowed_distance()) repair.wrap_all();
+        if (options.wrap || !repair.sound() || repair.distance() > repair.allowed_distance()) repair.wrap_all();
     }
     if (!repair.sound())
         throw InvalidInput(
@@ -212,6 +291,11 @@ RepairResult repair_surface(const Surface& surface, const RepairOptions& options
             "Repair: the mended surface lies {:.3g} mm from the given one; {:.3g} mm ({:.1f} % of the "
             "diagonal) is allowed. After: {}. Mend it in a mesh editor, or allow more.",
             result.distance, repair.allowed_distance(), 100 * options.allowed_distance, fmt::join(result.steps, "; ")));
+    if (!was_sound)
+        result.steps.push_back(
+            fmt::format("the mended surface encloses {:.4g} mm^3 and lies within {:.3g} mm of the "
+                        "given one",
+                        result.volume, result.distance));
     return result;
 }
 

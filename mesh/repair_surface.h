@@ -11,7 +11,9 @@ struct RepairOptions {
     double weld = 1e-6;  // corners closer than this share of the diagonal become one, (0, 0.01]
     double largest_hole =
         0.25;  // holes whose box diagonal is larger than this share of the body's are not filled, [0, 1]
+    double largest_flat_hole = 0.6;  // the same for holes whose border lies in a plane, [0, 1]
     double allowed_distance = 0.02;  // the result may lie this far from the input, as a share of the diagonal
+    bool wrap = false;               // wrap it, sound or not
     void validate() const;
 };
 

@@ -1,30 +1,18 @@
 #include "mesh/io/atomic_file.h"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
-#include <atomic>
 #include <cerrno>
 #include <cstring>
 #include <fstream>
 #include <iterator>
 
 #include "mesh/errors.h"
+#include "mesh/io/unfinished.h"
 
 namespace palpate::mesh {
 
 namespace fs = std::filesystem;
-
-namespace {
-
-/// A name beside the target that no other thread or program uses.
-fs::path name_beside(const fs::path& target) {
-    static std::atomic<int> count{0};
-    return target.parent_path() /
-           fmt::format(".{}.{}-{}{}", target.stem().string(), ::getpid(), count++, target.extension().string());
-}
-
-}  // namespace
 
 void write_whole(const fs::path& target, const std::function<void(const fs::path&)>& write) {
     std::error_code error;
@@ -35,7 +23,7 @@ void write_whole(const fs::path& target, const std::function<void(const fs::path
         throw IoError(
             fmt::format("{}: the folder cannot be made ({}).", target.parent_path().string(), error.message()));
 
-    const fs::path temporary = name_beside(target);
+    const fs::path temporary = unfinished_beside(target);
     try {
         write(temporary);
         fs::rename(temporary, target, error);
@@ -57,6 +45,9 @@ void write_text(const fs::path& target, const std::string& text) {
 std::string read_text(const fs::path& file) {
     if (!fs::exists(file)) throw IoError(fmt::format("{}: no such file.", file.string()));
     if (fs::is_directory(file)) throw IoError(fmt::format("{}: is a folder, not a file.", file.string()));
+    if (!fs::is_regular_file(file))
+        throw IoError(
+            fmt::format("{}: is a device or a pipe, not a file. Save what comes from it first.", file.string()));
     std::ifstream stream(file, std::ios::binary);
     std::string text{std::istreambuf_iterator<char>(stream), {}};
     if (!stream) throw IoError(fmt::format("{}: cannot be read ({}).", file.string(), std::strerror(errno)));

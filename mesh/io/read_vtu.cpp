@@ -10,34 +10,40 @@
 #include <fstream>
 
 #include "mesh/errors.h"
+#include "mesh/io/read_vtk.h"
 #include "mesh/io/vtk_errors.h"
 #include "mesh/io/vtk_files.h"
+#include "mesh/io/vtk_grid.h"
+#include "mesh/io/words.h"
 
 namespace palpate::mesh {
 
-namespace {
-
-void read_grid(const std::filesystem::path& file, vtkXMLUnstructuredGridReader* reader) {
+vtkSmartPointer<vtkUnstructuredGrid> read_grid(const std::filesystem::path& file) {
     if (!std::filesystem::is_regular_file(file)) throw IoError(fmt::format("{}: no such file.", file.string()));
     if (!std::ifstream(file)) throw IoError(fmt::format("{}: cannot be opened for reading.", file.string()));
     const VtkErrors errors;
+    vtkNew<vtkXMLUnstructuredGridReader> reader;
     reader->SetFileName(file.c_str());
-    reader->Update();
+    read_vtk(file, [&] { reader->Update(); });
     if (errors.heard() || reader->GetErrorCode() != 0)
         throw InvalidInput(
             fmt::format("{}: this is no whole VTU file (VTK XML unstructured grid). Write it again, or convert it.",
                         file.string()));
+    return reader->GetOutput();
 }
 
-Points read_points(const std::filesystem::path& file, vtkUnstructuredGrid* grid) {
+Points points_of(const std::filesystem::path& file, vtkUnstructuredGrid* grid) {
     Points points(grid->GetNumberOfPoints(), 3);
     for (Eigen::Index i = 0; i < points.rows(); ++i) {
         grid->GetPoint(i, points.row(i).data());
-        if (!points.row(i).allFinite())
-            throw InvalidInput(fmt::format("{}: point {} has a coordinate that is not finite.", file.string(), i));
+        if (!(points.row(i).array().abs() < beyond_all_units).all())
+            throw InvalidInput(
+                fmt::format("{}: point {} has a coordinate that is not finite, or beyond 1e30.", file.string(), i));
     }
     return points;
 }
+
+namespace {
 
 Tetrahedra read_tetrahedra(const std::filesystem::path& file, vtkUnstructuredGrid* grid) {
     const vtkIdType cells = grid->GetNumberOfCells();
@@ -86,12 +92,9 @@ std::vector<DataArray> read_arrays(vtkFieldData* source) {
 }  // namespace
 
 VolumeMesh read_vtu(const std::filesystem::path& file, MeshData* data) {
-    vtkNew<vtkXMLUnstructuredGridReader> reader;
-    read_grid(file, reader);
-    vtkUnstructuredGrid* grid = reader->GetOutput();
-
+    const vtkSmartPointer<vtkUnstructuredGrid> grid = read_grid(file);
     VolumeMesh mesh;
-    mesh.nodes = read_points(file, grid);
+    mesh.nodes = points_of(file, grid);
     mesh.tetrahedra = read_tetrahedra(file, grid);
     const Eigen::VectorXd volumes = element_volumes(mesh);
     Eigen::Index worst = 0;

@@ -45,7 +45,7 @@ std::size_t spelling_distance(std::string_view a, std::string_view b) {
 
 std::optional<double> parse_number(std::string_view text) {
     const auto value = parse<double>(text);
-    return value && std::isfinite(*value) ? value : std::nullopt;
+    return value && std::abs(*value) < beyond_all_units ? value : std::nullopt;
 }
 
 std::optional<int> parse_integer(std::string_view text) { return parse<int>(text); }

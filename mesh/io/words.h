@@ -7,7 +7,11 @@
 
 namespace palpate::mesh {
 
-/// A finite number as C and every spreadsheet write it, whatever the locale; nothing else, "nan" and "inf" neither.
+/// What is measured or meshed lies below, in any unit: squares and products of such numbers are finite.
+inline constexpr double beyond_all_units = 1e30;
+
+/// A number below that, as C and every spreadsheet write it, whatever the locale; nothing else, "nan" and "inf"
+/// neither.
 std::optional<double> parse_number(std::string_view text);
 
 /// The same for a whole number.

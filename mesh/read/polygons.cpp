@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "mesh/errors.h"
+#include "mesh/io/words.h"
 
 namespace palpate::mesh {
 namespace {
@@ -16,12 +17,12 @@ std::string where(const Polygons& polygons, std::size_t polygon, const std::file
 void check(const Polygons& polygons, const std::filesystem::path& file) {
     const auto n = polygons.points.size();
     for (std::size_t v = 0; v < n; ++v)
-        if (!polygons.points[v].allFinite())
-            throw InvalidInput(
-                fmt::format("{}, vertex {}: ({}, {}, {}) is not finite. Export the surface again without that "
-                            "vertex.",
-                            file.string(), v + static_cast<std::size_t>(polygons.first_index), polygons.points[v].x(),
-                            polygons.points[v].y(), polygons.points[v].z()));
+        if (!(polygons.points[v].array().abs() < beyond_all_units).all())
+            throw InvalidInput(fmt::format(
+                "{}, vertex {}: ({}, {}, {}) is not finite, or beyond 1e30. Export the surface again without that "
+                "vertex.",
+                file.string(), v + static_cast<std::size_t>(polygons.first_index), polygons.points[v].x(),
+                polygons.points[v].y(), polygons.points[v].z()));
     if (polygons.begins.empty())
         throw InvalidInput(n == 0
                                ? fmt::format("{}: holds no vertices and no faces. Export a surface of triangles or "

@@ -59,11 +59,11 @@ Polygons read_binary(const std::string& content, const std::filesystem::path& fi
             const std::size_t at = head_bytes + triangle_bytes * t + 12 * (i + 1);
             const Vec3 corner(value_at<float>(content, at), value_at<float>(content, at + 4),
                               value_at<float>(content, at + 8));
-            if (!corner.allFinite())
-                throw InvalidInput(
-                    fmt::format("{}, triangle {} (from 0): the corner ({}, {}, {}) is not finite. Export the "
-                                "surface again without that triangle.",
-                                file.string(), t, corner.x(), corner.y(), corner.z()));
+            if (!(corner.array().abs() < beyond_all_units).all())
+                throw InvalidInput(fmt::format(
+                    "{}, triangle {} (from 0): the corner ({}, {}, {}) is not finite, or beyond 1e30. Export the "
+                    "surface again without that triangle.",
+                    file.string(), t, corner.x(), corner.y(), corner.z()));
             add_corner(polygons, corner);
         }
     }

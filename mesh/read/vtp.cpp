@@ -8,6 +8,7 @@
 #include <algorithm>
 
 #include "mesh/errors.h"
+#include "mesh/io/read_vtk.h"
 #include "mesh/read/polygons.h"
 
 namespace palpate::mesh {
@@ -60,7 +61,7 @@ Polygons read_vtp(const std::string& content, const std::filesystem::path& file)
     reader->SetParserErrorObserver(listener);
     reader->ReadFromInputStringOn();
     reader->SetInputString(content);
-    reader->Update();
+    read_vtk(file, content, [&] { reader->Update(); });
     vtkPolyData* poly = reader->GetOutput();
     if (!listener->message.empty() || reader->GetErrorCode() != 0 || poly == nullptr)
         throw InvalidInput(fmt::format("{}: is no VTP that can be read ({}). Export it again as VTK XML PolyData.",

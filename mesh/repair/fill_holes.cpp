@@ -10,9 +10,8 @@ namespace palpate::mesh {
 
 namespace pmp = CGAL::Polygon_mesh_processing;
 
-Surface fill_holes(const Surface& surface, double largest, int& filled) {
+Surface fill_holes(const Surface& surface, double largest) {
     const cgal::Soup soup = cgal::to_soup(surface);
-    filled = 0;
     if (!cgal::is_mesh(soup)) return surface;
     cgal::Mesh mesh = cgal::to_mesh(soup);
     std::vector<cgal::Mesh::Halfedge_index> borders;
@@ -24,7 +23,6 @@ Surface fill_holes(const Surface& surface, double largest, int& filled) {
         if (extent.norm() > largest) continue;
         std::vector<cgal::Mesh::Face_index> patch;
         pmp::triangulate_hole(mesh, border, std::back_inserter(patch));
-        filled += !patch.empty();
     }
     return cgal::from_mesh(mesh);
 }

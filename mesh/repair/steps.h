@@ -11,8 +11,8 @@ namespace palpate::mesh {
 /// edge are taken apart, and borders that lie on each other are stitched.
 Surface orient_and_stitch(const Surface& surface);
 
-/// Fills holes whose box has a diagonal of `largest` [mm] or less; `filled` counts them.
-Surface fill_holes(const Surface& surface, double largest, int& filled);
+/// Fills holes whose box has a diagonal of `largest` [mm] or less.
+Surface fill_holes(const Surface& surface, double largest);
 
 /// Removes triangles without area (by flips) and cuts out those that cross, filling the gaps.
 Surface remove_crossings(const Surface& surface);

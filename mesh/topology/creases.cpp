@@ -15,7 +15,7 @@ constexpr double degree = std::numbers::pi / 180;
 /// Edge -> its one or two triangles (-1: none).
 using EdgeTriangles = std::map<std::array<int, 2>, std::array<int, 2>>;
 
-EdgeTriangles edges_of(const Surface& surface) {
+EdgeTriangles edge_triangles_of(const Surface& surface) {
     EdgeTriangles edges;
     for (int t = 0; t < surface.triangles.rows(); ++t)
         for (int i = 0; i < 3; ++i) {
@@ -100,7 +100,7 @@ std::vector<int> corners_of(const Surface& surface, const std::vector<std::array
 
 Creases find_creases(const Surface& surface, double angle) {
     const Points normals = area_vectors(surface).rowwise().normalized();
-    const EdgeTriangles edges = edges_of(surface);
+    const EdgeTriangles edges = edge_triangles_of(surface);
     const std::vector<int> face = flat_faces(surface, normals, edges);
 
     Creases creases;

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "tests/mesh/faulty_surfaces.h"
 #include "tests/messages.h"
 
@@ -50,6 +52,34 @@ TEST(CheckSurface, CountsCrossings) {
     EXPECT_GT(check_surface(join(cube(), make_sphere({10, 5, 5}, 3, 2))).self_intersections, 0);
     EXPECT_EQ(check_surface(join(cube(), make_sphere({20, 5, 5}, 3, 2))).self_intersections, 0);
     EXPECT_EQ(check_surface(join(cube(), make_sphere({20, 5, 5}, 3, 2))).components, 2);
+}
+
+TEST(CheckSurface, TellsWhereFaultsAreByTheRowsOfTheSurfaceGiven) {
+    std::vector<FaultPlace> places;
+    const auto count = [&](const Surface& surface, Fault fault) {
+        places.clear();
+        check_surface(surface, &places);
+        return std::count_if(places.begin(), places.end(), [&](auto& place) { return place.fault == fault; });
+    };
+    EXPECT_EQ(count(cube(), Fault::hole), 0);
+    EXPECT_TRUE(places.empty());
+    // The twin comes last; that it is dropped moves no row before it.
+    EXPECT_EQ(count(with_twin(cube()), Fault::duplicate_triangle), 1);
+    EXPECT_EQ(places[0].triangles, std::vector<int>{192});
+    EXPECT_EQ(count(with_triangle(cube(), 0, 1, 1), Fault::degenerate_triangle), 1);
+    EXPECT_EQ(count(without_triangle(cube(), 7), Fault::hole), 3);
+    EXPECT_EQ(count(with_flipped_triangle(cube()), Fault::inconsistent_edge), 3);
+    EXPECT_EQ(places[0].triangles.size(), 2u);
+    EXPECT_EQ(count(with_fin(cube()), Fault::non_manifold_edge), 1);
+    EXPECT_EQ(places[0].triangles.size(), 3u);
+    EXPECT_EQ(count(bow_tie(), Fault::non_manifold_vertex), 1);
+    EXPECT_EQ(places[0].at, Vec3(0, 0, 0));
+    const Surface both = join(cube(), make_sphere({10, 5, 5}, 3, 2));
+    EXPECT_EQ(count(both, Fault::self_intersection), check_surface(both).self_intersections);
+    for (const FaultPlace& place : places) {
+        EXPECT_NEAR((place.at - Vec3(10, 5, 5)).norm(), 3, 2) << "where the ball meets the side, within a triangle";
+        EXPECT_TRUE(place.triangles[0] < 192 && place.triangles[1] >= 192);
+    }
 }
 
 TEST(CheckSurface, BodiesLookOutAndCavitiesIn) {

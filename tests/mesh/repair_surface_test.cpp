@@ -4,6 +4,8 @@
 
 #include "mesh/check_surface.h"
 #include "mesh/errors.h"
+#include "mesh/io/surface_bytes.h"
+#include "mesh/repair/guarded.h"
 #include "tests/mesh/faulty_surfaces.h"
 #include "tests/messages.h"
 
@@ -45,9 +47,17 @@ TEST(RepairSurface, MendsEachFault) {
                   1e-12);
 }
 
-TEST(RepairSurface, WrapsWhatIsNoManifold) {
-    // A fin without thickness becomes a thin wedge: wrapping leaves an offset of 0.05 % of the diagonal on it.
-    expect_mended(with_fin(cube()), 1000, 0.02);
+TEST(RepairSurface, SmallFinsAreDroppedAndLargeOnesAreNoBody) {
+    const Surface fin = with_fin(cube());
+    expect_mended(fin, 1000, 1e-12);  // round-off
+    const RepairResult repaired = repair_surface(fin);
+    EXPECT_FALSE(repaired.wrapped);
+    EXPECT_TRUE(says(repaired.steps[0], {"fins", "1 edges"}));
+    // Ten times as high it has 2 % of the area: somebody may have meant it.
+    Surface large = fin;
+    const Eigen::Index top = large.vertices.rows() - 1;
+    large.vertices.row(top) += 9 * (large.vertices.row(top) - large.vertices.row(large.triangles(0, 0)));
+    EXPECT_TRUE(says(message_of<InvalidInput>([&] { repair_surface(large); }), {"skin", "open sheet"}));
 }
 
 TEST(RepairSurface, OverlappingPartsAreUnited) {
@@ -95,10 +105,13 @@ TEST(RepairSurface, RefusesAHoleThatIsTooLarge) {
 }
 
 TEST(RepairSurface, RefusesAResultThatStrays) {
+    // One corner lies 0.03 mm off its twins, and welding brings them together.
+    Surface torn = unwelded(cube());
+    torn.vertices.row(0).array() += 0.02;
     RepairOptions options;
+    options.weld = 0.005;
     options.allowed_distance = 1e-9;
-    EXPECT_TRUE(says(message_of<InvalidInput>([&] { repair_surface(with_fin(cube()), options); }),
-                     {"lies", "allowed", "After:"}));
+    EXPECT_TRUE(says(message_of<InvalidInput>([&] { repair_surface(torn, options); }), {"lies", "allowed", "After:"}));
 }
 
 TEST(RepairSurface, RefusesWhatIsNoNumberOrNoVertex) {
@@ -116,6 +129,62 @@ TEST(RepairSurface, OptionsNameTheirBounds) {
     EXPECT_TRUE(says(refusal({.weld = 0}), {"weld", "0.01"}));
     EXPECT_TRUE(says(refusal({.largest_hole = 2}), {"largest_hole", "2"}));
     EXPECT_TRUE(says(refusal({.allowed_distance = 0}), {"allowed_distance", "0"}));
+}
+
+TEST(RepairSurface, ABodyWithAnOpenSheetToItIsRefused) {
+    // A box without a lid, too wide to be closed, through whose bottom a ball sticks: a wrap would be a ball with a
+    // skin.
+    const Surface whole = cube();
+    Surface box{whole.vertices, Triangles(0, 3)};
+    for (const auto& t : whole.triangles.rowwise())
+        if (whole.vertices(t[0], 2) < 10 || whole.vertices(t[1], 2) < 10 || whole.vertices(t[2], 2) < 10)
+            box = with_triangle(box, t[0], t[1], t[2]);
+    const Surface both = join(box, make_sphere({5, 5, 0}, 4, 3));
+    EXPECT_TRUE(
+        says(message_of<InvalidInput>([&] { repair_surface(both); }), {"% of what can be wrapped", "skin", "mm"}));
+}
+
+TEST(RepairSurface, WhatWasDoneEndsWithVolumeAndDistance) {
+    const RepairResult repaired = repair_surface(with_flipped_triangle(cube()));
+    EXPECT_TRUE(says(repaired.steps.back(), {"encloses 1000 mm^3", "lies within 0 mm"}));
+}
+
+TEST(RepairSurface, ALargeFlatHoleIsClosedByAPlane) {
+    // A box of 20 x 10 x 10 without the side x = 0, of 14.1 mm across; its diagonal is 24.5 mm.
+    const Surface whole = make_box({0, 0, 0}, {20, 10, 10}, {4, 2, 2});
+    Surface open{whole.vertices, Triangles(0, 3)};
+    for (const auto& t : whole.triangles.rowwise())
+        if (whole.vertices(t[0], 0) > 0 || whole.vertices(t[1], 0) > 0 || whole.vertices(t[2], 0) > 0)
+            open = with_triangle(open, t[0], t[1], t[2]);
+    const RepairResult repaired = repair_surface(open);
+    EXPECT_NEAR(repaired.volume, 2000, 1e-9);  // round-off
+    EXPECT_FALSE(repaired.wrapped);
+    EXPECT_TRUE(says(repaired.steps[0], {"1 flat holes", "planes"}));
+    EXPECT_TRUE(says(message_of<InvalidInput>([&] { repair_surface(open, {.largest_flat_hole = 2}); }),
+                     {"largest_flat_hole is 2", "0 to 1"}));
+}
+
+TEST(RepairSurface, AWrapIsMadeOfASoundSurfaceWhereItIsAskedFor) {
+    const RepairResult repaired = repair_surface(cube(), {.wrap = true});
+    EXPECT_TRUE(repaired.wrapped);
+    EXPECT_NEAR(repaired.volume, 1000, 0.01 * 1000);  // an offset of 0.05 % of the diagonal, at most
+}
+
+TEST(Guarded, AStepThatCrashesThrowsOrLeavesNothingIsNone) {
+    EXPECT_EQ(guarded([] { return cube(); })->triangles, cube().triangles);
+    EXPECT_FALSE(guarded([]() -> Surface { std::abort(); }));
+    EXPECT_FALSE(guarded([]() -> Surface { throw SolverFailure("no"); }));
+    EXPECT_FALSE(guarded([] { return Surface{}; }));
+}
+
+TEST(SurfaceBytes, ComeBackWholeOrNotAtAll) {
+    const std::string bytes = to_bytes(cube());
+    const Surface back = surface_from_bytes(bytes);
+    EXPECT_EQ(back.vertices, cube().vertices);
+    EXPECT_EQ(back.triangles, cube().triangles);
+    for (const std::size_t size : {std::size_t{0}, std::size_t{10}, std::size_t{16}, bytes.size() - 1})
+        EXPECT_EQ(surface_from_bytes(std::string_view(bytes).substr(0, size)).triangles.rows(), 0);
+    EXPECT_EQ(surface_from_bytes(to_bytes({})).vertices.rows(), 0);
 }
 
 }  // namespace

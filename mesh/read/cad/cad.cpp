@@ -1,0 +1,110 @@
+#include "mesh/read/cad/cad.h"
+
+#include <fmt/format.h>
+
+#include <cstring>
+#include <fstream>
+
+#include "mesh/errors.h"
+
+#ifdef PALPATE_WITH_CAD
+#include "mesh/io/child_process.h"
+#include "mesh/io/surface_bytes.h"
+#include "mesh/read/cad/tessellate.h"
+#endif
+
+namespace palpate::mesh {
+
+#ifdef PALPATE_WITH_CAD
+namespace {
+
+constexpr ChildLimits reading_limits{300, 8192};
+constexpr ChildLimits uniting_limits{120, 8192};
+
+constexpr std::size_t head_size = 6;
+
+/// Six numbers, the message, the surface: see `unpacked`.
+std::string packed(const Tessellation& t) {
+    const double head[head_size] = {static_cast<double>(t.error.size()),  static_cast<double>(t.solids),
+                                    static_cast<double>(t.solids_united), static_cast<double>(t.faces),
+                                    static_cast<double>(t.faces_missing), t.chord};
+    return std::string(reinterpret_cast<const char*>(head), sizeof head) + t.error + to_bytes(t.surface);
+}
+
+Tessellation unpacked(std::string_view bytes) {
+    double head[head_size];
+    std::memcpy(head, bytes.data(), sizeof head);
+    const auto number = [&](std::size_t i) { return static_cast<int>(head[i]); };
+    const auto message = static_cast<std::size_t>(number(0));
+    return {.error = std::string(bytes.substr(sizeof head, message)),
+            .solids = number(1),
+            .solids_united = number(2),
+            .faces = number(3),
+            .faces_missing = number(4),
+            .chord = head[5],
+            .surface = surface_from_bytes(bytes.substr(sizeof head + message))};
+}
+
+/// What the child came to, its own failure as an error in words.
+Tessellation in_child(const std::filesystem::path& file, bool unite, const ChildLimits& limits) {
+    using End = ChildResult::End;
+    const ChildResult child = run_in_child([&] { return packed(tessellate(file, unite, cad_chord)); }, limits);
+    if (child.end == End::Answered) return unpacked(child.answer);
+    Tessellation none;
+    none.error = child.end == End::OutOfTime     ? fmt::format("OpenCASCADE did not end within {} s", limits.seconds)
+                 : child.end == End::OutOfMemory ? fmt::format("OpenCASCADE needs more than {} MiB", limits.mebibytes)
+                                                 : std::string("OpenCASCADE crashed");
+    return none;
+}
+
+void note_solids(const Tessellation& t, const std::string& why_apart, std::vector<std::string>& notes) {
+    if (t.solids == 0)
+        notes.push_back(fmt::format("The file holds {} faces and no solid: sewn together where they meet.", t.faces));
+    if (t.solids < 2) return;
+    if (!why_apart.empty())
+        notes.push_back(
+            fmt::format("An assembly of {} solids that stay apart ({}): the repair unites them.", t.solids, why_apart));
+    else if (t.solids_united == 1)
+        notes.push_back(fmt::format("An assembly of {} solids: united to one body of one material.", t.solids));
+    else
+        notes.push_back(fmt::format(
+            "An assembly of {} solids: where they touch they are united, {} are left that do not touch. Each must be "
+            "held, or the body falls apart.",
+            t.solids, t.solids_united));
+}
+
+}  // namespace
+
+Surface read_cad(const std::filesystem::path& file, std::vector<std::string>& notes) {
+    if (!std::filesystem::is_regular_file(file)) throw IoError(fmt::format("{}: no such file.", file.string()));
+    if (!std::ifstream(file)) throw IoError(fmt::format("{}: cannot be opened for reading.", file.string()));
+    Tessellation t = in_child(file, false, reading_limits);
+    std::string why_apart;
+    if (t.error.empty() && t.solids > 1) {
+        Tessellation together = in_child(file, true, uniting_limits);
+        why_apart = together.error;
+        if (together.error.empty()) t = std::move(together);
+    }
+    if (!t.error.empty())
+        throw InvalidInput(
+            fmt::format("{}: {}. Export the body again as STEP (AP203 or AP214), or as STL.", file.string(), t.error));
+    note_solids(t, why_apart, notes);
+    if (t.faces_missing > 0)
+        notes.push_back(
+            fmt::format("{} of {} faces could not be meshed: they are holes now.", t.faces_missing, t.faces));
+    notes.push_back(fmt::format("{} CAD faces cut into triangles, within {:.3g} mm of them.", t.faces, t.chord));
+    return t.surface;
+}
+
+#else
+
+Surface read_cad(const std::filesystem::path& file, std::vector<std::string>&) {
+    throw InvalidInput(fmt::format(
+        "{}: this program was built without OpenCASCADE, which reads CAD. Install libocct-data-exchange-dev "
+        "and build it again, or export the body as STL.",
+        file.string()));
+}
+
+#endif
+
+}  // namespace palpate::mesh

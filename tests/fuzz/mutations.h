@@ -1,0 +1,13 @@
+#pragma once
+
+#include <cstdint>
+#include <random>
+#include <string>
+
+namespace palpate::fuzz {
+
+/// A text or a binary file as somebody, or some fault, may have left it: one to four of a changed byte, a piece lost,
+/// said twice or put elsewhere, a cut, a number in the place of another that no reader expects. The seed decides.
+std::string mutated(std::string text, std::mt19937_64& random);
+
+}  // namespace palpate::fuzz

@@ -1,0 +1,196 @@
+// Whatever stands in a file, a reader reads it or says what is wrong: it neither crashes, nor hangs, nor asks for all
+// the memory. Sound files, broken by chance, thousands of times; PALPATE_FUZZ=1000000 for as many of each.
+
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <fstream>
+#include <functional>
+
+#include "identify/set/measurement_set.h"
+#include "mesh/errors.h"
+#include "mesh/io/atomic_file.h"
+#include "mesh/io/vtk_files.h"
+#include "mesh/read_surface.h"
+#include "pipeline/case/case.h"
+#include "pipeline/results/posterior_file.h"
+#include "samples/lattice.h"
+#include "skeleton/model_io.h"
+#include "tests/fuzz/mutations.h"
+#include "tests/temporary_folder.h"
+
+namespace palpate::fuzz {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double gigabyte = 1 << 30;
+constexpr double most_memory = 6;  // [GB] of address space beyond what is in use when a reader begins
+
+int inputs() {
+    const char* asked = std::getenv("PALPATE_FUZZ");
+    return asked != nullptr ? std::atoi(asked) : 600;
+}
+
+/// A file of a sound input that is broken, and what reads the input.
+struct Reader {
+    const char* name;
+    std::function<fs::path(const fs::path& folder)> make;  // writes the input, returns the file to break
+    std::function<void(const fs::path& folder)> read;
+};
+
+/// In the names of the tests.
+void PrintTo(const Reader& reader, std::ostream* out) { *out << reader.name; }
+
+mesh::Surface small_box() { return mesh::make_box({0, 0, 0}, {100, 20, 20}, {2, 1, 1}); }
+
+Reader surface(const char* extension) {
+    const std::string name = std::string("body.") + extension;
+    return {extension,
+            [=](const fs::path& folder) {
+                mesh::write_surface(folder / name, small_box());
+                return folder / name;
+            },
+            [=](const fs::path& folder) { mesh::read_surface(folder / name); }};
+}
+
+Reader written(const char* name, const std::string& file, const std::string& text,
+               const std::function<void(const fs::path&)>& read) {
+    return {name,
+            [=](const fs::path& folder) {
+                mesh::write_text(folder / file, text);
+                return folder / file;
+            },
+            [=](const fs::path& folder) { read(folder / file); }};
+}
+
+/// One file of a measurement set.
+Reader set(const char* file) {
+    return {file,
+            [=](const fs::path& folder) {
+                identify::MeasurementSet set;
+                set.rest_surface = small_box();
+                set.supports = {mesh::BoxRegion{Vec3(-1, -1, -1), Vec3(1, 21, 21)}};
+                set.markers = {{0, Vec3(100, 10, 20), std::nullopt}, {4, Vec3(50, 10, 25), Vec3(50, 10, 20)}};
+                set.states = {{.probe = 1,
+                               .contacts = {{Vec3(100, 10, 20), Vec3(0, 0, -1), 3}},
+                               .readings = {{0, Vec3(100, 10, 18), 0.1}, {1, Vec3(50, 10, 24), identify::missing}},
+                               .gravity = Vec3(0, 0, -9810)}};
+                identify::write_measurement_set(folder / "set", set);
+                return folder / "set" / file;
+            },
+            [](const fs::path& folder) { identify::read_measurement_set(folder / "set"); }};
+}
+
+Reader model() {
+    return {"model.json",
+            [](const fs::path& folder) {
+                skeleton::write_model(folder / "model.json", samples::make_lattice("bar", {3, 2, 1}, 1));
+                return folder / "model.json";
+            },
+            [](const fs::path& folder) { skeleton::read_model(folder / "model.json"); }};
+}
+
+Reader volume() {
+    return {"vtu",
+            [](const fs::path& folder) {
+                mesh::write_vtu(folder / "body.vtu", mesh::make_bar({0, 0, 0}, {100, 20, 20}, {1, 1, 1}));
+                return folder / "body.vtu";
+            },
+            [](const fs::path& folder) { mesh::read_vtu(folder / "body.vtu"); }};
+}
+
+const char* const text_stl =
+    "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\nendsolid "
+    "a\n";
+const char* const text_ply =
+    "ply\nformat ascii 1.0\ncomment made by hand\nelement vertex 3\nproperty float x\nproperty float y\nproperty "
+    "double z\n"
+    "element face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
+std::string case_with_all_settings() {
+    pipeline::Case settings;
+    settings.mesh = "body.stl";
+    settings.supports = {mesh::BoxRegion{Vec3(-1, -1, -1), Vec3(5, 21, 21)}};
+    return pipeline::to_yaml(settings);
+}
+const char* const posterior =
+    "parameter,link,unit,mean,sd,q025,q50,q975,prior_mean,prior_sd,informed\n"
+    "elongation:link0,0,N/mm,1.2,0.1,1.0,1.2,1.4,1,0.5,1\nflexion,,N*mm/rad,400,10,380,400,420,500,200,1\n";
+
+class Readers : public testing::TestWithParam<Reader> {};
+
+/// For as long as it lives, no more than so much memory beyond what is in use: a file that announces more is to be
+/// refused, not believed. Not under the sanitizers, whose shadow takes terabytes of address space.
+class MemoryLimit {
+public:
+    MemoryLimit() {
+#ifndef __SANITIZE_ADDRESS__
+        std::ifstream statm("/proc/self/statm");
+        double pages = 0;
+        statm >> pages;
+        getrlimit(RLIMIT_AS, &before_);
+        rlimit limit = before_;
+        limit.rlim_cur = static_cast<rlim_t>(pages * 4096 + most_memory * gigabyte);
+        setrlimit(RLIMIT_AS, &limit);
+#endif
+    }
+    ~MemoryLimit() {
+#ifndef __SANITIZE_ADDRESS__
+        setrlimit(RLIMIT_AS, &before_);
+#endif
+    }
+    MemoryLimit(const MemoryLimit&) = delete;
+    MemoryLimit& operator=(const MemoryLimit&) = delete;
+
+private:
+    rlimit before_{};
+};
+
+TEST_P(Readers, ReadOrRefuse) {
+    const TemporaryFolder folder;
+    const fs::path file = GetParam().make(folder.path());
+    const std::string sound = mesh::read_text(file);
+    ASSERT_NO_THROW(GetParam().read(folder.path()));
+
+    std::mt19937_64 random(1);
+    const MemoryLimit limit;
+    int refused = 0;
+    for (int i = 0; i < inputs(); ++i) {
+        const std::string broken = mutated(sound, random);
+        mesh::write_text(file, broken);
+        try {
+            GetParam().read(folder.path());
+        } catch (const InvalidInput& e) {
+            ++refused;
+            EXPECT_GT(std::string(e.what()).size(), 10u);
+        } catch (const IoError&) {
+            ++refused;
+        } catch (const std::exception& e) {
+            const fs::path kept = fs::temp_directory_path() / ("palpate-broken-" + file.filename().string());
+            mesh::write_text(kept, broken);
+            FAIL() << e.what() << " instead of a refusal, at input " << i << ": " << kept;
+        }
+    }
+    RecordProperty("refused", refused);
+    EXPECT_GT(refused, inputs() / 20);  // mutations that nothing notices would test nothing
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Of, Readers,
+    testing::Values(
+        surface("stl"), surface("obj"), surface("ply"), surface("off"), surface("vtp"), volume(), model(),
+        written("text_stl", "text.stl", text_stl, [](const fs::path& f) { mesh::read_surface(f); }),
+        written("text_ply", "text.ply", text_ply, [](const fs::path& f) { mesh::read_surface(f); }),
+        written("case", "case.yaml", case_with_all_settings(), [](const fs::path& f) { pipeline::read_case(f); }),
+        written("posterior", "posterior.csv", posterior, [](const fs::path& f) { pipeline::read_posterior(f); }),
+        set("set.yaml"), set("probes.csv"), set("markers.csv"), set("positions.csv"), set("states.csv")),
+    [](const testing::TestParamInfo<Reader>& each) {
+        std::string name = each.param.name;
+        std::ranges::replace(name, '.', '_');
+        return name;
+    });
+
+}  // namespace
+}  // namespace palpate::fuzz
