@@ -2,6 +2,7 @@
 
 #include <filesystem>
 
+#include "mesh/io/vtk_files.h"
 #include "skeleton/model.h"
 
 namespace palpate::skeleton {
@@ -15,7 +16,7 @@ Model read_model(const std::filesystem::path& file);
 void write_model(const std::filesystem::path& file, const Model& model);
 
 /// Spheres (with radius and mass) and links (with stiffness) as one .vtp for ParaView: points carry "radius [mm]",
-/// lines "elongation [N/mm]", "flexion [N*mm/rad]", "torsion [N*mm/rad]".
-void write_model_vtp(const std::filesystem::path& file, const Model& model);
+/// lines "elongation [N/mm]", "flexion [N*mm/rad]", "torsion [N*mm/rad]". `more`: arrays of spheres and links besides.
+void write_model_vtp(const std::filesystem::path& file, const Model& model, const mesh::MeshData& more = {});
 
 }  // namespace palpate::skeleton

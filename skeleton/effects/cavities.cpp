@@ -33,8 +33,9 @@ double enclosed(const mesh::Surface& surface, const std::vector<int>& triangles)
 
 }  // namespace
 
-Cavities::Cavities(const Model& model) : rest_(rest_state(model)) {
-    if (model.skin.empty()) return;
+std::vector<std::array<int, 3>> cavity_walls(const Model& model) {
+    std::vector<std::array<int, 3>> walls;
+    if (model.skin.empty()) return walls;
     const std::vector<int> number = mesh::connected_parts(model.surface);
     std::vector<std::vector<int>> parts;
     for (int t = 0; t < static_cast<int>(number.size()); ++t) {
@@ -45,9 +46,16 @@ Cavities::Cavities(const Model& model) : rest_(rest_state(model)) {
         if (!is_closed(model.surface, part) || !(enclosed(model.surface, part) < 0)) continue;
         for (const int t : part) {
             const auto corners = model.surface.triangles.row(t);
-            walls_.push_back({model.skin[corners[0]], model.skin[corners[1]], model.skin[corners[2]]});
-            origin_ += model.surface.vertices.row(corners[0]).transpose();
+            walls.push_back({corners[0], corners[1], corners[2]});
         }
+    }
+    return walls;
+}
+
+Cavities::Cavities(const Model& model) : rest_(rest_state(model)) {
+    for (const std::array<int, 3>& wall : cavity_walls(model)) {
+        walls_.push_back({model.skin[wall[0]], model.skin[wall[1]], model.skin[wall[2]]});
+        origin_ += model.surface.vertices.row(wall[0]).transpose();
     }
     if (!walls_.empty()) origin_ /= static_cast<double>(walls_.size());
 }

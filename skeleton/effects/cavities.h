@@ -7,6 +7,10 @@
 
 namespace palpate::skeleton {
 
+/// The triangles of the walls of a skin's closed cavities, by their corners on it, counter-clockwise seen from the
+/// body.
+std::vector<std::array<int, 3>> cavity_walls(const Model& model);
+
 /// What a skeleton's skin encloses: the volume V of its closed cavities, as the spheres carry their walls, and its
 /// derivatives by a step. A cavity is a part of the skin, joined at edges and without a border, that encloses a
 /// negative volume by its outward orientation.

@@ -133,7 +133,7 @@ std::string to_text(const Model& model) {
 
 void write_model(const std::filesystem::path& file, const Model& model) { mesh::write_text(file, to_text(model)); }
 
-void write_model_vtp(const std::filesystem::path& file, const Model& model) {
+void write_model_vtp(const std::filesystem::path& file, const Model& model, const mesh::MeshData& more) {
     const auto n = static_cast<Eigen::Index>(model.spheres.size()), m = static_cast<Eigen::Index>(model.links.size());
     Points centers(n, 3);
     Eigen::VectorXd radius(n), mass(n), held(n), volume(n);
@@ -161,6 +161,8 @@ void write_model_vtp(const std::filesystem::path& file, const Model& model) {
     for (int s = 0; s < order.per_link(); ++s)
         data.cells.push_back({std::string(stiffness_names[s]) + " [" + stiffness_units[s] + "]", stiffness.col(s)});
     data.cells.push_back({"zone", zone});
+    data.points.insert(data.points.end(), more.points.begin(), more.points.end());
+    data.cells.insert(data.cells.end(), more.cells.begin(), more.cells.end());
     mesh::write_vtp_lines(file, centers, ends, data);
 }
 

@@ -14,7 +14,7 @@ namespace {
 constexpr double singular = 1e-13;
 
 // Cholesky factor of a block in its lower half; the entry of the first pivot not above `least`, or 6.
-int factor_block(BlockCholesky::Block& A, const BlockCholesky::Vec6& least) {
+int factor_block(PaddedBlock& A, const BlockCholesky::Vec6& least) {
     for (int j = 0; j < 6; ++j) {
         if (!(A(j, j) > least[j])) return j;
         A(j, j) = std::sqrt(A(j, j));
@@ -23,6 +23,13 @@ int factor_block(BlockCholesky::Block& A, const BlockCholesky::Vec6& least) {
             for (int i = k; i < 6; ++i) A(i, k) -= A(i, j) * A(k, j);
     }
     return 6;
+}
+
+void pad(const BlockCholesky::Block& from, PaddedBlock& to) {
+    for (int j = 0; j < 6; ++j) {
+        std::copy_n(from.data() + Eigen::Index{6} * j, 6, to.columns[j]);
+        to.columns[j][6] = to.columns[j][7] = 0;
+    }
 }
 
 }  // namespace
@@ -78,6 +85,8 @@ void BlockCholesky::factor_symbolically(const std::vector<std::array<int, 2>>& c
     }
     matrix_.resize(blocks);
     factor_.resize(blocks);
+    place_.resize(n_);
+    right_hand_.resize(std::size_t{8} * n_);
 }
 
 int BlockCholesky::slot(int row, int column) const {
@@ -99,25 +108,22 @@ void BlockCholesky::add_coupling(int c, const Block& A) {
 }
 
 std::optional<BlockCholesky::BadPivot> BlockCholesky::factor(double shift, const Vec6& scale) {
-    std::vector<Block*> place(n_);  // of each row's block in the column at hand
     for (int j = 0; j < n_; ++j) {
         const Column& column = columns_[j];
         const int size = 1 + static_cast<int>(column.rows.size());
-        Block* const values = factor_.data() + column.first;
-        std::copy_n(matrix_.data() + column.first, size, values);
-        values[0].diagonal() += shift * scale;
-        const Vec6 entries = values[0].diagonal();
-        place[j] = values;
-        for (int i = 1; i < size; ++i) place[column.rows[i - 1]] = values + i;
+        PaddedBlock* const values = factor_.data() + column.first;
+        for (int i = 0; i < size; ++i) pad(matrix_[column.first + i], values[i]);
+        Vec6 entries;
+        for (int i = 0; i < 6; ++i) entries[i] = values->columns[i][i] += shift * scale[i];
+        place_[j] = values;
+        for (int i = 1; i < size; ++i) place_[column.rows[i - 1]] = values + i;
 
         // Left-looking: subtract what the columns before contribute, L_ik L_jk^T.
         for (const int k : touching_[j]) {
             const Column& before = columns_[k];
             const auto start = std::lower_bound(before.rows.begin(), before.rows.end(), j) - before.rows.begin();
-            const Block* L = factor_.data() + before.first + 1 + start;
-            const Block L_jk_transposed = L->transpose();
-            for (size_t i = static_cast<size_t>(start); i < before.rows.size(); ++i, ++L)
-                place[before.rows[i]]->noalias() -= *L * L_jk_transposed;
+            subtract_products(factor_.data() + before.first + 1 + start, before.rows.data() + start,
+                              static_cast<int>(std::ssize(before.rows) - start), place_.data());
         }
 
         const int entry = factor_block(values[0], singular * entries.cwiseAbs());
@@ -125,37 +131,35 @@ std::optional<BlockCholesky::BadPivot> BlockCholesky::factor(double shift, const
             const double pivot = values[0](entry, entry);
             return BadPivot{block_at_[j], entry, pivot >= -singular * std::abs(entries[entry])};
         }
-        for (int i = 1; i < size; ++i)
-            values[0].triangularView<Eigen::Lower>().transpose().solveInPlace<Eigen::OnTheRight>(values[i]);
+        divide_by_transpose(values[0], values + 1, size - 1);
     }
     return std::nullopt;
 }
 
+void BlockCholesky::solve(double* b, double* work) const {
+    for (int p = 0; p < n_; ++p) {
+        std::copy_n(b + Eigen::Index{6} * block_at_[p], 6, work + Eigen::Index{8} * p);
+        work[8 * p + 6] = work[8 * p + 7] = 0;
+    }
+    // L z = b, L^T x = z
+    for (int j = 0; j < n_; ++j) {
+        const Column& column = columns_[j];
+        solve_forward(factor_.data() + column.first, column.rows.data(), static_cast<int>(column.rows.size()), j, work);
+    }
+    for (int j = n_ - 1; j >= 0; --j) {
+        const Column& column = columns_[j];
+        solve_backward(factor_.data() + column.first, column.rows.data(), static_cast<int>(column.rows.size()), j,
+                       work);
+    }
+    for (int p = 0; p < n_; ++p) std::copy_n(work + Eigen::Index{8} * p, 6, b + Eigen::Index{6} * block_at_[p]);
+}
+
+void BlockCholesky::solve(double* b) { solve(b, right_hand_.data()); }
+
 void BlockCholesky::solve(Eigen::MatrixXd& B) const {
     assert(B.rows() == 6 * n_);
-    // The columns are taken in strips, each in elimination order with its six rows of a block side by side.
-    constexpr Eigen::Index width = 8;
-    using Strip = Eigen::Matrix<double, 6, Eigen::Dynamic, Eigen::ColMajor, 6, width>;
-    std::vector<Strip> strips(n_);
-    for (Eigen::Index begin = 0; begin < B.cols(); begin += width) {
-        const Eigen::Index count = std::min(width, B.cols() - begin);
-        for (int p = 0; p < n_; ++p) strips[p] = B.block(Eigen::Index{6} * block_at_[p], begin, 6, count);
-
-        // L z = b
-        for (int j = 0; j < n_; ++j) {
-            const Block* L = factor_.data() + columns_[j].first;
-            L->triangularView<Eigen::Lower>().solveInPlace(strips[j]);
-            for (const int i : columns_[j].rows) strips[i] -= (++L)->lazyProduct(strips[j]);
-        }
-        // L^T x = z
-        for (int j = n_ - 1; j >= 0; --j) {
-            const Block* L = factor_.data() + columns_[j].first;
-            const Block* below = L;
-            for (const int i : columns_[j].rows) strips[j] -= (++below)->transpose().lazyProduct(strips[i]);
-            L->transpose().triangularView<Eigen::Upper>().solveInPlace(strips[j]);
-        }
-        for (int p = 0; p < n_; ++p) B.block(Eigen::Index{6} * block_at_[p], begin, 6, count) = strips[p];
-    }
+    std::vector<double> work(std::size_t{8} * n_);
+    for (Eigen::Index c = 0; c < B.cols(); ++c) solve(B.col(c).data(), work.data());
 }
 
 }  // namespace palpate::skeleton

@@ -5,6 +5,8 @@
 #include <optional>
 #include <vector>
 
+#include "skeleton/solve/block_kernels.h"
+
 namespace palpate::skeleton {
 
 /// Sparse Cholesky factorisation of a symmetric matrix of 6 x 6 blocks: a block a rigid node, a coupling a link.
@@ -30,11 +32,13 @@ public:
         int block, entry;  // of the matrix, entry in 0..5
         bool zero;         // not negative but lost in rounding: the matrix is singular
     };
-    /// Factors matrix + shift diag(scale, scale, ...). Nothing when it is positive definite.
+    /// Factors matrix + shift diag(scale, scale, ...). Nothing when it is positive definite. Allocates nothing.
     std::optional<BadPivot> factor(double shift, const Vec6& scale);
 
     /// Solves in place for the columns of B (6n x p). @pre the last `factor` succeeded.
     void solve(Eigen::MatrixXd& B) const;
+    /// The same for one column b (6n), without allocating.
+    void solve(double* b);
 
 private:
     struct Column {
@@ -44,6 +48,7 @@ private:
 
     void factor_symbolically(const std::vector<std::array<int, 2>>& couplings);
     int slot(int row, int column) const;
+    void solve(double* b, double* work) const;
 
     int n_;
     std::vector<int> position_;               // in the elimination order, of each block
@@ -52,8 +57,11 @@ private:
     std::vector<std::vector<int>> touching_;  // columns k < j with a block at row j, of each j
     std::vector<int> slot_of_diagonal_;
     std::vector<int> slot_of_coupling_;
-    std::vector<char> transposed_;        // couplings that lie above the diagonal in the elimination order
-    std::vector<Block> matrix_, factor_;  // as the columns tell (fill-in included)
+    std::vector<char> transposed_;     // couplings that lie above the diagonal in the elimination order
+    std::vector<Block> matrix_;        // as the columns tell (fill-in included)
+    std::vector<PaddedBlock> factor_;  // the same
+    std::vector<PaddedBlock*> place_;  // work: of each row's block in the column at hand
+    std::vector<double> right_hand_;   // work: of solve (8n)
 };
 
 }  // namespace palpate::skeleton

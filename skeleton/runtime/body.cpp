@@ -1,0 +1,354 @@
+#include "skeleton/runtime/body.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "mesh/errors.h"
+#include "skeleton/model_io.h"
+#include "skeleton/runtime/kernels/motion.h"
+#include "skeleton/runtime/kernels/skinning.h"
+#include "skeleton/runtime/solver.h"
+#include "skeleton/runtime/walk_order.h"
+
+namespace palpate::runtime {
+
+namespace {
+
+std::vector<std::string> what_is_not_played(const skeleton::Model& model) {
+    std::vector<std::string> words;
+    if (model.law == skeleton::Law::linear)
+        words.emplace_back("the model follows the linear law; it is played in large rotation");
+    for (const skeleton::Effect& effect : model.effects) {
+        if (!skeleton::is_body_effect(effect.name))
+            words.push_back(fmt::format("effect '{}' is about the measurement, not the body", effect.name));
+        if (effect.name == "viscosity")
+            words.emplace_back("effect 'viscosity' is not played: the body answers as it does at once");
+        if (effect.name == "volume")
+            words.emplace_back(
+                "effect 'volume' acts on solids alone: a skeleton's volumes have stiffnesses of their own");
+    }
+    return words;
+}
+
+void require_above(const char* what, double value, double least) {
+    if (!(value > least)) throw InvalidInput(fmt::format("{} is {}; it must be above {:g}", what, value, least));
+}
+
+}  // namespace
+
+void BodyOptions::validate() const {
+    if (!(damping_ratio >= 0) || !std::isfinite(damping_ratio))
+        throw InvalidInput(fmt::format("damping_ratio is {}; it must be at least 0", damping_ratio));
+    if (contacts < 0 || contacts > 64)
+        throw InvalidInput(fmt::format("contacts is {}; it must lie in 0 to 64", contacts));
+}
+
+struct Body::Impl {
+    WalkedModel walked;
+    ForceField field;
+    Solver solver;
+    Skinning skinning;
+    MassTable masses;
+    std::vector<std::string> notices;
+    SphereRows rest, pose, start, momentum, velocity, force;
+    std::vector<Contact> contacts;
+    std::vector<Contact*> in_use;   // all contacts, as the solver wants them
+    std::vector<float> skin, bare;  // with the dents, and without
+    std::vector<int> triangles;
+    Damping damping;
+    double stable = 0;  // [s]; 0: not known yet
+    bool held = false;
+    int massless = -1;  // a sphere that moves and has no mass, by its number in the file
+
+    Impl(const skeleton::Model& model, const BodyOptions& options)
+        : walked(in_walk_order(model)),
+          field(walked.model),
+          solver(field, options.contacts),
+          skinning(walked.model),
+          masses(mass_table(walked.model, field.moves())),
+          notices(what_is_not_played(model)),
+          rest(rest_rows(walked.model)),
+          contacts(options.contacts) {
+        pose = start = rest;
+        for (SphereRows* rows : {&momentum, &velocity, &force}) rows->assign(rest.size(), 0.0);
+        for (Contact& contact : contacts) in_use.push_back(&contact);
+        bare.resize(3 * walked.model.skin.size());
+        skin = bare;
+        triangles.assign(model.surface.triangles.data(),
+                         model.surface.triangles.data() + model.surface.triangles.size());
+        for (std::size_t i = 0; i < model.spheres.size(); ++i) {
+            const bool moves = field.moves()[walked.place[i]] != 0;
+            held = held || !moves || model.spheres[i].held;
+            const bool heavy = model.spheres[i].mass > 0 && model.spheres[i].inertia.determinant() > 0;
+            if (moves && !heavy && massless < 0) massless = static_cast<int>(i);
+        }
+        if (massless < 0 && held && options.damping_ratio > 0) {
+            const double softest = solver.softest_mode(rest.data());
+            if (softest > 0) damping.beta = 2 * options.damping_ratio / softest;
+        }
+    }
+
+    void require_masses() const {
+        if (massless < 0) return;
+        throw InvalidInput(fmt::format(
+            "sphere {} moves and has no mass, or no inertia; motion needs one: give it a 'mass' above 0", massless));
+    }
+    void require_time(double h) const {
+        if (!(h > 0) || !std::isfinite(h)) throw InvalidInput(fmt::format("the step is {} s; it must be above 0", h));
+        require_masses();
+    }
+    Contact& contact(int number) {
+        if (number < 0 || number >= static_cast<int>(contacts.size()) || !contacts[number].used)
+            throw InvalidInput(fmt::format("contact {} is not in use; touch() gives contacts their numbers", number));
+        contacts[number].at.place(pose.data());
+        return contacts[number];
+    }
+    int row(int sphere) const {
+        if (sphere < 0 || sphere >= static_cast<int>(walked.place.size()))
+            throw InvalidInput(fmt::format("sphere {} does not exist; spheres are numbered from 0 to {}", sphere,
+                                           walked.place.size() - 1));
+        return row_length * walked.place[sphere];
+    }
+
+    // Forces where it stands, with those of contacts; rates by the momenta.
+    void evaluate() {
+        Rates rates;
+        if (damping.beta > 0) {
+            velocities(masses, momentum.data(), pose.data(), velocity.data());
+            rates = {velocity.data(), damping.beta};
+        }
+        field.evaluate(pose.data(), rates, force.data());
+        for (Contact& contact : contacts) {
+            if (!contact.used || contact.does == Contact::Does::nothing) continue;
+            contact.at.place(pose.data());
+            contact.at.pull_back(contact.force(), [&](int sphere, const Vec3& f, const Vec3& t) {
+                Eigen::Map<Vec3>(force.data() + row_length * sphere) += f;
+                Eigen::Map<Vec3>(force.data() + row_length * sphere + 4) += t;
+            });
+        }
+    }
+
+    // Momenta of a sphere that moves by v and w.
+    void set_momentum(int place, const Vec3& v, const Vec3& w) {
+        const skeleton::Sphere& sphere = walked.model.spheres[place];
+        const Eigen::Map<const Eigen::Vector4d> q(pose.data() + row_length * place + 4);
+        const Mat3 R = Eigen::Quaterniond(Eigen::Vector4d(q)).toRotationMatrix();
+        Eigen::Map<Vec3> p(momentum.data() + row_length * place), L(momentum.data() + row_length * place + 4);
+        p = sphere.mass * v;
+        L = R * (sphere.inertia * (R.transpose() * w));
+    }
+
+    // Velocities and momenta of a step of h from `start` to `pose`.
+    void set_momenta(double h) {
+        for (std::size_t i = 0; i < walked.model.spheres.size(); ++i) {
+            if (!field.moves()[i]) continue;
+            const double *from = start.data() + row_length * i, *to = pose.data() + row_length * i;
+            const Eigen::Quaterniond q_from(Eigen::Map<const Eigen::Vector4d>(from + 4)),
+                q_to(Eigen::Map<const Eigen::Vector4d>(to + 4));
+            const Vec3 w = skeleton::rotation_vector((q_to * q_from.conjugate()).toRotationMatrix()) / h;
+            set_momentum(static_cast<int>(i), (Eigen::Map<const Vec3>(to) - Eigen::Map<const Vec3>(from)) / h, w);
+        }
+    }
+
+    [[noreturn]] void fail(const char* what, const Solver::Report& report) const {
+        throw SolverFailure(
+            fmt::format("no {} found in {} Newton steps: {:.3g} N were left; lower the forces or raise the stiffness",
+                        what, report.iterations, report.residual));
+    }
+};
+
+Body::Body(const std::filesystem::path& model, const BodyOptions& options)
+    : Body(skeleton::read_model(model), options) {}
+Body::Body(const skeleton::Model& model, const BodyOptions& options) {
+    options.validate();
+    impl_ = std::make_unique<Impl>(model, options);
+}
+Body::~Body() = default;
+Body::Body(Body&&) noexcept = default;
+Body& Body::operator=(Body&&) noexcept = default;
+
+const std::vector<std::string>& Body::notices() const { return impl_->notices; }
+int Body::sphere_count() const { return static_cast<int>(impl_->walked.model.spheres.size()); }
+int Body::link_count() const { return static_cast<int>(impl_->walked.model.links.size()); }
+int Body::vertex_count() const { return static_cast<int>(impl_->walked.model.skin.size()); }
+
+void Body::reset() {
+    impl_->pose = impl_->rest;
+    std::ranges::fill(impl_->momentum, 0.0);
+    for (Contact& contact : impl_->contacts) contact.used = false;
+    impl_->solver.forget_contacts();
+    impl_->field.forget_flow();
+}
+
+Eigen::Vector3d Body::position(int sphere) const {
+    return Eigen::Map<const Vec3>(impl_->pose.data() + impl_->row(sphere));
+}
+
+Eigen::Quaterniond Body::orientation(int sphere) const {
+    return Eigen::Quaterniond(Eigen::Map<const Eigen::Vector4d>(impl_->pose.data() + impl_->row(sphere) + 4));
+}
+
+void Body::set_pose(int sphere, const Eigen::Vector3d& position, const Eigen::Quaterniond& orientation) {
+    double* row = impl_->pose.data() + impl_->row(sphere);
+    std::copy_n(position.data(), 3, row);
+    std::copy_n(orientation.normalized().coeffs().data(), 4, row + 4);
+}
+
+void Body::set_velocity(int sphere, const Eigen::Vector3d& linear, const Eigen::Vector3d& angular) {
+    impl_->require_masses();
+    impl_->set_momentum(impl_->row(sphere) / row_length, linear, angular);
+}
+
+Energy Body::energy() {
+    Impl& own = *impl_;
+    const double kinetic = velocities(own.masses, own.momentum.data(), own.pose.data(), own.velocity.data());
+    return {kinetic, own.field.evaluate(own.pose.data(), {}, own.force.data())};
+}
+
+Momenta Body::momenta() const {
+    Momenta sum{Vec3::Zero(), Vec3::Zero()};
+    for (std::size_t i = 0; i < impl_->walked.model.spheres.size(); ++i) {
+        if (!impl_->field.moves()[i]) continue;
+        const Eigen::Map<const Vec3> x(impl_->pose.data() + row_length * i);
+        const Eigen::Map<const Vec3> p(impl_->momentum.data() + row_length * i);
+        const Eigen::Map<const Vec3> L(impl_->momentum.data() + row_length * i + 4);
+        sum.linear += p;
+        sum.angular += x.cross(p) + L;
+    }
+    return sum;
+}
+
+const std::vector<float>& Body::skin() {
+    Impl& own = *impl_;
+    own.skinning.follow(own.pose.data(), own.bare.data());
+    std::ranges::copy(own.bare, own.skin.begin());
+    for (Contact& contact : own.contacts) {
+        if (!contact.used || contact.dented.empty()) continue;
+        contact.at.place(own.pose.data());
+        add_dent(own.walked.model, contact, own.skin);
+    }
+    return own.skin;
+}
+
+const std::vector<int>& Body::triangles() const { return impl_->triangles; }
+
+void Body::set_gravity(const Eigen::Vector3d& g) { impl_->field.set_gravity(g); }
+
+int Body::touch(const Eigen::Vector3d& point, double radius) {
+    Impl& own = *impl_;
+    if (own.triangles.empty() || own.bare.empty())
+        throw InvalidInput("the model has no skin that could be touched: give it one");
+    const auto free = std::ranges::find(own.contacts, false, &Contact::used);
+    if (free == own.contacts.end())
+        throw InvalidInput(
+            fmt::format("all {} contacts are in use; release one, or make the body with more", own.contacts.size()));
+    own.skinning.follow(own.pose.data(), own.bare.data());
+    place_contact(own.walked.model, own.bare, own.pose.data(), point, radius, *free);
+    return static_cast<int>(free - own.contacts.begin());
+}
+
+void Body::release(int contact) {
+    impl_->contact(contact).used = false;
+    impl_->solver.forget_contacts();
+}
+
+void Body::push(int contact, const Eigen::Vector3d& force) {
+    Contact& own = impl_->contact(contact);
+    if (own.does == Contact::Does::drag) impl_->solver.forget_contacts();
+    own.does = Contact::Does::push;
+    own.dead = force;
+}
+
+void Body::drag(int contact, const Eigen::Vector3d& to, double stiffness) {
+    require_above("the stiffness of a drag", stiffness, 0);
+    Contact& own = impl_->contact(contact);
+    if (own.does != Contact::Does::drag || own.stiffness != stiffness) impl_->solver.forget_contacts();
+    own.does = Contact::Does::drag;
+    own.target = to;
+    own.stiffness = stiffness;
+}
+
+Eigen::Vector3d Body::force(int contact) { return impl_->contact(contact).force(); }
+Eigen::Vector3d Body::place(int contact) { return impl_->contact(contact).at.x(); }
+
+void Body::set_damping(const Damping& damping) {
+    if (!(damping.alpha >= 0) || !(damping.beta >= 0))
+        throw InvalidInput(
+            fmt::format("damping is {} 1/s and {} s; both must be at least 0", damping.alpha, damping.beta));
+    impl_->damping = damping;
+    impl_->stable = 0;
+}
+
+const Damping& Body::damping() const { return impl_->damping; }
+
+// h <= 2 / w for a mode of frequency w without damping; with the ratio zeta = beta w / 2, as rates are those of the
+// last half step, h <= 2 / w (sqrt(1 + zeta^2) - zeta). The power method comes from below: a twentieth is kept back.
+double Body::stable_step() {
+    Impl& own = *impl_;
+    own.require_masses();
+    if (own.stable == 0) {
+        const double w = own.solver.stiffest_mode(own.rest.data()), zeta = 0.5 * own.damping.beta * w;
+        own.stable = 0.95 * 2 / (w * (std::sqrt(1 + zeta * zeta) + zeta));
+    }
+    return own.stable;
+}
+
+void Body::step_explicit(double h, int steps) {
+    Impl& own = *impl_;
+    own.require_time(h);
+    if (steps < 1) return;
+    const double dies = std::exp(-own.damping.alpha * h);
+    drift(own.masses, 0.5 * h, own.momentum.data(), own.pose.data());
+    for (int i = 0; i < steps; ++i) {
+        own.evaluate();
+        kick(h, own.force, own.momentum.data());
+        if (own.damping.alpha > 0) {
+            for (double& p : own.momentum) p *= dies;
+        }
+        drift(own.masses, i + 1 < steps ? h : 0.5 * h, own.momentum.data(), own.pose.data());
+        own.field.settle(own.pose.data());
+    }
+}
+
+void Body::step_implicit(double h) {
+    Impl& own = *impl_;
+    own.require_time(h);
+    velocities(own.masses, own.momentum.data(), own.pose.data(), own.velocity.data());
+    std::ranges::copy(own.pose, own.start.begin());
+    Solver::Step step;
+    step.h = h;
+    step.alpha = own.damping.alpha;
+    step.beta = own.damping.beta;
+    step.tolerance = 1e-6;
+    step.reuse = true;
+    const Solver::Report report = own.solver.solve(step, own.in_use, own.start.data(), own.velocity.data(), own.pose);
+    if (!report.found) {
+        std::ranges::copy(own.start, own.pose.begin());
+        own.fail("state at the end of the step", report);
+    }
+    own.set_momenta(h);
+    own.field.settle(own.pose.data());
+}
+
+EquilibriumReport Body::equilibrium() {
+    Impl& own = *impl_;
+    if (!own.held)
+        throw SolverFailure("nothing holds the body, so it comes to rest nowhere: let a support hold a sphere");
+    std::ranges::copy(own.pose, own.start.begin());
+    Solver::Step step;
+    step.iterations = 200;
+    step.reuse = true;
+    const Solver::Report report = own.solver.solve(step, own.in_use, nullptr, nullptr, own.pose);
+    if (!report.found) {
+        std::ranges::copy(own.start, own.pose.begin());
+        own.fail("equilibrium", report);
+    }
+    std::ranges::fill(own.momentum, 0.0);
+    own.field.settle(own.pose.data());
+    return {report.iterations, report.residual};
+}
+
+}  // namespace palpate::runtime

@@ -1,0 +1,365 @@
+#include "skeleton/runtime/solver.h"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+
+#include "skeleton/links/turning_curvature.h"
+#include "skeleton/state.h"
+
+namespace palpate::runtime {
+
+namespace {
+
+Eigen::Map<const Vec3> place(const double* rows, int sphere) {
+    return Eigen::Map<const Vec3>(rows + row_length * sphere);
+}
+Eigen::Map<const Vec3> turning(const double* rows, int sphere) {
+    return Eigen::Map<const Vec3>(rows + row_length * sphere + 4);
+}
+Eigen::Quaterniond orientation(const double* rows, int sphere) {
+    return Eigen::Quaterniond(Eigen::Map<const Eigen::Vector4d>(rows + row_length * sphere + 4));
+}
+Mat3 turned_by(const double* rows, int sphere) { return orientation(rows, sphere).toRotationMatrix(); }
+
+Eigen::Quaterniond turn_of(const Vec3& w) {
+    const double half = 0.5 * w.norm();
+    const double sinc = half > 1e-9 ? std::sin(half) / half : 1.0;
+    const Vec3 v = 0.5 * sinc * w;
+    return {std::cos(half), v.x(), v.y(), v.z()};
+}
+
+}  // namespace
+
+Solver::Solver(ForceField& field, int contacts) : field_(field), matrix_(0, {}) {
+    const skeleton::Model& model = field.model();
+    const int n = static_cast<int>(model.spheres.size());
+    for (int i = 0; i < n; ++i) {
+        block_of_.push_back(field.moves()[i] ? static_cast<int>(free_.size()) : -1);
+        if (field.moves()[i]) free_.push_back(i);
+        const Eigen::SelfAdjointEigenSolver<Mat3> principal(model.spheres[i].inertia);
+        axes_.push_back(principal.eigenvectors());
+        spread_.emplace_back(0.5 * principal.eigenvalues().sum() - principal.eigenvalues().array());
+    }
+    double sum = 0;
+    for (const skeleton::Link& link : model.links) sum += link.length;
+    if (!model.links.empty()) length_ = sum / static_cast<double>(model.links.size());
+    metric_ << 1, 1, 1, length_ * length_, length_ * length_, length_ * length_;
+
+    std::vector<std::array<int, 2>> couplings;
+    for (const auto& [a, b] : field.pairs()) {
+        const bool coupled = a != b && block_of_[a] >= 0 && block_of_[b] >= 0;
+        coupling_of_.push_back(coupled ? static_cast<int>(couplings.size()) : -1);
+        if (coupled) couplings.push_back({block_of_[a], block_of_[b]});
+    }
+    matrix_ = skeleton::BlockCholesky(static_cast<int>(free_.size()), couplings);
+
+    const auto size = static_cast<Eigen::Index>(6 * free_.size());
+    for (Vector* v : {&net_, &way_, &there_}) v->setZero(size);
+    const std::size_t rows = static_cast<std::size_t>(row_length) * row_count(model);
+    for (SphereRows* r : {&force_, &velocity_, &trial_}) r->assign(rows, 0.0);
+    x_predicted_.resize(n);
+    R_predicted_.resize(n);
+    springs_.resize(contacts);
+    Y_.setZero(size, Eigen::Index{3} * contacts);
+    S_.setZero(Eigen::Index{3} * contacts, Eigen::Index{3} * contacts);
+    Pz_.setZero(Eigen::Index{3} * contacts);
+}
+
+// Where the spheres would be without forces. The drag alpha divides velocities by 1 + alpha h, and multiplies masses.
+void Solver::predict(const Step& step, const double* start, const double* velocity) {
+    const double share = step.h / (1 + step.alpha * step.h);
+    for (const int i : free_) {
+        x_predicted_[i] = place(start, i) + share * place(velocity, i);
+        R_predicted_[i] = (turn_of(share * turning(velocity, i)) * orientation(start, i)).toRotationMatrix();
+    }
+}
+
+void Solver::set_rates(const Step& step, const double* start, const double* pose) {
+    for (const int i : free_) {
+        const Mat3 turn = turned_by(pose, i) * turned_by(start, i).transpose();
+        Eigen::Map<Vec3> v(velocity_.data() + row_length * i), w(velocity_.data() + row_length * i + 4);
+        v = (place(pose, i) - place(start, i)) / step.h;
+        w = skeleton::rotation_vector(turn) / step.h;
+    }
+}
+
+// Inertia is a potential: 1/2 m |x - x*|^2 / h^2, and the same of the mass along the principal axes u_j at moments J_j,
+// sum_j 1/2 J_j |u_j - u_j*|^2 / h^2, whose torque is sum_j J_j u_j x u_j* / h^2.
+void Solver::balance(const Step& step, const std::vector<Contact*>& contacts, const double* start, const double* pose,
+                     Vector& net) {
+    Rates rates;
+    if (step.h > 0 && step.beta > 0) {
+        set_rates(step, start, pose);
+        rates = {velocity_.data(), step.beta};
+    }
+    field_.evaluate(pose, rates, force_.data());
+    for (Contact* contact : contacts) {
+        if (!contact->used) continue;
+        contact->at.place(pose);
+        contact->at.pull_back(contact->force(), [&](int sphere, const Vec3& force, const Vec3& torque) {
+            Eigen::Map<Vec3>(force_.data() + row_length * sphere) += force;
+            Eigen::Map<Vec3>(force_.data() + row_length * sphere + 4) += torque;
+        });
+    }
+    const double by = step.h > 0 ? (1 + step.alpha * step.h) / (step.h * step.h) : 0;
+    for (std::size_t f = 0; f < free_.size(); ++f) {
+        const int i = free_[f];
+        auto own = net.segment<6>(static_cast<Eigen::Index>(6 * f));
+        own << place(force_.data(), i), turning(force_.data(), i);
+        if (by == 0) continue;
+        own.head<3>() -= by * field_.model().spheres[i].mass * (place(pose, i) - x_predicted_[i]);
+        const Mat3 u = turned_by(pose, i) * axes_[i], to = R_predicted_[i] * axes_[i];
+        for (int j = 0; j < 3; ++j) own.tail<3>() += by * spread_[i][j] * u.col(j).cross(to.col(j));
+    }
+}
+
+void Solver::assemble(double share, const double* pose) {
+    const std::vector<ForceField::Block>& K = field_.curvature(pose);
+    matrix_.set_zero();
+    stiffest_ = 0;
+    for (std::size_t p = 0; p < K.size(); ++p) {
+        const auto [a, b] = field_.pairs()[p];
+        if (coupling_of_[p] >= 0) matrix_.add_coupling(coupling_of_[p], share * K[p]);
+        if (a != b || block_of_[a] < 0) continue;
+        matrix_.add_diagonal(block_of_[a], share * K[p]);
+        stiffest_ = std::max(stiffest_, share * K[p].diagonal().cwiseQuotient(metric_).maxCoeff());
+    }
+}
+
+// Factors the tangent with the least shift tried, from `shift` upwards, that makes it positive definite.
+bool Solver::factor(const Step& step, const double* pose, double& shift) {
+    factored_ = false;
+    assemble(step.h > 0 ? 1 + step.beta / step.h : 1, pose);
+    const double by = step.h > 0 ? (1 + step.alpha * step.h) / (step.h * step.h) : 0;
+    for (std::size_t f = 0; by > 0 && f < free_.size(); ++f) {
+        const int i = free_[f];
+        ForceField::Block inertia = ForceField::Block::Zero();
+        inertia.topLeftCorner<3, 3>().diagonal().setConstant(by * field_.model().spheres[i].mass);
+        const Mat3 u = turned_by(pose, i) * axes_[i], to = R_predicted_[i] * axes_[i];
+        for (int j = 0; j < 3; ++j) {
+            inertia.bottomRightCorner<3, 3>() -= by * spread_[i][j] * skeleton::turning_curvature(to.col(j), u.col(j));
+        }
+        matrix_.add_diagonal(static_cast<int>(f), inertia);
+    }
+    while (matrix_.factor(shift, metric_)) {
+        shift = std::max(10 * shift, 1e-4 * stiffest_);
+        if (!(shift < 1e8 * stiffest_)) return false;
+    }
+    factored_ = true;
+    factored_h_ = step.h;
+    factored_alpha_ = step.alpha;
+    factored_beta_ = step.beta;
+    contacts_known_ = false;
+    return true;
+}
+
+Vec3 Solver::along(const Spring& spring, const double* z) const {
+    Vec3 sum = Vec3::Zero();
+    for (int s = 0; s < spring.contact->at.shares(); ++s) {
+        const int block = block_of_[spring.contact->at.sphere(s)];
+        if (block >= 0) sum += spring.by_share[s] * Eigen::Map<const Eigen::Matrix<double, 6, 1>>(z + 6L * block);
+    }
+    return sum;
+}
+
+void Solver::couple_contacts(const std::vector<Contact*>& contacts, const double* pose) {
+    contacts_known_ = true;
+    sprung_ = 0;
+    for (Contact* contact : contacts) {
+        if (!contact->used || contact->does != Contact::Does::drag) continue;
+        Spring& spring = springs_[sprung_];
+        spring.contact = contact;
+        contact->at.place(pose);
+        contact->at.jacobians(spring.by_share);
+        for (int axis = 0; axis < 3; ++axis) {
+            auto column = Y_.col(3 * sprung_ + axis);
+            column.setZero();
+            for (int s = 0; s < contact->at.shares(); ++s) {
+                const int block = block_of_[contact->at.sphere(s)];
+                if (block >= 0) column.segment<6>(6L * block) += spring.by_share[s].row(axis).transpose();
+            }
+            matrix_.solve(column.data());
+        }
+        ++sprung_;
+    }
+    const Eigen::Index size = 3L * sprung_;
+    if (size == 0) return;
+    auto S = S_.topLeftCorner(size, size);
+    for (int s = 0; s < sprung_; ++s) {
+        for (Eigen::Index c = 0; c < size; ++c) S.col(c).segment<3>(3L * s) = along(springs_[s], Y_.col(c).data());
+        S.diagonal().segment<3>(3L * s).array() += 1 / springs_[s].contact->stiffness;
+    }
+    Eigen::LLT<Eigen::Ref<Eigen::MatrixXd>> in_place(S);
+}
+
+// way_ <- (A + P^T k P)^-1 net_ = z - Y (k^-1 + P Y)^-1 P z,  z = A^-1 net_.
+void Solver::correct() {
+    way_ = net_;
+    matrix_.solve(way_.data());
+    const Eigen::Index size = 3L * sprung_;
+    if (size == 0) return;
+    for (int s = 0; s < sprung_; ++s) Pz_.segment<3>(3L * s) = along(springs_[s], way_.data());
+    const auto L = S_.topLeftCorner(size, size);
+    auto z = Pz_.head(size);
+    L.triangularView<Eigen::Lower>().solveInPlace(z);
+    L.transpose().triangularView<Eigen::Upper>().solveInPlace(z);
+    for (Eigen::Index c = 0; c < size; ++c) way_ -= z[c] * Y_.col(c);
+}
+
+// No sphere turns by more than half a radian at once, no link's ends part by more than half its length.
+double Solver::step_limit() const {
+    double times_too_long = 1;
+    const auto moved = [&](int sphere) -> Vec3 {
+        if (block_of_[sphere] < 0) return Vec3::Zero();
+        return way_.segment<3>(6L * block_of_[sphere]);
+    };
+    for (std::size_t f = 0; f < free_.size(); ++f) {
+        times_too_long = std::max(times_too_long, way_.segment<3>(static_cast<Eigen::Index>(6 * f + 3)).norm() / 0.5);
+    }
+    for (const skeleton::Link& link : field_.model().links) {
+        times_too_long = std::max(times_too_long, (moved(link.b) - moved(link.a)).norm() / (0.5 * link.length));
+    }
+    return 1 / times_too_long;
+}
+
+void Solver::move(const double* from, double share, double* to) const {
+    for (std::size_t f = 0; f < free_.size(); ++f) {
+        const int i = free_[f];
+        const auto step = way_.segment<6>(static_cast<Eigen::Index>(6 * f));
+        const Eigen::Quaterniond turned = turn_of(share * step.tail<3>()) * orientation(from, i);
+        Eigen::Map<Vec3> x(to + row_length * i);
+        Eigen::Map<Eigen::Vector4d> q(to + row_length * i + 4);
+        x = place(from, i) + share * step.head<3>();
+        q = turned.coeffs().normalized();
+    }
+}
+
+double Solver::largest(const Vector& v, double of_turns) const {
+    double most = 0;
+    for (Eigen::Index i = 0; i < v.size(); i += 6) {
+        const double size = std::max(v.segment<3>(i).norm(), of_turns * v.segment<3>(i + 3).norm());
+        if (!(size <= most)) most = size;  // not a number is the largest
+    }
+    return most;
+}
+
+Solver::Report Solver::solve(const Step& step, const std::vector<Contact*>& contacts, const double* start,
+                             const double* velocity, SphereRows& pose) {
+    Report report;
+    if (step.h > 0) predict(step, start, velocity);
+    trial_ = pose;
+    balance(step, contacts, start, pose.data(), net_);
+    bool fresh = false;
+    bool due = !step.reuse || !factored_ || factored_h_ != step.h || factored_alpha_ != step.alpha ||
+               factored_beta_ != step.beta;
+    double shift = 0, last = 0;
+    for (; report.iterations < step.iterations; ++report.iterations) {
+        report.residual = largest(net_, 1 / length_);
+        if (due) {
+            if (!factor(step, pose.data(), shift)) return report;
+            ++report.factorisations;
+        }
+        fresh = due;
+        due = false;
+        if (!contacts_known_) couple_contacts(contacts, pose.data());
+        correct();
+        const double size = largest(way_, length_);
+        if (!std::isfinite(size)) return report;
+        const bool slow = step.reuse && report.iterations > 0 && size > 0.3 * last;
+        if (slow && !fresh) {
+            due = true;
+            continue;
+        }
+        last = size;
+
+        // The slope of the potential along the step is to fall by half at least, or go on falling.
+        const double slope = net_.dot(way_);
+        const bool small = size <= 1e-7 * length_;
+        double share = step_limit();
+        bool falls = false;
+        for (int halving = 0; halving < 12 && !falls; ++halving, share /= 2) {
+            move(pose.data(), share, trial_.data());
+            balance(step, contacts, start, trial_.data(), there_);
+            const double there = there_.dot(way_);
+            falls = small || there >= -0.5 * std::abs(slope);
+        }
+        if (!falls) {
+            if (fresh) shift = std::max(10 * shift, 1e-4 * stiffest_);
+            if (!(shift < 1e8 * stiffest_)) return report;
+            due = true;
+            continue;
+        }
+        pose.swap(trial_);
+        trial_ = pose;
+        net_.swap(there_);
+        if (size <= step.tolerance * length_ && shift == 0) {
+            report.found = true;
+            ++report.iterations;
+            report.residual = largest(net_, 1 / length_);
+            return report;
+        }
+        due = !step.reuse || shift > 0;
+        shift = shift > 1e-3 * stiffest_ ? shift / 10 : 0;
+    }
+    return report;
+}
+
+Solver::Vector Solver::curvature_times(const std::vector<ForceField::Block>& K, const Vector& v) const {
+    Vector sum = Vector::Zero(v.size());
+    for (std::size_t p = 0; p < K.size(); ++p) {
+        const auto [a, b] = field_.pairs()[p];
+        const Eigen::Index i = 6L * block_of_[a], j = 6L * block_of_[b];
+        if (i < 0 || j < 0) continue;
+        sum.segment<6>(i) += K[p] * v.segment<6>(j);
+        if (a != b) sum.segment<6>(j) += K[p].transpose() * v.segment<6>(i);
+    }
+    return sum;
+}
+
+Solver::Vector Solver::mass_times(const double* pose, const Vector& v, bool inverse) const {
+    Vector product = v;
+    for (std::size_t f = 0; f < free_.size(); ++f) {
+        const int i = free_[f];
+        const skeleton::Sphere& sphere = field_.model().spheres[i];
+        const Mat3 R = turned_by(pose, i), inertia = R * sphere.inertia * R.transpose();
+        auto own = product.segment<6>(static_cast<Eigen::Index>(6 * f));
+        own.head<3>() *= inverse ? 1 / sphere.mass : sphere.mass;
+        own.tail<3>() = inverse ? Vec3(inertia.inverse() * own.tail<3>()) : Vec3(inertia * own.tail<3>());
+    }
+    return product;
+}
+
+double Solver::stiffest_mode(const double* pose) {
+    const std::vector<ForceField::Block> K = field_.curvature(pose);
+    Vector v(net_.size());
+    for (Eigen::Index i = 0; i < v.size(); ++i) v[i] = std::sin(1.0 + static_cast<double>(i));
+    double square = 0;
+    for (int iteration = 0; iteration < 200; ++iteration) {  // the power method
+        v.normalize();
+        v = mass_times(pose, curvature_times(K, v), true);
+        square = v.norm();
+    }
+    return std::sqrt(square);
+}
+
+double Solver::softest_mode(const double* pose) {
+    assemble(1, pose);
+    factored_ = false;
+    contacts_known_ = false;
+    if (net_.size() == 0 || matrix_.factor(0, metric_)) return 0;
+    Vector v(net_.size());
+    for (Eigen::Index i = 0; i < v.size(); ++i) v[i] = std::sin(1.0 + static_cast<double>(i));
+    double inverse_square = 0;
+    for (int iteration = 0; iteration < 60; ++iteration) {  // inverse iteration
+        v.normalize();
+        v = mass_times(pose, v, false);
+        matrix_.solve(v.data());
+        inverse_square = v.norm();
+    }
+    return 1 / std::sqrt(inverse_square);
+}
+
+}  // namespace palpate::runtime

@@ -1,0 +1,88 @@
+#pragma once
+
+#include "skeleton/runtime/contacts.h"
+#include "skeleton/runtime/force_field.h"
+#include "skeleton/solve/block_cholesky.h"
+
+namespace palpate::runtime {
+
+/// Newton's method on a body: for equilibria, and for implicit steps, which are equilibria of forces and inertia.
+/// Allocates nothing once it is made.
+class Solver {
+public:
+    struct Step {
+        double h = 0;                // [s]; 0: no inertia, an equilibrium is sought
+        double alpha = 0, beta = 0;  // damping [1/s], [s]
+        double tolerance = 1e-9;     // of the last correction, as a share of the mean link length
+        int iterations = 50;
+        bool reuse = false;  // an old factor, as long as it leads to the answer
+    };
+    struct Report {
+        bool found = false;
+        int iterations = 0, factorisations = 0;
+        double residual = 0;  // [N]
+    };
+
+    Solver(ForceField& field, int contacts);
+
+    /// From `pose` to the answer, in place. `start`, `velocity`: rows at the beginning of a step.
+    Report solve(const Step& step, const std::vector<Contact*>& contacts, const double* start, const double* velocity,
+                 SphereRows& pose);
+    /// A contact was set, taken away or has another stiffness.
+    void forget_contacts() { contacts_known_ = false; }
+
+    /// Angular frequencies of the stiffest and the softest mode at a pose [1/s]; the softest is 0 where nothing holds
+    /// the body. All spheres that move have masses.
+    double stiffest_mode(const double* pose);
+    double softest_mode(const double* pose);
+
+private:
+    using Vector = Eigen::VectorXd;
+
+    /// Net generalized force at a pose (6 free).
+    void balance(const Step& step, const std::vector<Contact*>& contacts, const double* start, const double* pose,
+                 Vector& net);
+    void predict(const Step& step, const double* start, const double* velocity);
+    void set_rates(const Step& step, const double* start, const double* pose);
+    bool factor(const Step& step, const double* pose, double& shift);
+    void assemble(double share, const double* pose);
+    void couple_contacts(const std::vector<Contact*>& contacts, const double* pose);
+    void correct();
+    double step_limit() const;
+    void move(const double* from, double share, double* to) const;
+    double largest(const Vector& v, double of_turns) const;
+    Vector curvature_times(const std::vector<ForceField::Block>& K, const Vector& v) const;
+    Vector mass_times(const double* pose, const Vector& v, bool inverse) const;
+
+    ForceField& field_;
+    double length_ = 1;  // mean of the links [mm]
+    std::vector<int> free_, block_of_;
+    std::vector<int> coupling_of_;  // of each pair of the field, -1: none
+    skeleton::BlockCholesky matrix_;
+    skeleton::BlockCholesky::Vec6 metric_;
+    double stiffest_ = 0;    // entry of the matrix [N/mm]
+    bool factored_ = false;  // for:
+    double factored_h_ = 0, factored_alpha_ = 0, factored_beta_ = 0;
+
+    SphereRows force_, velocity_, trial_;
+    std::vector<Vec3> x_predicted_;
+    std::vector<Mat3> R_predicted_;
+    std::vector<Mat3> axes_;    // principal axes of inertia at rest, columns
+    std::vector<Vec3> spread_;  // second moments of mass along them, half the trace less the inertia [tonne mm^2]
+    Vector net_, way_, there_;  // (6 free)
+
+    // Springs of contacts as a low-rank change: (A + P^T k P)^-1 by A^-1 P^T. [Woodbury]
+    bool contacts_known_ = false;
+    int sprung_ = 0;
+    struct Spring {
+        const Contact* contact = nullptr;
+        std::vector<Eigen::Matrix<double, 3, 6>> by_share;
+    };
+    Vec3 along(const Spring& spring, const double* z) const;  // P z
+    std::vector<Spring> springs_;                             // those in use first
+    Eigen::MatrixXd Y_;                                       // (6 free x 3 contacts)
+    Eigen::MatrixXd S_;  // k^-1 + P Y, or its Cholesky factor (3 contacts x 3 contacts)
+    Vector Pz_;
+};
+
+}  // namespace palpate::runtime

@@ -1,0 +1,83 @@
+#include "skeleton/solve/block_kernels.h"
+
+#include "skeleton/lanes.h"
+
+namespace palpate::skeleton {
+
+using namespace lanewise;
+
+PALPATE_CLONES void subtract_products(const PaddedBlock* L, const int* rows, int count, PaddedBlock* const* place) {
+    const PaddedBlock& by = L[0];
+    for (int i = 0; i < count; ++i) {
+        PaddedBlock& C = *place[rows[i]];
+        Lanes high[6], low[6];
+        for (int c = 0; c < 6; ++c) {
+            high[c] = at(C.columns[c]);
+            low[c] = at(C.columns[c] + lanes);
+        }
+        for (int m = 0; m < 6; ++m) {
+            const Lanes h = at(L[i].columns[m]), l = at(L[i].columns[m] + lanes);
+            for (int c = 0; c < 6; ++c) {
+                high[c] -= h * by.columns[m][c];
+                low[c] -= l * by.columns[m][c];
+            }
+        }
+        for (int c = 0; c < 6; ++c) {
+            put(C.columns[c], high[c]);
+            put(C.columns[c] + lanes, low[c]);
+        }
+    }
+}
+
+PALPATE_CLONES void divide_by_transpose(const PaddedBlock& L, PaddedBlock* A, int count) {
+    double inverse[6];
+    for (int c = 0; c < 6; ++c) inverse[c] = 1 / L.columns[c][c];
+    for (int i = 0; i < count; ++i) {
+        for (int c = 0; c < 6; ++c) {
+            Lanes high = at(A[i].columns[c]), low = at(A[i].columns[c] + lanes);
+            for (int m = 0; m < c; ++m) {
+                high -= at(A[i].columns[m]) * L.columns[m][c];
+                low -= at(A[i].columns[m] + lanes) * L.columns[m][c];
+            }
+            put(A[i].columns[c], high * inverse[c]);
+            put(A[i].columns[c] + lanes, low * inverse[c]);
+        }
+    }
+}
+
+PALPATE_CLONES void solve_forward(const PaddedBlock* L, const int* rows, int count, int j, double* x) {
+    double* own = x + 8L * j;
+    for (int c = 0; c < 6; ++c) {
+        own[c] /= L->columns[c][c];
+        for (int i = c + 1; i < 6; ++i) own[i] -= L->columns[c][i] * own[c];
+    }
+    for (int i = 0; i < count; ++i) {
+        const PaddedBlock& A = L[1 + i];
+        double* to = x + 8L * rows[i];
+        Lanes high{}, low{};
+        for (int m = 0; m < 6; ++m) {
+            high += at(A.columns[m]) * own[m];
+            low += at(A.columns[m] + lanes) * own[m];
+        }
+        put(to, at(to) - high);
+        put(to + lanes, at(to + lanes) - low);
+    }
+}
+
+PALPATE_CLONES void solve_backward(const PaddedBlock* L, const int* rows, int count, int j, double* x) {
+    double* own = x + 8L * j;
+    Lanes sum[6] = {};
+    for (int i = 0; i < count; ++i) {
+        const PaddedBlock& A = L[1 + i];
+        const double* from = x + 8L * rows[i];
+        const Lanes high = at(from), low = at(from + lanes);
+        for (int m = 0; m < 6; ++m) sum[m] += at(A.columns[m]) * high + at(A.columns[m] + lanes) * low;
+    }
+    for (int c = 5; c >= 0; --c) {
+        double value = own[c] - (sum[c][0] + sum[c][1] + sum[c][2] + sum[c][3]);
+        for (int i = c + 1; i < 6; ++i) value -= L->columns[c][i] * own[i];
+        own[c] = value / L->columns[c][c];
+    }
+}
+
+}  // namespace palpate::skeleton
