@@ -3,8 +3,8 @@
 #include <fmt/format.h>
 
 #include "identify/methods/methods.h"
-#include "identify/methods/unlabelled.h"
 #include "identify/set/field.h"
+#include "identify/set/labels/label_readings.h"
 #include "mesh/errors.h"
 
 namespace palpate::identify {
@@ -23,7 +23,7 @@ void IdentifyOptions::validate() const {
 IdentifyResult identify(const skeleton::Model& model, const MeasurementSet& set, const IdentifyOptions& options,
                         const Progress& progress, const UniformFit* near) {
     options.validate();
-    const LabelledSet labelled = label_readings(model, with_markers_of_fields(set), options);
+    const LabelledSet labelled = label_readings(with_markers_of_fields(set));
     const MeasurementSet& readable = labelled.set;
     IdentifyResult result;
     if (options.method == Method::burion2008) {
@@ -33,12 +33,7 @@ IdentifyResult identify(const skeleton::Model& model, const MeasurementSet& set,
     } else {
         result = identify_tempered(model, readable, options, progress, near);
     }
-    if (labelled.matched > 0) {
-        result.notes.push_back(
-            fmt::format("{} unlabelled readings were given the marker that the model finds there", labelled.matched));
-    }
-    if (labelled.left_out > 0)
-        result.notes.push_back(fmt::format("{} unlabelled readings were left out", labelled.left_out));
+    for (const std::string& note : notes(labelled)) result.notes.push_back(note);
     return result;
 }
 

@@ -15,7 +15,7 @@ namespace palpate::identify {
 namespace {
 
 constexpr double first_error = 0.03;  // relative model error to begin with
-constexpr double least_error = 1e-4;  // the model error never falls below it: no model is exact
+constexpr double least_error = 1e-6;  // the model error never falls below it: no model is exact
 // of half the chi^2: a hundredth of a posterior's sd; a tenth where another fit follows
 constexpr FitOptions settled{.tolerance = 1e-4}, nearly{.tolerance = 1e-2, .final_spectrum = false};
 constexpr int steps_with_memory = 8;  // of a fit whose states are lived through

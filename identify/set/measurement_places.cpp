@@ -48,6 +48,13 @@ void check_places(const MeasurementSet& set) {
         if (distance > allowed && (marker.anchor || !inside(place)))
             refuse(fmt::format("markers.csv: {} {}", marker.anchor ? "the anchor of marker" : "marker", marker.id),
                    place, distance, allowed, body);
+        if (marker.anchor && (marker.rest - place).norm() > body.longest_side())
+            throw InvalidInput(
+                fmt::format("markers.csv: marker {} at [{:.4g}] mm stands {:.4g} mm off its anchor at [{:.4g}] mm, "
+                            "further than the "
+                            "body is long ({:.4g} mm). Are both in the same unit and frame?",
+                            marker.id, fmt::join(marker.rest, ", "), (marker.rest - place).norm(),
+                            fmt::join(place, ", "), body.longest_side()));
     }
 }
 

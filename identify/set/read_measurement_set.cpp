@@ -56,18 +56,37 @@ private:
         }
         return set_.states[entry->second];
     }
+    /// @throws InvalidInput where time is negative, or runs backwards within a probe.
+    void check_time(const StateKey& key, const std::string& where);
     Reading read_position(const CsvTable& table, int row) const;
 
     MeasurementSet& set_;
     const SetUnits& units_;
     std::map<StateKey, std::size_t> index_of_;  // of the states
+    std::map<int, double> last_time_;           // of each probe, so far
     std::map<int, int> marker_of_;              // id in the files -> index
 };
+
+void TableReader::check_time(const StateKey& key, const std::string& where) {
+    const auto [probe, time] = key;
+    if (time < 0)
+        throw InvalidInput(fmt::format(
+            "{}, column time: {} is negative. Count time from the beginning of the probe, which is 0.", where, time));
+    const auto [last, is_first] = last_time_.try_emplace(probe, time);
+    if (time < last->second)
+        throw InvalidInput(
+            fmt::format("{}, column time: {} comes after {} in probe {}. Put its rows in the order in which they "
+                        "happened.",
+                        where, time, last->second, probe));
+    last->second = time;
+}
 
 void TableReader::read_probes(const fs::path& file) {
     const CsvTable table(file, {"probe", "time", "x", "y", "z", "fx", "fy", "fz", "radius"});
     for (int row = 0; row < table.rows(); ++row) {
-        LoadState& loaded = state(state_key(table, row));
+        const StateKey key = state_key(table, row);
+        check_time(key, table.where(row));
+        LoadState& loaded = state(key);
         const Vec3 force = units_.force * vector(table, row, {"fx", "fy", "fz"});
         if (force.isZero(0)) continue;  // unloaded, or one contact less
         const double radius = units_.length * table.number(row, "radius");

@@ -9,7 +9,7 @@
 #include "mesh/errors.h"
 #include "mesh/io/region_yaml.h"
 #include "mesh/io/yaml_fields.h"
-#include "mesh/read_surface.h"
+#include "mesh/read_body.h"
 
 namespace palpate::identify {
 
@@ -94,8 +94,9 @@ SetUnits read_set_description(const std::filesystem::path& file, MeasurementSet&
 
     const std::filesystem::path surface = path_inside(fields, "rest_surface", set.folder);
     fields.finish();
-    set.rest_surface = mesh::read_surface(surface);
-    set.rest_surface.vertices *= units.length;
+    const mesh::BodyFile rest = mesh::read_body(surface);
+    set.rest_surface = rest.surface;
+    if (!rest.is_in_mm) set.rest_surface.vertices *= units.length;
     return units;
 }
 

@@ -1,5 +1,4 @@
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <cmath>
 #include <string>
@@ -8,6 +7,7 @@
 #include "mesh/errors.h"
 #include "mesh/io/atomic_file.h"
 #include "mesh/io/region_yaml.h"
+#include "mesh/io/unfinished.h"
 #include "mesh/io/vtk_files.h"
 #include "mesh/io/words.h"
 
@@ -136,7 +136,7 @@ fs::path field_file(const LoadState& state) {
 void write_measurement_set(const fs::path& folder, const MeasurementSet& set,
                            const std::function<void(const fs::path&)>& extra) {
     const fs::path target = fs::absolute(folder / "").parent_path();
-    const fs::path temporary = target.parent_path() / fmt::format(".{}.{}", target.filename().string(), ::getpid());
+    const fs::path temporary = mesh::unfinished_beside(target);
     std::error_code ignored;
     try {
         fs::create_directories(temporary);

@@ -133,6 +133,19 @@ TEST_F(MeasurementSetFiles, AnEmptyRowOfPositionsIsAMissingReading) {
     EXPECT_EQ(read().states[0].readings.size(), 1u);
 }
 
+TEST_F(MeasurementSetFiles, TakeTimesInTheirOrder) {
+    const std::string header = "probe,time,x,y,z,fx,fy,fz,radius\n";
+    EXPECT_TRUE(says(refusal("probes.csv", header + "1,-2,0,10,10,0,0,-1,3\n"),
+                     {"probes.csv, line 2, column time", "-2", "negative"}));
+    EXPECT_TRUE(says(refusal("probes.csv", header + "1,3,0,10,10,0,0,-1,3\n0,0,0,0,0,0,0,0,0\n1,2,0,10,10,0,0,0,3\n"),
+                     {"probes.csv, line 4, column time", "2 comes after 3 in probe 1"}));
+}
+
+TEST_F(MeasurementSetFiles, RefuseAMarkerFarOffItsAnchor) {
+    folder.write("markers.csv", "marker,x,y,z,ax,ay,az\n3,100,10,5000,100,10,20\n7,0,0,0,,,\n");
+    EXPECT_TRUE(says(message_of([&] { read(); }), {"markers.csv", "marker 3", "4980 mm off its anchor"}));
+}
+
 TEST_F(MeasurementSetFiles, AreReadByTheFolderOrItsYaml) {
     EXPECT_EQ(read_measurement_set(folder / "set.yaml").states.size(), 2u);
     EXPECT_TRUE(says(message_of<IoError>([&] { read_measurement_set(folder / "none"); }), {"none", "no such"}));
