@@ -1,8 +1,12 @@
 #include "pipeline/command_line.h"
 
+#include <fmt/format.h>
+
 #include <CLI/CLI.hpp>
 #include <thread>
 
+#include "pipeline/shell/command_tree.h"
+#include "pipeline/verbs/tree.h"
 #include "pipeline/verbs/verbs.h"
 #include "pipeline/version.h"
 
@@ -79,10 +83,21 @@ std::optional<commands::ExitCode> CommandLine::parse(int argc, char** argv) {
     verbs.add_effects(app);
     verbs.add_simulate(app);
     verbs.add_report(app);
+    verbs.add_new(app);
+    verbs.add_info(app);
+    verbs.add_completion(app);
+    verbs.add_man(app);
+    verbs.add_export(app);
     try {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& e) {
-        return app.exit(e) == 0 ? commands::done : commands::wrong_usage;
+        if (e.get_exit_code() == 0) return app.exit(e), commands::done;
+        const std::string slip = slip_in_spelling(tree_of(app), {argv + 1, argv + argc});
+        if (slip.empty())
+            app.exit(e);
+        else
+            fmt::print(stderr, "error: {}\n", slip);
+        return commands::wrong_usage;
     }
     return std::nullopt;
 }

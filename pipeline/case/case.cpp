@@ -3,14 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
-#include <cctype>
 
 #include "identify/diagnose/diagnose.h"
 #include "identify/effects/catalogue.h"
 #include "mesh/errors.h"
 #include "mesh/io/region_yaml.h"
 #include "mesh/io/yaml_fields.h"
+#include "mesh/read_body.h"
 #include "pipeline/case/names.h"
 
 namespace palpate::pipeline {
@@ -131,6 +130,7 @@ Case read_case_file(const YamlFields& yaml) {
     }
     if (yaml.has("unit")) c.unit = unit_in_mm(yaml.choice("unit", {"mm", "cm", "m"}));
     read_if(yaml, "longest", c.longest, [&](auto& key) { return yaml.number(key, 0, 1e9); });
+    read_if(yaml, "label", c.label, [&](auto& key) { return yaml.integer(key, -1'000'000'000, 1'000'000'000); });
     if (yaml.has("supports")) c.supports = mesh::read_regions(yaml, "supports", 1.0);
     if (yaml.has("material")) read_material(yaml.mapping("material"), c);
     if (yaml.has("volume")) read_volume(yaml.mapping("volume"), c);
@@ -142,14 +142,6 @@ Case read_case_file(const YamlFields& yaml) {
     if (yaml.has("seed")) c.identify.seed = static_cast<std::uint64_t>(yaml.integer("seed", 0, 2'000'000'000));
     yaml.finish();
     return c;
-}
-
-bool is_mesh(const fs::path& file) {
-    std::string extension = file.extension().string();
-    std::transform(extension.begin(), extension.end(), extension.begin(),
-                   [](unsigned char ch) { return std::tolower(ch); });
-    constexpr std::array known{".stl", ".obj", ".ply", ".off", ".vtp"};
-    return std::find(known.begin(), known.end(), extension) != known.end();
 }
 
 Case case_of_input(const fs::path& input) {
@@ -165,7 +157,7 @@ Case case_of_input(const fs::path& input) {
             throw InvalidInput(
                 fmt::format("{}: the folder holds neither set.yaml (a measurement set) nor case.yaml", input.string()));
         }
-    } else if (is_mesh(input)) {
+    } else if (mesh::is_body_file(input)) {
         c.mesh = input;
     } else if (input.extension() == ".yaml" || input.extension() == ".yml") {
         const YamlFields yaml = YamlFields::from_file(input);
@@ -175,17 +167,18 @@ Case case_of_input(const fs::path& input) {
     } else {
         throw InvalidInput(
             fmt::format("{}: not a kind of input that is known: give a case.yaml, a measurement set (its "
-                        "folder or set.yaml) or a surface (.stl, .obj, .ply, .off, .vtp)",
-                        input.string()));
+                        "folder or set.yaml) or a body: {}",
+                        input.string(), mesh::body_extensions));
     }
     const fs::path named = c.measurements ? fs::weakly_canonical(*c.measurements) : input;
-    c.name = named.stem().string();
+    c.name = mesh::body_name(named);
     return c;
 }
 
 void override_case(Case& c, const CaseOverrides& say) {
     if (!say.unit.empty()) c.unit = unit_in_mm(say.unit);
     if (say.longest) c.longest = *say.longest;
+    if (say.label) c.label = say.label;
     if (say.young) c.young = say.young;
     if (say.poisson) c.poisson = say.poisson;
     if (say.density) c.density = say.density;

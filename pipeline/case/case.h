@@ -63,6 +63,7 @@ struct Case {
     std::optional<std::filesystem::path> model;     // a skeleton to start from, with measurements; else it is made
     double unit = 1;                                // [mm] per unit of the mesh
     double longest = 0;                             // the mesh is scaled to this longest side [mm]; 0: not
+    std::optional<int> label;                       // of a label image: which of its labels is the body
     std::vector<mesh::Region> supports;             // empty: the set's, or the default clamp
     std::optional<double> young, poisson, density;  // [MPa], [-], [kg/m^3]; absent: the set's, or defaults
     double edge_length = 0;  // of the tetrahedra [mm]; 0: 6 % of the longest side, 7 % where effects are looked for
@@ -78,7 +79,7 @@ struct Case {
 struct CaseOverrides {
     std::string unit;  // mm, cm, m; empty: not said
     std::optional<double> longest, young, poisson, density, edge_length, noise, displacement, coverage;
-    std::optional<int> spheres, zones, probes, markers, particles;
+    std::optional<int> spheres, zones, probes, markers, particles, label;
     std::string parameters, method, domain, links;  // empty: not said
     std::optional<std::uint64_t> seed;
     bool linear_elements = false, no_reference = false;

@@ -47,6 +47,7 @@ std::string input_yaml(const Case& c) {
         text += fmt::format("mesh: {}\n", quoted(std::filesystem::absolute(*c.mesh).lexically_normal().string()));
         text += fmt::format("unit: {}            # of the mesh\n", c.unit == 1 ? "mm" : c.unit == 10 ? "cm" : "m");
         text += fmt::format("longest: {}          # scale the mesh to this longest side [mm]; 0: not\n", c.longest);
+        if (c.label) text += fmt::format("label: {}            # of the label image\n", *c.label);
     } else {
         text += fmt::format("measurements: {}\n",
                             quoted(std::filesystem::absolute(*c.measurements).lexically_normal().string()));

@@ -2,9 +2,14 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <iterator>
+
 #include "identify/set/field.h"
+#include "identify/set/labels/label_readings.h"
+#include "identify/set/plausibility.h"
 #include "mesh/errors.h"
-#include "mesh/read_surface.h"
+#include "mesh/read_body.h"
 #include "pipeline/reference/body.h"
 
 namespace palpate::pipeline {
@@ -12,16 +17,25 @@ namespace {
 
 void read_mesh(Subject& subject) {
     const Case& c = subject.settings;
-    subject.files = {*c.mesh};
-    subject.surface = mesh::read_surface(*c.mesh);
+    mesh::BodyFile read = mesh::read_body(*c.mesh, {c.label});
+    subject.files = read.files;
+    subject.surface = std::move(read.surface);
+    subject.volume = std::move(read.volume);
+    subject.notes = std::move(read.notes);
     const double longest = mesh::bounding_box(subject.surface.vertices).longest_side();
     if (longest <= 0) {
         throw InvalidInput(
             fmt::format("{}: all its vertices are at one place; a body needs an extent", c.mesh->string()));
     }
+    if (read.is_in_mm && c.unit != 1) {
+        throw InvalidInput(fmt::format(
+            "{}: tells its unit itself, and has been converted to mm; leave --unit out ('--longest' scales it)",
+            c.mesh->string()));
+    }
     const double scale = c.longest > 0 ? c.longest / longest : c.unit;
     subject.surface.vertices *= scale;
-    if (c.longest == 0 && c.unit == 1) {
+    if (subject.volume) subject.volume->nodes *= scale;
+    if (c.longest == 0 && c.unit == 1 && !read.is_in_mm) {
         subject.assumptions.push_back(fmt::format(
             "The mesh is taken to be in mm: {:.4g} mm at its longest (--unit or --longest say otherwise).", longest));
     }
@@ -29,7 +43,7 @@ void read_mesh(Subject& subject) {
 
 void read_set(Subject& subject) {
     const Case& c = subject.settings;
-    subject.set = read_measurements(*c.measurements);
+    subject.set = read_measurements(*c.measurements, subject.notes);
     subject.surface = subject.set->rest_surface;
     for (const auto& entry : std::filesystem::recursive_directory_iterator(subject.set->folder)) {
         if (entry.is_regular_file() && entry.path().filename() != "truth.json") subject.files.push_back(entry.path());
@@ -81,8 +95,16 @@ void choose_material(Subject& subject) {
 
 }  // namespace
 
-identify::MeasurementSet read_measurements(const std::filesystem::path& path) {
-    return identify::with_markers_of_fields(identify::read_measurement_set(path));
+identify::MeasurementSet read_measurements(const std::filesystem::path& path, std::vector<std::string>& notes) {
+    identify::LabelledSet labelled =
+        identify::label_readings(identify::with_markers_of_fields(identify::read_measurement_set(path)));
+    std::ranges::transform(identify::notes(labelled), std::back_inserter(notes),
+                           [](const std::string& words) { return words + "."; });
+    std::ranges::copy(identify::implausible(labelled.set), std::back_inserter(notes));
+    for (identify::LoadState& state : labelled.set.states) {
+        std::erase_if(state.readings, [](const identify::Reading& reading) { return reading.marker < 0; });
+    }
+    return std::move(labelled.set);
 }
 
 Subject read_subject(Case settings) {

@@ -8,6 +8,7 @@
 #include "identify/set/measurement_set.h"
 #include "mesh/region.h"
 #include "mesh/surface.h"
+#include "mesh/volume_mesh.h"
 #include "pipeline/case/case.h"
 
 namespace palpate::pipeline {
@@ -17,16 +18,19 @@ namespace palpate::pipeline {
 struct Subject {
     Case settings;
     mesh::Surface surface;
+    std::optional<mesh::VolumeMesh> volume;  // a ready-made mesh of the body, behind that surface
     std::vector<mesh::Region> supports;
     fem::Material material;
     std::optional<identify::MeasurementSet> set;
     std::vector<std::filesystem::path> files;  // that were read
+    std::vector<std::string> notes;            // what was found and done in reading it, in words
     std::vector<std::string> assumptions;      // what nobody said and was assumed, in words
 };
 
-/// A measurement set with readings: where it has full fields only, vertices of its surface are read from them.
+/// A measurement set with readings: where it has full fields only, vertices of its surface are read from them; those
+/// without a marker's name are given one, or left out; `notes` says so, and what hints at a slip of units.
 /// @throws IoError, InvalidInput.
-identify::MeasurementSet read_measurements(const std::filesystem::path& path);
+identify::MeasurementSet read_measurements(const std::filesystem::path& path, std::vector<std::string>& notes);
 
 /// @throws IoError, InvalidInput.
 Subject read_subject(Case settings);

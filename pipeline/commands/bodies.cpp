@@ -2,7 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "identify/effects/catalogue.h"
+#include "identify/set/plausibility.h"
 #include "mesh/errors.h"
 #include "mesh/io/region_yaml.h"
 #include "pipeline/case/subject.h"
@@ -12,12 +15,20 @@
 namespace palpate::pipeline::commands {
 
 ModelAndSet read_model_and_set(const std::filesystem::path& model, const std::filesystem::path& set) {
-    ModelAndSet read{skeleton::read_model(model), read_measurements(set)};
+    std::vector<std::string> notes;
+    ModelAndSet read{skeleton::read_model(model), read_measurements(set, notes)};
+    Console::notices(notes);
     if (mesh::regions_to_yaml(read.model.supports) != mesh::regions_to_yaml(read.set.supports)) {
         Console::notice("The model and the set give different supports: the set's are taken.");
         read.model.supports = read.set.supports;
         for (skeleton::Sphere& sphere : read.model.spheres) {
             sphere.held = mesh::contains(read.set.supports, sphere.center);
+        }
+        if (std::ranges::all_of(read.model.spheres, &skeleton::Sphere::held)) {
+            throw InvalidInput(
+                fmt::format("{}: the supports hold all {} spheres of the model, nothing is left to move. Give "
+                            "'supports' the part that is held, in the set's own unit.",
+                            set.string(), read.model.spheres.size()));
         }
     }
     return read;
@@ -41,6 +52,12 @@ std::unique_ptr<identify::ReferenceBody> reference_of(const identify::Measuremen
         throw InvalidInput("the body cannot be made of finite elements: " + reference.why_none);
     }
     return std::move(reference.body);
+}
+
+void warn_of_modulus(const nlohmann::json& compare, const identify::MeasurementSet& set) {
+    if (!compare["baseline"].is_object()) return;
+    const std::string words = identify::implausible_modulus(compare["baseline"]["young_mpa"], set);
+    if (!words.empty()) Console::warning(words);
 }
 
 identify::DiagnoseOptions diagnose_options(const skeleton::Model& model, const Common& common) {

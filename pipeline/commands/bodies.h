@@ -26,6 +26,9 @@ identify::MeasurementSet understood(const identify::MeasurementSet& set, const s
 /// @throws InvalidInput telling why there is none.
 std::unique_ptr<identify::ReferenceBody> reference_of(const identify::MeasurementSet& set, double edge_length);
 
+/// Says aloud where a fit's Young's modulus hints at a slip of units. `compare`: with the baseline that was fitted.
+void warn_of_modulus(const nlohmann::json& compare, const identify::MeasurementSet& set);
+
 /// Options of a diagnosis of what a model lacks besides the effects that it has.
 identify::DiagnoseOptions diagnose_options(const skeleton::Model& model, const Common& common);
 

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "mesh/io/atomic_file.h"
+#include "mesh/io/vtk_files.h"
 #include "pipeline/case/subject.h"
 #include "pipeline/commands/common.h"
 #include "pipeline/results/results.h"
@@ -12,24 +14,67 @@ namespace {
 std::string describe_set(const identify::MeasurementSet& set) {
     const auto loaded =
         std::count_if(set.states.begin(), set.states.end(), [](auto& s) { return !s.contacts.empty(); });
-    std::size_t readings = 0, unlabelled = 0;
-    for (const auto& state : set.states) {
-        readings += state.readings.size();
-        unlabelled += static_cast<std::size_t>(
-            std::count_if(state.readings.begin(), state.readings.end(), [](auto& r) { return r.marker < 0; }));
-    }
+    std::size_t readings = 0;
+    for (const auto& state : set.states) readings += state.readings.size();
     std::string text = fmt::format("{} states ({} loaded), {} markers, {} readings", set.states.size(), loaded,
                                    set.markers.size(), readings);
-    if (unlabelled) text += fmt::format(" ({} without a label: left out for now)", unlabelled);
     if (!set.position_noise) text += "; no noise is stated";
     return text + ".\n";
 }
 
+/// Where faults of each kind are, the first few of them.
+std::string describe_places(const std::vector<mesh::FaultPlace>& places) {
+    constexpr std::ptrdiff_t told = 3;
+    std::string text;
+    for (auto first = places.begin(); first != places.end();) {
+        const auto end = std::find_if(first, places.end(), [&](auto& place) { return place.fault != first->fault; });
+        text += fmt::format("    {}: at ", mesh::name_of(first->fault));
+        for (auto place = first; place != std::min(first + told, end); ++place) {
+            text += fmt::format("{}({:.4g}, {:.4g}, {:.4g})", place == first ? "" : ", ", place->at.x(), place->at.y(),
+                                place->at.z());
+        }
+        if (end - first > told) text += fmt::format(" and {} more", end - first - told);
+        text += " mm\n";
+        first = end;
+    }
+    return text;
+}
+
+nlohmann::json places_json(const std::vector<mesh::FaultPlace>& places) {
+    constexpr std::size_t most = 1000;  // the rest stands in faults.vtp
+    nlohmann::json list = nlohmann::json::array();
+    for (std::size_t i = 0; i < std::min(places.size(), most); ++i) {
+        const mesh::FaultPlace& place = places[i];
+        list.push_back({{"fault", mesh::name_of(place.fault)},
+                        {"at", {place.at.x(), place.at.y(), place.at.z()}},
+                        {"triangles", place.triangles}});
+    }
+    return list;
+}
+
+/// For ParaView: the surface whose triangles tell their fault, and a point for each.
+void write_faults(const std::filesystem::path& folder, const mesh::Surface& surface,
+                  const std::vector<mesh::FaultPlace>& places) {
+    Eigen::MatrixXd of_triangle = Eigen::MatrixXd::Zero(surface.triangles.rows(), 1);
+    Eigen::MatrixXd of_point(std::ssize(places), 1);
+    Points points(std::ssize(places), 3);
+    for (std::size_t i = 0; i < places.size(); ++i) {
+        const auto code = static_cast<double>(places[i].fault);
+        for (const int t : places[i].triangles) of_triangle(t, 0) = code;
+        of_point(static_cast<Eigen::Index>(i), 0) = code;
+        points.row(static_cast<Eigen::Index>(i)) = places[i].at;
+    }
+    mesh::write_vtp(folder / "surface.vtp", surface, {.points = {}, .cells = {{"fault", of_triangle}}});
+    mesh::write_vtp_lines(folder / "faults.vtp", points, {}, {.points = {{"fault", of_point}}, .cells = {}});
+}
+
 }  // namespace
 
-Outcome check(const CheckOptions& options, const Common&) {
+Outcome check(const CheckOptions& options, const Common& common) {
+    if (!options.output.empty()) refuse_to_overwrite(options.output, common.force);
     const Subject subject = read_subject(read_case(options.input, options.say));
-    const mesh::SurfaceReport surface = mesh::check_surface(subject.surface);
+    std::vector<mesh::FaultPlace> places;
+    const mesh::SurfaceReport surface = mesh::check_surface(subject.surface, &places);
     const std::vector<std::string> faults = mesh::describe_faults(surface);
 
     Outcome outcome;
@@ -40,12 +85,30 @@ Outcome check(const CheckOptions& options, const Common&) {
                     surface.box.extent().z(), surface.volume);
     if (subject.set) outcome.text += describe_set(*subject.set);
     for (const std::string& fault : faults) outcome.text += "  - " + fault + "\n";
+    if (!places.empty()) outcome.text += "  Where:\n" + describe_places(places);
     outcome.text += faults.empty() ? "The surface is sound.\n" : "";
+    for (const std::string& note : subject.notes) outcome.text += "  - " + note + "\n";
     for (const std::string& assumption : subject.assumptions) outcome.text += "  - assumed: " + assumption + "\n";
-    outcome.json = {{"surface", to_json(surface)}, {"faults", faults}, {"assumptions", subject.assumptions}};
+    outcome.json = {
+        {"format", "palpate-check/1"},   {"surface", to_json(surface)}, {"faults", faults},
+        {"places", places_json(places)}, {"notes", subject.notes},      {"assumptions", subject.assumptions}};
+    if (subject.volume) {
+        outcome.json["tetrahedra"] = subject.volume->tetrahedra.rows();
+        outcome.text += fmt::format("A ready-made mesh of {} tetrahedra with {} nodes each, used as it is.\n",
+                                    subject.volume->tetrahedra.rows(), subject.volume->tetrahedra.cols());
+    }
     if (subject.set) {
         outcome.json["set"] = {{"states", subject.set->states.size()}, {"markers", subject.set->markers.size()}};
     }
+    if (!options.output.empty()) {
+        write_faults(options.output, subject.surface, places);
+        mesh::write_text(options.output / "check.json", outcome.json.dump(2) + "\n");
+        outcome.text += fmt::format(
+            "Written to {}: check.json; surface.vtp and faults.vtp, coloured by 'fault', show where (ParaView).\n",
+            options.output.string());
+    }
+    outcome.text +=
+        "Next: palpate run " + options.input.string() + (faults.empty() ? "" : "    # repairs what it can") + "\n";
     return outcome;
 }
 

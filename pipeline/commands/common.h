@@ -41,12 +41,14 @@ Outcome run(const RunOptions& options, const Common& common);
 
 struct CheckOptions {
     std::filesystem::path input;
+    std::filesystem::path output = {};  // a folder; none: nothing is written
     CaseOverrides say;
 };
 Outcome check(const CheckOptions& options, const Common& common);
 
 struct MeshOptions {
     std::filesystem::path input, output;
+    std::string format = {};  // vtu, inp, msh or msh22; empty: what the output's name says
     CaseOverrides say;
 };
 Outcome mesh_body(const MeshOptions& options, const Common& common);
@@ -105,12 +107,34 @@ Outcome effects(const EffectsOptions& options, const Common& common);
 
 struct SimulateOptions {
     std::filesystem::path model, probes, output;
+    std::optional<double> dt = {}, duration = {};  // motion, a frame every dt [s]; absent: equilibria
+    double damping = 0.1;                          // ratio of the softest mode [-]
+    bool implicit = false;                         // a step a frame, stable at any size, in place of small ones
 };
 Outcome simulate(const SimulateOptions& options, const Common& common);
+
+struct ExportOptions {
+    std::filesystem::path model, output;
+    std::string to;                 // gltf, sofa, chai3d, stl, vtp
+    std::filesystem::path probes;   // empty: the body at rest
+    std::optional<int> state = {};  // of the probes' states; absent: the last, and all of them as gltf's animation
+};
+Outcome export_model(const ExportOptions& options, const Common& common);
 
 struct ReportOptions {
     std::filesystem::path run, output;
 };
 Outcome report(const ReportOptions& options, const Common& common);
+
+struct NewOptions {
+    std::filesystem::path folder;
+};
+/// A commented case.yaml, and a small body to try it on. @throws InvalidInput when the folder is there and not empty.
+Outcome new_case(const NewOptions& options, const Common& common);
+
+struct InfoOptions {
+    std::filesystem::path file;
+};
+Outcome info(const InfoOptions& options, const Common& common);
 
 }  // namespace palpate::pipeline::commands

@@ -40,6 +40,13 @@ Outcome diagnose(const DiagnoseCommandOptions& options, const Common& common) {
         mesh::write_text(options.output / "diagnosis.json", outcome.json.dump(2) + "\n");
         outcome.text += fmt::format("Written: {}\n", (options.output / "diagnosis.json").string());
     }
+    if (outcome.json["verdict"] == "missing-effect") {
+        outcome.text += fmt::format("Next: palpate improve {} {}", options.model.string(), options.set.string());
+        for (const std::string& effect : found.explanation) outcome.text += " --add " + effect;
+        outcome.text += " -o improved\n";
+    } else if (outcome.json["verdict"] == "ambiguous") {
+        outcome.text += "Next: add that probe to the set, and diagnose again\n";
+    }
     return outcome;
 }
 

@@ -1,9 +1,7 @@
 #include <fmt/format.h>
 
-#include "identify/set/loads.h"
 #include "mesh/errors.h"
 #include "mesh/io/atomic_file.h"
-#include "mesh/io/vtk_files.h"
 #include "pipeline/case/names.h"
 #include "pipeline/commands/bodies.h"
 #include "pipeline/results/compare_words.h"
@@ -11,9 +9,8 @@
 #include "pipeline/results/reference_comparison.h"
 #include "pipeline/results/results.h"
 #include "pipeline/results/series.h"
-#include "skeleton/model_io.h"
 
-// What works on a model and measurements: identify, compare, simulate.
+// What works on a model and measurements: identify, compare.
 
 namespace palpate::pipeline::commands {
 namespace {
@@ -33,6 +30,7 @@ void compare_reference(nlohmann::json& result, const CompareOptions& options, co
         how.screen = false;
         add_reference(result, *body, identify::diagnose(*body, given.set, how, Console::progress()), given.set,
                       comparison);
+        warn_of_modulus(result, given.set);
     } catch (const InvalidInput& e) {
         Console::warning(e.what());
         add_no_reference(result, e.what());
@@ -66,7 +64,9 @@ Outcome identify(const IdentifyCommandOptions& options, const Common& common) {
     Outcome outcome;
     outcome.json = summary_json(found);
     outcome.json["model"] = (output / "model.json").string();
-    outcome.text = fmt::format("{}:\n", (output / "model.json").string()) + identification_in_words(found);
+    const std::string fitted = (output / "model.json").string();
+    outcome.text = fmt::format("{}:\n{}Next: palpate compare {} {}\n", fitted, identification_in_words(found), fitted,
+                               options.set.string());
     return outcome;
 }
 
@@ -82,45 +82,18 @@ Outcome compare(const CompareOptions& options, const Common& common) {
     outcome.text = compare_in_words(outcome.json) + "\n";
     if (!options.output.empty()) {
         refuse_to_overwrite(options.output, common.force);
-        write_marker_series(options.output, "markers", set, comparison);
-        write_skin_series(options.output, "skin", model, set);
+        write_played_series(options.output, model, set, comparison);
         mesh::write_text(options.output / "compare.json", outcome.json.dump(2) + "\n");
         outcome.text += fmt::format("Written: {}\n", options.output.string());
+    }
+    if (!comparison.adequate) {
+        outcome.text += fmt::format("Next: palpate diagnose {} {}\n", options.model.string(), options.set.string());
     }
     if (options.tolerance && comparison.rms > *options.tolerance) {
         outcome.code = not_met;
         Console::error(fmt::format("the error of {:.4g} mm rms is above the tolerance of {:g} mm", comparison.rms,
                                    *options.tolerance));
     }
-    return outcome;
-}
-
-Outcome simulate(const SimulateOptions& options, const Common& common) {
-    const fs::path output = options.output.empty() ? fs::path("simulation") : options.output;
-    refuse_to_overwrite(output, common.force);
-    const skeleton::Model model = skeleton::read_model(options.model);
-    const std::vector<identify::LoadState> states = identify::read_probes(options.probes);
-    const identify::ContactLoads to_load(model);
-    skeleton::StaticsSolver solver(model);
-    const Eigen::VectorXd k = skeleton::stiffness_vector(model);
-    std::vector<mesh::SeriesStep> steps;
-    nlohmann::json results = nlohmann::json::array();
-    for (std::size_t s = 0; s < states.size(); ++s) {
-        const skeleton::Load load = to_load(states[s].contacts);
-        const skeleton::Equilibrium found = solver.solve(k, load);
-        const Points u = skin_displacement(model, found, load);
-        const fs::path file = output / fmt::format("simulation_{:03}.vtp", s);
-        mesh::write_vtp(file, model.surface, {.points = {{"displacement [mm]", u}}});
-        steps.push_back({static_cast<double>(s), file});
-        results.push_back({{"probe", states[s].probe},
-                           {"time", states[s].time},
-                           {"max_displacement_mm", u.rows() ? u.rowwise().norm().maxCoeff() : 0.0},
-                           {"iterations", found.iterations}});
-    }
-    mesh::write_pvd(output / "simulation.pvd", steps);
-    Outcome outcome;
-    outcome.text = fmt::format("{}: {} equilibria.\n", (output / "simulation.pvd").string(), states.size());
-    outcome.json = {{"file", (output / "simulation.pvd").string()}, {"states", results}};
     return outcome;
 }
 

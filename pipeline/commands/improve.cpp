@@ -57,6 +57,10 @@ Outcome improve(const ImproveCommandOptions& options, const Common& common) {
     for (const std::string& note : ladder.notes) outcome.text += "  " + note + "\n";
     outcome.text +=
         fmt::format("Model: {}\nParaView: {}\n", (output / "model.json").string(), (output / "ladder.pvd").string());
+    outcome.text +=
+        outcome.json["verdict"] == "adequate"
+            ? fmt::format("Next: palpate simulate {} --probes probes.csv -o played\n", (output / "model.json").string())
+            : fmt::format("Next: palpate diagnose {} {}\n", (output / "model.json").string(), options.set.string());
     return outcome;
 }
 

@@ -5,6 +5,7 @@
 #include "mesh/errors.h"
 #include "mesh/io/atomic_file.h"
 #include "mesh/io/vtk_files.h"
+#include "mesh/write_volume.h"
 #include "pipeline/case/subject.h"
 #include "pipeline/commands/common.h"
 #include "pipeline/quality/quality_files.h"
@@ -19,13 +20,37 @@ namespace {
 namespace fs = std::filesystem;
 
 Body body_of(const Subject& subject, double edge_length) {
-    Body body = make_body(subject.surface, {edge_length, subject.settings.linear_elements}, Console::progress());
+    Body body = make_body(subject, {edge_length, subject.settings.linear_elements}, Console::progress());
     Console::notices(body.notes);
     return body;
 }
 
 fs::path or_default(const fs::path& said, const std::string& fallback) {
     return said.empty() ? fs::path(fallback) : said;
+}
+
+std::string extension_of(const std::string& format) { return format.empty() ? ".vtu" : "." + format.substr(0, 3); }
+
+std::string format_named(const fs::path& output) {
+    const std::string extension = output.extension().string();
+    if (extension == ".vtu" || extension == ".inp" || extension == ".msh") return extension.substr(1);
+    throw InvalidInput(
+        fmt::format("{}: a body is written as .vtu, .inp or .msh; name the file so, or say --to", output.string()));
+}
+
+void write_body(const fs::path& output, const std::string& format, const mesh::VolumeMesh& body,
+                const Subject& subject) {
+    if (format == "vtu") {
+        mesh::write_vtu(output, body);
+    } else if (format == "inp") {
+        mesh::write_inp(output, body,
+                        {.held = mesh::contains(subject.supports, body.nodes),
+                         .young = subject.material.young,
+                         .poisson = subject.material.poisson,
+                         .density = subject.material.density});
+    } else {
+        mesh::write_gmsh(output, body, format == "msh22" ? mesh::GmshVersion::v2_2 : mesh::GmshVersion::v4_1);
+    }
 }
 
 /// Where quality is told, beside a model: arm.json has arm_quality.json, .csv and .svg.
@@ -50,18 +75,17 @@ void add_quality(const Subject& subject, const Body& body, const skeleton::Model
 }  // namespace
 
 Outcome mesh_body(const MeshOptions& options, const Common& common) {
-    const fs::path output = or_default(options.output, "body.vtu");
-    if (output.extension() != ".vtu") {
-        throw InvalidInput(fmt::format("{}: a body is written as .vtu; name the file so", output.string()));
-    }
+    const fs::path output = or_default(options.output, "body" + extension_of(options.format));
+    const std::string format = options.format.empty() ? format_named(output) : options.format;
     refuse_to_overwrite(output, common.force);
     const Subject subject = read_subject(read_case(options.input, options.say));
+    Console::notices(subject.notes);
     Console::notices(subject.assumptions);
     const Body body = body_of(subject, subject.settings.edge_length);
-    mesh::write_vtu(output, body.volume);
+    write_body(output, format, body.volume, subject);
     Outcome outcome;
     const double volume = mesh::element_volumes(body.volume).sum();
-    outcome.text = fmt::format("{}: {} tetrahedra, {} nodes, {:.4g} mm^3.\n", output.string(),
+    outcome.text = fmt::format("{0}: {1} tetrahedra, {2} nodes, {3:.4g} mm^3.\nNext: paraview {0}\n", output.string(),
                                body.volume.tetrahedra.rows(), body.volume.nodes.rows(), volume);
     outcome.json = {{"file", output.string()},
                     {"tetrahedra", body.volume.tetrahedra.rows()},
@@ -84,6 +108,7 @@ Outcome skeleton(const SkeletonOptions& options, const Common& common) {
         }
     }
     const Subject subject = read_subject(read_case(options.input, options.say));
+    Console::notices(subject.notes);
     Console::notices(subject.assumptions);
     const Body body = body_of(subject, subject.settings.edge_length);
     skeleton::BuildReport report;
@@ -101,6 +126,9 @@ Outcome skeleton(const SkeletonOptions& options, const Common& common) {
     outcome.json = {{"file", output.string()},     {"spheres", model.spheres.size()}, {"held", held},
                     {"links", model.links.size()}, {"coverage_mm", report.coverage},  {"notes", report.notes}};
     if (options.quality) add_quality(subject, body, model, output, *options.quality, common.threads, outcome);
+    outcome.text += subject.set ? fmt::format("Next: palpate identify {} {} -o identified\n", output.string(),
+                                              options.input.string())
+                                : fmt::format("Next: palpate probe {} -o measurements\n", options.input.string());
     return outcome;
 }
 

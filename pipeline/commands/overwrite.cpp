@@ -21,8 +21,8 @@ bool signed_by_palpate(const fs::path& file) {
 bool made_by_palpate(const fs::path& target) {
     if (!fs::is_directory(target)) return signed_by_palpate(target);
     if (fs::is_empty(target)) return true;
-    for (const char* witness :
-         {"run.json", "set.yaml", "model.json", "compare.json", "diagnosis.json", "ladder.json", "simulation.pvd"}) {
+    for (const char* witness : {"run.json", "check.json", "set.yaml", "model.json", "compare.json", "diagnosis.json",
+                                "ladder.json", "simulation.pvd"}) {
         if (fs::exists(target / witness)) return signed_by_palpate(target / witness);
     }
     return false;

@@ -35,6 +35,7 @@ Probing probing_of_body(const ProbeCommandOptions& options) {
     if (!options.say.probes) settings.probing.probes = ProbeOptions{}.probes;
     settings.probing.held_out = 0;
     const Subject subject = read_subject(settings);
+    Console::notices(subject.notes);
     Console::notices(subject.assumptions);
     return {finite_element_specimen(subject, options.forge, Console::progress()), subject.settings.probing,
             subject.settings.identify.seed};
@@ -95,6 +96,7 @@ Outcome probe(const ProbeCommandOptions& options, const Common& common) {
         fmt::format("{}: {} states of {} by the law '{}', {} markers{}.\n", output.string(), forged.set.states.size(),
                     specimen.is_skeleton() ? "the skeleton itself" : "finite elements", specimen.law(),
                     forged.set.markers.size(), has_fields && !forged.is_blind ? ", with full fields" : "");
+    outcome.text += "Next: palpate run " + output.string() + "\n";
     outcome.json = {
         {"set", output.string()}, {"states", forged.set.states.size()}, {"markers", forged.set.markers.size()},
         {"law", specimen.law()},  {"noise_mm", forged.noise},           {"hidden", names_of(forged.hidden)},

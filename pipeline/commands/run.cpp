@@ -36,9 +36,11 @@ public:
           folder_(options.output, common.force) {}
 
     Outcome execute() {
+        Console::notices(subject_.notes);
         Console::notices(subject_.assumptions);
         mesh::write_text(folder_.path() / "case.yaml", to_yaml(subject_.settings));
         folder_.note("seed", subject_.settings.identify.seed);
+        folder_.note("input", subject_.notes);
         folder_.note("assumptions", subject_.assumptions);
         make_mesh();
         make_skeleton();
@@ -64,12 +66,16 @@ private:
         }
         const bool ran = folder_.stage(
             {"mesh",
-             {{"unit", c.unit}, {"longest", c.longest}, {"edge", c.edge_length}, {"linear", c.linear_elements}},
+             {{"unit", c.unit},
+              {"longest", c.longest},
+              {"label", c.label.value_or(0)},
+              {"edge", c.edge_length},
+              {"linear", c.linear_elements}},
              subject_.files,
              {},
              {"mesh/body.vtu", "mesh/surface.vtp"}},
             [&] {
-                const Body body = make_body(subject_.surface, {c.edge_length, c.linear_elements}, Console::progress());
+                const Body body = make_body(subject_, {c.edge_length, c.linear_elements}, Console::progress());
                 for (const std::string& note : body.notes) Console::notice("Repair: " + note);
                 mesh::write_vtu(folder_.path() / "mesh/body.vtu", body.volume);
                 mesh::write_vtp(folder_.path() / "mesh/surface.vtp", body.surface);
@@ -241,8 +247,7 @@ private:
                 add_own_reference(result, subject_.settings.probing.noise);
             }
             mesh::write_text(folder / "compare.json", result.dump(2) + "\n");
-            write_marker_series(folder, "markers", set, comparison);
-            write_skin_series(folder, "skin", model_, set);
+            write_played_series(folder, model_, set, comparison);
             return json{{"relative", result["error"]["relative"]}};
         });
         json result = json::parse(mesh::read_text(folder / "compare.json"));

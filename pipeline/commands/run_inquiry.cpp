@@ -96,6 +96,7 @@ void RunInquiry::compare_reference(json& compare, const skeleton::Model& model,
         why_none_ = reason_of_failure([&] {
             const identify::Diagnosis& diagnosis = diagnosed(model, false);
             add_reference(compare, reference(), diagnosis, set_, comparison);
+            warn_of_modulus(compare, *subject_.set);  // with what the set itself says of its material
         });
     }
     if (!why_none_.empty()) add_no_reference(compare, why_none_);

@@ -55,12 +55,11 @@ Specimen finite_element_specimen(const Subject& subject, const ForgeOptions& opt
     }
     Specimen specimen;
     const double edge = subject.settings.edge_length;
-    Body body = make_body(subject.surface,
-                          {.edge_length = edge > 0 ? edge : finer * reference_edge_length(subject.surface),
-                           .volume_change = chords_cut_off},
-                          progress);
+    const double default_edge = subject.volume ? 0 : finer * reference_edge_length(subject.surface);
+    const Body body =
+        make_body(subject, {.edge_length = edge > 0 ? edge : default_edge, .volume_change = chords_cut_off}, progress);
     specimen.notes = body.notes;
-    specimen.volume = mesh::curve_to(body.volume, body.repaired);
+    specimen.volume = body.is_ready_made ? body.volume : mesh::curve_to(body.volume, body.repaired);
 
     identify::MeasurementSet& set = specimen.set;
     set.name = subject.settings.name;

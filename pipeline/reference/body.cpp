@@ -2,12 +2,37 @@
 
 #include <fmt/format.h>
 
+#include <array>
+
+#include "mesh/check_surface.h"
 #include "mesh/errors.h"
 #include "mesh/remesh.h"
 #include "mesh/repair_surface.h"
 #include "mesh/tetrahedralise.h"
+#include "pipeline/case/subject.h"
 
 namespace palpate::pipeline {
+
+namespace {
+
+/// A surface filled with tetrahedra: where that fails with these edges, with shorter ones.
+void fill(Body& body, double edge, double volume_change, const Progress& progress) {
+    constexpr std::array shares{1.0, 0.8, 0.64};
+    for (const double share : shares) {
+        try {
+            report(progress, "remeshing the surface", 0.3);
+            body.surface = mesh::remesh(body.repaired, {.edge_length = share * edge, .volume_change = volume_change});
+            report(progress, "filling with tetrahedra", 0.6);
+            body.volume = mesh::tetrahedralise(body.surface, {.edge_length = share * edge});
+            if (share < 1) body.notes.push_back(fmt::format("edges of {:.3g} mm: longer ones failed", share * edge));
+            return;
+        } catch (const SolverFailure&) {
+            if (share == shares.back()) throw;
+        }
+    }
+}
+
+}  // namespace
 
 Body make_body(const mesh::Surface& surface, const BodyOptions& options, const Progress& progress) {
     Body body;
@@ -24,12 +49,43 @@ Body make_body(const mesh::Surface& surface, const BodyOptions& options, const P
                         "a smaller one, 6 % of it is usual",
                         edge, longest));
     }
-    report(progress, "remeshing the surface", 0.3);
-    body.surface = mesh::remesh(repaired.surface, {.edge_length = edge, .volume_change = options.volume_change});
-    report(progress, "filling with tetrahedra", 0.6);
-    const mesh::VolumeMesh linear = mesh::tetrahedralise(body.surface, {.edge_length = edge});
-    body.volume = options.linear_elements ? linear : mesh::to_quadratic(linear);
+    try {
+        fill(body, edge, options.volume_change, progress);
+    } catch (const SolverFailure& failure) {
+        if (repaired.wrapped) throw;
+        // Sound, but too thin or too crumpled somewhere to be meshed: the last resort is a wrap.
+        try {
+            const mesh::RepairResult wrapped = mesh::repair_surface(surface, {.wrap = true});
+            body.repaired = wrapped.surface;
+            body.notes = wrapped.steps;
+            fill(body, edge, options.volume_change, progress);
+        } catch (const InvalidInput&) {
+            throw failure;
+        }
+    }
+    if (!options.linear_elements) body.volume = mesh::to_quadratic(body.volume);
     report(progress, "filling with tetrahedra", 1.0);
+    return body;
+}
+
+Body make_body(const Subject& subject, const BodyOptions& options, const Progress& progress) {
+    if (!subject.volume) return make_body(subject.surface, options, progress);
+    const mesh::VolumeMesh& given = *subject.volume;
+    if (const mesh::SurfaceReport boundary = mesh::check_surface(subject.surface);
+        boundary.non_manifold_edges > 0 || boundary.self_intersections > 0) {
+        throw InvalidInput(fmt::format(
+            "the boundary of the mesh meets itself along {} edges and crosses itself in {} places, which no body does: "
+            "mend it, or give its surface (palpate check tells where), which is repaired and meshed anew",
+            boundary.non_manifold_edges, boundary.self_intersections));
+    }
+    Body body;
+    body.is_ready_made = true;
+    body.repaired = body.surface = subject.surface;
+    body.volume = options.linear_elements ? given : mesh::to_quadratic(given);
+    body.notes.push_back(fmt::format(
+        "the mesh is used as it is: {} tetrahedra of {} nodes{}", given.tetrahedra.rows(), given.tetrahedra.cols(),
+        body.volume.is_quadratic() && !given.is_quadratic() ? ", given midside nodes on straight edges" : ""));
+    if (options.edge_length > 0) body.notes.emplace_back("an edge length changes nothing on a ready-made mesh");
     return body;
 }
 

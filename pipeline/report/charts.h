@@ -1,9 +1,19 @@
 #pragma once
 
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace palpate::pipeline {
+
+/// A named line through points (x, y).
+struct ChartLine {
+    std::string label;
+    std::vector<std::pair<double, double>> points;
+};
+
+/// Curves over a common axis, as SVG, the y axis from their least to their largest value; "" without two points.
+std::string line_chart(const std::vector<ChartLine>& curves, const std::string& title, const std::string& across);
 
 struct Bar {
     std::string label;  // told when pointed at
@@ -30,13 +40,13 @@ struct Share {
     std::string colour;  // as in CSS
 };
 
-/// One bar made of shares, with its key below, as SVG.
+/// One bar made of shares, with its key below, as HTML.
 std::string share_bar(const std::vector<Share>& shares, const std::string& title);
 
 /// A value known up to an interval, before and after measuring.
 struct Interval {
     std::string label;
-    double low, middle, high;      // posterior: 2.5 %, mean, 97.5 %
+    double low, middle, high;      // posterior: 2.5 %, median, 97.5 %
     double prior_low, prior_high;  // prior: 95 %
 };
 

@@ -2,8 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
+#include "identify/effects/catalogue.h"
+#include "mesh/errors.h"
 #include "pipeline/report/charts.h"
 #include "pipeline/report/escape.h"
 #include "pipeline/results/ladder.h"
@@ -13,12 +16,6 @@ namespace palpate::pipeline {
 namespace {
 
 using nlohmann::json;
-
-constexpr const char* left_aligned = " style=\"text-align:left\"";
-
-std::string cell(const std::string& text, const char* style = "") {
-    return fmt::format("<td{}>{}</td>", style, escape(text));
-}
 
 std::string number(const json& value, const char* format = "{:.3g}") {
     return value.is_number() ? fmt::format(fmt::runtime(format), value.get<double>()) : "–";
@@ -43,17 +40,51 @@ std::string parameters(const json& told) {
     return text;
 }
 
+/// What an effect would mean, and what became of it.
+std::string candidate_words(const json& candidate, bool claimed) {
+    std::string words = candidate.value("sentence", "");
+    if (claimed) words = "<b>Claimed.</b> " + escape(words);
+    if (words.empty()) {
+        try {
+            words = escape(identify::find_effect(candidate["effect"].get<std::string>())->description().meaning);
+        } catch (const InvalidInput&) {  // an effect of another program's own
+        }
+    }
+    if (candidate.contains("objection"))
+        words += " No claim: " + escape(candidate["objection"].get<std::string>()) + ".";
+    if (!candidate["rms_mm"].is_number() && candidate["predicted_rms_mm"].is_number()) {
+        words += fmt::format(" Screened only: it would leave {} mm rms.", number(candidate["predicted_rms_mm"]));
+    }
+    const std::string numbers = parameters(candidate["parameters"]);
+    if (!numbers.empty()) words += "<br><span class=\"soft\">" + escape(numbers) + "</span>";
+    return words;
+}
+
+std::string named_cell(const char* name, const std::string& text) {
+    return fmt::format("<td data-name=\"{}\">{}</td>", name, escape(text));
+}
+
 std::string ranking_table(const json& diagnosis) {
+    const auto claimed = diagnosis["verdict"] == "missing-effect"
+                             ? diagnosis["explanation"].get<std::vector<std::string>>()
+                             : std::vector<std::string>{};
     std::string rows;
     for (const json& c : diagnosis["ranking"]) {
-        rows += "<tr>" + cell(c["effect"]) + cell(number(c["log_bayes_factor"], "{:.1f}")) +
-                cell(number(c["probability"], "{:.2f}")) + cell(number(c["rms_mm"])) +
-                cell(number(c["held_out_rms_mm"])) + cell(number(c["whitened_rms"])) +
-                cell(parameters(c["parameters"]), left_aligned) + "</tr>";
+        const bool is_claimed = std::ranges::find(claimed, c["effect"].get<std::string>()) != claimed.end();
+        rows += fmt::format("<tr{}><td>{}</td>", is_claimed ? " class=\"claimed\"" : "",
+                            escape(c["effect"].get<std::string>())) +
+                named_cell("evidence", few_digits(c["log_bayes_factor"], 3)) +
+                named_cell("probability", number(c["probability"], "{:.2f}")) +
+                named_cell("error with it", c["rms_mm"].is_number() ? number(c["rms_mm"]) + " mm" : "") +
+                named_cell("on probes left out",
+                           c["held_out_rms_mm"].is_number() ? number(c["held_out_rms_mm"]) + " mm" : "") +
+                named_cell("over the noise", c["whitened_rms"].is_number() ? number(c["whitened_rms"]) + " ×" : "") +
+                "<td class=\"words\">" + candidate_words(c, is_claimed) + "</td></tr>";
     }
-    return "<table><tr><th>effect</th><th>ln Bayes factor</th><th>probability</th><th>error with it [mm rms]</th>"
-           "<th>on probes left out</th><th>over the noise</th><th style=\"text-align:left\">its numbers</th></tr>" +
-           rows + "</table>";
+    return "<div class=\"wide\"><table class=\"cards\"><thead><tr><th>effect</th><th>evidence</th><th>probability</th>"
+           "<th>error with it</th><th>on probes left out</th><th>over the noise</th><th class=\"words\">in words</th>"
+           "</tr></thead><tbody>" +
+           rows + "</tbody></table></div>";
 }
 
 std::string baseline_line(const json& diagnosis) {
@@ -95,7 +126,11 @@ std::vector<BarGroup> groups_of(const json& ladder, bool reference) {
 
 std::string missing_section(const json& diagnosis) {
     if (diagnosis.is_null()) return {};
-    return "<h2>What is missing</h2>" + ranking_table(diagnosis) + "<p class=\"soft\">" +
+    return "<h2 id=\"missing\">What is missing</h2>" + ranking_table(diagnosis) +
+           "<p class=\"soft\">Evidence: ln of the Bayes factor against nothing missing; a claim takes at least 10, and "
+           "a "
+           "lead of 5. Over the noise: rms error over what noise and unknown contacts explain; 1 is as good as it "
+           "gets. " +
            escape(baseline_line(diagnosis)) + " Judged on the body in finite elements.</p>";
 }
 
@@ -103,7 +138,7 @@ std::string ladder_section(const json& ladder) {
     if (ladder.is_null()) return {};
     std::string held_out;
     for (const json& probe : ladder["held_out_probes"]) held_out += (held_out.empty() ? "" : ", ") + probe.dump();
-    return "<h2>Ladder</h2><p>" + in_lines(ladder_in_words(ladder)) + "</p><div class=\"pair\">" +
+    return "<h2 id=\"ladder\">Ladder</h2><p>" + in_lines(ladder_in_words(ladder)) + "</p><div class=\"pair\">" +
            group_chart(groups_of(ladder, false), "Error of the skeleton", "mm rms") +
            group_chart(groups_of(ladder, true), "Error of the body in finite elements", "mm rms") + "</div>" +
            (held_out.empty()
@@ -114,12 +149,14 @@ std::string ladder_section(const json& ladder) {
 std::string budget_section(const json& compare) {
     const json budget = compare.value("budget", json());
     if (!budget.is_object()) return {};
-    return "<h2>Error budget</h2>" +
+    return "<h2 id=\"budget\">Error budget</h2>" +
            share_bar({{"noise", budget["noise"].get<double>(), "#9aa5b1"},
                       {"coarseness of the skeleton", budget["reduction"].get<double>(), "#2a6f97"},
                       {"missing physics", budget["missing_physics"].get<double>(), "#c8741a"}},
                      "Shares of the mean square error") +
-           "<p class=\"soft\">Shares of the mean square error before anything is added.</p>";
+           "<p class=\"soft\">Shares of the mean square error before anything is added. Noise goes with better "
+           "sensors, "
+           "coarseness with more spheres, missing physics with the effect that is missing.</p>";
 }
 
 }  // namespace palpate::pipeline

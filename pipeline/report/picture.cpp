@@ -71,7 +71,7 @@ private:
 };
 
 /// The faces that look at the reader, furthest first, shaded.
-std::string surface_svg(const skeleton::Model& model, const View& view, double opacity) {
+std::string surface_svg(const skeleton::Model& model, const View& view) {
     const Points normals = mesh::area_vectors(model.surface);
     std::vector<int> facing;
     for (int t = 0; t < normals.rows(); ++t) {
@@ -84,7 +84,7 @@ std::string surface_svg(const skeleton::Model& model, const View& view, double o
             .dot(view.toward());
     };
     std::sort(facing.begin(), facing.end(), [&](int i, int j) { return depth(i) < depth(j); });
-    std::string svg = fmt::format(R"(<g opacity="{}" stroke-width=".4">)", opacity);
+    std::string svg = R"(<g id="body" stroke-width=".4">)";
     for (const int t : facing) {
         const double light = normals.row(t).normalized().dot(view.toward());
         const int grey = static_cast<int>(150 + 95 * light);
@@ -124,7 +124,8 @@ Points all_points(const skeleton::Model& model) {
 
 std::string skeleton_picture(const skeleton::Model& model) {
     const View view(all_points(model));
-    std::string svg = view.open("Spheres and links of the model in its surface") + surface_svg(model, view, 0.35);
+    std::string svg = view.open("Spheres and links of the model in its surface") + R"(<g opacity=".35">)" +
+                      surface_svg(model, view) + "</g>";
     std::vector<double> logs;
     for (const auto& link : model.links) logs.push_back(std::log10(std::max(link.stiffness[0], 1e-30)));
     std::sort(logs.begin(), logs.end());
@@ -149,11 +150,10 @@ std::string skeleton_picture(const skeleton::Model& model) {
            "</svg>";
 }
 
-std::string dot_picture(const skeleton::Model& model, const std::vector<Dot>& dots, const std::string& unit) {
+std::string dot_picture(const skeleton::Model& model, const std::vector<Dot>& dots, double highest,
+                        const std::string& unit) {
     const View view(all_points(model));
-    std::string svg = view.open("Error at each marker") + surface_svg(model, view, 0.9);
-    double highest = 0;
-    for (const Dot& dot : dots) highest = std::max(highest, dot.value);
+    std::string svg = view.open("Error at each marker") + R"(<g opacity=".9"><use href="#body"/></g>)";
     std::vector<Dot> sorted = dots;
     std::sort(sorted.begin(), sorted.end(),
               [&](const Dot& a, const Dot& b) { return view(a.at).z() < view(b.at).z(); });

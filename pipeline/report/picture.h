@@ -14,10 +14,13 @@ struct Dot {
     bool strange = false;  // gets a ring
 };
 
-/// The body seen from one side as SVG: its surface in grey, spheres, links coloured by elongation stiffness.
+/// The body seen from one side as SVG: its surface in grey, spheres, links coloured by elongation stiffness. The page
+/// holds the surface here once, for the other pictures too.
 std::string skeleton_picture(const skeleton::Model& model);
 
-/// The body's surface in grey with dots coloured by value.
-std::string dot_picture(const skeleton::Model& model, const std::vector<Dot>& dots, const std::string& unit);
+/// The body's surface in grey (of the skeleton's picture, on the same page) with dots coloured by value, from 0 to
+/// `highest`.
+std::string dot_picture(const skeleton::Model& model, const std::vector<Dot>& dots, double highest,
+                        const std::string& unit);
 
 }  // namespace palpate::pipeline

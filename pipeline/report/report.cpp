@@ -3,19 +3,24 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <nlohmann/json.hpp>
 
 #include "mesh/errors.h"
 #include "mesh/io/atomic_file.h"
+#include "mesh/io/poly_data.h"
 #include "pipeline/report/charts.h"
 #include "pipeline/report/escape.h"
+#include "pipeline/report/fit_sections.h"
 #include "pipeline/report/inquiry_sections.h"
-#include "pipeline/report/page.h"
+#include "pipeline/report/page/page_parts.h"
 #include "pipeline/report/picture.h"
+#include "pipeline/report/view_data.h"
 #include "pipeline/results/compare_words.h"
 #include "pipeline/results/diagnosis_words.h"
 #include "pipeline/results/posterior_file.h"
+#include "pipeline/results/words.h"
 #include "skeleton/model_io.h"
 
 namespace palpate::pipeline {
@@ -27,10 +32,12 @@ using nlohmann::json;
 /// All that a page is made of, read from the run folder.
 struct RunFiles {
     json record, compare;
-    json diagnosis, ladder;  // null where the run did not ask
+    json diagnosis, ladder, quality;  // null where the run did not ask
     std::string settings;
-    std::vector<identify::PosteriorRow> posterior;
+    std::string best;                               // the folder of the model to use: "improve" where there is one
+    std::vector<identify::PosteriorRow> posterior;  // of that model
     skeleton::Model model;
+    std::vector<Dot> errors_before, errors_after;  // rms of each marker; after: with all effects in, may be empty
 };
 
 json read_json(const fs::path& file) {
@@ -43,14 +50,76 @@ json read_json(const fs::path& file) {
 
 json read_if_there(const fs::path& file) { return fs::exists(file) ? read_json(file) : json(); }
 
+/// As `skeleton --quality` leaves it beside a model.
+json read_quality(const fs::path& folder) {
+    for (const auto& entry : fs::directory_iterator(folder)) {
+        if (entry.path().filename().string().ends_with("_quality.json")) return read_json(entry.path());
+    }
+    return {};
+}
+
+std::vector<Dot> errors_before(const json& compare) {
+    std::vector<Dot> dots;
+    for (const json& m : compare["markers"]) {
+        dots.push_back({{m["at"][0].get<double>(), m["at"][1].get<double>(), m["at"][2].get<double>()},
+                        m["rms_mm"].get<double>(),
+                        m.value("strange", false)});
+    }
+    return dots;
+}
+
+/// Rms over measured coordinates and all states of each marker of a ladder's step.
+std::vector<Dot> errors_after(const fs::path& step) {
+    const mesh::PolyData markers = mesh::read_poly_data(step);
+    const auto array = [&](const char* name) -> const Eigen::MatrixXd& {
+        const auto found = std::ranges::find(markers.data.points, name, &mesh::DataArray::name);
+        if (found == markers.data.points.end()) {
+            throw InvalidInput(fmt::format("{}: has no array '{}'; run it again", step.string(), name));
+        }
+        return found->values;
+    };
+    const Eigen::MatrixXd &ids = array("marker"), &read = array("coordinates"), &errors = array("error [mm]"),
+                          &measured = array("measured [mm]");
+    struct Sum {
+        Vec3 rest = Vec3::Zero();
+        double squares = 0;
+        int count = 0;
+    };
+    std::map<int, Sum> sums;
+    for (Eigen::Index i = 0; i < ids.rows(); ++i) {
+        Sum& sum = sums[static_cast<int>(ids(i, 0))];
+        sum.rest = markers.points.row(i).transpose() - measured.row(i).transpose();
+        sum.squares += errors.row(i).squaredNorm();
+        sum.count += static_cast<int>(read(i, 0));
+    }
+    std::vector<Dot> dots;
+    for (const auto& [id, sum] : sums) {
+        if (sum.count > 0) dots.push_back({sum.rest, std::sqrt(sum.squares / sum.count)});
+    }
+    return dots;
+}
+
 RunFiles read_run(const fs::path& run) {
-    return {read_json(run / "run.json"),
-            read_json(run / "compare/compare.json"),
-            read_if_there(run / "diagnose/diagnosis.json"),
-            read_if_there(run / "improve/ladder.json"),
-            mesh::read_text(run / "case.yaml"),
-            read_posterior(run / "identify/posterior.csv"),
-            skeleton::read_model(run / "identify/model.json")};
+    if (!fs::exists(run / "run.json")) {
+        throw InvalidInput(
+            fmt::format("{}: holds no run.json, so it is no run folder; palpate run makes one", run.string()));
+    }
+    RunFiles files;
+    files.record = read_json(run / "run.json");
+    files.compare = read_json(run / "compare/compare.json");
+    files.diagnosis = read_if_there(run / "diagnose/diagnosis.json");
+    files.ladder = read_if_there(run / "improve/ladder.json");
+    files.quality = read_quality(run / "skeleton");
+    files.settings = mesh::read_text(run / "case.yaml");
+    files.best = files.ladder.is_null() ? "identify" : "improve";
+    files.posterior = read_posterior(run / files.best / "posterior.csv");
+    files.model = skeleton::read_model(run / files.best / "model.json");
+    files.errors_before = errors_before(files.compare);
+    if (!files.ladder.is_null() && files.ladder["steps"].size() > 1) {
+        files.errors_after =
+            errors_after(run / fmt::format("improve/ladder_{:03}.vtp", files.ladder["steps"].size() - 1));
+    }
+    return files;
 }
 
 /// The verdict, or where nobody asked for it how wrong the model is.
@@ -58,12 +127,19 @@ std::string lead(const RunFiles& files) {
     return files.diagnosis.is_null() ? compare_in_words(files.compare) : diagnosis_in_words(files.diagnosis);
 }
 
-std::string percent(const json& relative) {
-    return relative.is_number() ? fmt::format("{:.1f} %", 100 * relative.get<double>()) : "unknown";
+std::string share_of(const json& relative) {
+    return relative.is_number() ? percent(relative.get<double>()) : "unknown";
 }
 
 std::string tile(const std::string& value, const std::string& what) {
     return fmt::format(R"(<div class="tile"><b>{}</b>{}</div>)", escape(value), escape(what));
+}
+
+/// "2.6 → 0.63": before and after what was added, where something was.
+std::string before_and_after(const RunFiles& files, double before, const char* key) {
+    if (files.errors_after.empty()) return fmt::format("{:.3g}", before);
+    const json& last = files.ladder["steps"].back()[key];
+    return fmt::format("{:.3g} → {:.3g}", files.ladder["steps"].front()[key].get<double>(), last.get<double>());
 }
 
 std::string tiles(const RunFiles& files) {
@@ -71,30 +147,42 @@ std::string tiles(const RunFiles& files) {
         std::count_if(files.model.spheres.begin(), files.model.spheres.end(), [](auto& s) { return s.held; });
     const auto informed =
         std::count_if(files.posterior.begin(), files.posterior.end(), [](auto& r) { return r.informed; });
-    return "<div class=\"tiles\">" +
-           (files.diagnosis.is_null() ? "" : tile(files.diagnosis["verdict"].get<std::string>(), "verdict")) +
-           tile(percent(files.compare["error"]["relative"]), "rms error over rms displacement") +
-           tile(fmt::format("{:.3g} mm", files.compare["error"]["max_mm"].get<double>()), "largest error") +
+    const json& error = files.compare["error"];
+    const json& noise = error["noise_mm"];
+    std::string html = "<div class=\"tiles\">";
+    if (!files.diagnosis.is_null()) html += tile(files.diagnosis["verdict"].get<std::string>(), "verdict");
+    html += tile(before_and_after(files, error["rms_mm"].get<double>(), "rms_mm") + " mm", "rms error of the model");
+    if (noise.is_number()) html += tile(fmt::format("{:.2g} mm", noise.get<double>()), "noise of the measurements");
+    return html +
+           tile(share_of(error["relative"]), files.errors_after.empty()
+                                                 ? "rms error over rms displacement"
+                                                 : "rms error over rms displacement, nothing added") +
            tile(fmt::format("{} + {}", files.model.spheres.size() - held, held), "spheres, free + held") +
            tile(std::to_string(files.model.links.size()), "links") +
-           tile(fmt::format("{} of {}", informed, files.posterior.size()), "stiffnesses informed by the data") +
-           tile(skeleton::law_names[static_cast<std::size_t>(files.model.law)], "law that the model plays by") +
+           tile(fmt::format("{} of {}", informed, files.posterior.size()), "stiffnesses that the data inform") +
            "</div>";
 }
 
+std::string figure(const std::string& picture, const std::string& words) {
+    return "<figure>" + picture + "<figcaption class=\"soft\">" + words + "</figcaption></figure>";
+}
+
 std::string pictures(const RunFiles& files) {
-    std::vector<Dot> dots;
-    for (const json& m : files.compare["markers"]) {
-        dots.push_back({{m["at"][0].get<double>(), m["at"][1].get<double>(), m["at"][2].get<double>()},
-                        m["rms_mm"].get<double>(),
-                        m.value("strange", false)});
+    double highest = 0;
+    for (const Dot& dot : files.errors_before) highest = std::max(highest, dot.value);
+    const bool strange = std::ranges::any_of(files.errors_before, [](const Dot& dot) { return dot.strange; });
+    std::string html =
+        "<div class=\"pair\">" +
+        figure(skeleton_picture(files.model), "Spheres and links; spheres that are held in orange.") +
+        figure(dot_picture(files.model, files.errors_before, highest, "mm"),
+               std::string("Where the model is wrong") + (files.errors_after.empty() ? "." : ", nothing added.") +
+                   (strange ? " Orange rings: finite elements do not explain it either." : ""));
+    if (!files.errors_after.empty()) {
+        const auto effects = files.ladder["steps"].back()["effects"].get<std::vector<std::string>>();
+        html += figure(dot_picture(files.model, files.errors_after, highest, "mm"),
+                       "The same with " + listed(effects) + ", in the same colours.");
     }
-    const bool strange = std::ranges::any_of(dots, [](const Dot& dot) { return dot.strange; });
-    return "<div class=\"pair\"><figure>" + skeleton_picture(files.model) +
-           "<figcaption class=\"soft\">Spheres and links; spheres that are held in "
-           "orange.</figcaption></figure><figure>" +
-           dot_picture(files.model, dots, "mm") + "<figcaption class=\"soft\">Where the model is wrong." +
-           (strange ? " Orange rings: finite elements do not explain it either." : "") + "</figcaption></figure></div>";
+    return html + "</div>";
 }
 
 std::string probe_chart(const RunFiles& files) {
@@ -112,26 +200,6 @@ std::string probe_chart(const RunFiles& files) {
            (held_out.empty() ? "" : "<p class=\"soft\">Orange: kept from the fit.</p>");
 }
 
-/// Intervals of up to so many parameters, those that the data inform first.
-std::string posterior_charts(const RunFiles& files) {
-    constexpr std::size_t most = 24;
-    std::map<std::string, std::vector<Interval>> by_unit;
-    std::vector<const identify::PosteriorRow*> rows;
-    for (const auto& row : files.posterior) rows.push_back(&row);
-    std::stable_sort(rows.begin(), rows.end(), [](auto* a, auto* b) { return a->informed > b->informed; });
-    for (const auto* row : rows) {
-        auto& list = by_unit[row->unit];
-        if (list.size() == most || row->q025 <= 0) continue;
-        list.push_back({row->parameter, row->q025, row->mean, row->q975, row->prior_mean - 2 * row->prior_sd,
-                        row->prior_mean + 2 * row->prior_sd});
-    }
-    std::string html = "<div class=\"pair\">";
-    for (const auto& [unit, list] : by_unit) html += interval_chart(list, "Identified stiffness", unit);
-    html += "</div><p class=\"soft\">Blue: 95 % of the posterior, with its mean. Grey: prior.";
-    if (files.posterior.size() > 2 * most) html += " The best informed ones; all are in identify/posterior.csv.";
-    return html + "</p>";
-}
-
 std::string stage_table(const RunFiles& files) {
     std::string rows;
     for (const char* stage : {"mesh", "skeleton", "measurements", "identify", "diagnose", "compare", "improve"}) {
@@ -147,8 +215,9 @@ std::string stage_table(const RunFiles& files) {
         rows += fmt::format("<tr><td>{}</td><td>{:.1f}</td><td>{:.0f}</td><td style=\"text-align:left\">{}</td></tr>",
                             stage, s["seconds"].get<double>(), s["peak_memory_mb"].get<double>(), escape(figures));
     }
-    return "<table><tr><th>stage</th><th>seconds</th><th>peak MB</th><th style=\"text-align:left\">figures</th></tr>" +
-           rows + "</table>";
+    return "<div class=\"wide\"><table><tr><th>stage</th><th>seconds</th><th>peak MB</th><th "
+           "style=\"text-align:left\">figures</th></tr>" +
+           rows + "</table></div>";
 }
 
 std::string assumption_list(const RunFiles& files) {
@@ -162,7 +231,55 @@ std::string assumption_list(const RunFiles& files) {
         if (asked->is_null()) continue;
         for (const json& n : (*asked)["notes"]) items += "<li>" + escape(n.get<std::string>()) + "</li>";
     }
-    return items.empty() ? "" : "<h2>Assumed and noted</h2><ul>" + items + "</ul>";
+    return items.empty() ? "" : "<h2 id=\"noted\">Assumed and noted</h2><ul>" + items + "</ul>";
+}
+
+/// JSON as it may stand in a script element: no "</script>" ends it.
+std::string as_script_data(const json& data) {
+    std::string safe;
+    for (const char c : data.dump()) safe += c == '<' ? "\\u003c" : std::string(1, c);
+    return safe;
+}
+
+std::string view_section(const RunFiles& files, const fs::path& run) {
+    const json data = view_data(run, files.record, files.compare, files.ladder, files.posterior);
+    if (data.is_null()) {
+        return "<p class=\"soft\">This run was made by an older palpate: run it again to turn the body here.</p>";
+    }
+    std::string html(page_view);
+    if (const auto left_out = data["left_out"].get<std::size_t>(); left_out > 0) {
+        html += fmt::format(
+            "<p class=\"soft\">{} of {} states are here, those with the largest errors; all are in the run folder.</p>",
+            data["states"].size(), data["states"].size() + left_out);
+    }
+    return html + "<script id=\"run-data\" type=\"application/json\">" + as_script_data(data) + "</script><script>" +
+           std::string(page_script) + "</script>";
+}
+
+/// What to open next, and what to type.
+std::string file_section(const RunFiles& files) {
+    const bool improved = files.best == "improve";
+    std::string html =
+        "<h2 id=\"files\">Files</h2><ul><li><code>" + files.best + "/model.json</code> is the model to use" +
+        (improved ? ", with what was missing added" : "") + ": <code>palpate simulate " + files.best +
+        "/model.json --probes probes.csv -o played</code></li><li><code>paraview --script=view.py</code> opens the run "
+        "in "
+        "ParaView</li><li><code>" +
+        files.best +
+        "/posterior.csv</code> holds every stiffness with its interval, <code>compare/compare.json</code> "
+        "every error</li>";
+    if (improved) html += "<li><code>improve/ladder.pvd</code>: play it, and the error falls</li>";
+    return html + "<li><code>palpate info .</code> in the run folder tells what lies there</li></ul>";
+}
+
+std::string contents(const std::string& page) {
+    std::string html = "<nav aria-label=\"Sections\">";
+    for (std::size_t at = page.find("<h2 id=\""); at != std::string::npos; at = page.find("<h2 id=\"", at + 1)) {
+        const std::size_t id = at + 8, id_end = page.find('"', id), end = page.find("</h2>", id_end);
+        html +=
+            "<a href=\"#" + page.substr(id, id_end - id) + "\">" + page.substr(id_end + 2, end - id_end - 2) + "</a>";
+    }
+    return html + "</nav>";
 }
 
 }  // namespace
@@ -170,20 +287,28 @@ std::string assumption_list(const RunFiles& files) {
 void write_report(const fs::path& run, const fs::path& page) {
     const RunFiles files = read_run(run);
     const std::string name = escape(files.model.name.empty() ? run.filename().string() : files.model.name);
-    std::string html =
-        "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">"
-        "<meta name=\"viewport\" content=\"width=device-width,initial-scale=1\">"
-        "<meta name=\"generator\" content=\"palpate\"><title>" +
-        name + "</title><style>" + page_style + "</style></head><body><h1>" + name + "</h1><p class=\"lead\">" +
-        escape(lead(files)) + "</p>" + tiles(files);
-    html += missing_section(files.diagnosis) + ladder_section(files.ladder) + budget_section(files.compare);
-    html += "<h2>Model</h2>" + pictures(files);
-    html += "<h2>Error</h2><p>" + escape(compare_in_words(files.compare)) + "</p>" + probe_chart(files);
-    html += "<h2>Stiffness</h2>" + posterior_charts(files) + assumption_list(files);
-    html += "<h2>Stages</h2>" + stage_table(files);
-    html += "<h2>Settings</h2><pre>" + escape(files.settings) + "</pre><p class=\"soft\">palpate " +
-            escape(files.record.value("version", "")) + "</p></body></html>\n";
-    mesh::write_text(page, html);
+    std::string sections =
+        missing_section(files.diagnosis) + ladder_section(files.ladder) + budget_section(files.compare);
+    sections += "<h2 id=\"errors\">Where it is wrong</h2>" +
+                (files.diagnosis.is_null() ? "" : "<p>" + escape(compare_in_words(files.compare)) + "</p>") +
+                pictures(files) + probe_chart(files);
+    sections += stiffness_section(files.posterior, files.best + "/posterior.csv") +
+                convergence_section(run / "identify/convergence.csv") + spheres_section(files.quality);
+    sections += assumption_list(files) + file_section(files);
+    sections += "<h2 id=\"times\">Times</h2>" + stage_table(files);
+    sections +=
+        "<h2 id=\"settings\">Settings</h2><details open><summary>case.yaml: every setting, defaults included"
+        "</summary><pre>" +
+        escape(files.settings) + "</pre></details><p class=\"soft\">palpate " +
+        escape(files.record.value("version", "")) +
+        fmt::format(", seed {}", files.record.value("seed", json()).dump()) + "</p>";
+    mesh::write_text(page,
+                     "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">"
+                     "<meta name=\"viewport\" content=\"width=device-width,initial-scale=1\">"
+                     "<meta name=\"generator\" content=\"palpate\"><link rel=\"icon\" href=\"data:,\"><title>" +
+                         name + "</title><style>" + std::string(page_style) + "</style></head><body><main><h1>" + name +
+                         "</h1><p class=\"lead\">" + escape(lead(files)) + "</p>" + tiles(files) +
+                         view_section(files, run) + contents(sections) + sections + "</main></body></html>\n");
 }
 
 }  // namespace palpate::pipeline

@@ -73,8 +73,9 @@ std::string identification_in_words(const identify::IdentifyResult& found) {
     }
     if (found.equilibria > 0) text += fmt::format("  {} equilibria were solved.\n", found.equilibria);
 
-    text += "\n" + (found.posterior.size() <= most_rows ? parameter_table(found) : kinds_table(found));
-    if (found.modes.size() > 1) text += "\n" + modes_table(found);
+    text += '\n';
+    text += found.posterior.size() <= most_rows ? parameter_table(found) : kinds_table(found);
+    if (found.modes.size() > 1) text.append("\n").append(modes_table(found));
     if (!found.correlations.empty()) {
         text += "\n  Known together rather than each alone:\n";
         for (std::size_t i = 0; i < std::min(most_correlations, found.correlations.size()); ++i) {

@@ -8,6 +8,7 @@
 #include "pipeline/results/json_values.h"
 #include "pipeline/results/ladder_series.h"
 #include "pipeline/results/posterior_file.h"
+#include "pipeline/results/series.h"
 #include "pipeline/results/words.h"
 #include "skeleton/model_io.h"
 
@@ -89,6 +90,10 @@ std::string ladder_in_words(const json& ladder) {
 void write_ladder(const std::filesystem::path& folder, const identify::Ladder& ladder) {
     const skeleton::Model& model = ladder.steps.back().model;
     write_ladder_series(folder, ladder);
+    for (std::size_t i = 0; i < ladder.steps.size(); ++i) {
+        const identify::LadderStep& step = ladder.steps[i];
+        write_played_series(folder / fmt::format("step_{}", i), step.model, step.set, step.comparison);
+    }
     mesh::write_text(folder / "posterior.csv", posterior_csv(ladder.identified.posterior));
     skeleton::write_model_vtp(folder / "model.vtp", model);
     skeleton::write_model(folder / "model.json", model);

@@ -8,7 +8,8 @@
 
 #include "fem/interpolation.h"
 #include "identify/set/field.h"
-#include "identify/set/loads.h"
+#include "pipeline/results/played.h"
+#include "skeleton/model_io.h"
 
 namespace palpate::pipeline {
 namespace {
@@ -34,6 +35,36 @@ std::vector<int> columns_of(const identify::IdentifyResult& result, const std::s
     return columns;
 }
 
+void write_skin(const fs::path& file, const skeleton::Model& model, const identify::LoadState& state,
+                const Played& played) {
+    const Points u = skin_displacement(model, played.equilibrium, played.load);
+    mesh::MeshData data{.points = {{"displacement [mm]", u}}};
+    if (const auto measured = field_on_skin(model, state)) {
+        data.points.push_back({"measured [mm]", *measured});
+        data.points.push_back({"error [mm]", *measured - u});
+    }
+    mesh::write_vtp(file, model.surface, data);
+}
+
+void write_spheres(const fs::path& file, const skeleton::Model& model, const identify::LoadState& state,
+                   const Played& played) {
+    const Points u = played.equilibrium.state.x - skeleton::rest_state(model).x;
+    skeleton::write_model_vtp(file, model,
+                              {.points = {{"displacement [mm]", u},
+                                          {"probe", Eigen::VectorXd::Constant(u.rows(), state.probe)},
+                                          {"time [s]", Eigen::VectorXd::Constant(u.rows(), state.time)}}});
+}
+
+void write_loads(const fs::path& file, const identify::LoadState& state) {
+    const auto count = static_cast<Eigen::Index>(state.contacts.size());
+    Points points(count, 3), forces(count, 3);
+    for (Eigen::Index c = 0; c < count; ++c) {
+        points.row(c) = state.contacts[c].point;
+        forces.row(c) = state.contacts[c].force;
+    }
+    mesh::write_vtp_lines(file, points, {}, {.points = {{"force [N]", forces}}});
+}
+
 }  // namespace
 
 MarkerState marker_state(const identify::MeasurementSet& set, const identify::Comparison& comparison,
@@ -41,24 +72,27 @@ MarkerState marker_state(const identify::MeasurementSet& set, const identify::Co
     const auto& readings = set.states[state].readings;
     std::vector<int> labelled;
     for (int r = 0; r < static_cast<int>(readings.size()); ++r) {
-        if (readings[r].marker >= 0 && readings[r].position.allFinite()) labelled.push_back(r);
+        if (readings[r].marker >= 0 && !readings[r].position.array().isNaN().all()) labelled.push_back(r);
     }
     const auto count = static_cast<Eigen::Index>(labelled.size());
     Points measured(count, 3), rest(count, 3), predicted(count, 3);
-    Eigen::VectorXd ids(count);
+    Eigen::VectorXd ids(count), coordinates(count);
     for (Eigen::Index i = 0; i < count; ++i) {
         const identify::Reading& reading = readings[labelled[i]];
         const identify::Marker& marker = set.markers[reading.marker];
-        measured.row(i) = reading.position;
-        rest.row(i) = marker.rest;
         predicted.row(i) = comparison.predicted[state].row(labelled[i]);
+        const auto is_read = !reading.position.array().isNaN();
+        measured.row(i) = is_read.select(reading.position.array(), predicted.row(i).transpose().array()).transpose();
+        coordinates[i] = static_cast<double>(is_read.count());
+        rest.row(i) = marker.rest;
         ids[i] = marker.id;
     }
     return {measured,
             {.points = {{"error [mm]", measured - predicted},
                         {"displacement [mm]", predicted - rest},
                         {"measured [mm]", measured - rest},
-                        {"marker", ids}}}};
+                        {"marker", ids},
+                        {"coordinates", coordinates}}}};
 }
 
 void write_marker_series(const fs::path& folder, const std::string& name, const identify::MeasurementSet& set,
@@ -78,25 +112,25 @@ Points skin_displacement(const skeleton::Model& model, const skeleton::Equilibri
     return skeleton::observed(model, equilibrium, load, model.skin) - model.surface.vertices;
 }
 
-void write_skin_series(const fs::path& folder, const std::string& name, const skeleton::Model& model,
-                       const identify::MeasurementSet& set) {
-    skeleton::StaticsSolver solver(model);
-    const identify::ContactLoads to_load(model);
-    const Eigen::VectorXd k = skeleton::stiffness_vector(model);
-    std::vector<mesh::SeriesStep> steps;
+void write_played_series(const fs::path& folder, const skeleton::Model& model, const identify::MeasurementSet& set,
+                         const identify::Comparison& comparison) {
+    write_marker_series(folder, "markers", set, comparison);
+    const std::vector<Played> played = play(model, set);
+    std::vector<mesh::SeriesStep> skin, spheres, loads;
     for (std::size_t s = 0; s < set.states.size(); ++s) {
-        const skeleton::Load load = to_load(set, set.states[s]);
-        const Points u = skin_displacement(model, solver.solve(k, load), load);
-        mesh::MeshData data{.points = {{"displacement [mm]", u}}};
-        if (const auto measured = field_on_skin(model, set.states[s])) {
-            data.points.push_back({"measured [mm]", *measured});
-            data.points.push_back({"error [mm]", *measured - u});
-        }
-        const fs::path file = folder / step_name(name, s);
-        mesh::write_vtp(file, model.surface, data);
-        steps.push_back({static_cast<double>(s), file});
+        const auto step = [&](const char* name) {
+            return mesh::SeriesStep{static_cast<double>(s), folder / step_name(name, s)};
+        };
+        skin.push_back(step("skin"));
+        write_skin(skin.back().file, model, set.states[s], played[s]);
+        spheres.push_back(step("skeleton"));
+        write_spheres(spheres.back().file, model, set.states[s], played[s]);
+        loads.push_back(step("loads"));
+        write_loads(loads.back().file, set.states[s]);
     }
-    mesh::write_pvd(folder / (name + ".pvd"), steps);
+    mesh::write_pvd(folder / "skin.pvd", skin);
+    mesh::write_pvd(folder / "skeleton.pvd", spheres);
+    mesh::write_pvd(folder / "loads.pvd", loads);
 }
 
 void write_particle_series(const fs::path& file, const identify::IdentifyResult& result) {

@@ -12,7 +12,8 @@
 namespace palpate::pipeline {
 
 /// The labelled markers of a state where they were measured, with their arrays "error [mm]" (from model to
-/// measurement), "displacement [mm]" (of the model), "measured [mm]" and "marker".
+/// measurement), "displacement [mm]" (of the model), "measured [mm]", "marker" and "coordinates": how many were read.
+/// One that was not is taken to be the model's: its error is 0.
 struct MarkerState {
     Points measured;  // (m x 3) [mm]
     mesh::MeshData data;
@@ -24,10 +25,17 @@ MarkerState marker_state(const identify::MeasurementSet& set, const identify::Co
 void write_marker_series(const std::filesystem::path& folder, const std::string& name,
                          const identify::MeasurementSet& set, const identify::Comparison& comparison);
 
-/// The model's shape in every state as a series: its skin at rest with "displacement [mm]" to warp by, and, where the
-/// set has full fields, "measured [mm]" and "error [mm]" of the skin.
-void write_skin_series(const std::filesystem::path& folder, const std::string& name, const skeleton::Model& model,
-                       const identify::MeasurementSet& set);
+/// A model playing a set, four series in a folder, time = index of the state:
+/// - markers.pvd as above,
+/// - skin.pvd: the skin at rest with "displacement [mm]" to warp by, and, where the set has full fields, "measured
+/// [mm]"
+///   and "error [mm]",
+/// - skeleton.pvd: spheres and links at rest as in a model's .vtp, with "displacement [mm]", "probe" and "time [s]" of
+/// the
+///   spheres,
+/// - loads.pvd: the contacts, with "force [N]".
+void write_played_series(const std::filesystem::path& folder, const skeleton::Model& model,
+                         const identify::MeasurementSet& set, const identify::Comparison& comparison);
 
 /// A skin at rest with its displacement to an equilibrium.
 Points skin_displacement(const skeleton::Model& model, const skeleton::Equilibrium& equilibrium,

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <openssl/evp.h>
 #include <sys/file.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -14,6 +15,7 @@
 
 #include "mesh/errors.h"
 #include "mesh/io/atomic_file.h"
+#include "mesh/io/unfinished.h"
 #include "pipeline/run_folder/peak_memory.h"
 #include "pipeline/version.h"
 
@@ -68,6 +70,38 @@ bool untouched(const fs::path& folder, const json& outputs) {
     return true;
 }
 
+/// The folder's lock file, opened and locked; the lock ends with the process, however that ends.
+int lock(const fs::path& folder) {
+    const fs::path file = folder / lock_name;
+    while (true) {
+        const int lock = open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
+        if (lock < 0) throw IoError(fmt::format("{}: cannot be written into", folder.string()));
+        if (flock(lock, LOCK_EX | LOCK_NB) != 0) {
+            close(lock);
+            throw InvalidInput(
+                fmt::format("{}: another palpate works in this folder; wait for it, or name another folder with -o",
+                            folder.string()));
+        }
+        // a run that ends takes its file away: what counts is the one that stands there
+        struct stat opened {
+        }, standing{};
+        if (fstat(lock, &opened) == 0 && stat(file.c_str(), &standing) == 0 && opened.st_ino == standing.st_ino) {
+            return lock;
+        }
+        close(lock);
+    }
+}
+
+/// Takes away what a killed run had half written beside its targets.
+void remove_remains(const fs::path& folder) {
+    std::vector<fs::path> remains;
+    for (const auto& entry : fs::recursive_directory_iterator(folder)) {
+        if (mesh::is_unfinished(entry.path())) remains.push_back(entry.path());
+    }
+    std::error_code ignored;
+    for (const fs::path& path : remains) fs::remove_all(path, ignored);
+}
+
 json read_record(const fs::path& file) {
     try {
         const json record = json::parse(mesh::read_text(file));
@@ -94,13 +128,8 @@ RunFolder::RunFolder(fs::path folder, bool force) : folder_(std::move(folder)) {
     fs::create_directories(folder_, failed);
     if (failed) throw IoError(fmt::format("{}: cannot be made: {}", folder_.string(), failed.message()));
 
-    lock_ = open((folder_ / lock_name).c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
-    if (lock_ < 0) throw IoError(fmt::format("{}: cannot be written into", folder_.string()));
-    if (flock(lock_, LOCK_EX | LOCK_NB) != 0) {
-        close(lock_);
-        throw InvalidInput(fmt::format(
-            "{}: another palpate works in this folder; wait for it, or name another folder with -o", folder_.string()));
-    }
+    lock_ = lock(folder_);
+    remove_remains(folder_);
     if (record_.is_null()) record_ = json::object();
     record_["program"] = "palpate";
     record_["version"] = version;

@@ -86,13 +86,4 @@ void Verbs::add_effects(CLI::App& app) {
     sub->add_option("NAME", effects.name, "One effect in full");
 }
 
-void Verbs::add_simulate(CLI::App& app) {
-    auto* sub = verb(app, "simulate", "Plays the model: equilibria under given contacts.",
-                     "  palpate simulate model.json --probes set/probes.csv -o played\n",
-                     [this] { return commands::simulate(simulate, common); });
-    sub->add_option("MODEL", simulate.model, "model.json")->required();
-    sub->add_option("--probes", simulate.probes, "probes.csv: probe,time,x,y,z,fx,fy,fz,radius [mm, N]")->required();
-    sub->add_option("-o,--output", simulate.output, "Folder for simulation.pvd; simulation by default");
-}
-
 }  // namespace palpate::pipeline

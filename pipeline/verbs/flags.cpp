@@ -7,6 +7,7 @@ void add_body_flags(CLI::App* verb, CaseOverrides& say) {
     verb->add_option("--longest", say.longest, "Scale the mesh to this longest side [mm]")
         ->check(CLI::PositiveNumber)
         ->group("Body");
+    verb->add_option("--label", say.label, "Of a label image: which label is the body")->group("Body");
     verb->add_option("--young", say.young, "Young's modulus [MPa]")->check(CLI::PositiveNumber)->group("Body");
     verb->add_option("--poisson", say.poisson, "Poisson's ratio")->check(CLI::Range(-0.99, 0.4999))->group("Body");
     verb->add_option("--density", say.density, "Density [kg/m^3]")->check(CLI::NonNegativeNumber)->group("Body");

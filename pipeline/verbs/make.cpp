@@ -30,18 +30,24 @@ void Verbs::add_run(CLI::App& app) {
 
 void Verbs::add_check(CLI::App& app) {
     auto* sub = verb(app, "check", "Reads everything, repairs nothing, says what is wrong.",
-                     "  palpate check liver.stl\n  palpate check my-measurements/ --json\n",
+                     "  palpate check liver.stl\n  palpate check liver.stl -o liver-check\n  palpate check "
+                     "my-measurements/ --json\n",
                      [this] { return commands::check(check, common); });
     sub->add_option("INPUT", check.input, "A case.yaml, a measurement set, or a mesh")->required();
+    sub->add_option("-o,--output", check.output, "A folder for the report, and for files that show where faults are");
     add_body_flags(sub, check.say);
 }
 
 void Verbs::add_mesh(CLI::App& app) {
-    auto* sub = verb(app, "mesh", "Repairs, remeshes and fills a surface with tetrahedra.",
-                     "  palpate mesh liver.stl -o body.vtu --edge-length 8\n",
-                     [this] { return commands::mesh_body(mesh, common); });
-    sub->add_option("SURFACE", mesh.input, "STL, OBJ, PLY, OFF or VTP")->required();
+    auto* sub =
+        verb(app, "mesh", "Repairs, remeshes and fills a surface with tetrahedra.",
+             "  palpate mesh liver.stl -o body.vtu --edge-length 8\n  palpate mesh liver.nii.gz --label 3 --to inp\n",
+             [this] { return commands::mesh_body(mesh, common); });
+    sub->add_option("SURFACE", mesh.input, "A mesh, CAD, a label image, or a case.yaml")->required();
     sub->add_option("-o,--output", mesh.output, "The volume mesh; body.vtu by default");
+    sub->add_option("--to", mesh.format,
+                    "vtu; inp: Abaqus, CalculiX; msh, msh22: Gmsh 4.1, 2.2; by the output's name by default")
+        ->check(CLI::IsMember({"vtu", "inp", "msh", "msh22"}));
     add_body_flags(sub, mesh.say);
 }
 

@@ -26,7 +26,10 @@ struct Verbs {
     commands::ImproveCommandOptions improve;
     commands::EffectsOptions effects;
     commands::SimulateOptions simulate;
+    commands::ExportOptions exports;
     commands::ReportOptions report;
+    commands::NewOptions new_case;
+    commands::InfoOptions info;
 
     // What makes something from a mesh or a set, in make.cpp.
     void add_run(CLI::App& app);
@@ -34,6 +37,12 @@ struct Verbs {
     void add_mesh(CLI::App& app);
     void add_skeleton(CLI::App& app);
     void add_report(CLI::App& app);
+
+    // Around the work, in shell.cpp.
+    void add_new(CLI::App& app);
+    void add_info(CLI::App& app);
+    void add_completion(CLI::App& app);
+    void add_man(CLI::App& app);
 
     // In probe.cpp.
     void add_probe(CLI::App& app);
@@ -44,7 +53,10 @@ struct Verbs {
     void add_diagnose(CLI::App& app);
     void add_improve(CLI::App& app);
     void add_effects(CLI::App& app);
+
+    // What plays a model or hands it on, in play.cpp.
     void add_simulate(CLI::App& app);
+    void add_export(CLI::App& app);
 
     /// A verb whose help begins with examples.
     CLI::App* verb(CLI::App& app, const std::string& name, const std::string& what, const std::string& examples,

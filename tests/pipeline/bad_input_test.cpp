@@ -2,10 +2,14 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
+#include "identify/set/measurement_set.h"
 #include "mesh/errors.h"
 #include "mesh/read_surface.h"
 #include "pipeline/commands/common.h"
+#include "samples/lattice.h"
+#include "skeleton/model_io.h"
 #include "tests/messages.h"
 #include "tests/temporary_folder.h"
 
@@ -123,6 +127,31 @@ TEST(BadInput, ProbeOffTheSurface) {
     scratch.write("set/markers.csv", "marker,x,y,z\n0,100,10,20\n");
     scratch.write("set/positions.csv", "probe,time,marker,x,y,z\n7,0,0,100,10,18\n");
     EXPECT_THAT(message_of_run(scratch, scratch / "set"), AllOf(HasSubstr("probe 7"), HasSubstr("mm")));
+}
+
+TEST(BadInput, APipeIsNoFile) {
+    const TemporaryFolder scratch;
+    const auto pipe = scratch / "case.yaml";
+    ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+    EXPECT_THAT(message_of_run(scratch, pipe), AllOf(HasSubstr("case.yaml"), HasSubstr("pipe")));
+}
+
+TEST(BadInput, SupportsThatHoldAll) {
+    const TemporaryFolder scratch;
+    skeleton::Model model = samples::make_lattice("bar", {3, 1, 1}, 1);
+    skeleton::write_model(scratch / "model.json", model);
+    identify::MeasurementSet set;
+    set.rest_surface = mesh::make_box({-20, -20, -20}, {100, 20, 20}, {3, 1, 1});
+    set.supports = {mesh::BoxRegion{Vec3::Constant(-1e3), Vec3::Constant(1e3)}};
+    set.markers = {{0, Vec3(80, 0, 20), std::nullopt}};
+    set.states = {{.probe = 1, .contacts = {{Vec3(80, 0, 20), Vec3(0, 0, -1), 0}}, .readings = {{0, Vec3(80, 0, 19)}}}};
+    identify::write_measurement_set(scratch / "set", set);
+    commands::IdentifyCommandOptions options;
+    options.model = scratch / "model.json";
+    options.set = scratch / "set";
+    options.output = scratch / "out";
+    EXPECT_TRUE(
+        says(message_of([&] { commands::identify(options, {}); }), {"hold all 3 spheres", "nothing is left to move"}));
 }
 
 TEST(BadInput, FolderOfSomebodyElse) {

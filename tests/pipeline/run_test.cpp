@@ -111,14 +111,5 @@ TEST(Run, TellsExpectationsThatAreNotMet) {
     EXPECT_EQ(outcome.json["expectations_not_met"].size(), 1U);
 }
 
-TEST(Run, ReportNeedsNoNetwork) {
-    const TemporaryFolder scratch;
-    commands::run(small_run(scratch), {});
-    const std::string page = mesh::read_text(scratch / "run/report.html");
-    EXPECT_EQ(page.find("http"), std::string::npos);
-    EXPECT_EQ(page.find("src="), std::string::npos);
-    EXPECT_NE(page.find("<svg"), std::string::npos);
-}
-
 }  // namespace
 }  // namespace palpate::pipeline

@@ -1,0 +1,175 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "identify/set/loads.h"
+#include "mesh/errors.h"
+#include "mesh/io/vtk_files.h"
+#include "pipeline/commands/common.h"
+#include "pipeline/console.h"
+#include "pipeline/results/series.h"
+#include "skeleton/model_io.h"
+#include "skeleton/runtime/body.h"
+
+// What plays a model: equilibria or motion.
+
+namespace palpate::pipeline::commands {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A probe's states in their order.
+using Probe = std::vector<const identify::LoadState*>;
+
+std::vector<Probe> by_probe(const std::vector<identify::LoadState>& states) {
+    std::vector<Probe> probes;
+    for (const identify::LoadState& state : states) {
+        if (probes.empty() || probes.back().front()->probe != state.probe) probes.emplace_back();
+        probes.back().push_back(&state);
+    }
+    return probes;
+}
+
+/// The load that acts at a time: a state's since the one before it, the last one's to the end.
+const identify::LoadState& acting_at(const Probe& probe, double time) {
+    for (const identify::LoadState* state : probe) {
+        if (time <= state->time * (1 + 1e-12)) return *state;
+    }
+    return *probe.back();
+}
+
+/// Plays a body through probes and writes its skin, frame by frame.
+class Motion {
+public:
+    Motion(const SimulateOptions& options, const fs::path& output, const skeleton::Model& model, int contacts)
+        : dt_(*options.dt),
+          frames_(std::max(1, static_cast<int>(std::lround(*options.duration / dt_)))),
+          implicit_(options.implicit),
+          output_(output),
+          model_(model),
+          body_(model, {.damping_ratio = options.damping, .contacts = contacts}) {
+        Console::notices(body_.notices());
+        if (!implicit_) steps_ = std::max(1, static_cast<int>(std::ceil(dt_ / (0.5 * body_.stable_step()))));
+    }
+
+    /// Explicit steps a frame; one where they are implicit.
+    int steps() const { return steps_; }
+
+    nlohmann::json play(const Probe& probe) {
+        body_.reset();
+        if (std::ranges::any_of(model_.spheres, &skeleton::Sphere::held)) body_.equilibrium();
+        const identify::LoadState* acting = nullptr;
+        double furthest = write_frame();
+        for (int frame = 0; frame < frames_; ++frame) {
+            const identify::LoadState& now = acting_at(probe, (frame + 0.5) * dt_);
+            if (&now != acting) press(now);
+            acting = &now;
+            if (implicit_) {
+                body_.step_implicit(dt_);
+            } else {
+                body_.step_explicit(dt_ / steps_, steps_);
+            }
+            furthest = std::max(furthest, write_frame());
+        }
+        return {{"probe", probe.front()->probe}, {"frames", frames_ + 1}, {"max_displacement_mm", furthest}};
+    }
+
+    void write_series() const { mesh::write_pvd(output_ / "simulation.pvd", series_); }
+
+private:
+    void press(const identify::LoadState& state) {
+        for (const int contact : pressed_) body_.release(contact);
+        pressed_.clear();
+        for (const mesh::Contact& contact : state.contacts) {
+            if (contact.force.isZero(0)) continue;
+            pressed_.push_back(body_.touch(contact.point, contact.radius));
+            body_.push(pressed_.back(), contact.force);
+        }
+    }
+
+    /// The largest displacement [mm].
+    double write_frame() {
+        using SkinRows = Eigen::Matrix<float, Eigen::Dynamic, 3, Eigen::RowMajor>;
+        const std::vector<float>& skin = body_.skin();
+        const Points u =
+            Eigen::Map<const SkinRows>(skin.data(), body_.vertex_count(), 3).cast<double>() - model_.surface.vertices;
+        const auto frame = series_.size();
+        const fs::path file = output_ / fmt::format("simulation_{:05}.vtp", frame);
+        mesh::write_vtp(file, model_.surface, {.points = {{"displacement [mm]", u}}});
+        series_.push_back({static_cast<double>(frame) * dt_, file});
+        return u.rows() > 0 ? u.rowwise().norm().maxCoeff() : 0;
+    }
+
+    double dt_;
+    int frames_;
+    bool implicit_;
+    int steps_ = 1;
+    fs::path output_;
+    const skeleton::Model& model_;
+    runtime::Body body_;
+    std::vector<int> pressed_;
+    std::vector<mesh::SeriesStep> series_;
+};
+
+Outcome simulate_motion(const SimulateOptions& options, const fs::path& output) {
+    const skeleton::Model model = skeleton::read_model(options.model);
+    if (model.skin.empty())
+        throw InvalidInput(options.model.string() + ": has no skin that could be pressed; give the model one");
+    const std::vector<identify::LoadState> states = identify::read_probes(options.probes);
+    std::size_t contacts = 1;
+    for (const identify::LoadState& state : states) contacts = std::max(contacts, state.contacts.size());
+    Motion motion(options, output, model, static_cast<int>(contacts));
+    Console::notice(options.implicit
+                        ? fmt::format("Motion by implicit steps of {:g} s, damping ratio {:g} of the softest mode.",
+                                      *options.dt, options.damping)
+                        : fmt::format("Motion by {} explicit steps a frame, damping ratio {:g} of the softest mode.",
+                                      motion.steps(), options.damping));
+    Outcome outcome;
+    nlohmann::json probes = nlohmann::json::array();
+    for (const Probe& probe : by_probe(states)) probes.push_back(motion.play(probe));
+    motion.write_series();
+    outcome.text = fmt::format("{0}: {1} probes in motion.\nNext: paraview {0}\n", (output / "simulation.pvd").string(),
+                               probes.size());
+    outcome.json = {{"file", (output / "simulation.pvd").string()},
+                    {"dt_s", *options.dt},
+                    {"steps_per_frame", motion.steps()},
+                    {"damping_ratio", options.damping},
+                    {"probes", probes}};
+    return outcome;
+}
+
+}  // namespace
+
+Outcome simulate(const SimulateOptions& options, const Common& common) {
+    const fs::path output = options.output.empty() ? fs::path("simulation") : options.output;
+    refuse_to_overwrite(output, common.force);
+    if (options.dt) return simulate_motion(options, output);
+    const skeleton::Model model = skeleton::read_model(options.model);
+    const std::vector<identify::LoadState> states = identify::read_probes(options.probes);
+    const identify::ContactLoads to_load(model);
+    skeleton::StaticsSolver solver(model);
+    const Eigen::VectorXd k = skeleton::stiffness_vector(model);
+    std::vector<mesh::SeriesStep> steps;
+    nlohmann::json results = nlohmann::json::array();
+    for (std::size_t s = 0; s < states.size(); ++s) {
+        const skeleton::Load load = to_load(states[s].contacts);
+        const skeleton::Equilibrium found = solver.solve(k, load);
+        const Points u = skin_displacement(model, found, load);
+        const fs::path file = output / fmt::format("simulation_{:03}.vtp", s);
+        mesh::write_vtp(file, model.surface, {.points = {{"displacement [mm]", u}}});
+        steps.push_back({static_cast<double>(s), file});
+        results.push_back({{"probe", states[s].probe},
+                           {"time", states[s].time},
+                           {"max_displacement_mm", u.rows() ? u.rowwise().norm().maxCoeff() : 0.0},
+                           {"iterations", found.iterations}});
+    }
+    mesh::write_pvd(output / "simulation.pvd", steps);
+    Outcome outcome;
+    outcome.text =
+        fmt::format("{0}: {1} equilibria.\nNext: paraview {0}\n", (output / "simulation.pvd").string(), states.size());
+    outcome.json = {{"file", (output / "simulation.pvd").string()}, {"states", results}};
+    return outcome;
+}
+
+}  // namespace palpate::pipeline::commands

@@ -1,0 +1,133 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <sstream>
+
+#include "mesh/check_surface.h"
+#include "mesh/errors.h"
+#include "mesh/io/atomic_file.h"
+#include "mesh/io/poly_data.h"
+#include "mesh/io/read_vtk.h"
+#include "mesh/read_surface.h"
+#include "pipeline/info/describe.h"
+#include "pipeline/results/posterior_file.h"
+
+namespace palpate::pipeline {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string box_in_words(const Points& points) {
+    if (points.rows() == 0) return "empty";
+    const Vec3 extent = mesh::bounding_box(points).extent();
+    return fmt::format("{:.4g} x {:.4g} x {:.4g} mm", extent.x(), extent.y(), extent.z());
+}
+
+/// "error [mm]: 0.1 to 6" of each array, lengths of vectors.
+void tell_arrays(const std::vector<mesh::DataArray>& arrays, const char* of, Description& told) {
+    for (const mesh::DataArray& array : arrays) {
+        if (array.values.rows() == 0) continue;
+        const Eigen::VectorXd sizes = array.values.cols() == 1 ? Eigen::VectorXd(array.values.col(0))
+                                                               : Eigen::VectorXd(array.values.rowwise().norm());
+        told.lines.push_back(fmt::format("{} of {}: {:.4g} to {:.4g}{}", array.name, of, sizes.minCoeff(),
+                                         sizes.maxCoeff(), array.values.cols() == 1 ? "" : " (lengths)"));
+    }
+}
+
+/// What each kind of table begins with, and what it is.
+const std::map<std::string, std::string>& tables() {
+    static const std::map<std::string, std::string> kinds{
+        {"parameter,link,", "stiffnesses with their intervals"},
+        {"parameter,other,", "stiffnesses that are known together rather than alone"},
+        {"stage,step,", "how the search and the particles converged"},
+        {"probe,time,x,y,z,fx", "probes: forces on the body"},
+        {"probe,time,marker", "measured positions of markers"},
+        {"probe,time,gx", "gravity and pressure that are known to act"},
+        {"marker,x,y,z", "markers at rest"},
+        {"own,spheres,", "errors of skeletons over their number of spheres"}};
+    return kinds;
+}
+
+}  // namespace
+
+Description describe_table(const fs::path& file) {
+    std::istringstream lines(mesh::read_text(file));
+    std::string header, line;
+    int rows = 0;
+    while (std::getline(lines, line)) {
+        if (line.empty() || line[0] == '#') continue;
+        if (header.empty())
+            header = line;
+        else
+            ++rows;
+    }
+    const auto kind = std::ranges::find_if(tables(), [&](const auto& k) { return header.starts_with(k.first); });
+    if (kind == tables().end()) {
+        throw InvalidInput(
+            fmt::format("{}: a table with the columns {}, which is none of ours", file.string(), header));
+    }
+    Description told{.kind = kind->second, .lines = {fmt::format("{} rows: {}", rows, header)}, .next = {}};
+    if (kind->first != "parameter,link,") return told;
+    const auto posterior = read_posterior(file);
+    const auto informed = std::ranges::count_if(posterior, [](const auto& row) { return row.informed; });
+    told.lines.push_back(fmt::format("{} of {} are informed by the measurements", informed, posterior.size()));
+    for (std::size_t i = 0; i < std::min<std::size_t>(posterior.size(), 8); ++i) {
+        const auto& row = posterior[i];
+        told.lines.push_back(fmt::format("{:<20} {:.4g} {} (95 %: {:.4g} to {:.4g})", row.parameter, row.q50, row.unit,
+                                         row.q025, row.q975));
+    }
+    return told;
+}
+
+Description describe_series(const fs::path& file) {
+    const auto steps = mesh::read_pvd(file);
+    Description told{.kind = fmt::format("a series of {} steps for ParaView", steps.size()), .lines = {}, .next = {}};
+    if (!steps.empty()) {
+        told.lines.push_back("first: " + steps.front().file.string());
+        const Description first = describe(steps.front().file);
+        told.lines.insert(told.lines.end(), first.lines.begin(), first.lines.end());
+    }
+    told.next = "paraview " + file.string();
+    return told;
+}
+
+Description describe_poly_data(const fs::path& file) {
+    mesh::PolyData part;
+    mesh::read_vtk(file, [&] { part = mesh::read_poly_data(file); });
+    Description told{.kind = fmt::format("{} points, {} triangles, {} lines", part.points.rows(), part.triangles.rows(),
+                                         part.lines.rows()),
+                     .lines = {box_in_words(part.points)},
+                     .next = "paraview " + file.string()};
+    tell_arrays(part.data.points, "points", told);
+    tell_arrays(part.data.cells, "cells", told);
+    return told;
+}
+
+Description describe_volume(const fs::path& file) {
+    mesh::MeshData data;
+    const mesh::VolumeMesh body = mesh::read_vtu(file, &data);
+    Description told{
+        .kind = fmt::format("a volume of {} {} tetrahedra, {} nodes", body.tetrahedra.rows(),
+                            body.is_quadratic() ? "quadratic" : "linear", body.nodes.rows()),
+        .lines = {fmt::format("{}, {:.4g} mm^3", box_in_words(body.nodes), mesh::element_volumes(body).sum())},
+        .next = "paraview " + file.string()};
+    tell_arrays(data.points, "nodes", told);
+    tell_arrays(data.cells, "tetrahedra", told);
+    return told;
+}
+
+Description describe_surface(const fs::path& file) {
+    const mesh::SurfaceReport report = mesh::check_surface(mesh::read_surface(file));
+    const Vec3 extent = report.box.extent();
+    Description told{
+        .kind = fmt::format("a surface of {} triangles", report.triangles),
+        .lines = {fmt::format("{:.4g} x {:.4g} x {:.4g} in the units of the file", extent.x(), extent.y(), extent.z())},
+        .next = "palpate run " + file.string()};
+    const auto faults = mesh::describe_faults(report);
+    for (const std::string& fault : faults) told.lines.push_back(fault);
+    if (faults.empty()) told.lines.push_back(fmt::format("sound; it encloses {:.4g}", report.volume));
+    return told;
+}
+
+}  // namespace palpate::pipeline

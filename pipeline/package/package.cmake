@@ -1,0 +1,24 @@
+# find_package(palpate): the libraries and headers, see samples/consumer.
+include(GNUInstallDirs)
+include(CMakePackageConfigHelpers)
+set(package_folder "${CMAKE_INSTALL_LIBDIR}/cmake/palpate")
+
+set(libraries common cgal mesh fem skeleton runtime identify)
+if(PALPATE_CAD)
+  list(APPEND libraries cad)
+endif()
+foreach(library ${libraries})
+  set_target_properties(palpate_${library} PROPERTIES EXPORT_NAME ${library})
+  install(TARGETS palpate_${library} EXPORT palpateTargets)
+endforeach()
+install(EXPORT palpateTargets NAMESPACE palpate:: DESTINATION "${package_folder}")
+foreach(folder mesh fem skeleton identify)
+  install(DIRECTORY "${PROJECT_SOURCE_DIR}/${folder}" DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}/palpate"
+    FILES_MATCHING PATTERN "*.h")
+endforeach()
+
+configure_package_config_file("${PROJECT_SOURCE_DIR}/pipeline/package/palpateConfig.cmake.in"
+  "${PROJECT_BINARY_DIR}/palpateConfig.cmake" INSTALL_DESTINATION "${package_folder}")
+write_basic_package_version_file("${PROJECT_BINARY_DIR}/palpateConfigVersion.cmake" COMPATIBILITY SameMinorVersion)
+install(FILES "${PROJECT_BINARY_DIR}/palpateConfig.cmake" "${PROJECT_BINARY_DIR}/palpateConfigVersion.cmake"
+  mesh/TetGen.cmake fem/SuiteSparse.cmake DESTINATION "${package_folder}")

@@ -1,0 +1,211 @@
+# Opens a palpate run in ParaView:  paraview --script=view.py
+# Off screen, to a picture:          pvbatch view.py picture.png
+#
+# Four views: fit, error, stiffness, ladder (where effects were added). Each array is named alike in every file, with its
+# unit: "error [mm]", "displacement [mm]", "measured [mm]", "elongation [N/mm]".
+import json
+import os
+import sys
+
+from paraview.simple import *
+
+script = globals().get("__file__") or sys.argv[0]
+run = os.path.dirname(os.path.abspath(script))
+ORANGE, GREY, DARK = [0.78, 0.45, 0.1], [0.6, 0.64, 0.68], [0.1, 0.1, 0.12]
+
+
+def path(*names):
+    return os.path.join(run, *names)
+
+
+def steps():
+    """Folders of the ladder's steps, the last one with all effects in; compare alone where nothing was added."""
+    found, number = [], 0
+    while os.path.exists(path("improve", "step_%d" % number, "skin.pvd")):
+        found.append(path("improve", "step_%d" % number))
+        number += 1
+    return found or [path("compare")]
+
+
+def size_of(source):
+    source.UpdatePipeline()
+    b = source.GetDataInformation().GetBounds()
+    return max(b[1] - b[0], b[3] - b[2], b[5] - b[4])
+
+
+def lengths(source, array):
+    """Least and largest length of an array's vectors."""
+    low, high = source.PointData[array].GetRange(-1)
+    return low, high
+
+
+def times_of(reader):
+    times = reader.TimestepValues
+    return list(times) if hasattr(times, "__len__") else [times]
+
+
+def largest_step(reader, array):
+    """The time at which the array reaches furthest, and how far; the reader is left there."""
+    best = (0.0, 0.0)
+    for time in times_of(reader):
+        reader.UpdatePipeline(time)
+        if reader.GetDataInformation().GetNumberOfPoints():
+            best = max(best, (lengths(reader, array)[1], time))
+    reader.UpdatePipeline(best[1])
+    return best[1], best[0]
+
+
+def plain(display, colour, opacity=1.0):
+    display.ColorArrayName = ["POINTS", ""]
+    display.AmbientColor = display.DiffuseColor = colour
+    display.Opacity = opacity
+
+
+def colour(view, source, association, array, low=None, high=None, logarithmic=False):
+    """Colours by an array, in viridis, from low to high, with a legend in this view alone."""
+    display = GetDisplayProperties(source, view)
+    ColorBy(display, (association, array), True)
+    table = display.LookupTable
+    table.ApplyPreset("Viridis (matplotlib)", True)
+    if high is None:
+        display.RescaleTransferFunctionToDataRange(False, True)
+    else:
+        table.RescaleTransferFunction(low, high)
+    if logarithmic:
+        table.MapControlPointsToLogSpace()
+        table.UseLogScale = 1
+    display.SetScalarBarVisibility(view, True)
+    bar = GetScalarBar(table, view)
+    bar.Title, bar.ComponentTitle = array, ""
+    bar.TitleColor = bar.LabelColor = [0, 0, 0]
+    bar.ScalarBarLength = 0.4
+    return display
+
+
+def arrows_of(markers, factor):
+    """Error vectors, from model to measurement: the markers stand where they were measured."""
+    arrows = Glyph(Input=markers, GlyphType="Arrow")
+    arrows.OrientationArray = ["POINTS", "error [mm]"]
+    arrows.ScaleArray = ["POINTS", "error [mm]"]
+    arrows.ScaleFactor = factor
+    arrows.GlyphMode = "All Points"
+    arrows.GlyphTransform.Translate = [-1, 0, 0]  # the tip stands at the measurement
+    return arrows
+
+
+def balls_of(points, radius_array, factor):
+    balls = Glyph(Input=points, GlyphType="Sphere")
+    balls.ScaleArray = ["POINTS", radius_array or "No scale array"]
+    balls.ScaleFactor = factor
+    balls.GlyphMode = "All Points"
+    return balls
+
+
+def fit_view(view):
+    """The best model's shape where it moves most, and what was measured."""
+    folder = steps()[-1]
+    skin = PVDReader(FileName=os.path.join(folder, "skin.pvd"))
+    time, furthest = largest_step(skin, "displacement [mm]")
+    view.ViewTime = time
+    size = size_of(skin)
+    magnify = 0.1 * size / furthest if 1e-6 * size < furthest < 0.03 * size else 1.0
+    warp = WarpByVector(Input=skin, Vectors=["POINTS", "displacement [mm]"], ScaleFactor=magnify)
+    Show(warp, view)
+    colour(view, warp, "POINTS", "displacement [mm]", 0, furthest)
+    if skin.PointData.GetArray("measured [mm]") is not None:
+        measured = WarpByVector(Input=skin, Vectors=["POINTS", "measured [mm]"], ScaleFactor=magnify)
+        plain(Show(measured, view, Representation="Wireframe"), DARK)
+        shown = "measured shape as lines"
+    else:
+        markers = PVDReader(FileName=os.path.join(folder, "markers.pvd"))
+        rest = Calculator(Input=markers, Function='coords-"measured [mm]"', ResultArrayName="rest [mm]",
+                          CoordinateResults=1)
+        moved = WarpByVector(Input=rest, Vectors=["POINTS", "measured [mm]"], ScaleFactor=magnify)
+        balls = balls_of(moved, None, 0.018 * size)
+        plain(Show(balls, view), ORANGE)
+        shown = "measured markers in orange"
+    factor = "" if magnify == 1 else ", displacements x %.3g" % magnify
+    return "Fit: model, %s%s" % (shown, factor)
+
+
+def error_view(view):
+    """Error vectors of the best model's worst state."""
+    folder = steps()[-1]
+    skin = PVDReader(FileName=os.path.join(folder, "skin.pvd"))
+    markers = PVDReader(FileName=os.path.join(folder, "markers.pvd"))
+    time, worst = largest_step(markers, "error [mm]")
+    view.ViewTime = time
+    size = size_of(skin)
+    warp = WarpByVector(Input=skin, Vectors=["POINTS", "displacement [mm]"])
+    plain(Show(warp, view), GREY, 0.3)
+    lengthen = max(1.0, 0.12 * size / worst) if worst > 0 else 1.0
+    arrows = arrows_of(markers, lengthen)
+    Show(arrows, view)
+    colour(view, arrows, "POINTS", "error [mm]", 0, worst)
+    return "Error: worst state, arrows x %.3g" % lengthen
+
+
+def stiffness_view(view):
+    """Spheres, and links as tubes, coloured by elongation stiffness."""
+    best = "improve" if os.path.exists(path("improve", "model.vtp")) else "identify"
+    model = XMLPolyDataReader(FileName=[path(best, "model.vtp")])
+    size = size_of(model)
+    tubes = Tube(Input=model, Scalars=[None, ""], Vectors=[None, ""], Radius=0.012 * size)
+    Show(tubes, view)
+    low, high = model.CellData["elongation [N/mm]"].GetRange(0) if model.CellData.GetArray("elongation [N/mm]") else (1, 1)
+    colour(view, tubes, "CELLS", "elongation [N/mm]", low, max(high, 1.01 * low), logarithmic=True)
+    plain(Show(balls_of(model, "radius [mm]", 2.0), view), GREY, 0.15)
+    return "Stiffness of the links (%s/model.vtp)" % best
+
+
+def ladder_view(view):
+    """Errors of all states, step by step of the ladder: play it to see them fall."""
+    skin = PVDReader(FileName=os.path.join(steps()[0], "skin.pvd"))
+    markers = PVDReader(FileName=path("improve", "ladder.pvd"))
+    plain(Show(skin, view), GREY, 0.3)
+    markers.UpdatePipeline(0)
+    arrows = arrows_of(markers, 1.0)
+    Show(arrows, view)
+    colour(view, arrows, "POINTS", "error [mm]", 0, lengths(markers, "error [mm]")[1])
+    view.ViewTime = 0
+    with open(path("improve", "ladder.json")) as file:
+        told = ["%s %.3g mm" % (" + ".join(s["effects"]) or "nothing added:", s["rms_mm"]) for s in json.load(file)["steps"]]
+    return "Ladder: play it. " + ", ".join(told)
+
+
+builders = [fit_view, error_view, stiffness_view]
+if os.path.exists(path("improve", "ladder.pvd")):
+    builders.append(ladder_view)
+layout = CreateLayout("palpate")
+views = []
+for build in builders:
+    view = CreateView("RenderView")
+    view.UseColorPaletteForBackground = 0
+    view.Background = [1, 1, 1]
+    view.OrientationAxesLabelColor = [0, 0, 0]
+    views.append(view)
+layout.SplitHorizontal(0, 0.5)
+layout.SplitVertical(1, 0.5)
+cells = [3, 4, 2]
+if len(views) > 3:
+    layout.SplitVertical(2, 0.5)
+    cells = [3, 4, 5, 6]
+for view, cell in zip(views, cells):
+    layout.AssignView(cell, view)
+for view, build in zip(views, builders):
+    title = Text(Text=build(view))
+    shown = Show(title, view)
+    shown.Color = [0, 0, 0]
+    shown.FontSize = 13
+    view.CameraParallelProjection = 1
+    view.ResetCamera()
+    camera = view.GetActiveCamera()
+    camera.Elevation(-60)
+    camera.Azimuth(20)
+    view.ResetCamera(True)
+
+layout.SetSize(1800, 1100)
+for view in views:
+    Render(view)
+if len(sys.argv) > 1 and sys.argv[-1].endswith(".png"):
+    SaveScreenshot(sys.argv[-1], layout, ImageResolution=[1800, 1100])

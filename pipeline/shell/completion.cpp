@@ -1,0 +1,118 @@
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "pipeline/shell/command_tree.h"
+
+namespace palpate::pipeline {
+namespace {
+
+std::string all_names(const std::vector<FlagHelp>& flags) {
+    std::string names;
+    for (const FlagHelp& flag : flags) {
+        for (const std::string& name : flag.names) names += (names.empty() ? "" : " ") + name;
+    }
+    return names;
+}
+
+/// Cases of a shell's `case`: after such a flag, these values.
+std::string choices_by_flag(const std::vector<FlagHelp>& flags, const char* indent) {
+    std::string cases;
+    for (const FlagHelp& flag : flags) {
+        if (flag.choices.empty()) continue;
+        cases +=
+            fmt::format("{}{}) choices=\"{}\" ;;\n", indent, fmt::join(flag.names, "|"), fmt::join(flag.choices, " "));
+    }
+    return cases;
+}
+
+/// A text within single quotes of zsh, where brackets and colons have a meaning.
+std::string zsh_quoted(const std::string& text) {
+    std::string safe;
+    for (const char c : text) {
+        if (c == '\'')
+            safe += "'\\''";
+        else if (c == '[' || c == ']' || c == ':')
+            safe += std::string("\\") + c;
+        else
+            safe += c == '\n' ? ' ' : c;
+    }
+    return safe;
+}
+
+/// '(-o --output)'{-o,--output}'[what]:value:action'
+std::string zsh_flag(const FlagHelp& flag) {
+    const std::string value =
+        !flag.takes_value
+            ? ""
+            : ":value:" + (flag.choices.empty() ? "_files" : fmt::format("({})", fmt::join(flag.choices, " ")));
+    const std::string told = fmt::format("'[{}]{}'", zsh_quoted(flag.what), value);
+    if (flag.names.size() == 1) return flag.names.front() + told;
+    return fmt::format("{{{}}}{}", fmt::join(flag.names, ","), told);
+}
+
+}  // namespace
+
+std::string bash_completion(const CommandTree& tree) {
+    std::string verbs, cases;
+    for (const VerbHelp& verb : tree.verbs) {
+        verbs += (verbs.empty() ? "" : " ") + verb.name;
+        cases += fmt::format("    {})\n      flags=\"{}\"\n", verb.name, all_names(verb.flags));
+        if (!verb.positional_words.empty())
+            cases += fmt::format("      words=\"{}\"\n", fmt::join(verb.positional_words, " "));
+        const std::string choices = choices_by_flag(verb.flags, "        ");
+        if (!choices.empty()) cases += "      case \"$before\" in\n" + choices + "      esac\n";
+        cases += "      ;;\n";
+    }
+    return fmt::format(
+        R"(# Completion of palpate for bash: source this file, or put it into /usr/share/bash-completion/completions/palpate.
+_palpate() {{
+  local current="${{COMP_WORDS[COMP_CWORD]}}" before="${{COMP_WORDS[COMP_CWORD-1]}}" verb="" flags="" words="" choices="" word
+  COMPREPLY=()
+  for word in "${{COMP_WORDS[@]:1:COMP_CWORD-1}}"; do
+    [[ "$word" != -* ]] && {{ verb="$word"; break; }}
+  done
+  case "$verb" in
+    "") COMPREPLY=($(compgen -W "{verbs} {common}" -- "$current")); return ;;
+{cases}  esac
+  if [[ -n "$choices" ]]; then COMPREPLY=($(compgen -W "$choices" -- "$current"))
+  elif [[ "$current" == -* ]]; then COMPREPLY=($(compgen -W "$flags {common}" -- "$current"))
+  elif [[ -n "$words" ]]; then COMPREPLY=($(compgen -W "$words" -- "$current"))
+  else COMPREPLY=($(compgen -f -- "$current")); compopt -o filenames 2>/dev/null
+  fi
+}}
+complete -F _palpate palpate
+)",
+        fmt::arg("verbs", verbs), fmt::arg("common", all_names(tree.common)), fmt::arg("cases", cases));
+}
+
+std::string zsh_completion(const CommandTree& tree) {
+    std::string verbs, cases;
+    std::string common;
+    for (const FlagHelp& flag : tree.common) common += " \\\n        " + zsh_flag(flag);
+    for (const VerbHelp& verb : tree.verbs) {
+        verbs += fmt::format("    '{}:{}'\n", verb.name, zsh_quoted(verb.what));
+        cases += fmt::format("    {})\n      _arguments{}", verb.name, common);
+        for (const FlagHelp& flag : verb.flags) cases += " \\\n        " + zsh_flag(flag);
+        cases += verb.positional_words.empty()
+                     ? " \\\n        '*:file:_files' ;;\n"
+                     : fmt::format(" \\\n        '*:name:({})' ;;\n", fmt::join(verb.positional_words, " "));
+    }
+    return fmt::format(
+        R"(#compdef palpate
+# Completion of palpate for zsh: put this file as _palpate into a folder of $fpath.
+_palpate() {{
+  local -a verbs=(
+{}  )
+  if (( CURRENT == 2 )); then _describe command verbs; return; fi
+  local verb="$words[2]"
+  shift words
+  (( CURRENT-- ))
+  case "$verb" in
+{}  esac
+}}
+_palpate "$@"
+)",
+        verbs, cases);
+}
+
+}  // namespace palpate::pipeline

@@ -1,0 +1,9 @@
+#pragma once
+
+#include <string_view>
+
+namespace palpate::pipeline {
+
+extern const std::string_view new_case_text;  // new_case.yaml of this folder
+
+}  // namespace palpate::pipeline

@@ -1,0 +1,61 @@
+// Put at the end of a report by browser_test.py: uses the page as a reader would, and leaves what happened in the title.
+(async () => {
+  const failures = [], expect = (holds, what) => { if (!holds) failures.push(what); };
+  const at = (id) => document.getElementById(id);
+  const settled = () => new Promise((resolve) => setTimeout(resolve, 400));  // longer than a transition
+  // The page draws at once before it is printed: no waiting for frames, which headless browsers skip.
+  const drawn = () => dispatchEvent(new Event('beforeprint'));
+  const canvas = at('canvas'), picture = () => { drawn(); return canvas.toDataURL(); };
+  const choose = async (id, value, event) => {
+    at(id)[at(id).type === 'checkbox' ? 'checked' : 'value'] = value;
+    at(id).dispatchEvent(new Event(event, {bubbles: true}));
+    await settled(); drawn();
+  };
+  const press = async (key, more = {}) => {
+    canvas.dispatchEvent(new KeyboardEvent('keydown', {key, bubbles: true, ...more}));
+    await settled(); drawn();
+  };
+  try {
+    await settled(); drawn();
+    // something is drawn: neither white nor of one colour
+    const flat = document.createElement('canvas');
+    flat.width = canvas.width; flat.height = canvas.height;
+    flat.getContext('2d').drawImage(canvas, 0, 0);
+    const pixels = new Uint32Array(flat.getContext('2d').getImageData(0, 0, flat.width, flat.height).data.buffer);
+    expect(new Set(pixels).size > 100, 'the view shows fewer than 100 colours');
+    expect(pixels.filter((p) => p !== 0xffffffff).length > 0.02 * pixels.length, 'the view is almost empty');
+
+    // every control changes the picture or says why not
+    let before = picture();
+    const changes = (what) => { const now = picture(); expect(now !== before, `${what} changes nothing`); before = now; };
+    const other = at('state').value === '0' ? '1' : '0', told = at('told').textContent;
+    await choose('state', other, 'change'); changes('another probe');
+    expect(at('told').textContent !== told, 'the words stay the same for another probe');
+    expect(/mm rms/.test(at('told').textContent), 'the error is not told');
+    for (let i = 1; i < at('colour').options.length; ++i) { await choose('colour', String(i), 'input'); }
+    changes('colouring by stiffness');
+    expect(at('what').textContent.includes('['), 'the legend has no unit');
+    await choose('colour', '0', 'input'); before = picture();
+    for (const id of ['show-spheres', 'show-links', 'show-markers']) { await choose(id, false, 'input'); changes(id); }
+    await choose('opacity', '1', 'input'); changes('the opacity of the skin');
+    await choose('magnify', '3', 'input');
+    if (at('step').options.length > 1) { await choose('step', '1', 'change'); expect(at('told').textContent.includes('Model: with'), 'the step is not told'); }
+    before = picture();
+    await press('ArrowLeft'); changes('an arrow key');
+    await press('+'); changes('plus');
+    await press('ArrowUp', {shiftKey: true}); changes('shift and an arrow key');
+    const slider = at('frame').value;
+    await press('.'); expect(at('frame').value !== slider, 'a full stop goes to no other state');
+    await press(' '); expect(at('play').getAttribute('aria-pressed') === 'true', 'the space bar does not play');
+    await press(' ');
+    // nothing sticks out, each control has a name, sections can be reached
+    expect(document.documentElement.scrollWidth <= innerWidth, `the page is ${document.documentElement.scrollWidth} px wide in ${innerWidth}`);
+    for (const control of document.querySelectorAll('select, input, button')) {
+      expect(control.labels?.length || control.ariaLabel || control.getAttribute('aria-label') || control.textContent, `${control.id} has no name`);
+    }
+    for (const link of document.querySelectorAll('nav a')) expect(document.querySelector(link.getAttribute('href')), `${link.href} leads nowhere`);
+  } catch (error) {
+    failures.push(`${error}`);
+  }
+  document.title = `tested: ${failures.length ? failures.join('; ') : 'fine'}`;
+})();

@@ -1,0 +1,110 @@
+// A run that is killed and started again ends as one that ran through.
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <cstdlib>
+#include <random>
+#include <thread>
+
+#include "mesh/io/atomic_file.h"
+#include "mesh/io/unfinished.h"
+#include "mesh/read_surface.h"
+#include "pipeline/run_folder/run_folder.h"
+#include "tests/messages.h"
+#include "tests/temporary_folder.h"
+
+namespace palpate::pipeline {
+namespace {
+
+namespace fs = std::filesystem;
+using std::chrono::milliseconds;
+
+/// `palpate run beam.stl -o run` as a process of its own.
+pid_t start_run(const TemporaryFolder& scratch, const std::string& output) {
+    const pid_t child = fork();
+    if (child != 0) return child;
+    const std::string input = scratch / "beam.stl", folder = scratch / output;
+    if (!freopen("/dev/null", "w", stdout) || !freopen("/dev/null", "w", stderr)) _exit(127);
+    execl(PALPATE_PROGRAM, "palpate", "run", input.c_str(), "-o", folder.c_str(), "--spheres", "8", "--particles", "40",
+          "--parameters", "uniform", "--threads", "1", nullptr);
+    _exit(127);
+}
+
+int finish(pid_t child) {
+    int status = 0;
+    waitpid(child, &status, 0);
+    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+}
+
+/// All that a run leaves, but for what tells seconds and memory.
+std::vector<std::string> files_of(const fs::path& run) {
+    std::vector<std::string> files;
+    for (const auto& entry : fs::recursive_directory_iterator(run)) {
+        const std::string name = fs::relative(entry.path(), run).string();
+        if (entry.is_regular_file() && name != "run.json" && name != "report.html") files.push_back(name);
+    }
+    std::ranges::sort(files);
+    return files;
+}
+
+/// More kills than in the suite: PALPATE_KILLS=50.
+int kills() {
+    const char* asked = std::getenv("PALPATE_KILLS");
+    return asked != nullptr ? std::atoi(asked) : 5;
+}
+
+TEST(Resume, AKilledRunEndsAsOneThatRanThrough) {
+    const TemporaryFolder scratch;
+    mesh::write_surface(scratch / "beam.stl", mesh::make_box({0, 0, 0}, {100, 20, 20}, {10, 2, 2}));
+    const auto begin = std::chrono::steady_clock::now();
+    ASSERT_EQ(finish(start_run(scratch, "whole")), 0);
+    const auto whole = std::chrono::duration_cast<milliseconds>(std::chrono::steady_clock::now() - begin);
+
+    std::mt19937 random(1);
+    int killed = 0;
+    for (int i = 0; i < kills(); ++i) {
+        if (i % 5 == 0) fs::remove_all(scratch / "run");  // else every later kill would find all stages finished
+        const pid_t child = start_run(scratch, "run");
+        std::this_thread::sleep_for(whole * std::uniform_real_distribution<>(0.02, 0.9)(random));
+        kill(child, SIGKILL);
+        killed += finish(child) == -1 ? 1 : 0;
+        if (i % 5 < 4 && i + 1 < kills()) continue;
+
+        ASSERT_EQ(finish(start_run(scratch, "run")), 0);
+        const std::vector<std::string> files = files_of(scratch / "whole");
+        EXPECT_EQ(files_of(scratch / "run"), files);
+        for (const std::string& file : files) {
+            EXPECT_EQ(sha256_of_file(scratch / "run" / file), sha256_of_file(scratch / "whole" / file)) << file;
+        }
+    }
+    EXPECT_GT(killed, 0);
+}
+
+TEST(Resume, ASecondRunInOneFolderSaysSoAndStops) {
+    const TemporaryFolder scratch;
+    {
+        const RunFolder first(scratch / "run", false);
+        EXPECT_TRUE(
+            says(message_of([&] { const RunFolder second(scratch / "run", false); }), {"another palpate works", "-o"}));
+    }
+    EXPECT_NO_THROW(const RunFolder third(scratch / "run", false));
+}
+
+TEST(Resume, WhatAKilledRunLeftHalfWrittenGoes) {
+    const TemporaryFolder scratch;
+    { const RunFolder first(scratch / "run", false); }
+    const fs::path remains = mesh::unfinished_beside(scratch / "run/model.json");
+    mesh::write_text(remains, "{");
+    fs::create_directories(mesh::unfinished_beside(scratch / "run/measurements"));
+    const RunFolder again(scratch / "run", false);
+    EXPECT_FALSE(fs::exists(remains));
+    EXPECT_EQ(files_of(scratch / "run"), std::vector<std::string>{".lock"});
+}
+
+}  // namespace
+}  // namespace palpate::pipeline
