@@ -4,6 +4,7 @@
 #include <boost/math/special_functions/gamma.hpp>
 #include <cmath>
 
+#include "identify/fit/borne.h"
 #include "identify/fit/lived.h"
 #include "identify/fit/solver_pool.h"
 #include "identify/load_exponent.h"
@@ -20,28 +21,6 @@ constexpr double adequate_p_value = 0.01;
 constexpr int worst_readings = 10;
 
 double square(double x) { return x * x; }
-
-/// The equilibrium under a load, or under what a model bears of it.
-struct Borne {
-    skeleton::Equilibrium equilibrium;
-    skeleton::Load load;
-    bool whole = true;
-};
-
-/// In steps of a fifth less. @throws SolverFailure where a tenth is still too much.
-Borne solve_as_far_as_it_bears(skeleton::StaticsSolver& solver, const Eigen::VectorXd& k, skeleton::Load load,
-                               const skeleton::FibreStates& before) {
-    constexpr int attempts = 10;
-    for (int attempt = 0;; ++attempt) {
-        try {
-            return {solver.solve(k, load, {}, nullptr, before), load, attempt == 0};
-        } catch (const SolverFailure&) {
-            if (attempt == attempts) throw;
-            for (skeleton::PointForce& force : load.forces) force.force *= 0.8;
-            for (skeleton::Press& press : load.presses) press.force *= 0.8;
-        }
-    }
-}
 
 /// Markers of each state at the model's equilibria; `borne` is 0 where it does not bear the whole load.
 std::vector<Points> predict(const skeleton::Model& model, const std::vector<StateReadings>& states, int threads,

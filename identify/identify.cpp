@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "identify/methods/methods.h"
 #include "identify/set/field.h"
 #include "identify/set/labels/label_readings.h"
@@ -20,6 +22,28 @@ void IdentifyOptions::validate() const {
     demand(threads >= 1, "threads", threads, "at least 1");
 }
 
+namespace {
+
+MeasuredRange range_of(const MeasurementSet& set) {
+    MeasuredRange range;
+    for (const LoadState& state : set.states) {
+        for (const mesh::Contact& contact : state.contacts) {
+            if (contact.force.isZero(0)) continue;
+            range.force = std::max(range.force, contact.force.norm());
+            const bool known = std::ranges::any_of(range.places, [&](const Vec3& p) { return p == contact.point; });
+            if (!known) range.places.push_back(contact.point);
+        }
+        for (const Reading& reading : state.readings) {
+            if (reading.marker < 0 || !reading.position.allFinite()) continue;
+            range.displacement =
+                std::max(range.displacement, (reading.position - set.markers[reading.marker].rest).norm());
+        }
+    }
+    return range;
+}
+
+}  // namespace
+
 IdentifyResult identify(const skeleton::Model& model, const MeasurementSet& set, const IdentifyOptions& options,
                         const Progress& progress, const UniformFit* near) {
     options.validate();
@@ -33,6 +57,7 @@ IdentifyResult identify(const skeleton::Model& model, const MeasurementSet& set,
     } else {
         result = identify_tempered(model, readable, options, progress, near);
     }
+    result.measured = range_of(readable);
     for (const std::string& note : notes(labelled)) result.notes.push_back(note);
     return result;
 }

@@ -73,6 +73,13 @@ struct Correlation {
     double value = 0;
 };
 
+/// How far measurements went: beyond, a model extrapolates.
+struct MeasuredRange {
+    double force = 0;          // the largest of one contact [N]
+    double displacement = 0;   // the largest of a marker [mm]
+    std::vector<Vec3> places;  // that were touched
+};
+
 struct IdentifyResult {
     skeleton::Model model;                  // with the law and the most probable stiffness; burion2008: the mean
     std::vector<PosteriorRow> posterior;    // a row per parameter
@@ -81,6 +88,8 @@ struct IdentifyResult {
     std::vector<Correlation> correlations;  // of 0.7 and more, the strongest first, at most 100
     std::vector<FilterStep> history;
     std::vector<double> fit_trace;  // -ln density, but for a constant, at the start and after each step of the last fit
+    double model_error = missing;   // of a prediction, beyond the noise, over its displacement; NaN: not estimated
+    MeasuredRange measured;
     int states = 0, coordinates = 0;  // that were weighed
     double log_evidence = 0;
     double acceptance = 0;           // of the moves

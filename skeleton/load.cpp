@@ -13,6 +13,7 @@ Eigen::VectorXd external_force(const Model& model, const State& state, const Loa
         for (int i = 0; i < point.shares(); ++i)
             f.segment<6>(Eigen::Index{6} * point.sphere(i)) += point.jacobian(i).transpose() * force.force;
     }
+    if (load.cavities) load.cavities->add_gradient(state, load.pressure, f);
     return f;
 }
 
@@ -23,6 +24,7 @@ double external_work(const Model& model, const State& state, const Load& load) {
         work += model.spheres[i].mass * load.gravity.dot(state.x.row(i).transpose() - model.spheres[i].center);
     for (const PointForce& force : load.forces)
         work += force.force.dot(CarriedPoint(force.at, rest, state).x() - force.at.rest);
+    if (load.cavities) work += load.pressure * (load.cavities->volume(state) - load.cavities->rest_volume());
     return work;
 }
 
@@ -37,6 +39,9 @@ std::vector<CurvatureBlock> external_curvature(const Model& model, const State& 
                 if (point.sphere(i) <= point.sphere(j))
                     blocks.push_back({point.sphere(i), point.sphere(j), H.block<6, 6>(6 * i, 6 * j)});
     }
+    if (load.cavities)
+        load.cavities->for_each_block(
+            state, [&](int a, int b, const Cavities::Block& block) { blocks.push_back({a, b, load.pressure * block}); });
     return blocks;
 }
 

@@ -1,9 +1,10 @@
 #pragma once
 
+#include <memory>
 #include <utility>
 #include <vector>
 
-#include "skeleton/state.h"
+#include "skeleton/effects/cavities.h"
 
 namespace palpate::skeleton {
 
@@ -26,12 +27,14 @@ struct Load {
     std::vector<PointForce> forces;
     std::vector<Press> presses;   // the same forces where they dent the surface; they do no work on the spheres
     Vec3 gravity = Vec3::Zero();  // [mm/s^2], on the spheres' masses
+    double pressure = 0;          // in the skin's cavities [MPa], beside what the effects in force bring about there
+    std::shared_ptr<const Cavities> cavities;  // of the skin, where there is pressure
 };
 
 /// External generalized force (6N) [N, N mm]: forces and torques on the spheres, by virtual work.
 Eigen::VectorXd external_force(const Model& model, const State& state, const Load& load);
 
-/// Work of the dead forces on the way from rest [N mm]; external_force is its derivative.
+/// Work on the way from rest [N mm], of pressure too; external_force is its derivative.
 double external_work(const Model& model, const State& state, const Load& load);
 
 /// A block (a, b) of a second derivative by the steps of two spheres, a <= b; where a < b its transpose stands at (b,
@@ -41,7 +44,8 @@ struct CurvatureBlock {
     Eigen::Matrix<double, 6, 6> block;
 };
 
-/// Second derivative of the work by the step, in exponential coordinates: dead forces on lever arms turn against them.
+/// Second derivative of the work by the step, in exponential coordinates: dead forces on lever arms turn against them,
+/// and pressure turns with the walls.
 /// Blocks of the same spheres add up.
 std::vector<CurvatureBlock> external_curvature(const Model& model, const State& state, const Load& load);
 

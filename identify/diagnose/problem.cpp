@@ -45,7 +45,7 @@ Stage stage_of(const MeasurementSet& set, const LoadState& state) {
             state.time,
             {.contacts = acting(state),
              .gravity = known_gravity(set, state).value_or(Vec3::Zero()),
-             .pressure = std::isnan(state.pressure) ? 0 : state.pressure}};
+             .pressure = known_pressure(state)}};
 }
 
 }  // namespace

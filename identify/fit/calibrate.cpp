@@ -209,9 +209,8 @@ Calibration calibrate(const skeleton::Model& model, const std::vector<StateReadi
     calibrator.note(
         fmt::format("relative model error: {:.2g} % of the displacement, beyond the noise", 100 * model_error));
     if (!fit.converged) calibrator.note("the fit stopped before it settled: take the posterior with care");
-    return {std::move(domain),           std::move(prior),  std::move(fit),
-            std::move(others),           std::move(coarse), calibrator.equilibria_,
-            std::move(calibrator.notes_)};
+    return {std::move(domain), std::move(prior), std::move(fit),         std::move(others),
+            std::move(coarse), model_error,      calibrator.equilibria_, std::move(calibrator.notes_)};
 }
 
 skeleton::Model calibrated(const skeleton::Model& model, const Calibration& calibration) {

@@ -24,6 +24,7 @@ struct Calibration {
     FitResult fit;
     std::vector<FitResult> others;  // lower maxima of the posterior, or equal ones, see find_modes
     UniformFit coarse;              // on the way
+    double model_error = 0;         // rel of the domain
     int equilibria = 0;             // solved
     std::vector<std::string> notes;
 };

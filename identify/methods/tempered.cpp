@@ -92,6 +92,7 @@ IdentifyResult identify_tempered(const skeleton::Model& model, const Measurement
             result.modes.size()));
     }
     result.fit_trace = calibration.fit.trace;
+    result.model_error = calibration.model_error;
     result.states = static_cast<int>(domain.states().size());
     result.coordinates = domain.coordinates();
     result.model = calibrated(model, calibration);

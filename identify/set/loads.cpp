@@ -48,6 +48,8 @@ std::vector<PatchPoint> sample_patch(const mesh::Surface& surface, const mesh::C
 
 ContactLoads::ContactLoads(const skeleton::Model& model) : model_(model), attach_(model) {
     if (model.surface.triangles.rows() > 0) tree_ = std::make_unique<mesh::SurfaceTree>(model.surface);
+    auto cavities = std::make_shared<const skeleton::Cavities>(model);
+    if (!cavities->empty()) cavities_ = std::move(cavities);
 }
 
 ContactLoads::~ContactLoads() = default;
@@ -80,12 +82,17 @@ skeleton::Load ContactLoads::operator()(const std::vector<mesh::Contact>& contac
 }
 
 skeleton::Load ContactLoads::operator()(const MeasurementSet& set, const LoadState& state) const {
-    return (*this)(state.contacts, known_gravity(set, state).value_or(Vec3::Zero()));
+    skeleton::Load load = (*this)(state.contacts, known_gravity(set, state).value_or(Vec3::Zero()));
+    load.pressure = known_pressure(state);
+    if (load.pressure != 0) load.cavities = cavities_;
+    return load;
 }
 
 bool is_always_loaded(const skeleton::Model& model) {
     return !skeleton::effect_force(model, rest_state(model)).isZero(0);
 }
+
+double known_pressure(const LoadState& state) { return std::isnan(state.pressure) ? 0 : state.pressure; }
 
 std::optional<Vec3> known_gravity(const MeasurementSet& set, const LoadState& state) {
     if (state.gravity.allFinite()) return state.gravity;

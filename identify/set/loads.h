@@ -21,17 +21,21 @@ public:
     ~ContactLoads();
 
     skeleton::Load operator()(const std::vector<mesh::Contact>& contacts, const Vec3& gravity = Vec3::Zero()) const;
-    /// What is known to act in a state of a set; gravity that is not known is none.
+    /// What is known to act in a state of a set; gravity that is not known is none, and pressure acts in cavities only.
     skeleton::Load operator()(const MeasurementSet& set, const LoadState& state) const;
 
 private:
     const skeleton::Model& model_;
     skeleton::Attacher attach_;
     std::unique_ptr<mesh::SurfaceTree> tree_;
+    std::shared_ptr<const skeleton::Cavities> cavities_;  // of the skin; null: it has none
 };
 
 /// Does an effect of the model pull at it whatever else acts, as its weight does?
 bool is_always_loaded(const skeleton::Model& model);
+
+/// Pressure known to act in a state's cavities [MPa]; unknown is none.
+double known_pressure(const LoadState& state);
 
 /// Gravity known to act in a state: the state's own, else the set's, else none.
 std::optional<Vec3> known_gravity(const MeasurementSet& set, const LoadState& state);

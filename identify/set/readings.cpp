@@ -23,7 +23,8 @@ std::vector<skeleton::Attachment> attach_markers(const skeleton::Model& model, c
 
 bool is_known_to_act(const MeasurementSet& set, const LoadState& state) {
     const bool pushed = std::ranges::any_of(state.contacts, [](const mesh::Contact& c) { return !c.force.isZero(0); });
-    return pushed || !known_gravity(set, state).value_or(Vec3::Zero()).isZero(0);
+    const bool is_heavy = !known_gravity(set, state).value_or(Vec3::Zero()).isZero(0);
+    return pushed || is_heavy || known_pressure(state) != 0;
 }
 
 }  // namespace

@@ -214,7 +214,8 @@ private:
              settings,
              subject_.set ? subject_.files : std::vector<fs::path>{},
              subject_.set ? std::vector<std::string>{"skeleton"} : std::vector<std::string>{"skeleton", "measurements"},
-             {"identify/model.json", "identify/posterior.csv", "identify/identify.json", "identify/history.pvd"}},
+             {"identify/model.json", "identify/posterior.csv", "identify/particles.csv", "identify/identify.json",
+              "identify/history.pvd"}},
             [&] {
                 identify::IdentifyResult found = identify::identify(model_, fit_, options, Console::progress());
                 // In small strain both laws agree, and a real-time model is to be bent far.

@@ -8,7 +8,7 @@
 #include "mesh/io/vtk_files.h"
 #include "pipeline/commands/common.h"
 #include "pipeline/console.h"
-#include "pipeline/results/series.h"
+#include "pipeline/results/forecast.h"
 #include "skeleton/model_io.h"
 #include "skeleton/runtime/body.h"
 
@@ -139,6 +139,18 @@ Outcome simulate_motion(const SimulateOptions& options, const fs::path& output) 
     return outcome;
 }
 
+/// The largest displacement of each state and its interval; of many states the first ones.
+std::string in_words(const std::vector<identify::LoadState>& states, const std::vector<Forecast>& forecasts) {
+    constexpr std::size_t most = 12;
+    std::string text;
+    for (std::size_t s = 0; s < std::min(most, states.size()); ++s) {
+        text += fmt::format("  probe {:<4} moves by {:.3g} mm at most, {:.3g} to {:.3g} mm with 95 %\n",
+                            states[s].probe, forecasts[s].largest, forecasts[s].low, forecasts[s].high);
+    }
+    if (states.size() > most) text += fmt::format("  and {} more\n", states.size() - most);
+    return text;
+}
+
 }  // namespace
 
 Outcome simulate(const SimulateOptions& options, const Common& common) {
@@ -148,27 +160,43 @@ Outcome simulate(const SimulateOptions& options, const Common& common) {
     const skeleton::Model model = skeleton::read_model(options.model);
     const std::vector<identify::LoadState> states = identify::read_probes(options.probes);
     const identify::ContactLoads to_load(model);
-    skeleton::StaticsSolver solver(model);
-    const Eigen::VectorXd k = skeleton::stiffness_vector(model);
+    std::vector<skeleton::Load> loads;
+    for (const identify::LoadState& state : states) loads.push_back(to_load(state.contacts));
+    const fs::path posterior = options.posterior.empty() ? options.model.parent_path() : options.posterior;
+    const std::optional<Doubts> doubts = read_doubts(model, posterior, options.draws);
+    if (!doubts && !options.posterior.empty() && options.draws > 0)
+        throw InvalidInput(posterior.string() + ": holds no particles.csv with particles; identify writes it");
+    const std::vector<Forecast> forecasts = forecast(model, loads, doubts, common.threads);
+
     std::vector<mesh::SeriesStep> steps;
     nlohmann::json results = nlohmann::json::array();
     for (std::size_t s = 0; s < states.size(); ++s) {
-        const skeleton::Load load = to_load(states[s].contacts);
-        const skeleton::Equilibrium found = solver.solve(k, load);
-        const Points u = skin_displacement(model, found, load);
+        const Forecast& found = forecasts[s];
         const fs::path file = output / fmt::format("simulation_{:03}.vtp", s);
-        mesh::write_vtp(file, model.surface, {.points = {{"displacement [mm]", u}}});
+        mesh::MeshData data{.points = {{"displacement [mm]", found.displacement}}};
+        if (found.sd.size() > 0) data.points.push_back({"sd of a coordinate [mm]", found.sd});
+        mesh::write_vtp(file, model.surface, data);
         steps.push_back({static_cast<double>(s), file});
         results.push_back({{"probe", states[s].probe},
                            {"time", states[s].time},
-                           {"max_displacement_mm", u.rows() ? u.rowwise().norm().maxCoeff() : 0.0},
-                           {"iterations", found.iterations}});
+                           {"max_displacement_mm", found.largest},
+                           {"iterations", found.equilibrium.iterations}});
+        if (found.sd.size() > 0) results.back()["max_displacement_95_mm"] = {found.low, found.high};
     }
     mesh::write_pvd(output / "simulation.pvd", steps);
     Outcome outcome;
-    outcome.text =
-        fmt::format("{0}: {1} equilibria.\nNext: paraview {0}\n", (output / "simulation.pvd").string(), states.size());
+    outcome.text = fmt::format("{}: {} equilibria.\n", (output / "simulation.pvd").string(), states.size());
     outcome.json = {{"file", (output / "simulation.pvd").string()}, {"states", results}};
+    if (doubts) {
+        outcome.text += in_words(states, forecasts);
+        const Vec3 sizes = model.surface.vertices.colwise().maxCoeff() - model.surface.vertices.colwise().minCoeff();
+        const std::vector<std::string> beyond = extrapolations(doubts->measured, states, forecasts, sizes.maxCoeff());
+        Console::notices(beyond);
+        outcome.json["draws"] = doubts->draws.size();
+        outcome.json["model_error"] = doubts->model_error;
+        outcome.json["extrapolations"] = beyond;
+    }
+    outcome.text += fmt::format("Next: paraview {}\n", (output / "simulation.pvd").string());
     return outcome;
 }
 

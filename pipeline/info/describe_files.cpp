@@ -40,6 +40,7 @@ const std::map<std::string, std::string>& tables() {
     static const std::map<std::string, std::string> kinds{
         {"parameter,link,", "stiffnesses with their intervals"},
         {"parameter,other,", "stiffnesses that are known together rather than alone"},
+        {"weight,", "particles: stiffnesses that stand for the posterior, with their weights"},
         {"stage,step,", "how the search and the particles converged"},
         {"probe,time,x,y,z,fx", "probes: forces on the body"},
         {"probe,time,marker", "measured positions of markers"},
@@ -67,7 +68,7 @@ Description describe_table(const fs::path& file) {
         throw InvalidInput(
             fmt::format("{}: a table with the columns {}, which is none of ours", file.string(), header));
     }
-    Description told{.kind = kind->second, .lines = {fmt::format("{} rows: {}", rows, header)}, .next = {}};
+    Description told{.kind = kind->second, .lines = {fmt::format("{} rows: {:.300}", rows, header)}, .next = {}};
     if (kind->first != "parameter,link,") return told;
     const auto posterior = read_posterior(file);
     const auto informed = std::ranges::count_if(posterior, [](const auto& row) { return row.informed; });

@@ -4,6 +4,7 @@
 
 #include "mesh/io/atomic_file.h"
 #include "pipeline/case/names.h"
+#include "pipeline/results/particles_file.h"
 #include "pipeline/results/posterior_file.h"
 #include "pipeline/results/results.h"
 #include "pipeline/results/series.h"
@@ -40,6 +41,7 @@ std::string convergence_csv(const identify::IdentifyResult& found) {
 void write_identification(const std::filesystem::path& folder, const identify::IdentifyResult& found) {
     write_particle_series(folder / "history.pvd", found);
     mesh::write_text(folder / "posterior.csv", posterior_csv(found.posterior));
+    mesh::write_text(folder / "particles.csv", particles_csv(found));
     mesh::write_text(folder / "correlations.csv", correlations_csv(found));
     mesh::write_text(folder / "convergence.csv", convergence_csv(found));
     mesh::write_text(folder / "identify.json", summary_json(found).dump(2) + "\n");

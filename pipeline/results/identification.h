@@ -7,8 +7,8 @@
 
 namespace palpate::pipeline {
 
-/// model.json, model.vtp, posterior.csv, correlations.csv, convergence.csv, identify.json and the particle history
-/// (history.pvd) of an identification.
+/// model.json, model.vtp, posterior.csv, particles.csv, correlations.csv, convergence.csv, identify.json and the
+/// particle history (history.pvd) of an identification.
 void write_identification(const std::filesystem::path& folder, const identify::IdentifyResult& found);
 
 /// One page for the terminal: what was identified from what, how the fit and the particles went, the parameters.

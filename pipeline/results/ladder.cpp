@@ -7,7 +7,9 @@
 #include "mesh/io/atomic_file.h"
 #include "pipeline/results/json_values.h"
 #include "pipeline/results/ladder_series.h"
+#include "pipeline/results/particles_file.h"
 #include "pipeline/results/posterior_file.h"
+#include "pipeline/results/results.h"
 #include "pipeline/results/series.h"
 #include "pipeline/results/words.h"
 #include "skeleton/model_io.h"
@@ -95,6 +97,8 @@ void write_ladder(const std::filesystem::path& folder, const identify::Ladder& l
         write_played_series(folder / fmt::format("step_{}", i), step.model, step.set, step.comparison);
     }
     mesh::write_text(folder / "posterior.csv", posterior_csv(ladder.identified.posterior));
+    mesh::write_text(folder / "particles.csv", particles_csv(ladder.identified));
+    mesh::write_text(folder / "identify.json", summary_json(ladder.identified).dump(2) + "\n");
     skeleton::write_model_vtp(folder / "model.vtp", model);
     skeleton::write_model(folder / "model.json", model);
     mesh::write_text(folder / "ladder.json", to_json(ladder).dump(2) + "\n");

@@ -2,32 +2,13 @@
 
 #include <map>
 
+#include "identify/fit/borne.h"
 #include "identify/fit/lived.h"
 #include "identify/set/loads.h"
 #include "identify/set/readings.h"
-#include "mesh/errors.h"
 
 namespace palpate::pipeline {
-namespace {
-
-/// In steps of a fifth less; a tenth of the load is little enough to give up at.
-Played as_far_as_it_bears(skeleton::StaticsSolver& solver, const Eigen::VectorXd& k, skeleton::Load load,
-                          const skeleton::FibreStates& before) {
-    constexpr int attempts = 10;
-    for (int attempt = 0;; ++attempt) {
-        try {
-            return {solver.solve(k, load, {}, nullptr, before), load};
-        } catch (const SolverFailure&) {
-            if (attempt == attempts) throw;
-            for (skeleton::PointForce& force : load.forces) force.force *= 0.8;
-            for (skeleton::Press& press : load.presses) press.force *= 0.8;
-        }
-    }
-}
-
-}  // namespace
-
-std::vector<Played> play(const skeleton::Model& model, const identify::MeasurementSet& set) {
+std::vector<identify::Borne> play(const skeleton::Model& model, const identify::MeasurementSet& set) {
     const std::vector<identify::StateReadings> read = identify::collect_readings(model, set);
     std::map<int, int> reading_of;  // of a state of the set, where it has one
     for (int r = 0; r < static_cast<int>(read.size()); ++r) reading_of[read[r].state] = r;
@@ -36,16 +17,16 @@ std::vector<Played> play(const skeleton::Model& model, const identify::Measureme
     const identify::ContactLoads to_load(model);
     const Eigen::VectorXd k = skeleton::stiffness_vector(model);
     std::vector<skeleton::Equilibrium> so_far(read.size());
-    std::vector<Played> played;
+    std::vector<identify::Borne> played;
     for (int s = 0; s < static_cast<int>(set.states.size()); ++s) {
         const auto found = reading_of.find(s);
         if (found == reading_of.end()) {
-            played.push_back(as_far_as_it_bears(solver, k, to_load(set, set.states[s]), {}));
+            played.push_back(identify::solve_as_far_as_it_bears(solver, k, to_load(set, set.states[s]), {}));
             continue;
         }
         const int r = found->second;
         const skeleton::FibreStates before = identify::flowed_before(model, solver, k, read, r, so_far);
-        played.push_back(as_far_as_it_bears(solver, k, read[r].load, before));
+        played.push_back(identify::solve_as_far_as_it_bears(solver, k, read[r].load, before));
         so_far[r] = played.back().equilibrium;
     }
     return played;

@@ -117,6 +117,8 @@ json summary_json(const identify::IdentifyResult& result) {
         }
         modes.push_back(std::move(entry));
     }
+    json places = json::array();
+    for (const Vec3& place : result.measured.places) places.push_back({place.x(), place.y(), place.z()});
     return {{"law", skeleton::law_names[static_cast<std::size_t>(result.model.law)]},
             {"parameters", result.posterior.size()},
             {"informed", informed},
@@ -125,6 +127,11 @@ json summary_json(const identify::IdentifyResult& result) {
             {"log_evidence", known(result.log_evidence)},
             {"effective_samples", result.history.empty() ? 0.0 : result.history.back().effective_samples},
             {"acceptance", known(result.acceptance)},
+            {"model_error", known(result.model_error)},
+            {"measured",
+             {{"force_N", result.measured.force},
+              {"displacement_mm", result.measured.displacement},
+              {"places_mm", places}}},
             {"equilibria", result.equilibria},
             {"notes", result.notes}};
 }

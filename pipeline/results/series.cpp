@@ -36,7 +36,7 @@ std::vector<int> columns_of(const identify::IdentifyResult& result, const std::s
 }
 
 void write_skin(const fs::path& file, const skeleton::Model& model, const identify::LoadState& state,
-                const Played& played) {
+                const identify::Borne& played) {
     const Points u = skin_displacement(model, played.equilibrium, played.load);
     mesh::MeshData data{.points = {{"displacement [mm]", u}}};
     if (const auto measured = field_on_skin(model, state)) {
@@ -47,7 +47,7 @@ void write_skin(const fs::path& file, const skeleton::Model& model, const identi
 }
 
 void write_spheres(const fs::path& file, const skeleton::Model& model, const identify::LoadState& state,
-                   const Played& played) {
+                   const identify::Borne& played) {
     const Points u = played.equilibrium.state.x - skeleton::rest_state(model).x;
     skeleton::write_model_vtp(file, model,
                               {.points = {{"displacement [mm]", u},
@@ -115,7 +115,7 @@ Points skin_displacement(const skeleton::Model& model, const skeleton::Equilibri
 void write_played_series(const fs::path& folder, const skeleton::Model& model, const identify::MeasurementSet& set,
                          const identify::Comparison& comparison) {
     write_marker_series(folder, "markers", set, comparison);
-    const std::vector<Played> played = play(model, set);
+    const std::vector<identify::Borne> played = play(model, set);
     std::vector<mesh::SeriesStep> skin, spheres, loads;
     for (std::size_t s = 0; s < set.states.size(); ++s) {
         const auto step = [&](const char* name) {

@@ -6,13 +6,21 @@
 namespace palpate::pipeline {
 
 void Verbs::add_simulate(CLI::App& app) {
-    auto* sub = verb(app, "simulate", "Plays the model: equilibria under given contacts, or motion.",
-                     "  palpate simulate model.json --probes set/probes.csv -o played\n"
-                     "  palpate simulate model.json --probes set/probes.csv --dt 0.002 --duration 0.5 -o moved\n",
-                     [this] { return commands::simulate(simulate, common); });
+    auto* sub =
+        verb(app, "simulate",
+             "Plays the model: equilibria under given contacts, with intervals where a posterior is there, or motion.",
+             "  palpate simulate model.json --probes set/probes.csv -o played\n"
+             "  palpate simulate model.json --probes set/probes.csv --dt 0.002 --duration 0.5 -o moved\n",
+             [this] { return commands::simulate(simulate, common); });
     sub->add_option("MODEL", simulate.model, "model.json")->required();
     sub->add_option("--probes", simulate.probes, "probes.csv: probe,time,x,y,z,fx,fy,fz,radius [mm, N]")->required();
     sub->add_option("-o,--output", simulate.output, "Folder for simulation.pvd; simulation by default");
+    sub->add_option("--posterior", simulate.posterior,
+                    "Folder with particles.csv and identify.json, which tell how far equilibria can be relied on; by\n"
+                    "default that of the model, where they are");
+    sub->add_option("--draws", simulate.draws, "Draws from the posterior, for intervals; 0: none")
+        ->check(CLI::NonNegativeNumber)
+        ->capture_default_str();
     auto* dt =
         sub->add_option("--dt", simulate.dt,
                         "Motion: a frame every so many seconds. The load of a row acts since the row before it,\n"

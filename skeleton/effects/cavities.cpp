@@ -57,7 +57,17 @@ Cavities::Cavities(const Model& model) : rest_(rest_state(model)) {
         walls_.push_back({model.skin[wall[0]], model.skin[wall[1]], model.skin[wall[2]]});
         origin_ += model.surface.vertices.row(wall[0]).transpose();
     }
-    if (!walls_.empty()) origin_ /= static_cast<double>(walls_.size());
+    if (walls_.empty()) return;
+    origin_ /= static_cast<double>(walls_.size());
+    rest_volume_ = volume(rest_);
+    std::set<std::array<int, 2>> joined;
+    for (const std::array<Attachment, 3>& wall : walls_)
+        for (const Attachment& one : wall)
+            for (const Attachment& other : wall)
+                for (const Share& a : one.shares)
+                    for (const Share& b : other.shares)
+                        if (a.sphere < b.sphere) joined.insert({a.sphere, b.sphere});
+    joined_.assign(joined.begin(), joined.end());
 }
 
 Cavities::Wall Cavities::at(const std::array<Attachment, 3>& wall, const State& state) const {

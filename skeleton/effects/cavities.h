@@ -22,7 +22,10 @@ public:
     explicit Cavities(const Model& model);
 
     bool empty() const { return walls_.empty(); }
-    double volume(const State& state) const;  // [mm^3]
+    double volume(const State& state) const;              // [mm^3]
+    double rest_volume() const { return rest_volume_; }  // [mm^3]
+    /// The spheres that walls join, a < b.
+    const std::vector<std::array<int, 2>>& joined() const { return joined_; }
     /// Adds `factor` dV / d step to `sum` (6N).
     void add_gradient(const State& state, double factor, Eigen::VectorXd& sum) const;
     /// d^2 V / d step^2 in exponential coordinates: calls visit(a, b, block) with a <= b, whose sum over all calls of
@@ -37,6 +40,8 @@ private:
     State rest_;
     Vec3 origin_ = Vec3::Zero();                    // amid the walls, so that little is lost to rounding
     std::vector<std::array<Attachment, 3>> walls_;  // triangles, counter-clockwise seen from the body
+    std::vector<std::array<int, 2>> joined_;
+    double rest_volume_ = 0;
 };
 
 // A triangle's part in V is -1/6 x_0 . (x_1 x x_2), as its outward normal points into the cavity. By x_0 that is

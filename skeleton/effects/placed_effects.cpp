@@ -46,7 +46,6 @@ PlacedEffects::PlacedEffects(const Model& model, const fem::Effects& effects)
             "the model's skin encloses no cavity, in which a pressure could act: give it one, closed and turned "
             "inwards, "
             "or take the pressure away");
-    rest_volume_ = cavities_.volume(rest_);
     cavities_.for_each_block(rest_, [&](int a, int b, const Block&) { cavity_blocks_.push_back(pair(a, b)); });
 }
 
@@ -74,7 +73,7 @@ PlacedEffects::Energy PlacedEffects::energy(const State& state, double share) co
     });
     if (pressure_ != 0) {
         const double volume = cavities_.volume(state);
-        energy.sum -= share * pressure_ * (volume - rest_volume_);
+        energy.sum -= share * pressure_ * (volume - cavities_.rest_volume());
         energy.size += std::abs(share * pressure_ * volume);
     }
     return energy;

@@ -65,7 +65,6 @@ private:
     double pressure_;  // [MPa]
     bool is_dead_;     // is it?
     Cavities cavities_;
-    double rest_volume_ = 0;          // of the cavities [mm^3]
     std::vector<int> cavity_blocks_;  // the pair of each block that the cavities visit
     std::vector<std::array<int, 2>> pairs_;
     std::vector<char> supported_;

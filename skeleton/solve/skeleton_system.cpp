@@ -102,6 +102,8 @@ void SkeletonSystem::prepare(const Load& load) {
         for (const Share& s : force.at.shares)
             for (const Share& t : force.at.shares)
                 if (s.sphere < t.sphere) coupling(s.sphere, t.sphere);
+    if (load.cavities)
+        for (const auto& [a, b] : load.cavities->joined()) coupling(a, b);
     if (couplings_.size() > before) matrix_ = BlockCholesky(static_cast<int>(free_.size()), couplings_);
 }
 
@@ -196,7 +198,7 @@ void SkeletonSystem::assemble(const Eigen::VectorXd& k, const State& state, cons
     if (!links_.volumes().empty())
         add_pairs(links_.volumes().pairs(), coupling_of_cell_, links_.volumes().curvature(k, state));
     add_pairs(effects_.pairs(), coupling_of_pair_, effects_.curvature(state, effect_share_));
-    if (!load || load->forces.empty()) return;
+    if (!load) return;
     for (const auto& [a, b, block] : external_curvature(body_, state, *load)) {
         if (a == b && block_of_[a] >= 0) matrix_.add_diagonal(block_of_[a], -block);
         if (const int c = coupling(a, b); c >= 0) matrix_.add_coupling(c, -block);

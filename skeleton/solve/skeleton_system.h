@@ -65,7 +65,7 @@ public:
 
 private:
     int coupling(int a, int b);
-    /// Makes room for the couplings of a load's points.
+    /// Makes room for the couplings of a load's points and of the cavities that it presses apart.
     void prepare(const Load& load);
     void add_pairs(const std::vector<std::array<int, 2>>& pairs, const std::vector<int>& couplings,
                    const std::vector<BlockCholesky::Block>& blocks);

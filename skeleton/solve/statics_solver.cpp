@@ -15,6 +15,7 @@ namespace {
 
 Load scaled(Load load, double share) {
     load.gravity *= share;
+    load.pressure *= share;
     for (PointForce& force : load.forces) force.force *= share;
     return load;
 }

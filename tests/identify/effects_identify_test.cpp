@@ -8,6 +8,7 @@
 #include "lattice.h"
 #include "mesh/errors.h"
 #include "tests/messages.h"
+#include "tests/skeleton/test_effects.h"
 
 // Models that carry effects: played, identified and compared.
 
@@ -165,6 +166,26 @@ TEST(Burion2008, RefusesSupportsThatGiveWay) {
               }),
               "method burion2008 takes held spheres to stay where they are, but the model's effect 'compliant-support' "
               "lets them move: take it out of the model, or use method tempered");
+}
+
+TEST(KnownPressure, OfAnInflatedBodyTellsItsStiffness) {
+    const auto inflated = [](skeleton::Model model) {
+        return skeleton::testing::with_cavity(std::move(model), {60, 20, 20}, 15);
+    };
+    const skeleton::Model truth = inflated(with_truth(make_lattice({4, 2, 2}), {1.2}, {400}));
+    std::vector<LoadState> states(3);
+    for (int s = 0; s < 3; ++s) {
+        states[s].probe = s;
+        states[s].pressure = 0.02 * s;
+    }
+    MeasurementSet set = simulate_measurements(truth, states, markers_on_spheres(truth), 0, 2);
+    EXPECT_GT(compare(inflated(make_lattice({4, 2, 2})), set).rms, 0.05);
+    const IdentifyResult result = identify(inflated(make_lattice({4, 2, 2})), set, quick());
+    EXPECT_NEAR(result.model.links[0].stiffness[0], 1.2, 1e-2);
+    EXPECT_LT(compare(result.model, set).relative, 1e-3);
+
+    for (LoadState& state : set.states) state.pressure = missing;
+    EXPECT_NE(message_of([&] { identify(inflated(make_lattice({4, 2, 2})), set, quick()); }), "");
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 namespace palpate::skeleton {
 namespace {
 
+using testing::force_at;
 using testing::lattice_with_skin;
 using testing::make_chain;
 using testing::random_state;
@@ -94,6 +95,32 @@ TEST(PressureEffect, IsADeadLoadByTheLinearLaw) {
     EXPECT_LT((StaticsSolver(model, {.pressure = 0.2}).solve(k, {}).step - 2 * once).norm(), 1e-12 * once.norm());
     const Eigen::VectorXd f = effect_force(model, rest_state(model), {.pressure = 0.1});
     EXPECT_LT((StaticsSolver(model).linear_steps(k, f).col(0) - once).norm(), 1e-12 * once.norm());
+}
+
+TEST(KnownPressure, ActsAsTheEffectDoes) {
+    for (const Law law : {Law::linear, Law::large_rotation}) {
+        const Model model = with_law(hollow(), law);
+        const Eigen::VectorXd k = stiffness_vector(model);
+        Load load = force_at(model, 3, {0.1, 0.2, -0.3});
+        const State by_effect = StaticsSolver(model, {.pressure = 0.05}).solve(k, load).state;
+        load.pressure = 0.05;
+        load.cavities = std::make_shared<const Cavities>(model);
+        const State by_load = StaticsSolver(model).solve(k, load).state;
+        EXPECT_GT((by_effect.x - rest_state(model).x).norm(), 1e-2);
+        EXPECT_LT((by_load.x - by_effect.x).norm(), 1e-9);
+    }
+}
+
+TEST(KnownPressure, HasTheEffectsTangent) {
+    const Model model = hollow();
+    std::mt19937_64 engine(8);
+    const State state = random_state(model, engine, 2, 0.6);
+    Load load;
+    load.pressure = 0.05;
+    load.cavities = std::make_shared<const Cavities>(model);
+    const Eigen::SparseMatrix<double> by_effect = tangent(model, state, {}, {.pressure = 0.05});
+    EXPECT_LT((tangent(model, state, load) - by_effect).norm(), 1e-12 * by_effect.norm());
+    EXPECT_NEAR(potential(model, state, load), potential(model, state, {}, {.pressure = 0.05}), 1e-10);
 }
 
 TEST(PressureEffect, NeedsACavity) {

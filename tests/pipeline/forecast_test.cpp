@@ -1,0 +1,149 @@
+#include "pipeline/results/forecast.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "identify/set/loads.h"
+#include "identify/set/twin.h"
+#include "mesh/errors.h"
+#include "mesh/io/atomic_file.h"
+#include "pipeline/results/identification.h"
+#include "pipeline/results/particles_file.h"
+#include "samples/lattice.h"
+#include "tests/messages.h"
+#include "tests/temporary_folder.h"
+
+namespace palpate::pipeline {
+namespace {
+
+using testing::HasSubstr;
+
+/// A lattice with a skin, so that there is something to forecast.
+skeleton::Model cube() {
+    skeleton::Model model = samples::make_lattice("cube", {3, 3, 2}, 1);
+    const skeleton::Attacher attach(model);
+    model.surface = mesh::make_box({-10, -10, -10}, {90, 90, 50}, {3, 3, 2});
+    for (const auto& vertex : model.surface.vertices.rowwise())
+        model.skin.push_back(attach(vertex.transpose(), vertex.transpose()));
+    return model;
+}
+
+std::vector<identify::LoadState> random_pushes(const skeleton::Model& model, int count, std::uint64_t seed) {
+    std::mt19937_64 random(seed);
+    std::normal_distribution<double> normal;
+    std::vector<identify::LoadState> states;
+    for (int i = 0; i < count; ++i) {
+        const Eigen::Index vertex = static_cast<Eigen::Index>(random() % model.surface.vertices.rows());
+        const Vec3 force(normal(random), normal(random), normal(random));
+        identify::LoadState& state = states.emplace_back();
+        state.probe = i;
+        state.contacts = {{model.surface.vertices.row(vertex), force, 0}};
+    }
+    return states;
+}
+
+struct Forecasts : testing::Test {
+    skeleton::Model truth = cube();
+    TemporaryFolder folder;
+
+    /// Identifies the truth's stiffness from noisy pushes, and writes what is found.
+    identify::IdentifyResult identified(std::uint64_t seed) {
+        const identify::MeasurementSet set = identify::simulate_measurements(
+            truth, random_pushes(truth, 6, seed), identify::markers_on_spheres(truth), 0.3, seed);
+        skeleton::Model start = truth;
+        for (skeleton::Link& link : start.links) link.stiffness *= 1.5;
+        identify::IdentifyOptions options;
+        options.scope = identify::Scope::uniform;
+        options.law = identify::LawChoice::large_rotation;
+        options.seed = seed;
+        identify::IdentifyResult found = identify::identify(start, set, options);
+        write_identification(folder.path(), found);
+        return found;
+    }
+};
+
+TEST_F(Forecasts, IntervalsHoldTheTruth) {
+    const identify::ContactLoads to_load(truth);
+    int held = 0, all = 0;
+    for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+        const skeleton::Model model = identified(seed).model;
+        std::vector<skeleton::Load> loads;
+        for (const identify::LoadState& state : random_pushes(truth, 6, 100 + seed))
+            loads.push_back(to_load(state.contacts));
+        const auto doubts = read_doubts(model, folder.path(), 32);
+        ASSERT_TRUE(doubts);
+        const std::vector<Forecast> told = forecast(model, loads, doubts, 2);
+        const std::vector<Forecast> real = forecast(truth, loads, std::nullopt, 2);
+        for (std::size_t i = 0; i < loads.size(); ++i) {
+            held += told[i].low <= real[i].largest && real[i].largest <= told[i].high;
+            EXPECT_LT(told[i].high - told[i].low, 0.5 * told[i].largest) << "it says nothing";
+            EXPECT_GT(told[i].high - told[i].low, 1e-4 * told[i].largest) << "it claims to know all";
+            ++all;
+        }
+    }
+    EXPECT_GE(held, 0.85 * all);  // 95 % of 60 that hang together by the posterior they share
+}
+
+TEST_F(Forecasts, OfARigidlyKnownModelAreItsOwn) {
+    const identify::ContactLoads to_load(truth);
+    const std::vector<skeleton::Load> loads{to_load(random_pushes(truth, 1, 3).front().contacts)};
+    const Forecast only = forecast(truth, loads, std::nullopt, 1).front();
+    EXPECT_EQ(only.sd.size(), 0);
+    EXPECT_EQ(only.low, only.largest);
+    EXPECT_EQ(only.high, only.largest);
+    EXPECT_FALSE(read_doubts(truth, folder.path(), 32)) << "there is no posterior in an empty folder";
+}
+
+TEST_F(Forecasts, BeyondTheMeasurementsIsTold) {
+    const identify::IdentifyResult found = identified(1);
+    const auto doubts = read_doubts(found.model, folder.path(), 8);
+    ASSERT_TRUE(doubts);
+    EXPECT_EQ(doubts->draws.size(), 8u);
+    EXPECT_NEAR(doubts->measured.force, found.measured.force, 1e-12);
+    EXPECT_EQ(doubts->measured.places.size(), found.measured.places.size());
+    std::vector<Forecast> forecasts(1);
+    forecasts[0].largest = found.measured.displacement;
+    std::vector<identify::LoadState> states(1);
+    states[0].probe = 7;
+    states[0].contacts = {{found.measured.places.front(), Vec3(0, 0, found.measured.force), 0}};
+    EXPECT_TRUE(extrapolations(doubts->measured, states, forecasts, 100).empty());
+    states[0].contacts[0].force *= 2;
+    EXPECT_THAT(extrapolations(doubts->measured, states, forecasts, 100).front(),
+                HasSubstr("Probe 7: pressed harder than anything that was measured"));
+    states[0].contacts[0].force /= 2;
+    states[0].contacts[0].point.z() += 300;
+    EXPECT_THAT(extrapolations(doubts->measured, states, forecasts, 100).front(), HasSubstr("further than 15 mm from"));
+    states[0].contacts[0].point.z() -= 300;
+    forecasts[0].largest *= 2;
+    EXPECT_THAT(extrapolations(doubts->measured, states, forecasts, 100).front(), HasSubstr("moved further than any"));
+}
+
+TEST_F(Forecasts, ParticlesComeBackAsTheyWereWritten) {
+    const identify::IdentifyResult found = identified(2);
+    const ParticleSet read = read_particles(folder / "particles.csv");
+    const identify::FilterStep& last = found.history.back();
+    ASSERT_EQ(read.stiffness.rows(), last.particles.rows());
+    ASSERT_EQ(read.stiffness.cols(), last.particles.cols());
+    EXPECT_LT((read.stiffness - last.particles).norm(), 1e-5 * last.particles.norm());  // six digits
+    EXPECT_LT((read.weights - last.log_weights.array().exp().matrix()).norm(), 1e-5);
+    for (std::size_t p = 0; p < found.posterior.size(); ++p)
+        EXPECT_EQ(read.parameters[p], found.posterior[p].parameter);
+}
+
+TEST_F(Forecasts, AnotherModelsParticlesAreRefused) {
+    identified(1);
+    mesh::write_text(folder / "particles.csv", "weight,elongation:link99\n1,2\n");
+    EXPECT_THAT(message_of<InvalidInput>([&] { read_doubts(truth, folder.path(), 8); }),
+                HasSubstr("'elongation:link99' is no stiffness of the model"));
+    mesh::write_text(folder / "particles.csv", "weight,elongation\n1,2\n1\n");
+    EXPECT_THAT(message_of<InvalidInput>([&] { read_doubts(truth, folder.path(), 8); }),
+                HasSubstr("line 3: has 1 cells, its header 2"));
+    mesh::write_text(folder / "particles.csv", "weight,elongation\n1,-2\n");
+    EXPECT_THAT(message_of<InvalidInput>([&] { read_doubts(truth, folder.path(), 8); }),
+                HasSubstr("'-2' is no weight"));
+}
+
+}  // namespace
+}  // namespace palpate::pipeline
