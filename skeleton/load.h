@@ -28,7 +28,7 @@ struct Load {
     std::vector<Press> presses;   // the same forces where they dent the surface; they do no work on the spheres
     Vec3 gravity = Vec3::Zero();  // [mm/s^2], on the spheres' masses
     double pressure = 0;          // in the skin's cavities [MPa], beside what the effects in force bring about there
-    std::shared_ptr<const Cavities> cavities;  // of the skin, where there is pressure
+    std::shared_ptr<const Cavities> cavities = nullptr;  // of the skin, where there is pressure
 };
 
 /// External generalized force (6N) [N, N mm]: forces and torques on the spheres, by virtual work.
