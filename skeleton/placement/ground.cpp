@@ -68,6 +68,21 @@ void add_faces(const TetGraph& graph, Ground& ground) {
     }
 }
 
+// A support may hold a face and no depth: a plate that is bolted or glued to a wall. What stands on such a face counts as
+// held, or cells that reach through the plate would take the face, and nothing would tie their spheres to it.
+void hold_what_stands_on_faces(const TetGraph& graph, Ground& ground) {
+    double outer = 0;
+    std::set<int> standing;
+    for (Eigen::Index i = 0; i < ground.patch.rows(); ++i) {
+        if (ground.held[ground.behind[i]]) continue;
+        outer += ground.weight(i);
+        standing.insert(ground.behind[i]);
+    }
+    const auto held = std::count(ground.held.begin(), ground.held.end(), 1);
+    if (outer <= 0.5 * ground.weight.sum() || held + std::ssize(standing) >= graph.size() / 2) return;
+    for (const int t : standing) ground.held[t] = 1;
+}
+
 // Where only single nodes or edges are held.
 void add_nodes(const TetGraph& graph, Ground& ground) {
     std::set<int> done;
@@ -141,6 +156,7 @@ Ground find_ground(const TetGraph& graph, const std::vector<mesh::Region>& suppo
                         where(graph, supports)));
     }
     add_faces(graph, ground);
+    hold_what_stands_on_faces(graph, ground);
     if (ground.patch.rows() == 0) add_nodes(graph, ground);
     return ground;
 }

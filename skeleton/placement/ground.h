@@ -9,7 +9,7 @@ namespace palpate::skeleton {
 
 /// The part of a body that its supports hold, and where free material begins.
 struct Ground {
-    std::vector<char> held;       // of each tetrahedron: all of it is held (m)
+    std::vector<char> held;       // of each tetrahedron: all of it is held, or it stands on a held face (m)
     std::vector<char> held_node;  // (n)
     Points patch;  // middles of the faces between held and free, of held outer faces, or held nodes (k x 3) [mm]
     std::vector<int> behind;  // the tetrahedron that each belongs to (k)

@@ -111,15 +111,16 @@ const Built& built_lump() {
     return built;
 }
 
-// Downward motion of the middle of the far end under a force of 1 mN there, linear.
-double sag(const Model& built, const Vec3& tip) {
+// How far the middle of the far end gives way to a force of 1 mN there, linear.
+double give(const Model& built, const Vec3& tip, const Vec3& direction) {
     Model model = built;
     model.law = Law::linear;
     const Attachment end = attach(model, tip);
     Load load;
-    load.forces.push_back({end, Vec3(0, 0, -1e-3)});
-    return tip.z() - observe(model, equilibrium(model, load), {end})(0, 2);
+    load.forces.push_back({end, 1e-3 * direction});
+    return direction.dot(observe(model, equilibrium(model, load), {end}).row(0).transpose() - tip);
 }
+double sag(const Model& built, const Vec3& tip) { return give(built, tip, -Vec3::UnitZ()); }
 
 TEST(BuildSkeleton, IsOnePieceInsideTheBodyWithSoundLinks) {
     for (const Built& built : {built_limb(), built_plate(), built_lump()}) {
@@ -255,6 +256,36 @@ TEST(BuildSkeleton, AnUncalibratedPlateBendsLikeAStripWithinAFactorOfTwo) {
     const double ratio = sag(built_plate().model, Vec3(100, 40, 3)) / euler;
     EXPECT_GT(ratio, 0.5);
     EXPECT_LT(ratio, 2) << ratio;
+}
+
+/// A bracket that is bolted to a wall by all of the back of its upright, x = 0: no depth of it is held, and every sphere
+/// that stands there is tied to the wall.
+TEST(BuildSkeleton, APlateThatIsHeldByItsFaceBearsWhatGrowsOutOfIt) {
+    const Vec3 size(60, 30, 48);
+    const Eigen::Vector3i cells(20, 10, 16);
+    const mesh::VolumeMesh bracket =
+        carve(block(size, cells), cells, size, [](const Vec3& p) { return p.x() < 6 || p.z() < 6; });
+    const Model model = build(bracket).model;
+    std::vector<char> tied(model.spheres.size(), 0);
+    for (const Link& link : model.links) {
+        if (model.spheres[link.a].held) tied[link.b] = 1;
+        if (model.spheres[link.b].held) tied[link.a] = 1;
+    }
+    for (std::size_t i = 0; i < model.spheres.size(); ++i) {
+        const Vec3& center = model.spheres[i].center;
+        if (center.x() < 5 && center.z() > 9) EXPECT_TRUE(tied[i]) << center.transpose();
+    }
+    const fem::Material material;
+    const auto beam = [&](double width, double height) {
+        const double I = width * std::pow(height, 3) / 12, area = width * height;
+        return 1e-3 * (std::pow(54., 3) / (3 * material.young * I) + 54 / (5. / 6 * material.shear_modulus() * area));
+    };
+    const double down = sag(model, Vec3(60, 15, 3)) / beam(30, 6);
+    EXPECT_GT(down, 0.5);
+    EXPECT_LT(down, 2) << down;
+    const double aside = give(model, Vec3(60, 15, 3), Vec3::UnitY()) / beam(6, 30);
+    EXPECT_GT(aside, 0.5);
+    EXPECT_LT(aside, 2) << aside;
 }
 
 TEST(BuildSkeleton, CoversTheSurfaceByDefault) {
