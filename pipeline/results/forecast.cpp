@@ -15,6 +15,7 @@
 #include "mesh/io/atomic_file.h"
 #include "pipeline/results/particles_file.h"
 #include "pipeline/results/series.h"
+#include "skeleton/statics.h"
 
 namespace palpate::pipeline {
 namespace {
@@ -87,7 +88,7 @@ void tell_spread(const std::vector<Points>& drawn, double model_error, Forecast&
     forecast.high = forecast.largest + away(0.975);
 }
 
-std::string listed(std::vector<int> probes) {
+std::string probes_in_words(std::vector<int> probes) {
     probes.erase(std::ranges::unique(probes).begin(), probes.end());
     constexpr std::size_t most = 8;
     const bool all = probes.size() <= most;
@@ -163,13 +164,13 @@ std::vector<std::string> extrapolations(const identify::MeasuredRange& measured,
     std::vector<std::string> words;
     if (!strong.empty())
         words.push_back(fmt::format("{}: pressed harder than anything that was measured, {:.3g} N at most.",
-                                    listed(strong), measured.force));
+                                    probes_in_words(strong), measured.force));
     if (!far_off.empty())
         words.push_back(fmt::format("{}: further than {:.3g} mm from any place that was touched in the measurements.",
-                                    listed(far_off), far * size));
+                                    probes_in_words(far_off), far * size));
     if (!wide.empty())
         words.push_back(fmt::format("{}: moved further than any marker that was measured, {:.3g} mm at most.",
-                                    listed(wide), measured.displacement));
+                                    probes_in_words(wide), measured.displacement));
     if (!words.empty()) words.emplace_back("There the model extrapolates, and the intervals may be too narrow.");
     return words;
 }

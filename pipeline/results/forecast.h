@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "identify/identify.h"
+#include "skeleton/equilibrium.h"
 
 namespace palpate::pipeline {
 

@@ -124,10 +124,10 @@ TEST(Play, EndsWhereTheComparisonDoes) {
     const skeleton::Model model = skeleton::read_model(beam_run() / "identify/model.json");
     const identify::MeasurementSet set = identify::read_measurement_set(beam_run() / "measurements");
     const identify::Comparison comparison = identify::compare(model, set);
-    const std::vector<Played> played = play(model, set);
+    const std::vector<identify::Borne> played = play(model, set);
     ASSERT_EQ(played.size(), set.states.size());
     for (const identify::StateReadings& read : identify::collect_readings(model, set)) {
-        const Played& answer = played[static_cast<std::size_t>(read.state)];
+        const identify::Borne& answer = played[static_cast<std::size_t>(read.state)];
         const Points seen = skeleton::observed(model, answer.equilibrium, answer.load, read.points);
         const Points told = comparison.predicted[static_cast<std::size_t>(read.state)](read.rows, Eigen::all);
         EXPECT_NEAR((seen - told).norm(), 0, 1e-9) << "to what two solves of one equilibrium differ by";

@@ -258,8 +258,8 @@ TEST(BuildSkeleton, AnUncalibratedPlateBendsLikeAStripWithinAFactorOfTwo) {
     EXPECT_LT(ratio, 2) << ratio;
 }
 
-/// A bracket that is bolted to a wall by all of the back of its upright, x = 0: no depth of it is held, and every sphere
-/// that stands there is tied to the wall.
+/// A bracket that is bolted to a wall by all of the back of its upright, x = 0: no depth of it is held, and every
+/// sphere that stands there is tied to the wall.
 TEST(BuildSkeleton, APlateThatIsHeldByItsFaceBearsWhatGrowsOutOfIt) {
     const Vec3 size(60, 30, 48);
     const Eigen::Vector3i cells(20, 10, 16);
@@ -273,7 +273,8 @@ TEST(BuildSkeleton, APlateThatIsHeldByItsFaceBearsWhatGrowsOutOfIt) {
     }
     for (std::size_t i = 0; i < model.spheres.size(); ++i) {
         const Vec3& center = model.spheres[i].center;
-        if (center.x() < 5 && center.z() > 9) EXPECT_TRUE(tied[i]) << center.transpose();
+        const bool stands_on_it = !model.spheres[i].held && center.x() < 5 && center.z() > 9;
+        EXPECT_TRUE(tied[i] || !stands_on_it) << center.transpose();
     }
     const fem::Material material;
     const auto beam = [&](double width, double height) {
