@@ -3,124 +3,26 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
-#include <map>
 #include <nlohmann/json.hpp>
 
-#include "mesh/errors.h"
 #include "mesh/io/atomic_file.h"
-#include "mesh/io/poly_data.h"
 #include "pipeline/report/charts.h"
 #include "pipeline/report/escape.h"
 #include "pipeline/report/fit_sections.h"
 #include "pipeline/report/inquiry_sections.h"
 #include "pipeline/report/page/page_parts.h"
 #include "pipeline/report/picture.h"
+#include "pipeline/report/run_files.h"
 #include "pipeline/report/view_data.h"
 #include "pipeline/results/compare_words.h"
 #include "pipeline/results/diagnosis_words.h"
-#include "pipeline/results/posterior_file.h"
 #include "pipeline/results/words.h"
-#include "skeleton/model_io.h"
 
 namespace palpate::pipeline {
 namespace {
 
 namespace fs = std::filesystem;
 using nlohmann::json;
-
-/// All that a page is made of, read from the run folder.
-struct RunFiles {
-    json record, compare;
-    json diagnosis, ladder, quality;  // null where the run did not ask
-    std::string settings;
-    std::string best;                               // the folder of the model to use: "improve" where there is one
-    std::vector<identify::PosteriorRow> posterior;  // of that model
-    skeleton::Model model;
-    std::vector<Dot> errors_before, errors_after;  // rms of each marker; after: with all effects in, may be empty
-};
-
-json read_json(const fs::path& file) {
-    try {
-        return json::parse(mesh::read_text(file));
-    } catch (const json::exception& e) {
-        throw InvalidInput(fmt::format("{}: is no JSON: {}", file.string(), e.what()));
-    }
-}
-
-json read_if_there(const fs::path& file) { return fs::exists(file) ? read_json(file) : json(); }
-
-/// As `skeleton --quality` leaves it beside a model.
-json read_quality(const fs::path& folder) {
-    for (const auto& entry : fs::directory_iterator(folder)) {
-        if (entry.path().filename().string().ends_with("_quality.json")) return read_json(entry.path());
-    }
-    return {};
-}
-
-std::vector<Dot> errors_before(const json& compare) {
-    std::vector<Dot> dots;
-    for (const json& m : compare["markers"]) {
-        dots.push_back({{m["at"][0].get<double>(), m["at"][1].get<double>(), m["at"][2].get<double>()},
-                        m["rms_mm"].get<double>(),
-                        m.value("strange", false)});
-    }
-    return dots;
-}
-
-/// Rms over measured coordinates and all states of each marker of a ladder's step.
-std::vector<Dot> errors_after(const fs::path& step) {
-    const mesh::PolyData markers = mesh::read_poly_data(step);
-    const auto array = [&](const char* name) -> const Eigen::MatrixXd& {
-        const auto found = std::ranges::find(markers.data.points, name, &mesh::DataArray::name);
-        if (found == markers.data.points.end()) {
-            throw InvalidInput(fmt::format("{}: has no array '{}'; run it again", step.string(), name));
-        }
-        return found->values;
-    };
-    const Eigen::MatrixXd &ids = array("marker"), &read = array("coordinates"), &errors = array("error [mm]"),
-                          &measured = array("measured [mm]");
-    struct Sum {
-        Vec3 rest = Vec3::Zero();
-        double squares = 0;
-        int count = 0;
-    };
-    std::map<int, Sum> sums;
-    for (Eigen::Index i = 0; i < ids.rows(); ++i) {
-        Sum& sum = sums[static_cast<int>(ids(i, 0))];
-        sum.rest = markers.points.row(i).transpose() - measured.row(i).transpose();
-        sum.squares += errors.row(i).squaredNorm();
-        sum.count += static_cast<int>(read(i, 0));
-    }
-    std::vector<Dot> dots;
-    for (const auto& [id, sum] : sums) {
-        if (sum.count > 0) dots.push_back({sum.rest, std::sqrt(sum.squares / sum.count)});
-    }
-    return dots;
-}
-
-RunFiles read_run(const fs::path& run) {
-    if (!fs::exists(run / "run.json")) {
-        throw InvalidInput(
-            fmt::format("{}: holds no run.json, so it is no run folder; palpate run makes one", run.string()));
-    }
-    RunFiles files;
-    files.record = read_json(run / "run.json");
-    files.compare = read_json(run / "compare/compare.json");
-    files.diagnosis = read_if_there(run / "diagnose/diagnosis.json");
-    files.ladder = read_if_there(run / "improve/ladder.json");
-    files.quality = read_quality(run / "skeleton");
-    files.settings = mesh::read_text(run / "case.yaml");
-    files.best = files.ladder.is_null() ? "identify" : "improve";
-    files.posterior = read_posterior(run / files.best / "posterior.csv");
-    files.model = skeleton::read_model(run / files.best / "model.json");
-    files.errors_before = errors_before(files.compare);
-    if (!files.ladder.is_null() && files.ladder["steps"].size() > 1) {
-        files.errors_after =
-            errors_after(run / fmt::format("improve/ladder_{:03}.vtp", files.ladder["steps"].size() - 1));
-    }
-    return files;
-}
 
 /// The verdict, or where nobody asked for it how wrong the model is.
 std::string lead(const RunFiles& files) {

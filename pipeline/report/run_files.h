@@ -1,0 +1,28 @@
+#pragma once
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "identify/identify.h"
+#include "pipeline/report/picture.h"
+#include "skeleton/model.h"
+
+namespace palpate::pipeline {
+
+/// All that a page is made of, read from the run folder.
+struct RunFiles {
+    nlohmann::json record, compare;
+    nlohmann::json diagnosis, ladder, quality;  // null where the run did not ask
+    std::string settings;
+    std::string best;                               // the folder of the model to use: "improve" where there is one
+    std::vector<identify::PosteriorRow> posterior;  // of that model
+    skeleton::Model model;
+    std::vector<Dot> errors_before, errors_after;  // rms of each marker; after: with all effects in, may be empty
+};
+
+/// @throws IoError, InvalidInput naming the file that is missing or broken.
+RunFiles read_run(const std::filesystem::path& run);
+
+}  // namespace palpate::pipeline
