@@ -29,6 +29,7 @@ Body prepare(const mesh::Surface& surface, const mesh::SurfaceTree& tree, const 
     if (body.axis.radii.size() == 0)
         throw InvalidInput("no ball fits into the surface: is it closed, and does it look outward?");
     body.core = find_core(body.graph, body.axis);
+    hold_faces_of_plates(body.graph, body.core, body.ground);
     body.free_volumes = body.graph.volumes;
     for (int t = 0; t < body.graph.size(); ++t) {
         if (body.ground.held[t]) body.free_volumes(t) = 0;

@@ -142,10 +142,14 @@ Outcome simulate_motion(const SimulateOptions& options, const fs::path& output) 
 /// The largest displacement of each state and its interval; of many states the first ones.
 std::string in_words(const std::vector<identify::LoadState>& states, const std::vector<Forecast>& forecasts) {
     constexpr std::size_t most = 12;
+    constexpr double rounding = 1e-9;  // [mm]
     std::string text;
     for (std::size_t s = 0; s < std::min(most, states.size()); ++s) {
-        text += fmt::format("  probe {:<4} moves by {:.3g} mm at most, {:.3g} to {:.3g} mm with 95 %\n",
-                            states[s].probe, forecasts[s].largest, forecasts[s].low, forecasts[s].high);
+        const Forecast& here = forecasts[s];
+        text += fmt::format("  probe {:<4} ", states[s].probe);
+        text += here.largest < rounding ? "does not move\n"
+                                        : fmt::format("moves by {:.3g} mm at most, {:.3g} to {:.3g} mm with 95 %\n",
+                                                      here.largest, here.low, here.high);
     }
     if (states.size() > most) text += fmt::format("  and {} more\n", states.size() - most);
     return text;

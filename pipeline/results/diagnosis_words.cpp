@@ -17,11 +17,13 @@ const json* find(const json& ranking, const std::string& effect) {
     return found == ranking.end() ? nullptr : &*found;
 }
 
-/// What an effect comes to here, or its name where that is not known.
-std::string sentence_of(const json& candidate) {
+/// What an effect comes to here, or its name where that is not known. `alone`: with its probability against the other
+/// single ones, which says nothing of several together.
+std::string sentence_of(const json& candidate, bool alone) {
     const std::string fallback = "The effect " + candidate["effect"].get<std::string>() + " is missing.";
-    return with_aside(candidate.value("sentence", fallback),
-                      fmt::format("probability {:.2f}", candidate["probability"].get<double>()));
+    const std::string sentence = candidate.value("sentence", fallback);
+    if (!alone) return sentence;
+    return with_aside(sentence, fmt::format("probability {:.2f}", candidate["probability"].get<double>()));
 }
 
 /// How much less likely one candidate is than another: "0.3 times" or "10^-54 times".
@@ -64,7 +66,7 @@ std::string missing_effect(const json& diagnosis) {
     for (const std::string& name : names) {
         if (const json* candidate = find(diagnosis["ranking"], name)) {
             if (!text.empty()) text += " ";
-            text += sentence_of(*candidate);
+            text += sentence_of(*candidate, names.size() == 1);
         }
     }
     text += without_it(diagnosis);
@@ -82,7 +84,7 @@ std::string ambiguous(const json& diagnosis) {
     for (const json& candidate : diagnosis["ranking"]) {
         if (names.size() == 2 || !candidate["rms_mm"].is_number()) continue;
         names.push_back(candidate["effect"]);
-        each += fmt::format(" {} It would leave {:.3g} mm rms, {}.", sentence_of(candidate),
+        each += fmt::format(" {} It would leave {:.3g} mm rms, {}.", sentence_of(candidate, true),
                             candidate["rms_mm"].get<double>(), in_sigmas(candidate["whitened_rms"]));
     }
     std::string text = fmt::format("Something is missing, and these measurements do not tell which: {}.",

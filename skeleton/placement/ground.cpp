@@ -68,21 +68,6 @@ void add_faces(const TetGraph& graph, Ground& ground) {
     }
 }
 
-// A support may hold a face and no depth: a plate that is bolted or glued to a wall. What stands on such a face counts as
-// held, or cells that reach through the plate would take the face, and nothing would tie their spheres to it.
-void hold_what_stands_on_faces(const TetGraph& graph, Ground& ground) {
-    double outer = 0;
-    std::set<int> standing;
-    for (Eigen::Index i = 0; i < ground.patch.rows(); ++i) {
-        if (ground.held[ground.behind[i]]) continue;
-        outer += ground.weight(i);
-        standing.insert(ground.behind[i]);
-    }
-    const auto held = std::count(ground.held.begin(), ground.held.end(), 1);
-    if (outer <= 0.5 * ground.weight.sum() || held + std::ssize(standing) >= graph.size() / 2) return;
-    for (const int t : standing) ground.held[t] = 1;
-}
-
 // Where only single nodes or edges are held.
 void add_nodes(const TetGraph& graph, Ground& ground) {
     std::set<int> done;
@@ -156,9 +141,29 @@ Ground find_ground(const TetGraph& graph, const std::vector<mesh::Region>& suppo
                         where(graph, supports)));
     }
     add_faces(graph, ground);
-    hold_what_stands_on_faces(graph, ground);
     if (ground.patch.rows() == 0) add_nodes(graph, ground);
     return ground;
+}
+
+void hold_faces_of_plates(const TetGraph& graph, const Core& core, Ground& ground) {
+    std::vector<int> standing;
+    for (int t = 0; t < graph.size(); ++t) {
+        if (ground.held[t]) continue;
+        const Neighborhood& around = core.of(t);
+        for (int c = 0; c < 4; ++c) {
+            const auto nodes = graph.face_nodes(t, c);
+            const auto holds = [&](int node) { return ground.held_node[node] != 0; };
+            if (graph.neighbors(t, c) >= 0 || !std::all_of(nodes.begin(), nodes.end(), holds)) continue;
+            const Vec3 middle = (graph.nodes.row(nodes[0]) + graph.nodes.row(nodes[1]) + graph.nodes.row(nodes[2])) / 3;
+            const Vec3 to_core = around.collapse(middle) - middle;
+            if (std::abs(to_core.dot(graph.face_area(t, c).normalized())) < 0.5 * around.radius) continue;
+            standing.push_back(t);
+            break;
+        }
+    }
+    const auto held = std::count(ground.held.begin(), ground.held.end(), 1);
+    if (held + std::ssize(standing) >= graph.size() / 2) return;  // something must be left to move
+    for (const int t : standing) ground.held[t] = 1;
 }
 
 std::vector<Site> ground_sites(const Core& core, const Ground& ground, double spacing) {

@@ -9,7 +9,7 @@ namespace palpate::skeleton {
 
 /// The part of a body that its supports hold, and where free material begins.
 struct Ground {
-    std::vector<char> held;       // of each tetrahedron: all of it is held, or it stands on a held face (m)
+    std::vector<char> held;       // of each tetrahedron: all of it is held, or it stands on a plate's held face (m)
     std::vector<char> held_node;  // (n)
     Points patch;  // middles of the faces between held and free, of held outer faces, or held nodes (k x 3) [mm]
     std::vector<int> behind;  // the tetrahedron that each belongs to (k)
@@ -18,6 +18,10 @@ struct Ground {
 
 /// @throws InvalidInput when the supports hold nothing, or all.
 Ground find_ground(const TetGraph& graph, const std::vector<mesh::Region>& supports);
+
+/// A support may hold a plate by its face, and no depth of it. What stands on such a face counts as held then, or cells
+/// that reach through the plate would take the face, and nothing would tie their spheres to it.
+void hold_faces_of_plates(const TetGraph& graph, const Core& core, Ground& ground);
 
 /// Held sites on the patch, `spacing` [mm] apart: one for a limb's end, a row or a layer on wider ones.
 std::vector<Site> ground_sites(const Core& core, const Ground& ground, double spacing);
