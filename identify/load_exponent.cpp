@@ -53,8 +53,12 @@ LoadExponent fit_line(const std::vector<LogPoint>& points) {
     return {slope, n > 2 ? std::sqrt(scatter / ((n - 2) * xx)) : 1.0, {}};
 }
 
-const char* words_for(const LoadExponent& exponent) {
+/// `vanishes`: unloaded states were read, and nothing is wrong there.
+const char* words_for(const LoadExponent& exponent, bool vanishes) {
     if (exponent.sd > 0.5) return "the errors scatter too much to tell how they grow with the load";
+    if (exponent.value < least_growth && vanishes)
+        return "nothing is wrong without load, and from probe to probe the errors do not grow with it: places differ "
+               "more than loads";
     if (exponent.value < least_growth) return "the error is there without any load";
     if (exponent.value < 1.5) return "the error grows in proportion to the load, like a wrong stiffness";
     return "the error grows faster than the load, like a nonlinearity";
@@ -98,7 +102,7 @@ std::optional<LoadExponent> load_exponent(const std::vector<ErrorUnderLoad>& sta
         points.insert(points.end(), silent.begin(), silent.end());
     }
     LoadExponent exponent = fit_line(points);
-    exponent.words = words_for(exponent);
+    exponent.words = words_for(exponent, !silent.empty() && silent.size() == unloaded.size());
     return exponent;
 }
 

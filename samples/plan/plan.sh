@@ -11,29 +11,27 @@ palpate=${PALPATE:-$here/../../build/palpate}
 out=${OUT:-runs/plan}
 read -ra probes <<<"${PROBES:-3 6 12 24}"
 read -ra markers <<<"${MARKERS:-6 60}"
-quietly="--quiet --force"
+quietly() { "$palpate" "$@" --quiet --force; }
 
-# shellcheck disable=SC2086  # the flags are two words
-{
-  $palpate skeleton "$case" $quietly -o "$out/skeleton"
-  $palpate probe "$case" $quietly --seed 99 --probes 20 --markers 200 -o "$out/judge"
-  echo "probes,markers,informed,parameters,rms_mm,relative" >"$out/plan.csv"
-  for p in "${probes[@]}"; do
-    for m in "${markers[@]}"; do
-      run="$out/p$p-m$m"
-      $palpate probe "$case" $quietly --probes "$p" --markers "$m" --noise "$noise" -o "$run/set"
-      $palpate identify "$out/skeleton/model.json" "$run/set" $quietly --json -o "$run/fit" >"$run/identify.json"
-      $palpate compare "$run/fit/model.json" "$out/judge" $quietly --no-reference --json -o "$run/compare" >"$run/compare.json" || true
-      python3 - "$p" "$m" "$run" >>"$out/plan.csv" <<'PY'
+quietly skeleton "$case" -o "$out/model.json" >/dev/null
+quietly probe "$case" --seed 99 --probes 20 --markers 200 -o "$out/judge" >/dev/null
+echo "probes,markers,informed,parameters,rms_mm,relative" >"$out/plan.csv"
+for p in "${probes[@]}"; do
+  for m in "${markers[@]}"; do
+    run="$out/p$p-m$m"
+    # as a lab reads it: markers alone, no full fields
+    quietly probe "$case" --hide none --probes "$p" --markers "$m" --noise "$noise" -o "$run/set" >/dev/null
+    quietly identify "$out/model.json" "$run/set" --json -o "$run/fit" >"$run/identify.json"
+    quietly compare "$run/fit/model.json" "$out/judge" --no-reference --json -o "$run/compare" >"$run/compare.json"
+    python3 - "$p" "$m" "$run" >>"$out/plan.csv" <<'PY'
 import json, sys
 probes, markers, run = sys.argv[1:]
 fit, judged = (json.load(open(f"{run}/{name}.json")) for name in ("identify", "compare"))
 error = judged["error"]
 print(probes, markers, fit["informed"], fit["parameters"], f'{error["rms_mm"]:.4f}', f'{error["relative"]:.3f}', sep=",")
 PY
-    done
   done
-}
+done
 python3 - "$out/plan.csv" <<'PY'
 import csv, sys
 for row in csv.reader(open(sys.argv[1])):

@@ -23,10 +23,10 @@ using testing::HasSubstr;
 /// A lattice with a skin, so that there is something to forecast.
 skeleton::Model cube() {
     skeleton::Model model = samples::make_lattice("cube", {3, 3, 2}, 1);
-    const skeleton::Attacher attach(model);
     model.surface = mesh::make_box({-10, -10, -10}, {90, 90, 50}, {3, 3, 2});
+    model.skin.clear();
     for (const auto& vertex : model.surface.vertices.rowwise())
-        model.skin.push_back(attach(vertex.transpose(), vertex.transpose()));
+        model.skin.push_back(skeleton::attach_to_links(model, vertex.transpose()));
     return model;
 }
 

@@ -63,7 +63,7 @@ TEST(Resume, AKilledRunEndsAsOneThatRanThrough) {
     mesh::write_surface(scratch / "beam.stl", mesh::make_box({0, 0, 0}, {100, 20, 20}, {10, 2, 2}));
     const auto begin = std::chrono::steady_clock::now();
     ASSERT_EQ(finish(start_run(scratch, "whole")), 0);
-    const auto whole = std::chrono::duration_cast<milliseconds>(std::chrono::steady_clock::now() - begin);
+    auto whole = std::chrono::duration_cast<milliseconds>(std::chrono::steady_clock::now() - begin);
 
     std::mt19937 random(1);
     int killed = 0;
@@ -72,7 +72,9 @@ TEST(Resume, AKilledRunEndsAsOneThatRanThrough) {
         const pid_t child = start_run(scratch, "run");
         std::this_thread::sleep_for(whole * std::uniform_real_distribution<>(0.02, 0.9)(random));
         kill(child, SIGKILL);
-        killed += finish(child) == -1 ? 1 : 0;
+        const bool was_killed = finish(child) == -1;
+        killed += was_killed ? 1 : 0;
+        if (!was_killed) whole /= 2;  // the machine has less to do than when the first run was timed
         if (i % 5 < 4 && i + 1 < kills()) continue;
 
         ASSERT_EQ(finish(start_run(scratch, "run")), 0);

@@ -50,8 +50,8 @@ TEST(DiagnosisInWords, NamesTheEffectWithItsEvidence) {
 
 TEST(DiagnosisInWords, NamesSeveralTogether) {
     EXPECT_THAT(diagnosis_in_words(diagnosis("missing-effect", {"gravity", "misalignment"})),
-                AllOf(HasSubstr("gravity and misalignment"), HasSubstr("Gravity is missing"),
-                      HasSubstr("The readings are misaligned (probability 0.00).")));
+                AllOf(HasSubstr("gravity and misalignment"), HasSubstr("Gravity is missing: 9.90"),
+                      HasSubstr("The readings are misaligned. Without it")));
 }
 
 TEST(DiagnosisInWords, AmbiguousNamesBothAndTheProbeBetweenThem) {
