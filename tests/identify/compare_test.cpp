@@ -202,7 +202,7 @@ TEST(LoadExponent, AnErrorThatIsThereWithoutLoadSaysZero) {
 
 TEST(LoadExponent, PlacesThatDifferMoreThanLoadsAreNoErrorWithoutLoad) {
     std::vector<ErrorUnderLoad> states;
-    for (int i = 0; i < 20; ++i) states.push_back({5 * std::exp(0.05 * i), 0.5 + 0.01 * (i % 3), 0.01, 100});
+    for (int i = 0; i < 60; ++i) states.push_back({5 * std::exp(-0.065 * i), 0.5 * std::exp(0.016 * i), 0.01, 100});
     EXPECT_NE(load_exponent(states)->words.find("there without any load"), std::string::npos);
     states.push_back({0, 0.01, 0.01, 100});  // it was read, and is right
     EXPECT_NE(load_exponent(states)->words.find("nothing is wrong without load"), std::string::npos);
