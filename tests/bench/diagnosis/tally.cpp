@@ -21,6 +21,34 @@ std::string said(const identify::Diagnosis& found) {
     return identify::verdict_names[static_cast<std::size_t>(found.verdict)];
 }
 
+/// The vector or tensor that a number is a component of: "g" of "gx", "s" of "sxy"; empty: none.
+std::string vector_of(const std::string& name) {
+    const auto end = name.find_last_not_of("xyz") + 1;
+    return end == name.size() ? "" : name.substr(0, end);
+}
+
+/// What errors of an effect's numbers are measured by: the number itself, or the length of the vector that it is a
+/// component of. `aligned`: 1, or -1 where the vector is an axis that was found the other way round.
+struct Yardstick {
+    double length = 0, aligned = 1;
+};
+
+Yardstick yardstick(const Truth& truth, const identify::Told& told, const std::string& name) {
+    const std::string effect = told.effect.name + " ";
+    const std::string vector = vector_of(name);
+    if (vector.empty()) return {std::abs(truth.numbers.at(effect + name)), 1};
+    double squares = 0, along = 0;
+    for (const skeleton::EffectParameter& one : told.effect.parameters) {
+        if (vector_of(one.name) != vector) continue;
+        const auto known = truth.numbers.find(effect + one.name);
+        if (known == truth.numbers.end()) continue;
+        squares += known->second * known->second;
+        along += known->second * one.value;
+    }
+    const bool is_axis = told.effect.name == "anisotropy";
+    return {std::sqrt(squares), is_axis && along < 0 ? -1.0 : 1.0};
+}
+
 }  // namespace
 
 std::string joined(const std::vector<std::string>& names) {
@@ -48,8 +76,9 @@ void Tally::add(const Truth& truth, const identify::Diagnosis& found, Outcome ou
             const skeleton::EffectParameter& one = told.effect.parameters[p];
             const auto known = truth.numbers.find(effect->name() + " " + one.name);
             if (known == truth.numbers.end() || !(told.sd[p] > 0)) continue;
-            const double off = one.value - known->second;
-            numbers_[known->first].push_back({off / std::abs(known->second), off / told.sd[p]});
+            const Yardstick by = yardstick(truth, told, one.name);
+            const double off = one.value - by.aligned * known->second;
+            numbers_[known->first].push_back({off / by.length, off / told.sd[p]});
         }
     }
 }
