@@ -40,8 +40,9 @@ std::vector<CurvatureBlock> external_curvature(const Model& model, const State& 
                     blocks.push_back({point.sphere(i), point.sphere(j), H.block<6, 6>(6 * i, 6 * j)});
     }
     if (load.cavities)
-        load.cavities->for_each_block(
-            state, [&](int a, int b, const Cavities::Block& block) { blocks.push_back({a, b, load.pressure * block}); });
+        load.cavities->for_each_block(state, [&](int a, int b, const Cavities::Block& block) {
+            blocks.push_back({a, b, load.pressure * block});
+        });
     return blocks;
 }
 

@@ -165,6 +165,7 @@ Outcome simulate(const SimulateOptions& options, const Common& common) {
     const std::vector<identify::LoadState> states = identify::read_probes(options.probes);
     const identify::ContactLoads to_load(model);
     std::vector<skeleton::Load> loads;
+    loads.reserve(states.size());
     for (const identify::LoadState& state : states) loads.push_back(to_load(state.contacts));
     const fs::path posterior = options.posterior.empty() ? options.model.parent_path() : options.posterior;
     const std::optional<Doubts> doubts = read_doubts(model, posterior, options.draws);

@@ -89,7 +89,7 @@ void tell_spread(const std::vector<Points>& drawn, double model_error, Forecast&
 }
 
 std::string probes_in_words(std::vector<int> probes) {
-    probes.erase(std::ranges::unique(probes).begin(), probes.end());
+    probes.erase(std::unique(probes.begin(), probes.end()), probes.end());
     constexpr std::size_t most = 8;
     const bool all = probes.size() <= most;
     if (!all) probes.resize(most);

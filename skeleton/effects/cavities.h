@@ -22,7 +22,7 @@ public:
     explicit Cavities(const Model& model);
 
     bool empty() const { return walls_.empty(); }
-    double volume(const State& state) const;              // [mm^3]
+    double volume(const State& state) const;             // [mm^3]
     double rest_volume() const { return rest_volume_; }  // [mm^3]
     /// The spheres that walls join, a < b.
     const std::vector<std::array<int, 2>>& joined() const { return joined_; }
