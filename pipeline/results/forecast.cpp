@@ -42,7 +42,7 @@ std::vector<int> places_of(const std::vector<std::string>& names, const identify
         if (found == parameters.list.end()) {
             throw InvalidInput(fmt::format(
                 "{}: '{}' is no stiffness of the model; these are particles of another one. Name the folder of its "
-                "own identification, or none",
+                "own identification (--posterior), or do without intervals (--draws 0)",
                 file.string(), name));
         }
         places.push_back(static_cast<int>(found - parameters.list.begin()));
