@@ -12,13 +12,15 @@
 #include "mesh/read/label_image/label_surface.h"
 #include "mesh/read/volume/elements.h"
 #include "mesh/read_surface.h"
+#include "mesh/solver/deck.h"
 
 namespace palpate::mesh {
 
 namespace fs = std::filesystem;
 
 const char* const body_extensions =
-    ".stl, .obj, .ply, .off, .vtp (surfaces), .vtu, .msh, .mesh, .node, .ele (tetrahedra), .step, .stp, .iges, .igs "
+    ".stl, .obj, .ply, .off, .vtp (surfaces), .vtu, .msh, .mesh, .node, .ele, .inp (tetrahedra), .step, .stp, .iges, "
+    ".igs "
     "(CAD), .nii, .nii.gz, .nrrd, .nhdr, .mha, .mhd (labels of organs)";
 
 namespace {
@@ -34,6 +36,16 @@ BodyFile of_elements(const fs::path& file, const ReadBodyOptions&) {
     BodyFile body;
     body.volume = assemble(read(file), file, body.notes);
     body.surface = boundary_surface(*body.volume);
+    return body;
+}
+
+BodyFile of_deck(const fs::path& file, const ReadBodyOptions&) {
+    BodyFile body;
+    const Deck deck = read_deck(file);
+    body.notes = deck.notes;
+    body.volume = assemble(as_tetrahedra(deck.cells, body.notes), file, body.notes);
+    body.surface = boundary_surface(*body.volume);
+    body.files = deck.files;
     return body;
 }
 
@@ -83,6 +95,7 @@ constexpr std::array body_formats{
     BodyFormat{".mesh", of_elements<read_medit>},
     BodyFormat{".node", of_tetgen},
     BodyFormat{".ele", of_tetgen},
+    BodyFormat{".inp", of_deck},
     BodyFormat{".step", of_cad},
     BodyFormat{".stp", of_cad},
     BodyFormat{".iges", of_cad},

@@ -24,8 +24,8 @@ struct BodyFile {
 };
 
 /// Reads a body from a surface (STL, OBJ, PLY, OFF, VTP), a mesh of tetrahedra (VTU, Gmsh .msh, MEDIT .mesh, TetGen
-/// .node and .ele), CAD (STEP, IGES) or an image of labels (NIfTI, NRRD, MetaImage), told apart by extension.
-/// Surfaces are not repaired here.
+/// .node and .ele, Abaqus and CalculiX .inp), CAD (STEP, IGES) or an image of labels (NIfTI, NRRD, MetaImage), told
+/// apart by extension. Surfaces are not repaired here.
 /// @throws IoError, InvalidInput naming file and line or element, the value, what is allowed, what to do.
 BodyFile read_body(const std::filesystem::path& file, const ReadBodyOptions& options = {});
 

@@ -46,6 +46,32 @@ std::vector<std::pair<Eigen::Index, int>> boundary_sides(const VolumeMesh& mesh)
     return found;
 }
 
+// CalculiX cuts numbers after 20 characters: 12 digits and an exponent fit.
+
+void put_material(Text& text, const SolverSetting& setting) {
+    put(text, "*MATERIAL, NAME=BODY\n");
+    if (setting.is_neo_hookean) {
+        const double mu = setting.young / (2 * (1 + setting.poisson));
+        const double K = setting.young / (3 * (1 - 2 * setting.poisson));
+        put(text, "*HYPERELASTIC, NEO HOOKE\n{:.12g}, {:.12g}\n", mu / 2, 2 / K);
+    } else {
+        put(text, "*ELASTIC\n{:.12g}, {:.12g}\n", setting.young, setting.poisson);
+    }
+    put(text, "*DENSITY\n{:.12g}\n*SOLID SECTION, ELSET=EBODY, MATERIAL=BODY\n", setting.density);
+}
+
+void put_steps(Text& text, const SolverSetting& setting) {
+    if (setting.steps.empty()) return;
+    if (std::ranges::count(setting.held, 1) > 0) put(text, "*BOUNDARY\nNHELD, 1, 3\n");
+    for (const Eigen::VectorXd& forces : setting.steps) {
+        put(text, "*STEP{}\n*STATIC\n{}, 1.\n*CLOAD, OP=NEW\n", setting.large_deformation ? ", NLGEOM, INC=1000" : "",
+            setting.large_deformation ? 0.25 : 1.0);
+        for (Eigen::Index k = 0; k < forces.size(); ++k)
+            if (forces[k] != 0) put(text, "{}, {}, {:.12g}\n", k / 3 + 1, k % 3 + 1, forces[k]);
+        put(text, "*NODE FILE, FREQUENCY=1000\nU\n*END STEP\n");
+    }
+}
+
 std::vector<char> nodes_of(const Faces& faces, Eigen::Index nodes) {
     std::vector<char> is_in(static_cast<std::size_t>(nodes), 0);
     for (const int node : faces.reshaped()) is_in[static_cast<std::size_t>(node)] = 1;
@@ -115,7 +141,7 @@ void write_inp(const std::filesystem::path& file, const VolumeMesh& mesh, const 
     Text text;
     put(text, "*HEADING\nmade by palpate; mm, N, MPa, tonne, s\n*NODE, NSET=NALL\n");
     for (Eigen::Index n = 0; n < mesh.nodes.rows(); ++n)
-        put(text, "{}, {}, {}, {}\n", n + 1, mesh.nodes(n, 0), mesh.nodes(n, 1), mesh.nodes(n, 2));
+        put(text, "{}, {:.12g}, {:.12g}, {:.12g}\n", n + 1, mesh.nodes(n, 0), mesh.nodes(n, 1), mesh.nodes(n, 2));
     put(text, "*ELEMENT, TYPE={}, ELSET=EBODY\n", mesh.is_quadratic() ? "C3D10" : "C3D4");
     for (Eigen::Index e = 0; e < mesh.tetrahedra.rows(); ++e) {
         put(text, "{}", e + 1);
@@ -126,8 +152,8 @@ void write_inp(const std::filesystem::path& file, const VolumeMesh& mesh, const 
     if (std::ranges::count(setting.held, 1) > 0) put_set(text, "NHELD", setting.held);
     put(text, "*SURFACE, NAME=SKIN, TYPE=ELEMENT\n");
     for (const auto& [element, side] : boundary_sides(mesh)) put(text, "{}, S{}\n", element + 1, side);
-    put(text, "*MATERIAL, NAME=BODY\n*ELASTIC\n{}, {}\n*DENSITY\n{}\n*SOLID SECTION, ELSET=EBODY, MATERIAL=BODY\n",
-        setting.young, setting.poisson, setting.density);
+    put_material(text, setting);
+    put_steps(text, setting);
     write_text(file, fmt::to_string(text));
 }
 

@@ -14,25 +14,10 @@
 #include "mesh/errors.h"
 #include "mesh/io/atomic_file.h"
 #include "mesh/io/vtk_errors.h"
+#include "mesh/io/vtk_grid.h"
 
 namespace palpate::mesh {
 namespace {
-
-std::vector<DataArray> arrays_of(vtkFieldData* source) {
-    std::vector<DataArray> arrays;
-    for (int a = 0; a < source->GetNumberOfArrays(); ++a) {
-        vtkDataArray* from = source->GetArray(a);  // none for an array of texts
-        if (!from || !from->GetName()) continue;
-        DataArray array{from->GetName(), Eigen::MatrixXd(from->GetNumberOfTuples(), from->GetNumberOfComponents())};
-        for (Eigen::Index i = 0; i < array.values.rows(); ++i) {
-            for (Eigen::Index c = 0; c < array.values.cols(); ++c) {
-                array.values(i, c) = from->GetComponent(i, static_cast<int>(c));
-            }
-        }
-        arrays.push_back(std::move(array));
-    }
-    return arrays;
-}
 
 /// The cells with so many corners, a row each.
 template <int corners>

@@ -43,6 +43,21 @@ Points points_of(const std::filesystem::path& file, vtkUnstructuredGrid* grid) {
     return points;
 }
 
+std::vector<DataArray> arrays_of(vtkFieldData* source) {
+    std::vector<DataArray> arrays;
+    for (int a = 0; a < source->GetNumberOfArrays(); ++a) {
+        vtkDataArray* values = source->GetArray(a);  // none for an array of texts
+        if (!values || !values->GetName()) continue;
+        DataArray& array = arrays.emplace_back();
+        array.name = values->GetName();
+        array.values.resize(values->GetNumberOfTuples(), values->GetNumberOfComponents());
+        for (Eigen::Index i = 0; i < array.values.rows(); ++i)
+            for (Eigen::Index c = 0; c < array.values.cols(); ++c)
+                array.values(i, c) = values->GetComponent(i, static_cast<int>(c));
+    }
+    return arrays;
+}
+
 namespace {
 
 Tetrahedra read_tetrahedra(const std::filesystem::path& file, vtkUnstructuredGrid* grid) {
@@ -74,21 +89,6 @@ Tetrahedra read_tetrahedra(const std::filesystem::path& file, vtkUnstructuredGri
     return tetrahedra;
 }
 
-std::vector<DataArray> read_arrays(vtkFieldData* source) {
-    std::vector<DataArray> arrays;
-    for (int a = 0; a < source->GetNumberOfArrays(); ++a) {
-        vtkDataArray* values = source->GetArray(a);  // none for an array of texts
-        if (!values || !values->GetName()) continue;
-        DataArray& array = arrays.emplace_back();
-        array.name = values->GetName();
-        array.values.resize(values->GetNumberOfTuples(), values->GetNumberOfComponents());
-        for (Eigen::Index i = 0; i < array.values.rows(); ++i)
-            for (Eigen::Index c = 0; c < array.values.cols(); ++c)
-                array.values(i, c) = values->GetComponent(i, static_cast<int>(c));
-    }
-    return arrays;
-}
-
 }  // namespace
 
 VolumeMesh read_vtu(const std::filesystem::path& file, MeshData* data) {
@@ -104,7 +104,7 @@ VolumeMesh read_vtu(const std::filesystem::path& file, MeshData* data) {
                         "corners as VTK does: 0, 1, 2 counter-clockwise seen from 3.",
                         file.string(), worst, volumes[worst]));
     mesh.faces = boundary_faces(mesh.tetrahedra);
-    if (data) *data = {read_arrays(grid->GetPointData()), read_arrays(grid->GetCellData())};
+    if (data) *data = {arrays_of(grid->GetPointData()), arrays_of(grid->GetCellData())};
     return mesh;
 }
 

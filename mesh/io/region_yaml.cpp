@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "mesh/errors.h"
+#include "mesh/io/atomic_file.h"
 #include "mesh/io/csv_table.h"
 
 namespace palpate::mesh {
@@ -118,6 +119,26 @@ std::vector<Region> read_regions(const YamlFields& yaml, const std::string& key,
 std::string regions_to_yaml(const std::vector<Region>& regions, const std::string& indent) {
     std::string text;
     for (const Region& region : regions) text += indent + "- " + std::visit(ToYaml{}, region) + "\n";
+    return text;
+}
+
+std::string regions_to_yaml_in(const std::filesystem::path& folder, const std::vector<Region>& regions) {
+    constexpr Eigen::Index few = 20;
+    std::string text;
+    int files = 0;
+    for (const Region& region : regions) {
+        const auto* cloud = std::get_if<PointsRegion>(&region);
+        if (!cloud || cloud->points.rows() <= few) {
+            text += regions_to_yaml({region});
+            continue;
+        }
+        std::string table = "x,y,z\n";
+        for (const auto& point : cloud->points.rowwise())
+            table += fmt::format("{},{},{}\n", point[0], point[1], point[2]);
+        const std::string name = fmt::format("held_{}.csv", ++files);
+        write_text(folder / name, table);
+        text += fmt::format("  - points: {{file: {}, within: {}}}\n", name, cloud->within);
+    }
     return text;
 }
 

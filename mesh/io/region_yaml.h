@@ -1,5 +1,6 @@
 #pragma once
 
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -17,5 +18,9 @@ std::vector<Region> read_regions(const YamlFields& yaml, const std::string& key,
 /// The list as YAML in mm, a line per region, each line begun with `indent`; points are written out as
 /// points: {at: [[x, y, z], ...], within: w}, which read_regions reads as well.
 std::string regions_to_yaml(const std::vector<Region>& regions, const std::string& indent = "  ");
+
+/// The same for a file in `folder`: more than a few points become a file beside it, held_1.csv and so on.
+/// @throws IoError.
+std::string regions_to_yaml_in(const std::filesystem::path& folder, const std::vector<Region>& regions);
 
 }  // namespace palpate::mesh

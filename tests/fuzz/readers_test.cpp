@@ -13,7 +13,9 @@
 #include "mesh/errors.h"
 #include "mesh/io/atomic_file.h"
 #include "mesh/io/vtk_files.h"
+#include "mesh/read_body.h"
 #include "mesh/read_surface.h"
+#include "mesh/solver/solution.h"
 #include "pipeline/case/case.h"
 #include "pipeline/results/posterior_file.h"
 #include "samples/lattice.h"
@@ -115,6 +117,20 @@ std::string case_with_all_settings() {
     settings.supports = {mesh::BoxRegion{Vec3(-1, -1, -1), Vec3(5, 21, 21)}};
     return pipeline::to_yaml(settings);
 }
+const char* const deck =
+    "*NODE, NSET=ALL\n1, 0, 0, 0\n2, 2, 0, 0\n3, 2, 2, 0\n4, 0, 2, 0\n5, 0, 0, 2\n6, 2, 0, 2\n7, 2, 2, 2\n8, 0, 2, 2\n"
+    "*ELEMENT, TYPE=C3D8, ELSET=E\n1, 1, 2, 3, 4, 5, 6, 7, 8\n*NSET, NSET=LOW, GENERATE\n1, 4, 1\n*BOUNDARY\nLOW, 1, "
+    "3\n"
+    "*MATERIAL, NAME=A\n*ELASTIC\n0.1, 0.4\n*STEP\n*STATIC\n*CLOAD\n7, 3, -1.\n*DLOAD\nE, GRAV, 9810, 0, 0, -1\n*END "
+    "STEP\n";
+const char* const frd =
+    "    2C                             4                                     1\n"
+    " -1         1 0.00000E+00 0.00000E+00 0.00000E+00\n -1         2 2.00000E+00 0.00000E+00 0.00000E+00\n"
+    " -1         3 0.00000E+00 2.00000E+00 0.00000E+00\n -1         4 0.00000E+00 0.00000E+00 2.00000E+00\n -3\n"
+    "    3C                             1                                     1\n"
+    " -1         1    3    0    1\n -2         1         2         3         4\n -3\n"
+    "  100CL  101 1.000000000           4                     0    1           1\n -4  DISP        4    1\n"
+    " -1         4-1.00000E-01-2.50000E-02-1.00000E+00\n -3\n";
 const char* const posterior =
     "parameter,link,unit,mean,sd,q025,q50,q975,prior_mean,prior_sd,informed\n"
     "elongation:link0,0,N/mm,1.2,0.1,1.0,1.2,1.4,1,0.5,1\nflexion,,N*mm/rad,400,10,380,400,420,500,200,1\n";
@@ -184,6 +200,8 @@ INSTANTIATE_TEST_SUITE_P(
         written("text_stl", "text.stl", text_stl, [](const fs::path& f) { mesh::read_surface(f); }),
         written("text_ply", "text.ply", text_ply, [](const fs::path& f) { mesh::read_surface(f); }),
         written("case", "case.yaml", case_with_all_settings(), [](const fs::path& f) { pipeline::read_case(f); }),
+        written("inp", "body.inp", deck, [](const fs::path& f) { mesh::read_body(f); }),
+        written("frd", "job.frd", frd, [](const fs::path& f) { mesh::read_solution(f); }),
         written("posterior", "posterior.csv", posterior, [](const fs::path& f) { pipeline::read_posterior(f); }),
         set("set.yaml"), set("probes.csv"), set("markers.csv"), set("positions.csv"), set("states.csv")),
     [](const testing::TestParamInfo<Reader>& each) {

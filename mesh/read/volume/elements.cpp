@@ -195,7 +195,8 @@ void Elements::add(std::int64_t number, const std::vector<std::int64_t>& element
     element_numbers.push_back(number);
 }
 
-VolumeMesh assemble(const Elements& elements, const std::filesystem::path& file, std::vector<std::string>& notes) {
+VolumeMesh assemble(const Elements& elements, const std::filesystem::path& file, std::vector<std::string>& notes,
+                    std::vector<int>* row_of_node) {
     if (elements.element_numbers.empty())
         throw InvalidInput(
             fmt::format("{}: holds no tetrahedra. Give a mesh of tetrahedra (4 or 10 nodes), or the body's surface as "
@@ -203,7 +204,13 @@ VolumeMesh assemble(const Elements& elements, const std::filesystem::path& file,
                         file.string()));
     VolumeMesh mesh{rows_of(elements.nodes), resolved(elements, file), {}};
     check_midsides(mesh, elements, file);
+    const Tetrahedra rows = mesh.tetrahedra;
     const auto [merged, unused] = compact(mesh);
+    if (row_of_node) {
+        row_of_node->resize(static_cast<std::size_t>(mesh.nodes.rows()));
+        for (Eigen::Index i = 0; i < rows.size(); ++i)
+            (*row_of_node)[static_cast<std::size_t>(mesh.tetrahedra.data()[i])] = rows.data()[i];
+    }
     const Eigen::Index turned = turn_inverted(mesh, elements, file);
     check_sides(mesh, elements, file);
     mesh.faces = boundary_faces(mesh.tetrahedra);

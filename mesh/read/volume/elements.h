@@ -24,10 +24,12 @@ struct Elements {
 };
 
 /// The body of those elements. Elements that are numbered inside out are turned, equal nodes become one, nodes of no
-/// element are left out, and several materials are told; what was done stands in `notes`.
+/// element are left out, and several materials are told; what was done stands in `notes`. `row_of_node` (when asked
+/// for) tells which of the elements' nodes each of the body's is.
 /// @throws InvalidInput naming node or element: no elements, a node that does not exist, an element without volume,
 /// a midside node away from its edge, a side that more than two elements share.
-VolumeMesh assemble(const Elements& elements, const std::filesystem::path& file, std::vector<std::string>& notes);
+VolumeMesh assemble(const Elements& elements, const std::filesystem::path& file, std::vector<std::string>& notes,
+                    std::vector<int>* row_of_node = nullptr);
 
 /// One reader a format, tetrahedra with 4 or 10 nodes; elements of lower dimension are skipped, other solid ones
 /// refused. @throws IoError, InvalidInput with file and line, byte or element.

@@ -1,0 +1,142 @@
+#include <fmt/format.h>
+#include <vtkCellType.h>
+#include <vtkFieldData.h>
+#include <vtkPointData.h>
+#include <vtkUnstructuredGrid.h>
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <numeric>
+
+#include "mesh/errors.h"
+#include "mesh/io/poly_data.h"
+#include "mesh/io/vtk_grid.h"
+#include "mesh/io/words.h"
+#include "mesh/solver/solution_parts.h"
+
+namespace palpate::mesh {
+namespace {
+
+/// What programs call displacements, in small letters.
+constexpr std::array names_of_displacement{"displacement", "displacement [mm]",  "displacements", "disp", "displ", "u",
+                                           "deformation",  "displacement_vector"};
+
+std::string in_small_letters(std::string text) {
+    std::ranges::transform(text, text.begin(), [](unsigned char c) { return std::tolower(c); });
+    return text;
+}
+
+/// Of arrays of points the one that is the displacement.
+const Eigen::MatrixXd& displacement_of(const std::vector<DataArray>& arrays, const std::filesystem::path& file,
+                                       const std::string& wanted) {
+    std::vector<const DataArray*> vectors;
+    std::vector<std::string> names;
+    for (const DataArray& array : arrays) {
+        if (array.values.cols() != 3) continue;
+        vectors.push_back(&array);
+        names.push_back(array.name);
+    }
+    if (!wanted.empty()) {
+        const auto found = std::ranges::find(names, wanted);
+        if (found == names.end())
+            throw InvalidInput(fmt::format("{}: no point array {} of three components; there are {}.", file.string(),
+                                           cited(wanted), names.empty() ? "none" : listed(names)));
+        return vectors[static_cast<std::size_t>(found - names.begin())]->values;
+    }
+    for (const char* known : names_of_displacement)
+        for (std::size_t a = 0; a < names.size(); ++a)
+            if (in_small_letters(names[a]) == known) return vectors[a]->values;
+    if (vectors.size() == 1) return vectors.front()->values;
+    throw InvalidInput(
+        fmt::format("{}: which of its point arrays of three components is the displacement? There are "
+                    "{}; name it with --array.",
+                    file.string(), names.empty() ? "none" : listed(names)));
+}
+
+CellShape shape_of(int type, vtkIdType cell, const std::filesystem::path& file) {
+    switch (type) {
+        case VTK_TETRA:
+        case VTK_QUADRATIC_TETRA:
+            return CellShape::tetrahedron;
+        case VTK_PYRAMID:
+        case VTK_QUADRATIC_PYRAMID:
+            return CellShape::pyramid;
+        case VTK_WEDGE:
+        case VTK_QUADRATIC_WEDGE:
+            return CellShape::wedge;
+        case VTK_HEXAHEDRON:
+        case VTK_QUADRATIC_HEXAHEDRON:
+        case VTK_TRIQUADRATIC_HEXAHEDRON:
+            return CellShape::hexahedron;
+        default:
+            throw InvalidInput(
+                fmt::format("{}: cell {} is of VTK type {}; tetrahedra, hexahedra, wedges and pyramids "
+                            "are allowed, and cells without volume are skipped.",
+                            file.string(), cell, type));
+    }
+}
+
+constexpr bool has_no_volume(int type) {
+    return (type >= VTK_VERTEX && type <= VTK_QUAD) || (type >= VTK_QUADRATIC_EDGE && type <= VTK_QUADRATIC_QUAD) ||
+           type == VTK_BIQUADRATIC_QUAD || type == VTK_BIQUADRATIC_TRIANGLE;
+}
+
+Cells cells_of(vtkUnstructuredGrid* grid, const std::filesystem::path& file) {
+    Cells cells;
+    const Points points = points_of(file, grid);
+    for (Eigen::Index i = 0; i < points.rows(); ++i) {
+        cells.node_numbers.push_back(i);
+        cells.nodes.emplace_back(points.row(i));
+    }
+    for (vtkIdType e = 0; e < grid->GetNumberOfCells(); ++e) {
+        if (has_no_volume(grid->GetCellType(e))) continue;
+        vtkIdType count = 0;
+        const vtkIdType* nodes = nullptr;
+        grid->GetCellPoints(e, count, nodes);
+        const CellShape shape = shape_of(grid->GetCellType(e), e, file);
+        if (count < nodes_of(shape).corners)
+            throw InvalidInput(fmt::format("{}: cell {} has {} nodes, too few.", file.string(), e, count));
+        cells.cells.push_back({e, shape, {nodes, nodes + count}});
+    }
+    return cells;
+}
+
+/// Under the name that ParaView gives to the time of a file.
+double time_in(const std::vector<DataArray>& of_file) {
+    const auto found = std::ranges::find(of_file, "TimeValue", &DataArray::name);
+    return found == of_file.end() || found->values.size() == 0 ? 0 : found->values(0, 0);
+}
+
+Points checked(const Eigen::MatrixXd& displacement, const std::filesystem::path& file) {
+    for (Eigen::Index i = 0; i < displacement.rows(); ++i)
+        if (!(displacement.row(i).array().abs() < beyond_all_units).all())
+            throw InvalidInput(
+                fmt::format("{}: the displacement of point {} is not finite, or beyond 1e30.", file.string(), i));
+    return displacement;
+}
+
+}  // namespace
+
+Solution read_vtk_solution(const std::filesystem::path& file, const std::string& array) {
+    Solution solution;
+    solution.file = file;
+    if (in_small_letters(file.extension().string()) == ".vtu") {
+        const vtkSmartPointer<vtkUnstructuredGrid> grid = read_grid(file);
+        set_mesh(solution, cells_of(grid, file));
+        solution.steps.push_back({time_in(arrays_of(grid->GetFieldData())),
+                                  checked(displacement_of(arrays_of(grid->GetPointData()), file, array), file)});
+        return solution;
+    }
+    const PolyData data = read_poly_data(file);
+    if (data.triangles.rows() == 0)
+        throw InvalidInput(fmt::format("{}: holds no triangles; a surface of triangles is needed.", file.string()));
+    solution.nodes = data.points;
+    solution.surface = {data.points, data.triangles};
+    solution.node_of_vertex.resize(static_cast<std::size_t>(solution.nodes.rows()));
+    std::iota(solution.node_of_vertex.begin(), solution.node_of_vertex.end(), 0);
+    solution.steps.push_back({0, checked(displacement_of(data.data.points, file, array), file)});
+    return solution;
+}
+
+}  // namespace palpate::mesh
