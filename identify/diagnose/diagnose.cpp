@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "identify/diagnose/baselines.h"
 #include "identify/diagnose/crushing.h"
@@ -17,6 +18,28 @@ namespace {
 
 constexpr const char* noise_note = "The set does not tell its noise: ";
 
+/// What loads do to the readings, away from where the unloaded body was read, or from rest; rms [mm].
+double moved_by_loads(const Problem& problem) {
+    const Eigen::VectorXd displacement = problem.displacement();
+    std::map<int, std::pair<double, int>> unloaded;  // of each coordinate: sum, and how many
+    for (Eigen::Index n = 0; n < problem.rows(); ++n) {
+        if (problem.loaded(problem.action[n])) continue;
+        auto& [sum, count] = unloaded[problem.coordinate[n]];
+        sum += displacement[n];
+        ++count;
+    }
+    double square = 0;
+    int rows = 0;
+    for (Eigen::Index n = 0; n < problem.rows(); ++n) {
+        if (!problem.loaded(problem.action[n])) continue;
+        const auto found = unloaded.find(problem.coordinate[n]);
+        const double start = found == unloaded.end() ? 0 : found->second.first / found->second.second;
+        square += (displacement[n] - start) * (displacement[n] - start);
+        ++rows;
+    }
+    return rows == 0 ? 0 : std::sqrt(square / rows);
+}
+
 /// The diagnosis in progress.
 class Inquiry {
 public:
@@ -24,6 +47,8 @@ public:
         : model_(model), options_(options), progress_(progress), baselines_(model, options) {
         result_.noise_known = all_noise_known(set);
         result_.problem = make_problem(set, first_noise(set));
+        finest_ = std::max(options.resolution * moved_by_loads(result_.problem), 1e-12);
+        see_no_finer_than_the_mesh();
         for (const auto& effect : catalogue()) {
             const bool left_out = std::ranges::find(options.without, effect->name()) != options.without.end();
             const bool known =
@@ -76,17 +101,33 @@ private:
 
     void tell(const std::string& what, double share) const { report(progress_, what, share); }
 
+    /// A sensor that is finer than the body's mesh sees the mesh: its errors are weighed as coarser ones.
+    void see_no_finer_than_the_mesh() {
+        Problem& problem = result_.problem;
+        if (!result_.noise_known || problem.sigma.minCoeff() >= finest_) return;
+        result_.notes.push_back(fmt::format(
+            "The noise that the set tells, {:.3g} mm at its least, is less than what a mesh tells, {:g} % of "
+            "what the loads move: errors are weighed with {:.3g} mm.",
+            problem.sigma.minCoeff(), 100 * options_.resolution, finest_));
+        problem.sigma = problem.sigma.cwiseMax(finest_);
+    }
+
     void estimate_noise() {
         // What is rough in the errors is noise: a missing effect is smooth from marker to marker.
         Problem& problem = result_.problem;
         const Eigen::VectorXd error_mm = leading().residual.cwiseProduct(problem.sigma);
-        const double noise = std::max(noise_by_roughness(problem, error_mm), 1e-12);
+        const double rough = noise_by_roughness(problem, error_mm);
+        const double noise = std::max(rough, finest_);
         for (Eigen::Index n = 0; n < problem.rows(); ++n) {
             if (problem.is_guessed[n]) problem.sigma[n] = noise;
         }
         std::erase_if(result_.notes, [](const std::string& note) { return note.starts_with(noise_note); });
         result_.notes.push_back(
-            fmt::format("{}{:.3g} mm, from how errors differ between neighbouring markers.", noise_note, noise));
+            rough >= finest_
+                ? fmt::format("{}{:.3g} mm, from how errors differ between neighbouring markers.", noise_note, noise)
+                : fmt::format("{}errors hardly differ between neighbouring markers, and are weighed with {:.3g} mm, "
+                              "{:g} % of what the loads move, which a mesh may be off by.",
+                              noise_note, noise, 100 * options_.resolution));
         baselines_.refit(result_.problem);
     }
 
@@ -200,6 +241,7 @@ private:
     Baselines baselines_;
     std::unique_ptr<Search> search_;
     Diagnosis result_;
+    double finest_ = 0;  // what a mesh tells [mm]
 };
 
 }  // namespace
@@ -216,6 +258,7 @@ void DiagnoseOptions::validate() const {
         if (!(value >= 0)) throw InvalidInput(fmt::format("{} is {}; it must be 0 or more", name, value));
     };
     no_less("mesh_error", mesh_error);
+    no_less("resolution", resolution);
     no_less("idealised", idealised);
     no_less("least_outliers", least_outliers);
     if (refit.steps < 1) throw InvalidInput(fmt::format("refit.steps is {}; allowed: 1 and more", refit.steps));

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "identify/set/measurement_set.h"
+#include "identify/set/probes_table.h"
 #include "mesh/errors.h"
 #include "mesh/io/atomic_file.h"
 #include "mesh/io/region_yaml.h"
@@ -45,14 +46,15 @@ std::string density_text(double density) {
     return fmt::format("{}", shown);
 }
 
-std::string description(const MeasurementSet& set) {
+/// Of a set that is written into `folder`.
+std::string description(const MeasurementSet& set, const fs::path& folder) {
     std::string text = fmt::format(
         "format: palpate-measurements/1\n"
         "name: {}\n"
         "units: {{length: mm, force: N, time: s}}\n"
         "rest_surface: rest.vtp\n"
         "supports:\n{}",
-        yaml_text(set.name), mesh::regions_to_yaml(set.supports));
+        yaml_text(set.name), mesh::regions_to_yaml_in(folder, set.supports));
     if (set.density) text += fmt::format("density: {}  # kg/m^3\n", density_text(*set.density));
     text += fmt::format("history: {}\n", set.continuous ? "continuous" : "fresh");
     if (set.gravity) text += fmt::format("gravity: [{}]  # mm/s^2\n", fmt::join(*set.gravity, ", "));
@@ -65,17 +67,6 @@ std::string description(const MeasurementSet& set) {
         text += "material:  # first guess\n";
         if (!std::isnan(set.material->young)) text += fmt::format("  young: {}  # MPa\n", set.material->young);
         if (!std::isnan(set.material->poisson)) text += fmt::format("  poisson: {}\n", set.material->poisson);
-    }
-    return text;
-}
-
-std::string probes_table(const MeasurementSet& set) {
-    std::string text = "probe,time,x,y,z,fx,fy,fz,radius\n";
-    for (const LoadState& state : set.states) {
-        for (const mesh::Contact& contact : state.contacts)
-            text += fmt::format("{},{},{},{},{}\n", state.probe, state.time, cells(contact.point), cells(contact.force),
-                                contact.radius);
-        if (state.contacts.empty()) text += fmt::format("{},{},0,0,0,0,0,0,0\n", state.probe, state.time);
     }
     return text;
 }
@@ -129,6 +120,17 @@ void move_into_place(const fs::path& finished, const fs::path& target) {
 
 }  // namespace
 
+std::string probes_table(const std::vector<LoadState>& states) {
+    std::string text = "probe,time,x,y,z,fx,fy,fz,radius\n";
+    for (const LoadState& state : states) {
+        for (const mesh::Contact& contact : state.contacts)
+            text += fmt::format("{},{},{},{},{}\n", state.probe, state.time, cells(contact.point), cells(contact.force),
+                                contact.radius);
+        if (state.contacts.empty()) text += fmt::format("{},{},0,0,0,0,0,0,0\n", state.probe, state.time);
+    }
+    return text;
+}
+
 fs::path field_file(const LoadState& state) {
     return fs::path("field") / fmt::format("{}_{}.vtu", state.probe, state.time);
 }
@@ -141,8 +143,8 @@ void write_measurement_set(const fs::path& folder, const MeasurementSet& set,
     try {
         fs::create_directories(temporary);
         mesh::write_vtp(temporary / "rest.vtp", set.rest_surface);
-        mesh::write_text(temporary / "set.yaml", description(set));
-        mesh::write_text(temporary / "probes.csv", probes_table(set));
+        mesh::write_text(temporary / "set.yaml", description(set, temporary));
+        mesh::write_text(temporary / "probes.csv", probes_table(set.states));
         mesh::write_text(temporary / "markers.csv", markers_table(set));
         mesh::write_text(temporary / "positions.csv", positions_table(set));
         if (const std::string states = states_table(set); !states.empty())
