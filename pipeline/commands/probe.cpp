@@ -1,9 +1,14 @@
 #include <fmt/format.h>
 
+#include "mesh/errors.h"
 #include "mesh/io/atomic_file.h"
 #include "mesh/io/vtk_files.h"
 #include "pipeline/case/subject.h"
 #include "pipeline/commands/common.h"
+#include "pipeline/foreign/deck.h"
+#include "pipeline/foreign/foreign_set.h"
+#include "pipeline/forge/plan.h"
+#include "pipeline/forge/sequence.h"
 #include "pipeline/forge/truth.h"
 #include "skeleton/model_io.h"
 
@@ -68,11 +73,65 @@ void tell_hidden(const Forged& forged, bool has_fields) {
     }
 }
 
+/// What another solver computed.
+Outcome probe_from(const ProbeCommandOptions& options, const fs::path& output) {
+    const Case settings = read_case(options.input, options.say);
+    const ForeignOptions how{.folder = options.from,
+                             .array = options.array,
+                             .faults = {.noise = options.say.noise.value_or(0),
+                                        .missing = options.forge.missing,
+                                        .unlabelled = options.forge.unlabelled},
+                             .seed = settings.identify.seed};
+    const ForeignSet foreign = foreign_set(settings, how, Console::progress());
+    Console::notices(foreign.notes);
+    write_foreign_set(output, foreign);
+
+    const identify::MeasurementSet& set = foreign.set;
+    Outcome outcome;
+    outcome.text = fmt::format("{}: {} states out of {}, {} markers.\nNext: palpate run {}\n", output.string(),
+                               set.states.size(), options.from.string(), set.markers.size(), output.string());
+    outcome.json = {{"set", output.string()},
+                    {"states", set.states.size()},
+                    {"markers", set.markers.size()},
+                    {"from", options.from.string()},
+                    {"notes", foreign.notes}};
+    return outcome;
+}
+
+/// What another solver shall compute.
+Outcome probe_to(const ProbeCommandOptions& options, const Common& common) {
+    const fs::path output = options.output.empty() ? fs::path("deck") : options.output;
+    if (fs::exists(output) && !fs::is_directory(output))
+        throw InvalidInput(fmt::format("{}: is a file; with --to, -o names a folder.", output.string()));
+    for (const char* file : {"body.inp", "probes.csv"}) refuse_to_overwrite(output / file, common.force);
+    const Probing probing = probing_of_body(options);
+    const Specimen& specimen = probing.specimen;
+    const double largest = specimen.model->size() * probing.how.largest_displacement(specimen.in_small_strain());
+    const Plan plan = make_plan(specimen, options.forge, sequence_of(options.forge, {}).rhythm, largest, common.threads,
+                                Console::progress());
+    Console::notices(plan.notes);
+    const int states = write_deck(output, specimen, plan);
+
+    Outcome outcome;
+    outcome.text = fmt::format(
+        "{0}: body.inp with {1} steps, {2} nodes, law '{3}'; probes.csv tells their loads.\n"
+        "Next: (cd {0} && ccx body), then palpate probe {4} --from {0} -o measurements\n",
+        output.string(), states, specimen.volume.nodes.rows(), specimen.law(), options.input.string());
+    outcome.json = {{"deck", (output / "body.inp").string()},
+                    {"probes", (output / "probes.csv").string()},
+                    {"states", states},
+                    {"nodes", specimen.volume.nodes.rows()},
+                    {"law", specimen.law()}};
+    return outcome;
+}
+
 }  // namespace
 
 Outcome probe(const ProbeCommandOptions& options, const Common& common) {
+    if (!options.to.empty()) return probe_to(options, common);
     const fs::path output = options.output.empty() ? fs::path("measurements") : options.output;
     refuse_to_overwrite(output, common.force);
+    if (!options.from.empty()) return probe_from(options, output);
     ForgeOptions how = options.forge;
     how.validate();
     const bool is_model = options.input.extension() == ".json";

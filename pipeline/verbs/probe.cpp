@@ -64,6 +64,27 @@ void add_fault_flags(CLI::App* verb, ForgeOptions& forge) {
         ->group("Truth");
 }
 
+void add_solver_flags(CLI::App* verb, commands::ProbeCommandOptions& probe) {
+    auto* from = verb->add_option("--from", probe.from,
+                                  "Take the fields of another solver: a folder of .frd, .dat (CalculiX), .vtu or .vtp\n"
+                                  "files, and a probes.csv or the .inp file with the loads");
+    from->group("Another solver");
+    verb->add_option("--array", probe.array,
+                     "Point array of displacements in .vtu and .vtp files; by default the\n"
+                     "one that is called so")
+        ->needs(from)
+        ->group("Another solver");
+    auto* to = verb->add_option("--to", probe.to,
+                                "Write what is to be computed, in place of computing it: body.inp for Abaqus or\n"
+                                "CalculiX, a step for each state, and probes.csv");
+    to->check(CLI::IsMember({"inp"}))->excludes(from)->group("Another solver");
+    for (const char* own : {"--hide", "--law", "--linear", "--levels", "--unload", "--no-unload", "--dwell",
+                            "--continuous", "--no-continuous", "--probes", "--displacement", "--tell-material"})
+        from->excludes(verb->get_option(own));
+    for (const char* own : {"--hide", "--noise", "--missing", "--unlabelled", "--dwell", "--unload", "--continuous"})
+        to->excludes(verb->get_option(own));
+}
+
 }  // namespace
 
 void Verbs::add_probe(CLI::App& app) {
@@ -73,7 +94,9 @@ void Verbs::add_probe(CLI::App& app) {
                      "  palpate probe liver.stl -o riddle --hide inclusion:ratio=8,radius=12 --hide misalignment\n"
                      "  palpate probe finger.stl -o creep --hide viscosity --dwell 0.1,2,10 --unload\n"
                      "  palpate probe liver.stl -o null --hide none --seed 7      # a riddle without an answer\n"
-                     "  palpate probe model.json -o twin        # the skeleton itself is the hidden truth\n",
+                     "  palpate probe model.json -o twin        # the skeleton itself is the hidden truth\n"
+                     "  palpate probe liver.stl --to inp -o deck    # for your own solver; then (cd deck && ccx body)\n"
+                     "  palpate probe liver.stl --from deck -o set  # and what it computed\n",
                      [this] {
                          probe.say.seed = common.seed;
                          return commands::probe(probe, common);
@@ -92,6 +115,7 @@ void Verbs::add_probe(CLI::App& app) {
         ->group("Probing");
     add_sequence_flags(sub, probe.forge);
     add_fault_flags(sub, probe.forge);
+    add_solver_flags(sub, probe);
 }
 
 }  // namespace palpate::pipeline
