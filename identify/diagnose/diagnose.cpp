@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 
 #include "identify/diagnose/baselines.h"
 #include "identify/diagnose/crushing.h"
@@ -18,27 +17,8 @@ namespace {
 
 constexpr const char* noise_note = "The set does not tell its noise: ";
 
-/// What loads do to the readings, away from where the unloaded body was read, or from rest; rms [mm].
-double moved_by_loads(const Problem& problem) {
-    const Eigen::VectorXd displacement = problem.displacement();
-    std::map<int, std::pair<double, int>> unloaded;  // of each coordinate: sum, and how many
-    for (Eigen::Index n = 0; n < problem.rows(); ++n) {
-        if (problem.loaded(problem.action[n])) continue;
-        auto& [sum, count] = unloaded[problem.coordinate[n]];
-        sum += displacement[n];
-        ++count;
-    }
-    double square = 0;
-    int rows = 0;
-    for (Eigen::Index n = 0; n < problem.rows(); ++n) {
-        if (!problem.loaded(problem.action[n])) continue;
-        const auto found = unloaded.find(problem.coordinate[n]);
-        const double start = found == unloaded.end() ? 0 : found->second.first / found->second.second;
-        square += (displacement[n] - start) * (displacement[n] - start);
-        ++rows;
-    }
-    return rows == 0 ? 0 : std::sqrt(square / rows);
-}
+/// [mm]
+double rms(const Eigen::VectorXd& v) { return std::sqrt(v.squaredNorm() / static_cast<double>(v.size())); }
 
 /// The diagnosis in progress.
 class Inquiry {
@@ -47,8 +27,7 @@ public:
         : model_(model), options_(options), progress_(progress), baselines_(model, options) {
         result_.noise_known = all_noise_known(set);
         result_.problem = make_problem(set, first_noise(set));
-        finest_ = std::max(options.resolution * moved_by_loads(result_.problem), 1e-12);
-        see_no_finer_than_the_mesh();
+        moved_ = rms(result_.problem.displacement());
         for (const auto& effect : catalogue()) {
             const bool left_out = std::ranges::find(options.without, effect->name()) != options.without.end();
             const bool known =
@@ -81,6 +60,7 @@ public:
             result_.law_evidence.push_back(baselines_.evidence(law) - baseline().log_evidence);
         }
         judge(model_, options_, result_);
+        tell_what_a_mesh_leaves();
         return std::move(result_);
     }
 
@@ -93,23 +73,23 @@ private:
 
     /// A hundredth of how far the markers move, to begin with where nobody tells the noise [mm].
     static double first_noise(const MeasurementSet& set) {
-        const Eigen::VectorXd u = make_problem(set, 1).displacement();
-        return std::max(0.01 * std::sqrt(u.squaredNorm() / static_cast<double>(u.size())), 1e-12);
+        return std::max(0.01 * rms(make_problem(set, 1).displacement()), 1e-12);
     }
 
     const Refit& baseline() const { return baselines_.best(); }
 
     void tell(const std::string& what, double share) const { report(progress_, what, share); }
 
-    /// A sensor that is finer than the body's mesh sees the mesh: its errors are weighed as coarser ones.
-    void see_no_finer_than_the_mesh() {
-        Problem& problem = result_.problem;
-        if (!result_.noise_known || problem.sigma.minCoeff() >= finest_) return;
-        result_.notes.push_back(fmt::format(
-            "The noise that the set tells, {:.3g} mm at its least, is less than what a mesh tells, {:g} % of "
-            "what the loads move: errors are weighed with {:.3g} mm.",
-            problem.sigma.minCoeff(), 100 * options_.resolution, finest_));
-        problem.sigma = problem.sigma.cwiseMax(finest_);
+    /// Sensors finer than the body's mesh see its errors, which no effect explains.
+    void tell_what_a_mesh_leaves() {
+        if (result_.verdict != Verdict::unexplained) return;
+        const Eigen::VectorXd left_mm = result_.best().residual.cwiseProduct(result_.problem.sigma);
+        const double left = rms(left_mm);
+        if (left > options_.mesh_error * moved_) return;
+        result_.notes.push_back(
+            fmt::format("What is left, {:.3g} mm rms, is {:.2g} % of the displacement: a mesh may be off by as much. "
+                        "Shorter elements (--edge-length) leave less; noise told as {:.3g} mm or more covers it.",
+                        left, 100 * left / moved_, options_.resolution * moved_));
     }
 
     void estimate_noise() {
@@ -117,16 +97,17 @@ private:
         Problem& problem = result_.problem;
         const Eigen::VectorXd error_mm = leading().residual.cwiseProduct(problem.sigma);
         const double rough = noise_by_roughness(problem, error_mm);
-        const double noise = std::max(rough, finest_);
+        const double finest = std::max(options_.resolution * moved_, 1e-12);
+        const double noise = std::max(rough, finest);
         for (Eigen::Index n = 0; n < problem.rows(); ++n) {
             if (problem.is_guessed[n]) problem.sigma[n] = noise;
         }
         std::erase_if(result_.notes, [](const std::string& note) { return note.starts_with(noise_note); });
         result_.notes.push_back(
-            rough >= finest_
+            rough >= finest
                 ? fmt::format("{}{:.3g} mm, from how errors differ between neighbouring markers.", noise_note, noise)
                 : fmt::format("{}errors hardly differ between neighbouring markers, and are weighed with {:.3g} mm, "
-                              "{:g} % of what the loads move, which a mesh may be off by.",
+                              "{:g} % of the displacement, which a mesh may be off by.",
                               noise_note, noise, 100 * options_.resolution));
         baselines_.refit(result_.problem);
     }
@@ -241,7 +222,7 @@ private:
     Baselines baselines_;
     std::unique_ptr<Search> search_;
     Diagnosis result_;
-    double finest_ = 0;  // what a mesh tells [mm]
+    double moved_ = 0;  // readings from rest, rms [mm]
 };
 
 }  // namespace

@@ -39,7 +39,7 @@ struct DiagnoseOptions {
     double most_strain = 8;               // of a nuisance, in its prior sd
     double least_outliers = 100;          // the same for outliers: one reading of 15 sigma, say
     double mesh_error = 0.015;            // of the displacement: what meshes and their contacts may be off by
-    double resolution = 0.01;             // of what loads move: sensors finer than that see the body's mesh
+    double resolution = 0.01;             // of the displacement: what nobody told of noise is no less, as of a mesh
     double idealised = 60;  // ln Bayes factor that an effect's idealisation may leave to another, at least
     RefitOptions refit;
     void validate() const;  // @throws InvalidInput naming option, value and bound

@@ -154,11 +154,47 @@ void Search::confirm_single_effects() {
         report(progress_, "refit with " + screened.effect->name(), 0.75);
         if (auto found = refit_with(base, screened)) tried_.push_back(std::move(*found));
     }
+    confirm_at_the_answer_to_loads(law);
     // The law goes with the effect: the two that lead are tried under the others too.
     std::vector<std::size_t> order(tried_.size());
     for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
     std::ranges::stable_sort(order, std::greater{}, [&](std::size_t i) { return tried_[i].log_bayes_factor; });
     for (std::size_t i = 0; i < std::min<std::size_t>(2, order.size()); ++i) try_other_laws(order[i]);
+}
+
+/// What is missing may bend the baseline's stiffness far away from how the body answers to loads, and the fits with it:
+/// a soft body that hangs under its weight looks as stiff as steel. So they begin there as well, and the better counts.
+void Search::confirm_at_the_answer_to_loads(int law) {
+    constexpr double much = 3;              // whitened rms
+    const double far = std::log(3.0);       // of Young's modulus, or what stands for it
+    constexpr std::size_t most_refits = 3;  // of effects, by the screen from there
+    const Refit& base = *baselines_.under(law);
+    if (base.whitened_rms < much) return;
+    RefitOptions as_it_is = options_.refit;
+    as_it_is.steps = 0;
+    std::optional<Refit> there;
+    try {
+        Explanation guess = base.explanation;
+        guess.theta = first_guess(model_, problem_, law, options_.refit.threads).theta;
+        if (std::abs(guess.theta[0] - base.explanation.theta[0]) < far) return;
+        there = refit(model_, problem_, guess, as_it_is);
+    } catch (const SolverFailure&) {
+        return;
+    }
+    const std::vector<Screened> screened = screen_at(*there, {});
+    for (std::size_t i = 0; i < std::min(most_refits, screened.size()); ++i) {
+        report(progress_, "refit with " + screened[i].effect->name(), 0.7);
+        std::optional<Explained> found = refit_with(*there, screened[i]);
+        if (!found) continue;
+        const auto before = std::ranges::find_if(tried_, [&](const Explained& tried) {
+            return tried.effects.size() == 1 && tried.effects == found->effects;
+        });
+        if (before == tried_.end()) {
+            tried_.push_back(std::move(*found));
+        } else if (found->log_bayes_factor > before->log_bayes_factor) {
+            *before = std::move(*found);
+        }
+    }
 }
 
 /// The fit once more under another law, from its own numbers.

@@ -33,6 +33,7 @@ private:
     void screen_all();
     int most_promising_law() const;
     void confirm_single_effects();
+    void confirm_at_the_answer_to_loads(int law);
     void try_other_laws(std::size_t tried);
     std::optional<Explained> carry_over(const Explained& single, int law) const;
     bool extend(std::size_t from, int most);
