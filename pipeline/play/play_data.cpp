@@ -123,14 +123,20 @@ json understood_sets(const skeleton::Model& model, const identify::MeasurementSe
     return numbers;
 }
 
-/// What the page says of an effect.
+/// What the page says of an effect: its meaning, and its numbers.
 ordered_json effect_json(const skeleton::Effect& effect) {
-    ordered_json result = {{"name", effect.name}, {"fault", is_of_measurement(effect)}, {"sentence", ""}};
     const auto& all = identify::catalogue();
     const auto known = std::ranges::find(all, effect.name, [](const auto& one) { return one->name(); });
-    if (known != all.end()) result["sentence"] = (*known)->sentence(effect);
-    result["played"] = effect.name != "outliers" && effect.name != "viscosity" && effect.name != "volume";
-    return result;
+    std::vector<std::string> numbers;
+    for (const skeleton::EffectParameter& parameter : effect.parameters) {
+        numbers.push_back(fmt::format("{} = {:.3g}{}", parameter.name, parameter.value,
+                                      parameter.unit == "1" || parameter.unit.empty() ? "" : " " + parameter.unit));
+    }
+    return {{"name", effect.name},
+            {"meaning", known == all.end() ? "" : (*known)->description().meaning},
+            {"numbers", numbers},
+            {"fault", is_of_measurement(effect)},
+            {"played", effect.name != "outliers" && effect.name != "viscosity" && effect.name != "volume"}};
 }
 
 /// Fields of a model's file that differ from those of the first.

@@ -334,10 +334,9 @@ def check_time(browser, page):
 with tempfile.TemporaryDirectory() as folder:
     at = pathlib.Path(folder)
     palpate("new", at / "case")
-    palpate("run", at / "case/case.yaml", "-o", at / "run", "--probes", 6, "--spheres", 8, "--parameters", "uniform",
-            "--particles", 40, "--edge-length", 8)
-    palpate("probe", at / "run/identify/model.json", "-o", at / "riddle", "--hide", "gravity", "--probes", 9, "--markers", 25)
-    palpate("run", at / "riddle", "-o", at / "measured", "--parameters", "uniform", "--particles", 40, "--edge-length", 12)
+    palpate("probe", at / "case/case.yaml", "-o", at / "riddle", "--hide", "gravity:gx=0,gy=0,gz=-4000", "--probes", 9,
+            "--edge-length", 10)
+    palpate("run", at / "riddle", "-o", at / "measured", "--parameters", "uniform", "--particles", 40, "--edge-length", 10)
     page = at / "page.html"
     palpate("play", at / "measured", "-o", page)
     size = page.stat().st_size

@@ -1,8 +1,10 @@
 // What the view shows of a body in the hand.
 'use strict';
 
-/// viridis in steps, so that thousands of vertices are coloured in no time.
-const palette = Float32Array.from({length: 256}, (_, i) => i / 255).reduce((all, share) => all.concat(colourOf(share)), []);
+/// viridis without its darkest fifth, in steps, so that thousands of vertices are coloured in no time.
+const palette = Array.from({length: 256}, (_, i) => colourOf(0.2 + 0.8 * i / 255)).flat();
+const paletteGradient = `linear-gradient(to right, ${Array.from({length: 9}, (_, i) =>
+  `rgb(${colourOf(0.2 + 0.1 * i).map((c) => Math.round(255 * c))})`)})`;
 
 /// Errors of markers at the vertices of the skin: means of the four nearest, weighted by the inverse square of the
 /// distance at rest; NaN further than `reach` from any [mm].
@@ -45,10 +47,10 @@ function coloured(values, high, colours) {
   return colours;
 }
 
-/// Arrows of forces: [{force, place}], `strongest` being as long as a quarter of the body [N].
+/// Arrows of forces: [{force, place}], `strongest` being as long as a sixth of the body [N].
 function forceArrows(contacts, strongest, camera) {
   return contacts.filter((c) => length3(c.force) > 1e-9).map(({force, place}) => {
-    const unit = unit3(force), length = camera.size * (0.05 + 0.2 * Math.min(1.5, length3(force) / strongest));
+    const unit = unit3(force), length = camera.size * (0.04 + 0.13 * Math.min(1, length3(force) / strongest));
     const inwards = dot3(unit, minus3(place, camera.middle)) < 0;
     return {start: inwards ? plus3(place, unit, -length) : place, end: inwards ? place : plus3(place, unit, length),
       radius: 0.008 * camera.size, colour: loadColour};

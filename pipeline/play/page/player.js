@@ -21,6 +21,7 @@ class Player {
     const low = [Infinity, Infinity, Infinity], high = low.map((v) => -v);
     this.rest.forEach((v, i) => { low[i % 3] = Math.min(low[i % 3], v); high[i % 3] = Math.max(high[i % 3], v); });
     this.camera = new Camera(low, high);
+    this.camera.distance *= 1.2;  // room to pull
     this.size = this.camera.size;
     this.colours = new Float32Array(this.rest.length);
     this.pinned = [];        // touches that go on pulling
@@ -61,6 +62,7 @@ class Player {
         this.loads.push(touch);
       }
     }
+    this.high = 0;
     if (this.set >= 0) this.verdict = this.judge.begin(this.chosen.model, this.effects, this.set);
     this.wake();
     this.tellChoice();
@@ -192,7 +194,9 @@ class Player {
       : Float32Array.from({length: skin.length / 3}, (_, v) => length3(minus3(row3(skin, v), row3(this.rest, v))));
     let furthest = 0;
     for (const value of values) if (value > furthest) furthest = value;
-    const high = roundUp(Math.max(furthest, byError ? 1e-3 * size : 0.02 * size));
+    // Colours stay while the body moves: their scale only grows, until something else is chosen.
+    const high = roundUp(Math.max(furthest, this.high ?? 0, byError ? 1e-3 * size : 0.02 * size));
+    this.high = high;
     coloured(values, high, this.colours);
 
     const contacts = this.touches.map((t) => this.numerics.at(t));
@@ -307,7 +311,9 @@ class Player {
       this.at(`effect-${effect.name}`)?.focus();
     });
     const words = document.createElement('span'), small = document.createElement('small');
-    small.textContent = effect.played ? effect.sentence : `${effect.sentence} Not played here.`;
+    const many = effect.numbers.length > 6;  // a gain for each probe, say
+    const numbers = many ? `${effect.numbers.slice(0, 6).join(', ')}, …` : effect.numbers.join(', ');
+    small.textContent = `${effect.meaning} ${numbers}${effect.played ? '' : '. Not played here'}`;
     words.append(effect.fault ? `${effect.name} (of the measurement)` : effect.name, small);
     label.append(box, words);
     return label;
@@ -387,7 +393,7 @@ class Player {
     fill(at('point'), [['none', -1], ...this.points.map((v, i) => [
       `${i + 1} (${row3(this.rest, v).map((x) => +x.toPrecision(3)).join(', ')})`, i])]);
     fill(at('colour'), [['displacement', 'displacement'], ...(states.length ? [['error', 'error']] : [])]);
-    at('gradient').style.background = gradient;
+    at('gradient').style.background = paletteGradient;
     at('radius').value = +(0.03 * this.size).toPrecision(1);
     at('notes').replaceChildren(...this.data.notes.map((note) => {
       const item = document.createElement('li');
@@ -397,6 +403,7 @@ class Player {
 
     at('controls').addEventListener('submit', (e) => e.preventDefault());
     at('controls').addEventListener('input', () => { this.changed = true; this.tellLink(); });
+    at('colour').addEventListener('change', () => { this.high = 0; });
     at('model').addEventListener('change', () => this.chooseModel(+at('model').value));
     at('probe').addEventListener('change', () => this.chooseProbe(+at('probe').value));
     at('point').addEventListener('change', () => this.choosePoint(+at('point').value));

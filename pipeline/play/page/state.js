@@ -15,7 +15,7 @@ class Verdict {
   get rms() { return Verdict.rms(this.fitted); }
   get heldOutRms() { return Verdict.rms(this.heldOut); }
   get allRms() { return Verdict.rms([this.fitted[0] + this.heldOut[0], this.fitted[1] + this.heldOut[1]]); }
-  get whole() { return this.done === this.of; }
+  get whole() { return this.of > 0 && this.done === this.of; }
 }
 
 /// Judges models on sets a few milliseconds at a time; what was judged once is remembered.
@@ -39,7 +39,7 @@ class Judge {
   work(budget) {
     const {key, model, effects, set} = this.asked ?? {};
     const verdict = this.known.get(key);
-    if (!verdict || verdict.trouble || (verdict.of > 0 && verdict.whole)) return false;
+    if (!verdict || verdict.trouble || verdict.whole) return false;
     try {
       if (this.at !== key) {  // another one was begun meanwhile
         Object.assign(verdict, new Verdict());
