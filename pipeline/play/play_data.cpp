@@ -128,8 +128,9 @@ ordered_json effect_json(const skeleton::Effect& effect) {
     const auto& all = identify::catalogue();
     const auto known = std::ranges::find(all, effect.name, [](const auto& one) { return one->name(); });
     std::vector<std::string> numbers;
+    numbers.reserve(effect.parameters.size());
     for (const skeleton::EffectParameter& parameter : effect.parameters) {
-        numbers.push_back(fmt::format("{} = {:.3g}{}", parameter.name, parameter.value,
+        numbers.push_back(fmt::format("{} = {:.4g}{}", parameter.name, parameter.value,
                                       parameter.unit == "1" || parameter.unit.empty() ? "" : " " + parameter.unit));
     }
     return {{"name", effect.name},

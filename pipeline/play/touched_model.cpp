@@ -17,11 +17,16 @@ skeleton::Model as_played(skeleton::Model model, double pressure) {
     return model;
 }
 
+// Steps that are shown may leave a micrometre, and a browser is slower at factors than at anything else: an old one
+// serves on for as long as corrections become smaller.
+const runtime::BodyOptions for_display{
+    .contacts = TouchedModel::most_touches, .step_tolerance = 1e-4, .step_slower = 0.99};
+
 }  // namespace
 
 TouchedModel::TouchedModel(skeleton::Model model, const Vec3& gravity, double pressure)
     : model_(as_played(std::move(model), pressure)),
-      body_(model_, {.contacts = most_touches}),
+      body_(model_, for_display),
       to_load_(model_),
       solver_(model_),
       k_(skeleton::stiffness_vector(model_)),

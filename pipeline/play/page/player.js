@@ -62,7 +62,7 @@ class Player {
         this.loads.push(touch);
       }
     }
-    this.high = 0;
+    if (anew) this.high = 0;
     if (this.set >= 0) this.verdict = this.judge.begin(this.chosen.model, this.effects, this.set);
     this.wake();
     this.tellChoice();
@@ -78,7 +78,7 @@ class Player {
   chooseProbe(probe) {
     this.chosen.probe = probe;
     this.restart(true);
-    if (this.still) this.settle();
+    if (this.still || probe < 0) this.settle();
   }
 
   // --- The hand --------------------------------------------------------------------------------------------------
@@ -194,9 +194,10 @@ class Player {
       : Float32Array.from({length: skin.length / 3}, (_, v) => length3(minus3(row3(skin, v), row3(this.rest, v))));
     let furthest = 0;
     for (const value of values) if (value > furthest) furthest = value;
-    // Colours stay while the body moves: their scale only grows, until something else is chosen.
-    const high = roundUp(Math.max(furthest, this.high ?? 0, byError ? 1e-3 * size : 0.02 * size));
-    this.high = high;
+    // Errors keep their scale, that they may be seen to fall; displacements theirs for as long as it does.
+    const least = byError ? 1e-3 * size : 0.02 * size;
+    if (furthest > this.high || !(this.high > 0) || (!byError && furthest < 0.3 * this.high)) this.high = roundUp(Math.max(furthest, least));
+    const {high} = this;
     coloured(values, high, this.colours);
 
     const contacts = this.touches.map((t) => this.numerics.at(t));
@@ -267,9 +268,10 @@ class Player {
       words: strength > 1e-7 ? 'stiffness along the pull' : 'stiffness across the skin'};
   }
   tell(now) {
-    if (!this.hand || now - (this.felt ?? 0) > 90) {
-      const feel = this.feel();
+    if (!this.hand || now - (this.felt ?? 0) > (this.feelEvery ?? 90)) {
+      const begin = performance.now(), feel = this.feel();
       this.felt = now;
+      this.feelEvery = Math.max(90, 20 * (performance.now() - begin));  // a twentieth of the time at most
       this.at('force').textContent = inUnit(feel?.strength ?? 0, 'N');
       this.at('moved').textContent = inUnit(feel?.moved ?? 0, 'mm');
       this.at('stiffness').textContent = feel ? inUnit(feel.stiffness, 'N/mm') : '–';
@@ -312,7 +314,7 @@ class Player {
     });
     const words = document.createElement('span'), small = document.createElement('small');
     const many = effect.numbers.length > 6;  // a gain for each probe, say
-    const numbers = many ? `${effect.numbers.slice(0, 6).join(', ')}, …` : effect.numbers.join(', ');
+    const numbers = (many ? `${effect.numbers.slice(0, 6).join(', ')}, …` : effect.numbers.join(', ')).replaceAll('^2', '²');
     small.textContent = `${effect.meaning} ${numbers}${effect.played ? '' : '. Not played here'}`;
     words.append(effect.fault ? `${effect.name} (of the measurement)` : effect.name, small);
     label.append(box, words);
@@ -376,6 +378,7 @@ class Player {
     const view = inHash.numbers(told.view, 13), pull = inHash.numbers(told.pull, 7);
     if (view) Object.assign(camera, {turned: view.slice(0, 9), target: view.slice(9, 12), distance: view[12]});
     this.restart(true);
+    this.settle();
     if (pull) this.press(pull.slice(0, 3), unit3(pull.slice(3, 6)), pull.slice(3, 6), Math.max(0, pull[6]));
   }
 
@@ -408,7 +411,7 @@ class Player {
     at('probe').addEventListener('change', () => this.chooseProbe(+at('probe').value));
     at('point').addEventListener('change', () => this.choosePoint(+at('point').value));
     at('press').addEventListener('change', () => this.pressPoint());
-    const buttons = {'let-go': () => this.letAllGo(), settle: () => this.settle(), reset: () => this.restart(true),
+    const buttons = {'let-go': () => this.letAllGo(), settle: () => this.settle(), reset: () => this.chooseProbe(this.chosen.probe),
       'copy-link': () => this.copy(`${location.href.split('#')[0]}${this.link()}`, 'The link'),
       'copy-probes': () => this.copy(this.probesTable(), 'probes.csv of what acts now')};
     for (const [id, does] of Object.entries(buttons)) at(id).addEventListener('click', does);
