@@ -44,18 +44,19 @@ std::string with_words(const json& effects) {
 /// The models of a ladder's steps, and the one that it delivers.
 std::vector<Candidate> candidates_of_ladder(const fs::path& folder, const json& ladder) {
     std::vector<Candidate> found;
-    const json& steps = ladder["steps"];
+    const json& steps = ladder.at("steps");
     for (std::size_t i = 0; i < steps.size(); ++i) {
         const fs::path file = folder / fmt::format("step_{}", i) / "model.json";
         if (!fs::exists(file)) continue;
         found.push_back({file,
-                         fmt::format("Step {}: {}", i, with_words(steps[i]["effects"])),
-                         ladder["held_out_probes"].empty() || i == 0
+                         fmt::format("Step {}: {}", i, with_words(steps[i].at("effects"))),
+                         ladder.at("held_out_probes").empty()
                              ? "fitted again at this step of the ladder"
-                             : "fitted again at this step of the ladder, without the probes that are held out",
-                         {{"rms_mm", steps[i]["rms_mm"]}, {"held_out_rms_mm", steps[i]["held_out_rms_mm"]}}});
+                             : "fitted again at this step of the ladder, as ladder.json judges it",
+                         {{"rms_mm", steps[i].at("rms_mm")}, {"held_out_rms_mm", steps[i].at("held_out_rms_mm")}}});
     }
-    found.push_back({folder / "model.json", "Result: " + with_words(steps.back()["effects"]), "fitted to all probes"});
+    found.push_back({folder / "model.json", "Result: " + with_words(steps.at(steps.size() - 1).at("effects")),
+                     "fitted to all probes"});
     return found;
 }
 
@@ -65,7 +66,13 @@ std::vector<Candidate> candidates_in(const fs::path& input) {
                                   input.string()));
     }
     if (!fs::is_directory(input)) return {{input, "The model", ""}};
-    if (fs::exists(input / "ladder.json")) return candidates_of_ladder(input, read_json(input / "ladder.json"));
+    if (const fs::path ladder = input / "ladder.json"; fs::exists(ladder)) {
+        try {
+            return candidates_of_ladder(input, read_json(ladder));
+        } catch (const json::exception& e) {
+            throw InvalidInput(fmt::format("{}: is not what palpate improve writes: {}", ladder.string(), e.what()));
+        }
+    }
     if (fs::exists(input / "model.json")) return {{input / "model.json", "The model", "as identified"}};
     if (fs::exists(input / "run.json")) {
         std::vector<Candidate> found;
@@ -172,11 +179,10 @@ PlayData play_data(const fs::path& input, const fs::path& set_folder) {
         const skeleton::Model model = skeleton::read_model(candidate.file);
         if (model.surface.triangles.rows() == 0)
             throw InvalidInput(candidate.file.string() + ": has no skin that could be touched; give the model one");
-        const runtime::Body body(model);
-        for (const std::string& notice : body.notices()) {
-            const std::string sentence = notice + ".";
-            if (std::ranges::find(data.notes, sentence) == data.notes.end()) data.notes.push_back(sentence);
-        }
+        skeleton::Model told_of = model;
+        if (set) std::erase_if(told_of.effects, is_of_measurement);  // they are played on the set
+        const runtime::Body body(told_of);
+        for (const std::string& notice : body.notices()) data.notes.push_back(candidate.name + ": " + notice + ".");
         ordered_json text = ordered_json::parse(mesh::read_text(candidate.file));
         ordered_json one = {{"name", candidate.name}, {"about", candidate.about}, {"told", candidate.told}};
         one["effects"] = ordered_json::array();
@@ -191,7 +197,13 @@ PlayData play_data(const fs::path& input, const fs::path& set_folder) {
 
     fs::path ladder = input / "ladder.json";
     if (!fs::exists(ladder)) ladder = input / "improve/ladder.json";
-    const json held_out = fs::exists(ladder) ? read_json(ladder)["held_out_probes"] : json::array();
+    const bool has_steps = std::ranges::any_of(candidates, [](const Candidate& c) { return !c.told.is_null(); });
+    if (fs::exists(ladder) && !has_steps) {
+        data.notes.push_back(
+            "The models of the ladder's steps are not here: an older palpate made it. Run it again for them.");
+    }
+    const json held_out =
+        fs::exists(ladder) ? read_json(ladder).value("held_out_probes", json::array()) : json::array();
     data.content = {
         {"name", data.name}, {"models", models}, {"sets", sets}, {"held_out", held_out}, {"notes", data.notes}};
     return data;

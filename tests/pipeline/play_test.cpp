@@ -37,7 +37,7 @@ Vec3 vertex_of(const skeleton::Model& model) {
     return model.surface.vertices.row(furthest).transpose();
 }
 
-/// What a stiffer body with a weight reads under two loads, as measurements of this one.
+/// Readings of the model itself, at rest and under two loads, with noise.
 identify::MeasurementSet measured_on(const skeleton::Model& model) {
     const Vec3 at = vertex_of(model);
     const auto loaded = [&](int probe, const Vec3& force) {
@@ -49,7 +49,7 @@ identify::MeasurementSet measured_on(const skeleton::Model& model) {
     return set;
 }
 
-TEST(Play, JudgementIsWhatCompareFinds) {
+TEST(InTheHand, JudgementIsWhatCompareFinds) {
     const skeleton::Model model = lattice_in_the_hand();
     const identify::MeasurementSet set = measured_on(model);
     Judgement judgement(model, set);
@@ -63,7 +63,7 @@ TEST(Play, JudgementIsWhatCompareFinds) {
     EXPECT_NEAR(std::sqrt(squares / coordinates), identify::compare(model, set).rms, 1e-12);
 }
 
-TEST(Play, ASetIsTheSameAsText) {
+TEST(InTheHand, ASetIsTheSameAsText) {
     const skeleton::Model model = lattice_in_the_hand();
     identify::MeasurementSet set = measured_on(model);
     set.gravity = Vec3(0, 0, -9810);
@@ -77,7 +77,7 @@ TEST(Play, ASetIsTheSameAsText) {
     EXPECT_NEAR(identify::compare(model, again).rms, identify::compare(model, set).rms, 1e-6);
 }
 
-TEST(Play, ComplianceIsTheSlopeOfThePlace) {
+TEST(InTheHand, ComplianceIsTheSlopeOfThePlace) {
     const skeleton::Model model = lattice_in_the_hand();
     TouchedModel touched(model, Vec3(0, 0, -1000), 0);
     const int touch = touched.touch(vertex_of(model), 0);
@@ -99,7 +99,7 @@ TEST(Play, ComplianceIsTheSlopeOfThePlace) {
     }
 }
 
-TEST(Play, TheHandHoldsWhenTheModelChanges) {
+TEST(InTheHand, TheHandHoldsWhenTheModelChanges) {
     skeleton::Model model = lattice_in_the_hand();
     TouchedModel before(model, Vec3::Zero(), 0);
     const int touch = before.touch(vertex_of(model), 0);
@@ -114,7 +114,7 @@ TEST(Play, TheHandHoldsWhenTheModelChanges) {
     EXPECT_LT(after.place(touch).z(), before.place(touch).z());  // it hangs
 }
 
-TEST(Play, ShapeIsTheEquilibriumThatSimulateFinds) {
+TEST(InTheHand, ShapeIsTheEquilibriumThatSimulateFinds) {
     const skeleton::Model model = lattice_in_the_hand();
     TouchedModel touched(model, Vec3::Zero(), 0);
     const mesh::Contact contact{vertex_of(model), {0.01, 0.02, -0.03}, 0};
@@ -126,7 +126,7 @@ TEST(Play, ShapeIsTheEquilibriumThatSimulateFinds) {
     EXPECT_LT((touched.places(model.skin) - expected).cwiseAbs().maxCoeff(), 1e-6);
 }
 
-TEST(Play, WritesOnePageThatNeedsNoNetwork) {
+TEST(InTheHand, WritesOnePageThatNeedsNoNetwork) {
     const TemporaryFolder scratch;
     skeleton::write_model(scratch / "model.json", lattice_in_the_hand());
     const commands::Outcome outcome =
@@ -145,7 +145,7 @@ TEST(Play, WritesOnePageThatNeedsNoNetwork) {
                 AllOf(HasSubstr("other.html"), HasSubstr("--force")));
 }
 
-TEST(Play, SaysWhatCannotBePlayed) {
+TEST(InTheHand, SaysWhatCannotBePlayed) {
     const TemporaryFolder scratch;
     const auto message = [&](const std::filesystem::path& model) {
         return message_of([&] { commands::play({.model = model, .output = scratch / "page.html"}, {}); });
