@@ -41,11 +41,11 @@ Outcome play(const PlayOptions& options, const Common& common) {
     Console::notices(data.notes);
     const std::string page = play_page(data);
     constexpr std::size_t large = 5'000'000;
-    if (page.size() > large)
+    if (page.size() > large) {
         Console::warning(
-            fmt::format("The page has {:.1f} MB: browsers open it slowly. A skin of fewer vertices makes it "
-                        "smaller (--skin-edge of palpate skeleton).",
+            fmt::format("The page has {:.1f} MB: browsers open it slowly. A skin of fewer triangles makes it smaller.",
                         static_cast<double>(page.size()) / 1e6));
+    }
     if (options.output.empty()) {
         serve_aloud(data, page, options.port, common.json);
         return {};

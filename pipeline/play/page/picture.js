@@ -25,6 +25,16 @@ class SkinErrors {
   }
 }
 
+/// How far apart two lists of as many points are, point by point.
+function distances(points, others) {
+  const result = new Float32Array(points.length / 3);
+  for (let v = 0, i = 0; v < result.length; ++v, i += 3) {
+    const x = points[i] - others[i], y = points[i + 1] - others[i + 1], z = points[i + 2] - others[i + 2];
+    result[v] = Math.sqrt(x * x + y * y + z * z);
+  }
+  return result;
+}
+
 /// The next of 1, 2, 5, 10, ... that is not below a value.
 function roundUp(value) {
   if (!(value > 0)) return 1;

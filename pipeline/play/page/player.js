@@ -190,8 +190,7 @@ class Player {
 
     const errors = this.markerErrors();
     const byError = this.at('colour').value === 'error' && errors;
-    const values = byError ? this.skinErrors.at(errors.lengths)
-      : Float32Array.from({length: skin.length / 3}, (_, v) => length3(minus3(row3(skin, v), row3(this.rest, v))));
+    const values = byError ? this.skinErrors.at(errors.lengths) : distances(skin, this.rest);
     let furthest = 0;
     for (const value of values) if (value > furthest) furthest = value;
     // Errors keep their scale, that they may be seen to fall; displacements theirs for as long as it does.
