@@ -178,6 +178,7 @@ class Player {
     }
     if (this.judge.work(this.hand ? 2 : 8)) this.tellErrors();
     if (this.changed) { this.changed = false; this.draw(); this.tell(now); }
+    else if (this.unspoken && now - this.spoke > 1200) this.tell(now);
   }
 
   // --- What is seen ----------------------------------------------------------------------------------------------
@@ -275,7 +276,8 @@ class Player {
       this.at('moved').textContent = inUnit(feel?.moved ?? 0, 'mm');
       this.at('stiffness').textContent = feel ? inUnit(feel.stiffness, 'N/mm') : '–';
       this.at('along').textContent = feel?.words ?? 'stiffness there';
-      if (now - (this.spoke ?? 0) > 1200) {
+      this.unspoken = now - (this.spoke ?? 0) <= 1200;  // what is spoken changes no faster than it can be heard
+      if (!this.unspoken) {
         this.spoke = now;
         this.at('spoken').textContent = feel ? `Force ${inUnit(feel.strength, 'newton')}, moved ${inUnit(feel.moved,
           'millimetres')}, stiffness ${inUnit(feel.stiffness, 'newton per millimetre')}.` : 'Nothing is held.';
