@@ -88,6 +88,7 @@ std::optional<commands::ExitCode> CommandLine::parse(int argc, char** argv) {
     verbs.add_completion(app);
     verbs.add_man(app);
     verbs.add_export(app);
+    verbs.add_play(app);
     try {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& e) {

@@ -51,7 +51,8 @@ int main(int argc, char** argv) {
                                       static_cast<std::size_t>(line.common().threads));
     const commands::Outcome outcome = guarded(line.command());
     if (line.common().json) {
-        fmt::print("{}\n", outcome.json.dump(2));
+        // a command that serves has told its result when it began
+        if (!outcome.json.is_null()) fmt::print("{}\n", outcome.json.dump(2));
     } else {
         fmt::print("{}", outcome.text);
     }

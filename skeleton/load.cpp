@@ -1,5 +1,7 @@
 #include "skeleton/load.h"
 
+#include <Eigen/Geometry>
+
 #include "skeleton/carried_point.h"
 
 namespace palpate::skeleton {

@@ -156,7 +156,7 @@ private:
         const skeleton::Model model = with_effects(step.effects);
         const Calibration calibration = fit_skeleton(model, part);
         near_ = calibration.coarse;
-        step.model = calibrated(model, calibration);
+        step.model = step.judged = calibrated(model, calibration);
         const Comparison on_fitted = compare(step.model, part, options_.identify.threads);
         step.skeleton = {.rms_mm = on_fitted.rms, .relative = on_fitted.relative};
         hold_out(effects, found, step, body);

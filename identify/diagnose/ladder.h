@@ -21,6 +21,7 @@ struct LadderStep {
     double log_evidence = missing;      // of the reference body's fit, less the constant that the readings share
     double predicted_rms_mm = missing;  // of the reference body, by the screen before it was fitted
     skeleton::Model model;              // with the effects in it; the last one is fitted to all states
+    skeleton::Model judged;             // the same, fitted to what is not held out: rms_mm and held_out_rms_mm are its
     Comparison comparison;              // of that model with all states as they are understood by then
     MeasurementSet set;                 // measurements without the faults that are among the effects
 };

@@ -131,6 +131,14 @@ struct ReportOptions {
 };
 Outcome report(const ReportOptions& options, const Common& common);
 
+struct PlayOptions {
+    std::filesystem::path model, output;  // no output: it is served
+    std::filesystem::path set = {};       // measurements; empty: the run's own, where it has some
+    int port = 0;                         // 0: a free one
+};
+/// A page in which the model is touched. @throws InvalidInput, IoError.
+Outcome play(const PlayOptions& options, const Common& common);
+
 struct NewOptions {
     std::filesystem::path folder;
 };

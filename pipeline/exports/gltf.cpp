@@ -9,6 +9,7 @@
 #include "mesh/errors.h"
 #include "mesh/io/atomic_file.h"
 #include "pipeline/exports/four_influences.h"
+#include "pipeline/report/base64.h"
 #include "pipeline/version.h"
 
 namespace palpate::pipeline {
@@ -64,20 +65,6 @@ public:
 private:
     std::string buffer_;
 };
-
-std::string base64(const std::string& bytes) {
-    constexpr const char* digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    std::string text;
-    text.reserve(4 * (bytes.size() + 2) / 3);
-    for (std::size_t i = 0; i < bytes.size(); i += 3) {
-        std::uint32_t three = 0;
-        for (std::size_t j = 0; j < 3; ++j) {
-            three = three << 8 | (i + j < bytes.size() ? static_cast<unsigned char>(bytes[i + j]) : 0U);
-        }
-        for (std::size_t j = 0; j < 4; ++j) text += i + j > bytes.size() ? '=' : digits[three >> (18 - 6 * j) & 63];
-    }
-    return text;
-}
 
 std::string GltfFile::as_json() {
     json["buffers"] = {

@@ -8,6 +8,7 @@
 
 #include "mesh/errors.h"
 #include "mesh/io/poly_data.h"
+#include "pipeline/report/base64.h"
 #include "pipeline/results/uncertainty.h"
 #include "pipeline/results/words.h"
 
@@ -17,23 +18,10 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-std::string base64(const char* bytes, std::size_t count) {
-    constexpr const char* digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    std::string text;
-    for (std::size_t i = 0; i < count; i += 3) {
-        std::uint32_t three = 0;
-        for (std::size_t j = 0; j < 3; ++j) {
-            three = three << 8 | (i + j < count ? static_cast<unsigned char>(bytes[i + j]) : 0U);
-        }
-        for (std::size_t j = 0; j < 4; ++j) text += i + j > count ? '=' : digits[three >> (18 - 6 * j) & 63];
-    }
-    return text;
-}
-
 template <class Number>
 json packed(const char* type, const std::vector<Number>& numbers) {
     return {{"type", type},
-            {"data", base64(reinterpret_cast<const char*>(numbers.data()), numbers.size() * sizeof(Number))}};
+            {"data", base64({reinterpret_cast<const char*>(numbers.data()), numbers.size() * sizeof(Number)})}};
 }
 
 /// Row by row.

@@ -94,7 +94,9 @@ void write_ladder(const std::filesystem::path& folder, const identify::Ladder& l
     write_ladder_series(folder, ladder);
     for (std::size_t i = 0; i < ladder.steps.size(); ++i) {
         const identify::LadderStep& step = ladder.steps[i];
-        write_played_series(folder / fmt::format("step_{}", i), step.model, step.set, step.comparison);
+        const std::filesystem::path of_step = folder / fmt::format("step_{}", i);
+        write_played_series(of_step, step.model, step.set, step.comparison);
+        skeleton::write_model(of_step / "model.json", step.judged);
     }
     mesh::write_text(folder / "posterior.csv", posterior_csv(ladder.identified.posterior));
     mesh::write_text(folder / "particles.csv", particles_csv(ladder.identified));

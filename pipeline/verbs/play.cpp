@@ -65,4 +65,20 @@ void Verbs::add_export(CLI::App& app) {
         ->needs(probes);
 }
 
+void Verbs::add_play(CLI::App& app) {
+    auto* sub =
+        verb(app, "play", "Touch the calibrated model in a browser: drag it, feel its stiffness, switch its effects.",
+             "  palpate play runs/organ                                 # serves it to this machine alone\n"
+             "  palpate play runs/organ -o organ.html                   # one page that needs no network\n"
+             "  palpate play model.json --set measurements -o page.html # with the measured markers\n",
+             [this] { return commands::play(play, common); });
+    sub->add_option("MODEL", play.model, "model.json, a folder of identify or improve, or a run folder")->required();
+    auto* page = sub->add_option("-o,--output", play.output, "The page; without it, it is served at 127.0.0.1");
+    sub->add_option("--set", play.set,
+                    "Measurement set that is drawn and that the error is told of; by default that of the run");
+    sub->add_option("--port", play.port, "Where it is served; a free port by default")
+        ->check(CLI::Range(1, 65535))
+        ->excludes(page);
+}
+
 }  // namespace palpate::pipeline

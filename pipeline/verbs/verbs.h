@@ -28,6 +28,7 @@ struct Verbs {
     commands::SimulateOptions simulate;
     commands::ExportOptions exports;
     commands::ReportOptions report;
+    commands::PlayOptions play;
     commands::NewOptions new_case;
     commands::InfoOptions info;
 
@@ -57,6 +58,7 @@ struct Verbs {
     // What plays a model or hands it on, in play.cpp.
     void add_simulate(CLI::App& app);
     void add_export(CLI::App& app);
+    void add_play(CLI::App& app);
 
     /// A verb whose help begins with examples.
     CLI::App* verb(CLI::App& app, const std::string& name, const std::string& what, const std::string& examples,

@@ -44,9 +44,16 @@ void BodyOptions::validate() const {
         throw InvalidInput(fmt::format("damping_ratio is {}; it must be at least 0", damping_ratio));
     if (contacts < 0 || contacts > 64)
         throw InvalidInput(fmt::format("contacts is {}; it must lie in 0 to 64", contacts));
+    const auto require_share = [](const char* what, double value) {
+        if (!(value > 0 && value < 1))
+            throw InvalidInput(fmt::format("{} is {}; it must lie between 0 and 1", what, value));
+    };
+    require_share("step_tolerance", step_tolerance);
+    require_share("step_slower", step_slower);
 }
 
 struct Body::Impl {
+    BodyOptions options;
     WalkedModel walked;
     ForceField field;
     Solver solver;
@@ -63,8 +70,9 @@ struct Body::Impl {
     bool held = false;
     int massless = -1;  // a sphere that moves and has no mass, by its number in the file
 
-    Impl(const skeleton::Model& model, const BodyOptions& options)
-        : walked(in_walk_order(model)),
+    Impl(const skeleton::Model& model, const BodyOptions& how)
+        : options(how),
+          walked(in_walk_order(model)),
           field(walked.model),
           solver(field, options.contacts),
           skinning(walked.model),
@@ -322,7 +330,8 @@ void Body::step_implicit(double h) {
     step.h = h;
     step.alpha = own.damping.alpha;
     step.beta = own.damping.beta;
-    step.tolerance = 1e-6;
+    step.tolerance = own.options.step_tolerance;
+    step.slower = own.options.step_slower;
     step.reuse = true;
     const Solver::Report report = own.solver.solve(step, own.in_use, own.start.data(), own.velocity.data(), own.pose);
     if (!report.found) {

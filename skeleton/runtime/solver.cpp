@@ -268,7 +268,7 @@ Solver::Report Solver::solve(const Step& step, const std::vector<Contact*>& cont
         correct();
         const double size = largest(way_, length_);
         if (!std::isfinite(size)) return report;
-        const bool slow = step.reuse && report.iterations > 0 && size > 0.3 * last;
+        const bool slow = step.reuse && report.iterations > 0 && size > step.slower * last;
         if (slow && !fresh) {
             due = true;
             continue;

@@ -15,7 +15,8 @@ public:
         double alpha = 0, beta = 0;  // damping [1/s], [s]
         double tolerance = 1e-9;     // of the last correction, as a share of the mean link length
         int iterations = 50;
-        bool reuse = false;  // an old factor, as long as it leads to the answer
+        bool reuse = false;   // an old factor, as long as it leads to the answer:
+        double slower = 0.3;  // until a correction is more than this share of the last
     };
     struct Report {
         bool found = false;

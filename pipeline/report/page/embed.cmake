@@ -8,6 +8,9 @@ foreach(file IN LISTS files)
 endforeach()
 file(WRITE "${OUT}.new" "// Made from ${FILES}.
 #include <string_view>
+#ifdef __clang__
+#pragma clang diagnostic ignored \"-Woverlength-strings\"
+#endif
 namespace palpate::pipeline {
 extern const std::string_view ${NAME};
 const std::string_view ${NAME} = R\"palpate(${text})palpate\";

@@ -126,8 +126,7 @@ class Scene {
   }
   begin(camera, width, height) {
     const gl = this.gl;
-    gl.canvas.width = width;
-    gl.canvas.height = height;
+    if (gl.canvas.width !== width || gl.canvas.height !== height) Object.assign(gl.canvas, {width, height});
     gl.viewport(0, 0, width, height);
     gl.clearColor(1, 1, 1, 1);
     gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);

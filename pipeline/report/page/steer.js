@@ -1,9 +1,11 @@
 // Mouse, touch and keyboard on the view.
 'use strict';
 
-/// Drag turns, shift or the right button or two fingers shift, wheel and pinch zoom.
+/// Drag turns, shift or the right button or two fingers shift, wheel and pinch zoom. Where `does.grab` takes hold of
+/// something, that pointer pulls at it until it lets go; keys that `does.key` knows are its own.
 function steer(canvas, camera, does) {
   const pointers = new Map();
+  let holds = null;  // the pointer that pulls
   const spread = () => {
     const [a, b] = [...pointers.values()];
     return {x: (a.x + b.x) / 2, y: (a.y + b.y) / 2, gap: Math.hypot(a.x - b.x, a.y - b.y)};
@@ -11,10 +13,13 @@ function steer(canvas, camera, does) {
   const place = (e) => ({x: e.offsetX, y: e.offsetY});
   canvas.addEventListener('pointerdown', (e) => {
     canvas.setPointerCapture(e.pointerId);
-    pointers.set(e.pointerId, place(e));
+    const {x, y} = place(e);
+    if (holds === null && pointers.size === 0 && !e.shiftKey && e.button === 0 && does.grab?.(x, y)) holds = e.pointerId;
+    else pointers.set(e.pointerId, {x, y});
   });
   canvas.addEventListener('pointermove', (e) => {
     const last = pointers.get(e.pointerId), here = place(e), height = canvas.clientHeight;
+    if (e.pointerId === holds) return does.pull(here.x, here.y);
     if (!last) return does.hint(here.x, here.y);
     const pinch = pointers.size === 2 ? spread() : null;
     pointers.set(e.pointerId, here);
@@ -29,10 +34,13 @@ function steer(canvas, camera, does) {
     }
     does.draw();
   });
-  for (const end of ['pointerup', 'pointercancel']) canvas.addEventListener(end, (e) => pointers.delete(e.pointerId));
+  for (const end of ['pointerup', 'pointercancel']) canvas.addEventListener(end, (e) => {
+    pointers.delete(e.pointerId);
+    if (e.pointerId === holds) { holds = null; does.letGo(); }
+  });
   canvas.addEventListener('contextmenu', (e) => e.preventDefault());
   canvas.addEventListener('wheel', (e) => {
-    if (document.activeElement !== canvas && !e.ctrlKey) return;  // the page scrolls until the view is chosen
+    if (document.activeElement !== canvas && !e.ctrlKey && !does.grab) return;  // the page scrolls until the view is chosen
     e.preventDefault();
     camera.zoom(Math.exp(e.deltaY / 600));
     does.draw();
@@ -41,6 +49,7 @@ function steer(canvas, camera, does) {
   const turns = {ArrowLeft: [-0.12, 0], ArrowRight: [0.12, 0], ArrowUp: [0, -0.12], ArrowDown: [0, 0.12]};
   canvas.addEventListener('keydown', (e) => {
     const turn = turns[e.key];
+    if (does.key?.(e)) return e.preventDefault();
     if (turn && e.shiftKey) camera.pan(turn[0] / 3, turn[1] / 3);
     else if (turn) camera.turn(...turn);
     else if (e.key === '+' || e.key === '=') camera.zoom(0.9);

@@ -61,6 +61,8 @@ PALPATE_INLINE void add_product(const float (*M)[Skinning::width], const Eight3&
     sum.z += eight(M[6]) * v.x + eight(M[7]) * v.y + eight(M[8]) * v.z;
 }
 
+constexpr int most_kept = 8;  // poses of a batch's spheres that are gathered once, not twice
+
 // p = x + R (c + sum_i A_i R^T (x_i - x) + 2 B_i vec(q^-1 q_i)), x and q the means.
 PALPATE_CLONES void follow_all(const Skinning::Batch* batches, std::size_t n, const Skinning::Shares* all_shares,
                                const float* rows, float* positions) {
@@ -69,10 +71,11 @@ PALPATE_CLONES void follow_all(const Skinning::Batch* batches, std::size_t n, co
         const Skinning::Shares* shares = all_shares + batch.first;
         Eight3 x{};
         Eight qx{}, qy{}, qz{}, qw{};
-        EightPose first{};
+        EightPose first{}, kept[most_kept];
         for (int i = 0; i < batch.shares; ++i) {
             const EightPose p = poses_of(rows, shares[i].sphere);
             if (i == 0) first = p;
+            if (i < most_kept) kept[i] = p;
             const Eight w = eight(shares[i].w);
             const Eight along = p.qx * first.qx + p.qy * first.qy + p.qz * first.qz + p.qw * first.qw;
             const Eight of_turn = along < 0 ? -w : w;
@@ -95,7 +98,7 @@ PALPATE_CLONES void follow_all(const Skinning::Batch* batches, std::size_t n, co
 
         Eight3 sum{eight(batch.c[0]), eight(batch.c[1]), eight(batch.c[2])};
         for (int i = 0; i < batch.shares; ++i) {
-            const EightPose p = poses_of(rows, shares[i].sphere);
+            const EightPose p = i < most_kept ? kept[i] : poses_of(rows, shares[i].sphere);
             const Eight dx = p.x - x.x, dy = p.y - x.y, dz = p.z - x.z;
             add_product(
                 shares[i].A,

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <vector>
+
+#include "identify/fit/borne.h"
+#include "identify/set/readings.h"
+
+namespace palpate::pipeline {
+
+/// How wrong a model is on a set, state by state, so that the sum can be told while it grows: what identify::compare
+/// finds at once.
+class Judgement {
+public:
+    /// @throws InvalidInput where the model cannot be played.
+    Judgement(skeleton::Model model, const identify::MeasurementSet& set);
+
+    /// States with labelled readings.
+    int count() const { return static_cast<int>(readings_.size()); }
+    const identify::StateReadings& readings(int r) const { return readings_[r]; }
+
+    struct Error {
+        double squares = 0;   // of all measured coordinates [mm^2]
+        int coordinates = 0;  // that were measured
+        bool whole = true;    // the model bears the whole load
+    };
+    /// Plays state r. States are to be judged in their order where the material remembers. @throws SolverFailure.
+    Error judge(int r);
+
+    /// The equilibrium of a state that was judged.
+    const identify::Borne& played(int r) const { return played_[r]; }
+    const skeleton::Model& model() const { return model_; }
+
+private:
+    skeleton::Model model_;
+    std::vector<identify::StateReadings> readings_;
+    skeleton::StaticsSolver solver_;
+    Eigen::VectorXd k_;
+    std::vector<skeleton::Equilibrium> so_far_;
+    std::vector<identify::Borne> played_;
+};
+
+}  // namespace palpate::pipeline

@@ -1,0 +1,212 @@
+#include "pipeline/play/play_data.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+
+#include "identify/effects/catalogue.h"
+#include "mesh/errors.h"
+#include "mesh/io/atomic_file.h"
+#include "pipeline/case/subject.h"
+#include "pipeline/play/set_text.h"
+#include "pipeline/results/words.h"
+#include "skeleton/model_io.h"
+#include "skeleton/runtime/body.h"
+
+namespace palpate::pipeline {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+using nlohmann::ordered_json;
+
+/// A model of a page, and how it came about.
+struct Candidate {
+    fs::path file;
+    std::string name, about;
+    json told = {};  // its errors as ladder.json tells them, or null
+};
+
+json read_json(const fs::path& file) {
+    try {
+        return json::parse(mesh::read_text(file));
+    } catch (const json::exception& e) {
+        throw InvalidInput(fmt::format("{}: is no JSON: {}", file.string(), e.what()));
+    }
+}
+
+std::string with_words(const json& effects) {
+    const auto names = effects.get<std::vector<std::string>>();
+    return names.empty() ? "nothing added" : "with " + listed(names);
+}
+
+/// The models of a ladder's steps, and the one that it delivers.
+std::vector<Candidate> candidates_of_ladder(const fs::path& folder, const json& ladder) {
+    std::vector<Candidate> found;
+    const json& steps = ladder.at("steps");
+    for (std::size_t i = 0; i < steps.size(); ++i) {
+        const fs::path file = folder / fmt::format("step_{}", i) / "model.json";
+        if (!fs::exists(file)) continue;
+        found.push_back({file,
+                         fmt::format("Step {}: {}", i, with_words(steps[i].at("effects"))),
+                         ladder.at("held_out_probes").empty()
+                             ? "fitted again at this step of the ladder"
+                             : "fitted again at this step of the ladder, as ladder.json judges it",
+                         {{"rms_mm", steps[i].at("rms_mm")}, {"held_out_rms_mm", steps[i].at("held_out_rms_mm")}}});
+    }
+    found.push_back({folder / "model.json", "Result: " + with_words(steps.at(steps.size() - 1).at("effects")),
+                     "fitted to all probes"});
+    return found;
+}
+
+std::vector<Candidate> candidates_in(const fs::path& input) {
+    if (!fs::exists(input)) {
+        throw IoError(fmt::format("{}: does not exist; give a model.json, a folder of identify or improve, or a run",
+                                  input.string()));
+    }
+    if (!fs::is_directory(input)) return {{input, "The model", ""}};
+    if (const fs::path ladder = input / "ladder.json"; fs::exists(ladder)) {
+        try {
+            return candidates_of_ladder(input, read_json(ladder));
+        } catch (const json::exception& e) {
+            throw InvalidInput(fmt::format("{}: is not what palpate improve writes: {}", ladder.string(), e.what()));
+        }
+    }
+    if (fs::exists(input / "model.json")) return {{input / "model.json", "The model", "as identified"}};
+    if (fs::exists(input / "run.json")) {
+        std::vector<Candidate> found;
+        if (fs::exists(input / "improve/ladder.json")) found = candidates_in(input / "improve");
+        const bool has_steps = found.size() > 1;
+        if (!has_steps) {
+            found.insert(found.begin(),
+                         {input / "identify/model.json", "As identified: nothing added", "fitted to all probes"});
+        }
+        return found;
+    }
+    throw InvalidInput(
+        fmt::format("{}: holds no model.json and no run.json; give a model.json, a folder of identify or improve, or a "
+                    "run folder",
+                    input.string()));
+}
+
+/// The measurements that a run was made with; none, and a note, where they have gone.
+std::optional<identify::MeasurementSet> measurements_of(const fs::path& run, std::vector<std::string>& notes) {
+    if (!fs::exists(run / "case.yaml") || !fs::exists(run / "run.json")) return std::nullopt;
+    try {
+        const Case settings = read_case(run / "case.yaml");
+        std::vector<std::string> unsaid;  // the run has said it
+        return read_measurements(settings.measurements.value_or(run / "measurements"), unsaid);
+    } catch (const std::exception& e) {
+        notes.push_back(
+            fmt::format("The measurements are not drawn: {}. --set FOLDER tells where they are now.", e.what()));
+        return std::nullopt;
+    }
+}
+
+bool is_of_measurement(const skeleton::Effect& effect) { return !skeleton::is_body_effect(effect.name); }
+
+/// Sets as they are understood with each choice of a model's faults of the measurement: their numbers in `sets`, by the
+/// faults' names joined by commas. Outliers that were set aside are not recorded: those readings stay.
+json understood_sets(const skeleton::Model& model, const identify::MeasurementSet& set, json& sets) {
+    std::vector<skeleton::Effect> faults;
+    for (const skeleton::Effect& effect : model.effects) {
+        if (is_of_measurement(effect) && effect.name != "outliers") faults.push_back(effect);
+    }
+    json numbers = json::object();
+    for (unsigned chosen = 0; chosen < 1U << faults.size(); ++chosen) {
+        identify::MeasurementSet understood = set;
+        std::string names;
+        for (std::size_t f = 0; f < faults.size(); ++f) {
+            if (!(chosen >> f & 1U)) continue;
+            understood = identify::find_effect(faults[f].name)->corrected(understood, faults[f]);
+            names += (names.empty() ? "" : ",") + faults[f].name;
+        }
+        json text = set_as_text(understood);
+        const auto same = std::ranges::find(sets, text);
+        numbers[names] = same - sets.begin();
+        if (same == sets.end()) sets.push_back(std::move(text));
+    }
+    return numbers;
+}
+
+/// What the page says of an effect: its meaning, and its numbers.
+ordered_json effect_json(const skeleton::Effect& effect) {
+    const auto& all = identify::catalogue();
+    const auto known = std::ranges::find(all, effect.name, [](const auto& one) { return one->name(); });
+    std::vector<std::string> numbers;
+    numbers.reserve(effect.parameters.size());
+    for (const skeleton::EffectParameter& parameter : effect.parameters) {
+        numbers.push_back(fmt::format("{} = {:.4g}{}", parameter.name, parameter.value,
+                                      parameter.unit == "1" || parameter.unit.empty() ? "" : " " + parameter.unit));
+    }
+    return {{"name", effect.name},
+            {"meaning", known == all.end() ? "" : (*known)->description().meaning},
+            {"numbers", numbers},
+            {"fault", is_of_measurement(effect)},
+            {"played", effect.name != "outliers" && effect.name != "viscosity" && effect.name != "volume"}};
+}
+
+/// Fields of a model's file that differ from those of the first.
+ordered_json difference(const ordered_json& first, const ordered_json& other) {
+    ordered_json result = ordered_json::object();
+    for (const auto& [key, value] : other.items()) {
+        if (!first.contains(key) || first[key] != value) result[key] = value;
+    }
+    for (const auto& [key, value] : first.items()) {
+        if (!other.contains(key)) result[key] = nullptr;  // left out again
+    }
+    return result;
+}
+
+}  // namespace
+
+PlayData play_data(const fs::path& input, const fs::path& set_folder) {
+    PlayData data;
+    const fs::path whole = fs::absolute(input).lexically_normal();
+    data.name = (whole.has_filename() ? whole : whole.parent_path()).filename().string();
+    const std::vector<Candidate> candidates = candidates_in(input);
+    std::optional<identify::MeasurementSet> set;
+    if (!set_folder.empty()) {
+        set = read_measurements(set_folder, data.notes);
+    } else if (fs::is_directory(input)) {
+        set = measurements_of(input, data.notes);
+    }
+
+    json sets = json::array();
+    ordered_json models = ordered_json::array(), first;
+    for (const Candidate& candidate : candidates) {
+        const skeleton::Model model = skeleton::read_model(candidate.file);
+        if (model.surface.triangles.rows() == 0)
+            throw InvalidInput(candidate.file.string() + ": has no skin that could be touched; give the model one");
+        skeleton::Model told_of = model;
+        if (set) std::erase_if(told_of.effects, is_of_measurement);  // they are played on the set
+        const runtime::Body body(told_of);
+        for (const std::string& notice : body.notices()) data.notes.push_back(candidate.name + ": " + notice + ".");
+        ordered_json text = ordered_json::parse(mesh::read_text(candidate.file));
+        ordered_json one = {{"name", candidate.name}, {"about", candidate.about}, {"told", candidate.told}};
+        one["effects"] = ordered_json::array();
+        for (const skeleton::Effect& effect : model.effects) one["effects"].push_back(effect_json(effect));
+        if (set) one["sets"] = understood_sets(model, *set, sets);
+        one["text"] = first.is_null() ? text : difference(first, text);
+        if (first.is_null()) first = std::move(text);
+        models.push_back(std::move(one));
+    }
+    data.models = models.size();
+    data.states = set ? set->states.size() : 0;
+
+    fs::path ladder = input / "ladder.json";
+    if (!fs::exists(ladder)) ladder = input / "improve/ladder.json";
+    const bool has_steps = std::ranges::any_of(candidates, [](const Candidate& c) { return !c.told.is_null(); });
+    if (fs::exists(ladder) && !has_steps) {
+        data.notes.push_back(
+            "The models of the ladder's steps are not here: an older palpate made it. Run it again for them.");
+    }
+    const json held_out =
+        fs::exists(ladder) ? read_json(ladder).value("held_out_probes", json::array()) : json::array();
+    data.content = {
+        {"name", data.name}, {"models", models}, {"sets", sets}, {"held_out", held_out}, {"notes", data.notes}};
+    return data;
+}
+
+}  // namespace palpate::pipeline
