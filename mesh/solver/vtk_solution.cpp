@@ -11,6 +11,7 @@
 
 #include "mesh/errors.h"
 #include "mesh/io/poly_data.h"
+#include "mesh/io/read_vtk.h"
 #include "mesh/io/vtk_grid.h"
 #include "mesh/io/words.h"
 #include "mesh/solver/solution_parts.h"
@@ -128,7 +129,8 @@ Solution read_vtk_solution(const std::filesystem::path& file, const std::string&
                                   checked(displacement_of(arrays_of(grid->GetPointData()), file, array), file)});
         return solution;
     }
-    const PolyData data = read_poly_data(file);
+    PolyData data;
+    read_vtk(file, [&] { data = read_poly_data(file); });
     if (data.triangles.rows() == 0)
         throw InvalidInput(fmt::format("{}: holds no triangles; a surface of triangles is needed.", file.string()));
     solution.nodes = data.points;

@@ -7,6 +7,7 @@
 #include "mesh/read_surface.h"
 #include "pipeline/commands/run_inquiry.h"
 #include "pipeline/commands/run_summary.h"
+#include "pipeline/reference/accuracy.h"
 #include "pipeline/reference/body.h"
 #include "pipeline/reference/held_out.h"
 #include "pipeline/reference/probing.h"
@@ -174,9 +175,17 @@ private:
                 probed.set.name = c.name;
                 write_probed_body(folder_.path() / "measurements", probed, body_);
                 write_reference_series(probed.set);
-                return json{{"states", probed.set.states.size()},
-                            {"markers", probed.set.markers.size()},
-                            {"factor_seconds", elastic.stats().seconds_factor}};
+                json figures{{"states", probed.set.states.size()},
+                             {"markers", probed.set.markers.size()},
+                             {"factor_seconds", elastic.stats().seconds_factor}};
+                const double longest = mesh::bounding_box(surface_.vertices).longest_side();
+                const double edge = c.edge_length > 0 ? c.edge_length : default_edge_share * longest;
+                if (const auto accuracy = estimate_accuracy(subject_, elastic, edge, probed.set)) {
+                    figures["relative_error"] = accuracy->relative;
+                    figures["coarser_edge_mm"] = accuracy->coarser_edge;
+                    figures["coarser_nodes"] = accuracy->coarser_nodes;
+                }
+                return figures;
             });
         set_ = identify::read_measurement_set(folder_.path() / "measurements");
         json held_out = json::array();
@@ -186,9 +195,17 @@ private:
         folder_.note("held_out_probes", held_out);
         fit_ = states_of(set_, [&](const identify::LoadState& s) { return !is_held_out(s.probe, p); });
         held_out_ = states_of(set_, [&](const identify::LoadState& s) { return is_held_out(s.probe, p); });
-        tell(
-            "measurements", ran,
-            fmt::format("{} states in small strain, {} of them held out", set_.states.size(), held_out_.states.size()));
+        tell("measurements", ran,
+             fmt::format("{} states in small strain, {} of them held out{}", set_.states.size(),
+                         held_out_.states.size(), accuracy_in_words()));
+    }
+
+    /// What a second mesh says of the reference.
+    std::string accuracy_in_words() const {
+        const json& figures = folder_.record()["stages"]["measurements"]["figures"];
+        if (!figures.contains("relative_error")) return "";
+        return fmt::format("; off by about {:.2g} %, as a coarser mesh tells",
+                           100 * figures["relative_error"].get<double>());
     }
 
     void write_reference_series(const identify::MeasurementSet& set) const {

@@ -5,10 +5,9 @@
 #include <algorithm>
 #include <iterator>
 
-#include <algorithm>
-
 #include "mesh/errors.h"
 #include "mesh/io/yaml_fields.h"
+#include "mesh/read_body.h"
 #include "pipeline/case/case.h"
 #include "pipeline/case/subject.h"
 #include "pipeline/results/words.h"
@@ -19,8 +18,8 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* known_kinds =
-    "a run folder, a measurement set, a case.yaml, our JSON and CSV files, .pvd, .vtp, .vtu, or a surface (.stl, .obj, "
-    ".ply, .off)";
+    "a run folder, a measurement set, a case.yaml, our JSON and CSV files, .pvd, .vtp, .vtu, a body (.stl, .obj, "
+    ".ply, .off, .msh, .mesh, .node, .ele, .inp, CAD, labels), or results of CalculiX (.frd)";
 
 Description describe_folder(const fs::path& folder) {
     if (fs::exists(folder / "run.json")) return describe_run(folder);
@@ -64,6 +63,8 @@ Description describe(const fs::path& file) {
     if (extension == ".stl" || extension == ".obj" || extension == ".ply" || extension == ".off") {
         return describe_surface(file);
     }
+    if (extension == ".frd") return describe_solution(file);
+    if (mesh::is_body_file(file)) return describe_body(file);
     throw InvalidInput(fmt::format("{}: not a kind of file that is known; known are {}", file.string(), known_kinds));
 }
 

@@ -26,5 +26,7 @@ Description describe_series(const std::filesystem::path& file);  // PVD
 Description describe_poly_data(const std::filesystem::path& file);
 Description describe_volume(const std::filesystem::path& file);
 Description describe_surface(const std::filesystem::path& file);
+Description describe_body(const std::filesystem::path& file);      // tetrahedra, CAD, labels
+Description describe_solution(const std::filesystem::path& file);  // of another solver
 
 }  // namespace palpate::pipeline

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <sstream>
 
@@ -9,7 +10,9 @@
 #include "mesh/io/atomic_file.h"
 #include "mesh/io/poly_data.h"
 #include "mesh/io/read_vtk.h"
+#include "mesh/read_body.h"
 #include "mesh/read_surface.h"
+#include "mesh/solver/solution.h"
 #include "pipeline/info/describe.h"
 #include "pipeline/results/posterior_file.h"
 
@@ -128,6 +131,34 @@ Description describe_surface(const fs::path& file) {
     const auto faults = mesh::describe_faults(report);
     for (const std::string& fault : faults) told.lines.push_back(fault);
     if (faults.empty()) told.lines.push_back(fmt::format("sound; it encloses {:.4g}", report.volume));
+    return told;
+}
+
+Description describe_body(const fs::path& file) {
+    const mesh::BodyFile body = mesh::read_body(file);
+    Description told{.kind = fmt::format("a body within a surface of {} triangles", body.surface.triangles.rows()),
+                     .lines = {box_in_words(body.surface.vertices)},
+                     .next = "palpate run " + file.string()};
+    if (body.volume) {
+        told.kind = fmt::format("a body of {} {} tetrahedra, {} nodes", body.volume->tetrahedra.rows(),
+                                body.volume->is_quadratic() ? "quadratic" : "linear", body.volume->nodes.rows());
+    }
+    told.lines.insert(told.lines.end(), body.notes.begin(), body.notes.end());
+    return told;
+}
+
+Description describe_solution(const fs::path& file) {
+    const mesh::Solution solution = mesh::read_solution(file);
+    Description told{
+        .kind = fmt::format("{} displacement fields of {} nodes", solution.steps.size(), solution.nodes.rows()),
+        .lines = {box_in_words(solution.nodes)},
+        .next = fmt::format("palpate probe BODY --from {} -o set",
+                            file.has_parent_path() ? file.parent_path().string() : ".")};
+    for (const mesh::SolvedStep& step : solution.steps) {
+        told.lines.push_back(fmt::format(
+            "time {:g}: up to {:.4g}", step.time,
+            step.displacement.rowwise().norm().unaryExpr([](double u) { return std::isnan(u) ? 0 : u; }).maxCoeff()));
+    }
     return told;
 }
 
