@@ -39,7 +39,7 @@ void cut(const Cells::Cell& cell, const std::string& where, Elements& elements) 
         std::ranges::transform(side, around.begin(), [&](int c) { return cell.nodes[static_cast<std::size_t>(c)]; });
         if (std::ranges::find(around, apex) != around.end()) continue;
         const bool is_triangle = side[2] == side[3];
-        if (!is_triangle) std::ranges::rotate(around, std::ranges::min_element(around));
+        if (!is_triangle) std::rotate(around.begin(), std::ranges::min_element(around), around.end());
         elements.add(cell.number, {apex, around[0], around[1], around[2]}, where);
         if (!is_triangle) elements.add(cell.number, {apex, around[0], around[2], around[3]}, where);
     }
