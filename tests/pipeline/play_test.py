@@ -328,6 +328,8 @@ def check_fingers(browser):
         time.sleep(0.03)
     force = browser.run("return p.hand && Math.hypot(...p.numerics.at(p.hand.touch).force);")
     expect(force and force > 0, f"a finger pulls with {force} N")
+    expect(browser.run("return [...document.querySelectorAll('#readout b')].every((b) => b.scrollWidth <= b.clientWidth);"),
+           "a number does not fit its frame")
     browser.picture("phone-pulled")
     browser.touch("touchEnd")
     expect(browser.run("return p.hand === null;"), "the body stays held when the finger is lifted")
