@@ -93,7 +93,7 @@ private:
         if (line_[last] == '1') return 10;
         if (line_[last] == '0') return 5;
         throw InvalidInput(
-            fmt::format("{}: a binary block; let CalculiX write text (*NODE FILE, not OUTPUT=2D or binary).", where()));
+            fmt::format("{}: a binary block; let CalculiX write text (*NODE FILE in place of *NODE OUTPUT).", where()));
     }
 
     /// To the next line of a block, false at its end (" -3").

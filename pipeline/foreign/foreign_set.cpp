@@ -57,6 +57,12 @@ double spacing_of(const mesh::Surface& surface) {
     return *middle;
 }
 
+Points rows_of(const std::vector<Vec3>& points) {
+    Points rows(std::ssize(points), 3);
+    for (std::size_t i = 0; i < points.size(); ++i) rows.row(static_cast<Eigen::Index>(i)) = points[i];
+    return rows;
+}
+
 /// Largest distance of a surface's vertices from another surface [mm].
 double furthest_from(const mesh::Surface& other, const mesh::Surface& surface) {
     const mesh::SurfaceTree tree(other);
@@ -101,7 +107,7 @@ private:
     void read_field(std::size_t f) {
         const FieldPlace& place = made_.results.fields[f];
         const mesh::Solution& solution = solution_of(place);
-        const Points& displacement = solution.steps[place.step].displacement;
+        const Points& displacement = place.in(solution).displacement;
         if (f == 0) begin(solution);
         const bool is_same_mesh =
             solution.nodes.rows() == first_.nodes.rows() && (solution.nodes - first_.nodes).isZero(0);
@@ -136,32 +142,30 @@ private:
     void find_supports() {
         if (!settings_.supports.empty() || settings_.measurements) return;
         const std::optional<mesh::Deck>& deck = made_.results.deck;
-        std::vector<char> held = stays_;
-        std::string source = "that no field moves";
-        if (deck && !deck->held.empty()) {
-            held.assign(held.size(), 0);
-            const bool is_its_mesh = deck->cells.node_numbers.size() == held.size();
-            for (std::size_t n = 0; is_its_mesh && n < held.size(); ++n)
-                held[n] = deck->held.contains(deck->cells.node_numbers[n]);
-            source = "that *BOUNDARY holds in " + deck->file.filename().string();
-            if (!is_its_mesh) held = stays_;
-            if (!deck->held_in_part.empty())
-                made_.notes.push_back(
-                    fmt::format("{} nodes are held in some directions only, or moved: a support holds all of them at "
-                                "zero, so these "
-                                "count as free.",
-                                deck->held_in_part.size()));
+        const bool is_told = deck && !deck->held.empty();
+        std::vector<Vec3> in, out;
+        if (is_told) {
+            for (std::size_t n = 0; n < deck->cells.nodes.size(); ++n)
+                (deck->held.contains(deck->cells.node_numbers[n]) ? in : out)
+                    .push_back(made_.unit * deck->cells.nodes[n]);
+        } else {
+            for (std::size_t n = 0; n < stays_.size(); ++n)
+                (stays_[n] ? in : out).emplace_back(first_.nodes.row(static_cast<Eigen::Index>(n)));
         }
-        std::vector<int> in, out;
-        for (std::size_t n = 0; n < held.size(); ++n) (held[n] ? in : out).push_back(static_cast<int>(n));
+        if (is_told && !deck->held_in_part.empty())
+            made_.notes.push_back(fmt::format(
+                "{} nodes are held in some directions only, or moved: a support holds all of them at zero, so these "
+                "count as free.",
+                deck->held_in_part.size()));
         if (in.empty() || out.empty())
             throw InvalidInput(
                 fmt::format("{}: {} node stays where it is; say in a case.yaml where the body is held "
                             "('supports').",
                             options_.folder.string(), in.empty() ? "no" : "every"));
-        settings_.supports = {
-            held_region(first_.nodes(in, Eigen::all), first_.nodes(out, Eigen::all), 0.6 * spacing_of(first_.surface))};
-        made_.notes.push_back(fmt::format("Held at {} nodes {}.", in.size(), source));
+        settings_.supports = {held_region(rows_of(in), rows_of(out), 0.6 * spacing_of(first_.surface))};
+        made_.notes.push_back(
+            fmt::format("Held at {} nodes {}.", in.size(),
+                        is_told ? "that *BOUNDARY holds in " + deck->file.filename().string() : "that no field moves"));
     }
 
     /// The fields must lie where the body does.
@@ -260,7 +264,7 @@ void write_foreign_set(const std::filesystem::path& folder, const ForeignSet& fo
                 now = foreign.results.read(place.file, foreign.array);
                 scale(*now, foreign.unit);
             }
-            const Points& all = now->steps[place.step].displacement;
+            const Points& all = place.in(*now).displacement;
             if (now->body.tetrahedra.rows() == 0 || !all.allFinite()) continue;
             mesh::write_vtu(temporary / identify::field_file(foreign.set.states[s]), now->body,
                             {.points = {{"displacement", Points(all(now->node_of_body, Eigen::all))}}});

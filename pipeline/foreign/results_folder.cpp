@@ -104,7 +104,7 @@ public:
         for (const LoadState& state : folder_.states) {
             const auto found = of_name.find(identify::field_file(state).stem().string());
             if (found == of_name.end()) return false;
-            fields.push_back({found->second, 0});
+            fields.push_back({found->second});
         }
         folder_.fields = std::move(fields);
         return true;

@@ -13,7 +13,11 @@ namespace palpate::pipeline {
 /// One field in a folder of another solver's results: the file, and which of its steps.
 struct FieldPlace {
     std::filesystem::path file;
-    std::size_t step = 0;
+    std::optional<std::size_t> step = {};  // absent: the last
+
+    const mesh::SolvedStep& in(const mesh::Solution& solution) const {
+        return step ? solution.steps[*step] : solution.steps.back();
+    }
 };
 
 /// What another solver left in a folder: fields, the loads behind them, and perhaps the deck that it read.
@@ -28,9 +32,9 @@ struct ResultsFolder {
 };
 
 /// Looks through a folder. Loads are those of its probes.csv, else of the deck's steps. Files that are called
-/// <probe>_<time> belong to that state; others stand in the order of their names (2 before 10), their steps in the
-/// order of the file, and there must be as many as states. Of several increments of one step the last counts. `unit`:
-/// of the solver's lengths [mm]. @throws IoError, InvalidInput.
+/// <probe>_<time> belong to that state, by their last step; others stand in the order of their names (2 before 10),
+/// their steps in the order of the file, and there must be as many as states. Of several increments of one step the
+/// last counts. `unit`: of the solver's lengths [mm]. @throws IoError, InvalidInput.
 ResultsFolder look_into(const std::filesystem::path& folder, double unit, const std::string& array);
 
 }  // namespace palpate::pipeline

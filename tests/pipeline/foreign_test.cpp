@@ -1,5 +1,6 @@
 // `palpate probe --from` and `--to`: another solver's fields become a measurement set, and ours become its input.
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -118,6 +119,21 @@ TEST_F(Foreign, LengthsAreInTheUnitOfTheMesh) {
     const identify::Reading& reading = set.states.front().readings.front();
     const Vec3 rest = set.markers[static_cast<std::size_t>(reading.marker)].rest;
     EXPECT_NEAR(reading.position.z() - rest.z(), 2 * rest.x() * rest.x() / 1600, 1e-9);
+}
+
+TEST_F(Foreign, ADeckTellsWhatIsHeldWhateverTheOrderOfItsNodes) {
+    write_probes("1,1,40,5,10,0,0,1,2\n");
+    write_field("1_1.vtu", 2);
+    std::string deck = "*NODE\n";  // backwards; held at the far end, which the field moves
+    std::string held = "*BOUNDARY\n";
+    for (Eigen::Index n = bar.nodes.rows(); n-- > 0;) {
+        deck += fmt::format("{}, {}, {}, {}\n", n + 1, bar.nodes(n, 0), bar.nodes(n, 1), bar.nodes(n, 2));
+        if (bar.nodes(n, 0) == 40) held += fmt::format("{}, 1, 3\n", n + 1);
+    }
+    mesh::write_text(results() / "job.inp", deck + held);
+    const MeasurementSet set = take();
+    EXPECT_TRUE(mesh::contains(set.supports, Vec3(40, 5, 5)));
+    EXPECT_FALSE(mesh::contains(set.supports, Vec3(0, 5, 5)));
 }
 
 TEST_F(Foreign, SlipsAreNamed) {

@@ -1,5 +1,5 @@
-// The model in the hand: what is chosen, what holds it, time. What is seen and told of it: seen.js, told.js; controls.js
-// has the page's player.
+// The model in the hand: what is chosen, what holds it, time. What is seen and told of it stands in seen.js and told.js,
+// the page's player in controls.js.
 'use strict';
 
 const frameTime = 1 / 60;  // of a step [s]
