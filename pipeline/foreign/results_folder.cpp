@@ -113,6 +113,12 @@ public:
     void in_order(const std::vector<fs::path>& files, const std::string& array) {
         std::vector<FieldPlace> ends, all;
         for (const fs::path& file : files) {
+            const std::string extension = file.extension().string();
+            if (extension == ".vtu" || extension == ".vtp") {  // one step a file
+                ends.push_back({file});
+                all.push_back({file});
+                continue;
+            }
             const mesh::Solution solution = folder_.read(file, array);
             for (const std::size_t step : ends_of_steps(solution)) ends.push_back({file, step});
             for (std::size_t step = 0; step < solution.steps.size(); ++step) all.push_back({file, step});
