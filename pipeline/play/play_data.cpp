@@ -10,6 +10,7 @@
 #include "mesh/io/atomic_file.h"
 #include "pipeline/case/subject.h"
 #include "pipeline/play/set_text.h"
+#include "pipeline/report/run_files.h"
 #include "pipeline/results/words.h"
 #include "skeleton/model_io.h"
 #include "skeleton/runtime/body.h"
@@ -27,14 +28,6 @@ struct Candidate {
     std::string name, about;
     json told = {};  // its errors as ladder.json tells them, or null
 };
-
-json read_json(const fs::path& file) {
-    try {
-        return json::parse(mesh::read_text(file));
-    } catch (const json::exception& e) {
-        throw InvalidInput(fmt::format("{}: is no JSON: {}", file.string(), e.what()));
-    }
-}
 
 std::string with_words(const json& effects) {
     const auto names = effects.get<std::vector<std::string>>();

@@ -13,7 +13,6 @@
 #include "skeleton/model_io.h"
 
 namespace palpate::pipeline {
-namespace {
 
 namespace fs = std::filesystem;
 using nlohmann::json;
@@ -25,6 +24,8 @@ json read_json(const fs::path& file) {
         throw InvalidInput(fmt::format("{}: is no JSON: {}", file.string(), e.what()));
     }
 }
+
+namespace {
 
 json read_if_there(const fs::path& file) { return fs::exists(file) ? read_json(file) : json(); }
 

@@ -22,6 +22,9 @@ struct RunFiles {
     std::vector<Dot> errors_before, errors_after;  // rms of each marker; after: with all effects in, may be empty
 };
 
+/// @throws IoError when there is no such file, InvalidInput when it is no JSON.
+nlohmann::json read_json(const std::filesystem::path& file);
+
 /// @throws IoError, InvalidInput naming the file that is missing or broken.
 RunFiles read_run(const std::filesystem::path& run);
 
