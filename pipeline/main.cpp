@@ -8,19 +8,21 @@
 #include "mesh/errors.h"
 #include "pipeline/command_line.h"
 #include "pipeline/commands/common.h"
+#include "pipeline/shell/system_limits.h"
 
 namespace {
 
 using namespace palpate;
 using namespace palpate::pipeline;
 
-/// Runs a command; what goes wrong becomes one message and an exit code.
-commands::Outcome guarded(const std::function<commands::Outcome()>& command) {
+/// Runs a command within the limits of the system; what goes wrong becomes one message and an exit code.
+commands::Outcome guarded(const std::function<commands::Outcome()>& command, int threads) {
     const auto failed = [](const std::string& message, commands::ExitCode code) {
         Console::error(message);
         return commands::Outcome{.text = {}, .json = {{"error", message}}, .code = code};
     };
     try {
+        meet_system_limits(threads);
         return command();
     } catch (const InvalidInput& e) {
         return failed(e.what(), commands::bad_input);
@@ -49,7 +51,7 @@ int main(int argc, char** argv) {
     Console::set_up(line.verbosity());
     const tbb::global_control threads(tbb::global_control::max_allowed_parallelism,
                                       static_cast<std::size_t>(line.common().threads));
-    const commands::Outcome outcome = guarded(line.command());
+    const commands::Outcome outcome = guarded(line.command(), line.common().threads);
     if (line.common().json) {
         // a command that serves has told its result when it began
         if (!outcome.json.is_null()) fmt::print("{}\n", outcome.json.dump(2));

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <signal.h>
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -24,12 +25,22 @@ namespace {
 namespace fs = std::filesystem;
 using std::chrono::milliseconds;
 
-/// `palpate run beam.stl -o run` as a process of its own.
-pid_t start_run(const TemporaryFolder& scratch, const std::string& output) {
+/// What the system grants a process: a resource of `setrlimit` and how much of it.
+struct Grant {
+    __rlimit_resource resource;
+    rlim_t most;
+};
+
+/// `palpate run beam.stl -o run` as a process of its own; what it says goes to `said`.
+pid_t start_run(const TemporaryFolder& scratch, const std::string& output, std::optional<Grant> grant = {}) {
     const pid_t child = fork();
     if (child != 0) return child;
-    const std::string input = scratch / "beam.stl", folder = scratch / output;
-    if (!freopen("/dev/null", "w", stdout) || !freopen("/dev/null", "w", stderr)) _exit(127);
+    const std::string input = scratch / "beam.stl", folder = scratch / output, said = scratch / "said";
+    if (!freopen("/dev/null", "w", stdout) || !freopen(said.c_str(), "w", stderr)) _exit(127);
+    if (grant) {
+        const rlimit limit{grant->most, grant->most};
+        if (setrlimit(grant->resource, &limit) != 0) _exit(127);
+    }
     execl(PALPATE_PROGRAM, "palpate", "run", input.c_str(), "-o", folder.c_str(), "--spheres", "8", "--particles", "40",
           "--parameters", "uniform", "--threads", "1", nullptr);
     _exit(127);
@@ -86,6 +97,41 @@ TEST(Resume, AKilledRunEndsAsOneThatRanThrough) {
     }
     EXPECT_GT(killed, 0);
 }
+
+/// A run that is granted too little ends with a message, leaves no half of a file, and goes on to the same end when it
+/// is granted more.
+class ShortOf : public testing::TestWithParam<std::tuple<Grant, const char*>> {};
+
+TEST_P(ShortOf, SaysSoAndGoesOnLater) {
+    const auto& [grant, message] = GetParam();
+    const TemporaryFolder scratch;
+    mesh::write_surface(scratch / "beam.stl", mesh::make_box({0, 0, 0}, {100, 20, 20}, {10, 2, 2}));
+    ASSERT_EQ(finish(start_run(scratch, "whole")), 0);
+
+    const int code = finish(start_run(scratch, "run", grant));
+    EXPECT_TRUE(code == 3 || code == 4) << code;
+    EXPECT_TRUE(says(mesh::read_text(scratch / "said"), {"error: ", message})) << mesh::read_text(scratch / "said");
+    const std::vector<std::string> whole = files_of(scratch / "whole");
+    if (fs::exists(scratch / "run")) {
+        for (const std::string& file : files_of(scratch / "run")) {
+            if (file == ".lock") continue;
+            EXPECT_EQ(sha256_of_file(scratch / "run" / file), sha256_of_file(scratch / "whole" / file)) << file;
+        }
+    }
+    ASSERT_EQ(finish(start_run(scratch, "run")), 0);
+    EXPECT_EQ(files_of(scratch / "run"), whole);
+}
+
+std::vector<std::tuple<Grant, const char*>> too_little() {
+    constexpr rlim_t kB = 1000;
+    std::vector<std::tuple<Grant, const char*>> grants = {{{RLIMIT_FSIZE, 4 * kB}, "cannot be written"},
+                                                          {{RLIMIT_FSIZE, 60 * kB}, "cannot be written"}};
+#ifndef __SANITIZE_ADDRESS__  // which addresses terabytes itself
+    grants.push_back({{RLIMIT_AS, 500'000 * kB}, "address space is limited to 500 MB"});
+#endif
+    return grants;
+}
+INSTANTIATE_TEST_SUITE_P(Resume, ShortOf, testing::ValuesIn(too_little()));
 
 TEST(Resume, ASecondRunInOneFolderSaysSoAndStops) {
     const TemporaryFolder scratch;
