@@ -19,6 +19,7 @@ namespace {
 namespace pmp = CGAL::Polygon_mesh_processing;
 using cgal::Mesh;
 using Edge = Mesh::Edge_index;
+using Face = Mesh::Face_index;
 using Vertex = Mesh::Vertex_index;
 
 constexpr int attempts = 7;
@@ -27,8 +28,9 @@ constexpr double most_triangles = 100'000;  // more would make a body that nobod
 /// What one attempt came to.
 struct Attempt {
     Surface surface;
-    double volume_change = 1;  // as a share of the volume
-    bool sound = false;        // closed, outward, without crossings, no part or handle more or less
+    double volume_change = 1;     // as a share of the volume
+    bool sound = false;           // closed, outward, without crossings, no part or handle more or less
+    std::vector<Vec3> crossings;  // where new triangles cross, of one that is not sound [mm]
 };
 
 /// Number of parts, and Euler's characteristic V - E + F.
@@ -36,33 +38,71 @@ std::pair<int, int> topology(const SurfaceReport& report) {
     return {report.components, report.vertices - report.triangles / 2};
 }
 
-Attempt attempt(const Surface& surface, const Creases& creases, double length, int iterations) {
+/// What must not change.
+struct Fixed {
+    Creases creases;
+    std::vector<char> triangles;  // which of the surface stay as they are
+};
+
+Attempt attempt(const Surface& surface, const Fixed& fixed, double length, int iterations) {
     Mesh mesh = cgal::to_mesh(cgal::to_soup(surface));
     const auto crease = mesh.add_property_map<Edge, bool>("e:crease", false).first;
     const auto corner = mesh.add_property_map<Vertex, bool>("v:corner", false).first;
-    for (const auto& [a, b] : creases.edges) {
+    for (const auto& [a, b] : fixed.creases.edges) {
         const auto h = mesh.halfedge(Vertex(static_cast<Mesh::size_type>(a)), Vertex(static_cast<Mesh::size_type>(b)));
         if (h.is_valid()) crease[mesh.edge(h)] = true;
     }
-    for (const int v : creases.corners) corner[Vertex(static_cast<Mesh::size_type>(v))] = true;
+    for (const int v : fixed.creases.corners) corner[Vertex(static_cast<Mesh::size_type>(v))] = true;
 
-    pmp::isotropic_remeshing(mesh.faces(), length, mesh,
+    std::vector<Face> faces;
+    for (const Face f : mesh.faces())
+        if (!fixed.triangles[f.idx()]) faces.push_back(f);
+
+    pmp::isotropic_remeshing(faces, length, mesh,
                              CGAL::parameters::number_of_iterations(static_cast<unsigned>(iterations))
                                  .edge_is_constrained_map(crease)
                                  .vertex_is_constrained_map(corner)
                                  .number_of_relaxation_steps(3));
-    Attempt result{cgal::from_mesh(mesh)};
-    const auto keep_if_sound = [&](const Surface& candidate) {
-        const SurfaceReport report = check_surface(candidate);
+    Attempt result;
+    result.surface = cgal::from_mesh(mesh);
+    const auto keep_if_sound = [&](const Surface& candidate, std::vector<FaultPlace>* places = nullptr) {
+        const SurfaceReport report = check_surface(candidate, places);
         if (!report.sound() || topology(report) != topology(check_surface(surface))) return;
         result.surface = candidate;
         result.sound = true;
     };
-    keep_if_sound(result.surface);
+    std::vector<FaultPlace> places;
+    keep_if_sound(result.surface, &places);
+    for (const FaultPlace& place : places) result.crossings.push_back(place.at);
     if (!result.sound) keep_if_sound(remove_crossings(result.surface));
     const double volume = signed_volume(surface);
     result.volume_change = std::abs(signed_volume(result.surface) - volume) / volume;
     return result;
+}
+
+/// Triangles near to where new ones cross stay as they are from now on: walls there are thinner than new edges are
+/// long.
+void fix_near(const std::vector<Vec3>& crossings, double reach, const Surface& surface, Fixed& fixed) {
+    for (Eigen::Index t = 0; t < surface.triangles.rows(); ++t) {
+        char& is_fixed = fixed.triangles[static_cast<std::size_t>(t)];
+        for (const int v : surface.triangles.row(t)) {
+            const Vec3 corner = surface.vertices.row(v);
+            if (is_fixed) break;
+            is_fixed = std::ranges::any_of(crossings, [&](const Vec3& at) { return (corner - at).norm() < reach; });
+        }
+    }
+}
+
+/// At one length: as few triangles of the surface stay as they are as make the result sound.
+Attempt attempt_around_thin_places(const Surface& surface, const Creases& creases, double length, int iterations) {
+    Fixed fixed{creases, std::vector<char>(static_cast<std::size_t>(surface.triangles.rows()), 0)};
+    Attempt tried = attempt(surface, fixed, length, iterations);
+    for (const double reach : {0.5, 1.0, 2.0, 3.0}) {
+        if (tried.sound || tried.crossings.empty()) break;
+        fix_near(tried.crossings, reach * length, surface, fixed);
+        tried = attempt(surface, fixed, length, iterations);
+    }
+    return tried;
 }
 
 std::string reason(const Attempt& tried, double allowed) {
@@ -106,7 +146,7 @@ Surface remesh(const Surface& surface, const RemeshOptions& options) {
                                 last.empty() ? "" : ", and ", length, triangles, most_triangles);
             break;
         }
-        const Attempt tried = attempt(surface, creases, length, options.iterations);
+        const Attempt tried = attempt_around_thin_places(surface, creases, length, options.iterations);
         if (tried.sound && tried.volume_change <= options.volume_change) return tried.surface;
         last = fmt::format("at {:.4g} mm {}", length, reason(tried, options.volume_change));
         const double wanted = std::sqrt(0.8 * options.volume_change / std::max(tried.volume_change, 1e-12));

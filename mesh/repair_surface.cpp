@@ -11,14 +11,13 @@
 #include "mesh/repair/drop_fins.h"
 #include "mesh/repair/guarded.h"
 #include "mesh/repair/steps.h"
+#include "mesh/repair/wrap_round.h"
 #include "mesh/surface_tree.h"
 #include "mesh/topology/shells.h"
 #include "mesh/topology/weld.h"
 
 namespace palpate::mesh {
 namespace {
-
-constexpr double allowed_thickening = 0.03;  // that a wrap may make, share of the volume
 
 /// The surface on its way, with what is wrong with it and what was done.
 class Repair {
@@ -121,79 +120,16 @@ public:
     }
     double allowed_distance() const { return options_.allowed_distance * box_.diagonal(); }
 
-    /// Round everything, then back onto what was wrapped where that does no harm.
     void wrap_all() {
         if (whole_.triangles.rows() > 0) take(whole_);
-        // A coarse wrap costs little, and tells a sheet from a body already.
-        const double coarse = box_.diagonal() / 25, alpha = box_.diagonal() / 100, offset = alpha / 20;
-        require_body(wrapped_with(coarse, coarse / 20), coarse / 20);
-        Surface wrapped = wrapped_with(alpha, offset);
-        require_body(wrapped, offset);
-        require_no_skin(wrapped, offset);
+        Wrapping wrapping = wrap_round(surface_, options_.largest_hole);
+        take(std::move(wrapping.surface));
         result_.wrapped = true;
-        say(fmt::format("wrapped with alpha = {:.4g} mm: details narrower than that and inner walls are gone", alpha));
-
-        const SurfaceTree tree(surface_);
-        Surface snapped = wrapped;
-        for (auto vertex : snapped.vertices.rowwise()) {
-            const SurfacePoint near = tree.closest(vertex.transpose());
-            if (near.distance < 2 * offset) vertex = near.position.transpose();
-        }
-        take(std::move(snapped));
-        if (sound()) return;
-        const double thickened = offset * area(wrapped) / signed_volume(wrapped);
-        if (thickened > allowed_thickening)
-            throw InvalidInput(fmt::format(
-                "Repair: what can be wrapped round the surface is {:.0f} % larger than the body, whose walls are thin; "
-                "{:.0f} % is allowed. Mend the surface in a mesh editor.",
-                100 * thickened, 100 * allowed_thickening));
-        take(std::move(wrapped));
+        say(fmt::format("wrapped with alpha = {:.4g} mm: details narrower than that and inner walls are gone",
+                        wrapping.alpha));
     }
 
 private:
-    /// Both sides of a sheet, each `offset` away: a skin, not a body.
-    void require_body(const Surface& wrapped, double offset) const {
-        const double thickness = 2 * signed_volume(wrapped) / area(wrapped);
-        if (thickness > 4 * offset) return;
-        throw InvalidInput(
-            fmt::format("Repair: the surface encloses no volume: what can be wrapped round it is a skin {:.3g} mm "
-                        "thick. It is an open sheet, or has holes larger than {:.0f} % of its diagonal: close "
-                        "them, or allow larger ones to be filled.",
-                        thickness, 100 * options_.largest_hole));
-    }
-
-    Surface wrapped_with(double alpha, double offset) const {
-        if (const auto wrapped = guarded([&] { return wrap(surface_, alpha, offset); })) return *wrapped;
-        throw InvalidInput(
-            fmt::format("Repair: the surface cannot be wrapped within the limits on time and memory ({} triangles). "
-                        "Mend it in a mesh editor, or make it coarser.",
-                        surface_.triangles.rows()));
-    }
-
-    /// Where a part of the surface is open, the wrap goes in and leaves a skin there while the rest is a body.
-    void require_no_skin(const Surface& wrapped, double offset) const {
-        constexpr double allowed_share = 0.02;
-        const SurfaceTree tree(wrapped);
-        const Points normals = area_vectors(wrapped);
-        double skin = 0, all = 0;
-        Vec3 place = Vec3::Zero();
-        for (Eigen::Index t = 0; t < wrapped.triangles.rows(); ++t) {
-            const Vec3 center =
-                wrapped.vertices(wrapped.triangles.row(t).transpose().eval(), Eigen::all).colwise().mean();
-            const double triangle_area = normals.row(t).norm();
-            all += triangle_area;
-            if (tree.inside(center - 4 * offset * normals.row(t).transpose() / triangle_area)) continue;
-            skin += triangle_area;
-            place = center;
-        }
-        if (skin <= allowed_share * all) return;
-        throw InvalidInput(fmt::format(
-            "Repair: {:.0f} % of what can be wrapped round the surface is a skin less than {:.3g} mm thick, "
-            "for instance at ({:.4g}, {:.4g}, {:.4g}) mm: there it is an open sheet, or has holes larger "
-            "than {:.0f} % of its diagonal. Close them in a mesh editor.",
-            100 * skin / all, 4 * offset, place.x(), place.y(), place.z(), 100 * options_.largest_hole));
-    }
-
     void cap_large_flat_holes() {
         if (report_.boundary_edges == 0) return;
         const SurfaceReport before = report_;

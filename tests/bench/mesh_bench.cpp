@@ -166,8 +166,16 @@ std::optional<Expected> expected_of(const Surface& surface) {
     }
 }
 
-void bench(const fs::path& program, const fs::path& file, const fs::path& scratch, const std::string& verb,
-           Tally& tally) {
+struct Options {
+    fs::path program, folder, keep;
+    std::string verb = "mesh";
+    std::vector<std::string> only, breaks;
+
+    bool asks_for(const std::string& name) const { return breaks.empty() || std::ranges::count(breaks, name) > 0; }
+};
+
+void bench(const Options& options, const fs::path& file, const fs::path& scratch, Tally& tally) {
+    const std::string& verb = options.verb;
     const Surface surface = palpate::mesh::read_surface(file);
     const std::string name = file.filename().string();
     auto expected = expected_of(surface);
@@ -176,7 +184,7 @@ void bench(const fs::path& program, const fs::path& file, const fs::path& scratc
         if (!expected) how.is_recognisable = false;
         std::error_code none;
         fs::remove(output, none);
-        const Run ran = run(program, verb, input, output, scratch);
+        const Run ran = run(options.program, verb, input, output, scratch);
         std::optional<Verdict> verdict;
         if (ran.code == 0 && verb == "mesh")
             verdict = judge(
@@ -186,13 +194,16 @@ void bench(const fs::path& program, const fs::path& file, const fs::path& scratc
     };
     const double whole_volume = expected ? expected->volume : 0;
     for (const Break& how : palpate::bench::breaks()) {
-        const fs::path input = scratch / "broken.obj";
+        if (!options.asks_for(how.name)) continue;
+        const fs::path input =
+            (options.keep.empty() ? scratch : options.keep) / fmt::format("{}, {}.obj", file.stem().string(), how.name);
         // Corners are joined first, or a break of vertices would tear an STL to pieces.
         const Surface broken = how.apply(expected ? expected->surface : surface);
         palpate::mesh::write_surface(input, broken);
         if (expected) expected->volume = how.moves_walls ? palpate::mesh::signed_volume(broken) : whole_volume;
         attempt(std::string(how.name) == "as it is" ? file : input, how);
     }
+    if (!options.asks_for("truncation")) return;
     const std::string whole = palpate::mesh::read_text(file);
     const fs::path cut = scratch / ("cut" + file.extension().string());
     palpate::mesh::write_text(cut, whole.substr(0, whole.size() * 6 / 10));
@@ -203,21 +214,22 @@ void bench(const fs::path& program, const fs::path& file, const fs::path& scratc
 
 int main(int argc, char** argv) {
     CLI::App app("Meshes, whole and broken, through palpate");
-    fs::path program, folder;
-    std::string verb = "mesh";
-    std::vector<std::string> only;
-    app.add_option("PROGRAM", program)->required()->check(CLI::ExistingFile);
-    app.add_option("FOLDER", folder, "Of meshes")->required()->check(CLI::ExistingDirectory);
-    app.add_option("--verb", verb, "mesh or skeleton")->check(CLI::IsMember({"mesh", "skeleton"}));
-    app.add_option("--only", only, "Names of meshes");
+    Options options;
+    app.add_option("PROGRAM", options.program)->required()->check(CLI::ExistingFile);
+    app.add_option("FOLDER", options.folder, "Of meshes")->required()->check(CLI::ExistingDirectory);
+    app.add_option("--verb", options.verb, "mesh or skeleton")->check(CLI::IsMember({"mesh", "skeleton"}));
+    app.add_option("--only", options.only, "Names of meshes");
+    app.add_option("--break", options.breaks, "Ways to break them");
+    app.add_option("--keep", options.keep, "Folder where broken meshes are left");
     CLI11_PARSE(app, argc, argv);
 
     const fs::path scratch = fs::temp_directory_path() / fmt::format("mesh_bench-{}", ::getpid());
     fs::create_directories(scratch);
+    if (!options.keep.empty()) fs::create_directories(options.keep);
     std::vector<fs::path> files;
-    for (const auto& entry : fs::directory_iterator(folder))
+    for (const auto& entry : fs::directory_iterator(options.folder))
         if (entry.path().extension() != ".sph" &&
-            (only.empty() || std::ranges::count(only, entry.path().filename().string()) > 0))
+            (options.only.empty() || std::ranges::count(options.only, entry.path().filename().string()) > 0))
             files.push_back(entry.path());
     std::ranges::sort(files);
 
@@ -225,7 +237,7 @@ int main(int argc, char** argv) {
         "| mesh | broken by | result | s | volume off % | distance % of diagonal | message |\n"
         "| --- | --- | --- | --- | --- | --- | --- |\n");
     Tally tally;
-    for (const fs::path& file : files) bench(program, file, scratch, verb, tally);
+    for (const fs::path& file : files) bench(options, file, scratch, tally);
     fmt::print(
         "\n{} runs: {} right, {} refused with a message, {} wrong, {} crashed, {} hung. Of {} whose body is still "
         "recognisable {} give one ({:.0f} %).\n",

@@ -28,6 +28,20 @@ TEST(Remesh, ABallKeepsItsVolumeAndIsSound) {
     EXPECT_NEAR(mean_edge(coarse), 1.2, 0.2);  // edges spread from 4/5 to 4/3 of the target
 }
 
+TEST(Remesh, ThinWallsKeepTheirTrianglesAndTheRestGetsNewOnes) {
+    // Beside a ball, a shell of 0.1 mm: chords of 3 mm leave their sphere by l^2 / 8r = 0.11 mm, and cross the other
+    // side.
+    const Surface ball = make_sphere({0, 0, 0}, 10, 4), outer = make_sphere({30, 0, 0}, 10, 4);
+    const Surface body = join(join(ball, outer), inside_out(make_sphere({30, 0, 0}, 9.9, 4)));
+    const Surface coarse = remesh(body, {.edge_length = 3, .volume_change = 0.05});
+    EXPECT_TRUE(check_surface(coarse).sound());
+    Surface at_ball{coarse.vertices, Triangles(0, 3)};
+    for (const auto& t : coarse.triangles.rowwise())
+        if (coarse.vertices(t[0], 0) < 15) at_ball = with_triangle(at_ball, t[0], t[1], t[2]);
+    EXPECT_NEAR(mean_edge(at_ball), 3, 0.4);
+    EXPECT_GT(coarse.triangles.rows() - at_ball.triangles.rows(), outer.triangles.rows());
+}
+
 TEST(Remesh, ABoxKeepsItsCreasesExactly) {
     const Surface fine = remesh(make_box({0, 0, 0}, {40, 10, 10}, {1, 1, 1}), {.edge_length = 2});
     EXPECT_NEAR(signed_volume(fine), 4000, 1e-9);  // flat sides stay flat: round-off of projections

@@ -6,6 +6,7 @@
 #include "mesh/errors.h"
 #include "mesh/io/surface_bytes.h"
 #include "mesh/repair/guarded.h"
+#include "mesh/repair/winding.h"
 #include "tests/mesh/faulty_surfaces.h"
 #include "tests/messages.h"
 
@@ -168,6 +169,31 @@ TEST(RepairSurface, AWrapIsMadeOfASoundSurfaceWhereItIsAskedFor) {
     const RepairResult repaired = repair_surface(cube(), {.wrap = true});
     EXPECT_TRUE(repaired.wrapped);
     EXPECT_NEAR(repaired.volume, 1000, 0.01 * 1000);  // an offset of 0.05 % of the diagonal, at most
+}
+
+TEST(RepairSurface, AWrapThatFillsACavityIsRefused) {
+    ASSERT_TRUE(check_surface(hollow_ball()).sound());
+    EXPECT_TRUE(says(message_of<InvalidInput>([&] { repair_surface(hollow_ball(), {.wrap = true}); }),
+                     {"% of what can be wrapped", "lies outside", "cavities"}));
+}
+
+TEST(WindingNumber, IsOneInsideZeroOutsideAndTheShareOfTheSphereSeenThroughAHole) {
+    const Surface ball = make_sphere({1, 2, 3}, 10, 3);
+    EXPECT_NEAR(winding_number(ball, {1, 2, 9}), 1, 1e-12);
+    EXPECT_NEAR(winding_number(ball, {1, 2, 14}), 0, 1e-12);
+    const Surface twice = join(ball, make_sphere({1, 2, 3}, 8, 3));
+    EXPECT_NEAR(winding_number(twice, {1, 2, 9}), 2, 1e-12);
+    Surface lower{ball.vertices, Triangles(0, 3)};
+    for (const auto& t : ball.triangles.rowwise())
+        if (ball.vertices(t[0], 2) + ball.vertices(t[1], 2) + ball.vertices(t[2], 2) < 3 * 3)
+            lower = with_triangle(lower, t[0], t[1], t[2]);
+    EXPECT_NEAR(winding_number(lower, {1, 2, 3}), 0.5, 0.02);  // half of the triangles, to within one row of them
+}
+
+TEST(ShareOutside, IsWhatACubeHasBeyondAnother) {
+    const Surface outer = make_box({0, 0, 0}, {10, 10, 12.5}, {2, 2, 2});
+    EXPECT_NEAR(share_outside(outer, cube(), 4000), 0.2, 0.02);  // three standard deviations
+    EXPECT_EQ(share_outside(cube(), outer, 1000), 0);
 }
 
 TEST(Guarded, AStepThatCrashesThrowsOrLeavesNothingIsNone) {
