@@ -5,7 +5,9 @@
 #include <sys/resource.h>
 
 #include <algorithm>
+#include <cstdint>
 #include <cstdlib>
+#include <cstring>
 #include <fstream>
 #include <functional>
 
@@ -16,6 +18,7 @@
 #include "mesh/read_body.h"
 #include "mesh/read_surface.h"
 #include "mesh/solver/solution.h"
+#include "mesh/write_volume.h"
 #include "pipeline/case/case.h"
 #include "pipeline/results/posterior_file.h"
 #include "samples/lattice.h"
@@ -135,6 +138,54 @@ const char* const posterior =
     "parameter,link,unit,mean,sd,q025,q50,q975,prior_mean,prior_sd,informed\n"
     "elongation:link0,0,N/mm,1.2,0.1,1.0,1.2,1.4,1,0.5,1\nflexion,,N*mm/rad,400,10,380,400,420,500,200,1\n";
 
+std::string gmsh() {
+    const TemporaryFolder folder;
+    mesh::write_gmsh(folder / "body.msh", mesh::make_bar({0, 0, 0}, {100, 20, 20}, {1, 1, 1}), mesh::GmshVersion::v4_1);
+    return mesh::read_text(folder / "body.msh");
+}
+const char* const medit =
+    "MeshVersionFormatted 2\nDimension 3\nVertices\n4\n0 0 0 0\n1 0 0 0\n0 1 0 0\n0 0 1 0\nTetrahedra\n1\n1 2 3 4 "
+    "0\nEnd\n";
+/// 4 x 4 x 4 voxels, of which 2 x 2 x 2 are an organ.
+std::string voxels() {
+    std::string bytes(64, '\0');
+    for (const std::size_t v : {21u, 22u, 25u, 26u, 37u, 38u, 41u, 42u}) bytes[v] = 1;
+    return bytes;
+}
+std::string meta_image() {
+    return "ObjectType = Image\nNDims = 3\nTransformMatrix = 1 0 0 0 1 0 0 0 1\nOffset = 0 0 0\nElementSpacing = 1 1 "
+           "2\n"
+           "DimSize = 4 4 4\nElementType = MET_UCHAR\nElementDataFile = LOCAL\n" +
+           voxels();
+}
+std::string nrrd() {
+    return "NRRD0004\ntype: uint8\ndimension: 3\nspace: left-posterior-superior\nsizes: 4 4 4\n"
+           "space directions: (1,0,0) (0,1,0) (0,0,2)\nspace origin: (0,0,0)\nencoding: raw\n\n" +
+           voxels();
+}
+std::string nifti() {
+    std::string head(352, '\0');
+    const auto put = [&](std::size_t at, auto value) { std::memcpy(head.data() + at, &value, sizeof value); };
+    put(0, std::int32_t{348});
+    for (std::size_t d = 0; d < 4; ++d) put(40 + 2 * d, static_cast<std::int16_t>(d == 0 ? 3 : 4));
+    put(70, std::int16_t{2});
+    for (std::size_t d = 0; d < 3; ++d) put(80 + 4 * d, 1.0F);
+    put(108, 352.0F);
+    head.replace(344, 3, "n+1");
+    return head + voxels();
+}
+/// Two files of TetGen; the second is broken.
+Reader tetgen() {
+    return {"ele",
+            [](const fs::path& folder) {
+                mesh::write_text(folder / "body.node", "4 3 0 0\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 0 0 1\n");
+                mesh::write_text(folder / "body.ele", "1 4 0\n1 1 2 3 4\n");
+                return folder / "body.ele";
+            },
+            [](const fs::path& folder) { mesh::read_body(folder / "body.ele"); }};
+}
+void read_body(const fs::path& file) { mesh::read_body(file); }
+
 class Readers : public testing::TestWithParam<Reader> {};
 
 /// For as long as it lives, no more than so much memory beyond what is in use: a file that announces more is to be
@@ -200,7 +251,9 @@ INSTANTIATE_TEST_SUITE_P(
         written("text_stl", "text.stl", text_stl, [](const fs::path& f) { mesh::read_surface(f); }),
         written("text_ply", "text.ply", text_ply, [](const fs::path& f) { mesh::read_surface(f); }),
         written("case", "case.yaml", case_with_all_settings(), [](const fs::path& f) { pipeline::read_case(f); }),
-        written("inp", "body.inp", deck, [](const fs::path& f) { mesh::read_body(f); }),
+        written("inp", "body.inp", deck, read_body), written("msh", "body.msh", gmsh(), read_body),
+        written("medit", "body.mesh", medit, read_body), tetgen(), written("mha", "body.mha", meta_image(), read_body),
+        written("nrrd", "body.nrrd", nrrd(), read_body), written("nii", "body.nii", nifti(), read_body),
         written("frd", "job.frd", frd, [](const fs::path& f) { mesh::read_solution(f); }),
         written("posterior", "posterior.csv", posterior, [](const fs::path& f) { pipeline::read_posterior(f); }),
         set("set.yaml"), set("probes.csv"), set("markers.csv"), set("positions.csv"), set("states.csv")),

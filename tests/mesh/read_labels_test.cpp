@@ -93,45 +93,83 @@ std::string nrrd(const Labels& labels, const std::string& encoding) {
            (encoding == "gzip" ? gzipped(labels.voxels) : labels.voxels);
 }
 
-/// Voxels of two bytes; the place as affine rows, or as a quaternion (whose third axis may be turned).
+/// Puts numbers at places of a head, in the other order of bytes where asked.
+class Head {
+public:
+    Head(std::size_t bytes, bool is_swapped) : text(bytes, '\0'), is_swapped_(is_swapped) {}
+    template <class T>
+    void put(std::size_t at, T value) {
+        std::memcpy(text.data() + at, &value, sizeof value);
+        if (is_swapped_)
+            std::reverse(text.begin() + static_cast<long>(at), text.begin() + static_cast<long>(at + sizeof value));
+    }
+    std::string text;
+
+private:
+    bool is_swapped_;
+};
+
+/// Voxels of two bytes.
+std::string voxels_of(const Labels& labels, bool is_swapped) {
+    std::string voxels;
+    for (const char label : labels.voxels) voxels += is_swapped ? std::string{'\0', label} : std::string{label, '\0'};
+    return voxels;
+}
+
+/// Version 1; the place as affine rows, or as a quaternion (whose third axis may be turned).
 std::string nifti(const Labels& labels, bool as_quaternion, std::uint8_t unit = 2) {
-    std::string head(352, '\0');
-    const auto put = [&](std::size_t at, auto value) { std::memcpy(head.data() + at, &value, sizeof value); };
-    put(0, std::int32_t{348});
-    put(40, std::int16_t{3});
-    for (std::size_t d = 0; d < 3; ++d) put(42 + 2 * d, static_cast<std::int16_t>(labels.size[d]));
-    put(70, std::int16_t{4});
-    put(72, std::int16_t{16});
+    Head head(352, false);
+    head.put(0, std::int32_t{348});
+    head.put(40, std::int16_t{3});
+    for (std::size_t d = 0; d < 3; ++d) head.put(42 + 2 * d, static_cast<std::int16_t>(labels.size[d]));
+    head.put(70, std::int16_t{4});
+    head.put(72, std::int16_t{16});
     const Vec3 spacing = labels.axes.colwise().norm();
-    for (std::size_t d = 0; d < 3; ++d) put(80 + 4 * d, static_cast<float>(spacing[static_cast<int>(d)]));
-    put(108, 352.0F);
-    put(123, unit);
+    for (std::size_t d = 0; d < 3; ++d) head.put(80 + 4 * d, static_cast<float>(spacing[static_cast<int>(d)]));
+    head.put(108, 352.0F);
+    head.put(123, unit);
     Mat3 turn = labels.axes * spacing.cwiseInverse().asDiagonal();
     if (as_quaternion) {
         const bool is_mirrored = turn.determinant() < 0;
         if (is_mirrored) turn.col(2) = -turn.col(2);
-        put(76, is_mirrored ? -1.0F : 1.0F);
+        head.put(76, is_mirrored ? -1.0F : 1.0F);
         Eigen::Quaterniond q(turn);
         if (q.w() < 0) q.coeffs() = -q.coeffs();
-        put(252, std::int16_t{1});
-        put(256, static_cast<float>(q.x()));
-        put(260, static_cast<float>(q.y()));
-        put(264, static_cast<float>(q.z()));
-        for (std::size_t d = 0; d < 3; ++d) put(268 + 4 * d, static_cast<float>(labels.origin[static_cast<int>(d)]));
+        head.put(252, std::int16_t{1});
+        head.put(256, static_cast<float>(q.x()));
+        head.put(260, static_cast<float>(q.y()));
+        head.put(264, static_cast<float>(q.z()));
+        for (std::size_t d = 0; d < 3; ++d)
+            head.put(268 + 4 * d, static_cast<float>(labels.origin[static_cast<int>(d)]));
     } else {
-        put(254, std::int16_t{1});
+        head.put(254, std::int16_t{1});
         for (int r = 0; r < 3; ++r) {
             for (int c = 0; c < 3; ++c)
-                put(280 + static_cast<std::size_t>(16 * r + 4 * c), static_cast<float>(labels.axes(r, c)));
-            put(292 + static_cast<std::size_t>(16 * r), static_cast<float>(labels.origin[r]));
+                head.put(280 + static_cast<std::size_t>(16 * r + 4 * c), static_cast<float>(labels.axes(r, c)));
+            head.put(292 + static_cast<std::size_t>(16 * r), static_cast<float>(labels.origin[r]));
         }
     }
-    std::memcpy(head.data() + 344, "n+1", 4);
-    for (const char label : labels.voxels) {
-        head += label;
-        head += '\0';
+    head.text.replace(344, 3, "n+1");
+    return head.text + voxels_of(labels, false);
+}
+
+/// Version 2, by affine rows. [nifti2.h]
+std::string nifti_2(const Labels& labels, bool is_swapped) {
+    Head head(544, is_swapped);
+    head.put(0, std::int32_t{540});
+    head.text.replace(4, 8, std::string("n+2\0\r\n\032\n", 8));
+    head.put(12, std::int16_t{4});
+    head.put(14, std::int16_t{16});
+    head.put(16, std::int64_t{3});
+    for (std::size_t d = 0; d < 3; ++d) head.put(24 + 8 * d, std::int64_t{labels.size[d]});
+    head.put(168, std::int64_t{544});
+    head.put(348, std::int32_t{1});
+    for (int r = 0; r < 3; ++r) {
+        for (int c = 0; c < 3; ++c) head.put(400 + static_cast<std::size_t>(32 * r + 8 * c), labels.axes(r, c));
+        head.put(424 + static_cast<std::size_t>(32 * r), labels.origin[r]);
     }
-    return head;
+    head.put(500, std::int32_t{2});
+    return head.text + voxels_of(labels, is_swapped);
 }
 
 struct ReadLabels : ::testing::Test {
@@ -161,6 +199,8 @@ TEST_F(ReadLabels, ABallIsInItsPlaceInEveryFormat) {
     expect_ball(folder.write("b.nrrd", nrrd(ball, "gzip")), ball.middle());
     expect_ball(folder.write("a.nii", nifti(ball, false)), ball.middle());
     expect_ball(folder.write("b.nii.gz", gzipped(nifti(ball, true))), ball.middle());
+    expect_ball(folder.write("d.nii", nifti_2(ball, false)), ball.middle());
+    expect_ball(folder.write("e.nii.gz", gzipped(nifti_2(ball, true))), ball.middle());
     Labels mirrored = ball;
     mirrored.axes.col(2) = -mirrored.axes.col(2);
     mirrored.voxels.assign(mirrored.voxels.size(), '\0');
@@ -237,7 +277,7 @@ TEST_F(ReadLabels, WhatIsWrongIsSaid) {
     flat.axes.col(2) = flat.axes.col(1);
     EXPECT_TRUE(says(refusal("f.mha", meta_image(flat)), {"voxels of", "mm^3", "more than 0"}));
     EXPECT_TRUE(says(refusal("a.nii", nii.substr(0, 300)), {"a.nii", "announces 348 bytes"}));
-    EXPECT_TRUE(says(refusal("b.nii", std::string(400, 'x')), {"no NIfTI-1"}));
+    EXPECT_TRUE(says(refusal("b.nii", std::string(400, 'x')), {"no NIfTI file"}));
     EXPECT_TRUE(says(refusal("c.nii.gz", gzipped(nii).substr(0, 200)), {"c.nii.gz", "unpacks"}));
     EXPECT_TRUE(says(refusal("a.nrrd", "NRRD0004\ntype: uint8\ndimension: 4\nsizes: 1 2 2 2\nencoding: raw\n\n"),
                      {"dimension '4'"}));
