@@ -78,8 +78,9 @@ void add_solver_flags(CLI::App* verb, commands::ProbeCommandOptions& probe) {
                                 "Write what is to be computed, in place of computing it: body.inp for Abaqus or\n"
                                 "CalculiX, a step for each state, and probes.csv");
     to->check(CLI::IsMember({"inp"}))->excludes(from)->group("Another solver");
-    for (const char* own : {"--hide", "--law", "--linear", "--levels", "--unload", "--no-unload", "--dwell",
-                            "--continuous", "--no-continuous", "--probes", "--displacement", "--tell-material"})
+    for (const char* own :
+         {"--hide", "--law", "--linear", "--levels", "--unload", "--no-unload", "--dwell", "--continuous",
+          "--no-continuous", "--probes", "--displacement", "--tell-material", "--edge-length", "--linear-elements"})
         from->excludes(verb->get_option(own));
     for (const char* own : {"--hide", "--noise", "--missing", "--unlabelled", "--dwell", "--unload", "--continuous"})
         to->excludes(verb->get_option(own));
