@@ -128,7 +128,7 @@ void ElasticBody::Impl::prepare() {
     const double needed = factor_memory(elimination.supernodes, std::exchange(lower, {}));
     stats.free_dofs = elimination.supernodes.size();
     stats.factor_entries = static_cast<double>(elimination.supernodes.first_value.back());
-    stats.seconds_factor = seconds_since(start);
+    stats.seconds_analyse = stats.seconds_factor = seconds_since(start);
 
     constexpr double share = 0.9;  // of the free memory
     const double allowed = options.memory > 0 ? options.memory : share * free_memory();

@@ -16,8 +16,9 @@ struct ElasticBodyOptions {
 
 struct ElasticBodyStats {
     int nodes = 0, elements = 0, free_dofs = 0;
-    double factor_entries = 0;  // nonzeros of the Cholesky factor, made or not
-    double seconds_assemble = 0, seconds_factor = 0;
+    double factor_entries = 0;                        // nonzeros of the Cholesky factor, made or not
+    double seconds_assemble = 0, seconds_factor = 0;  // or, in place of factoring, to make the multigrid
+    double seconds_analyse = 0;                       // of the latter: to order the unknowns and count the factor
     Dilatation dilatation = Dilatation::full;
     int levels = 0;    // of the multigrid; 0: there is a factor
     std::string note;  // why there is no factor, in words; empty: there is one
