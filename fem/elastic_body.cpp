@@ -17,6 +17,7 @@
 #include "fem/solve/cholesky.h"
 #include "fem/solve/free_memory.h"
 #include "fem/solve/multigrid/conjugate_gradients.h"
+#include "fem/solve/multigrid/morton.h"
 #include "fem/solve/restraint.h"
 #include "mesh/errors.h"
 
@@ -156,10 +157,19 @@ void ElasticBody::Impl::make_factor(Elimination elimination) {
 
 void ElasticBody::Impl::make_multigrid() {
     auto start = std::chrono::steady_clock::now();
+    Points positions = numbered_positions(mesh, number);
+    const std::vector<int> order = morton_order(positions);
+    std::vector<int> place(order.size());
+    for (std::size_t k = 0; k < order.size(); ++k) place[order[k]] = static_cast<int>(k);
+    for (int& k : number) {
+        if (k >= 0) k = place[k];
+    }
+    positions = Points(positions(order, Eigen::all));
+
     BlockMatrix<3, 3> K = assemble_blocks(mesh, material, stats.dilatation, number);
     stats.seconds_assemble = seconds_since(start);
     start = std::chrono::steady_clock::now();
-    multigrid = std::make_unique<Multigrid>(std::move(K), rigid_modes(numbered_positions(mesh, number)));
+    multigrid = std::make_unique<Multigrid>(std::move(K), rigid_modes(positions));
     stats.seconds_factor += seconds_since(start);
     stats.levels = multigrid->levels();
 }

@@ -7,6 +7,7 @@
 #include "fem/elements/assembly.h"
 #include "fem/solve/multigrid/chebyshev.h"
 #include "fem/solve/multigrid/conjugate_gradients.h"
+#include "fem/solve/multigrid/morton.h"
 #include "tests/messages.h"
 
 namespace palpate::fem {
@@ -155,6 +156,21 @@ TEST(Prolongator, HoldsTheRigidModesOfAggregatesThatAreTooSmallForSix) {
     EXPECT_LT(missed(P, coarse, modes), 1e-12);
     EXPECT_EQ(coarse.middleRows(6, 6).rowwise().any().count(), 3);
     EXPECT_EQ(coarse.middleRows(12, 6).rowwise().any().count(), 5);
+}
+
+TEST(MortonOrder, KeepsNeighboursTogetherWhateverOrderTheyCameIn) {
+    // The corners of 8 x 8 x 8 cells: each block of 2 x 2 x 2 comes in a row.
+    Points corners(512, 3);
+    for (int i = 0; i < 512; ++i) corners.row(i) << i / 64, i / 8 % 8, i % 8;
+    std::vector<int> shuffled(512);
+    std::iota(shuffled.begin(), shuffled.end(), 0);
+    std::ranges::shuffle(shuffled, std::mt19937(3));
+    const Points given = corners(shuffled, Eigen::all);
+    const std::vector<int> order = morton_order(given);
+    for (int first = 0; first < 512; first += 8) {
+        const Points block = given(std::vector<int>(order.begin() + first, order.begin() + first + 8), Eigen::all);
+        EXPECT_EQ((block.colwise().maxCoeff() - block.colwise().minCoeff()).maxCoeff(), 1) << first;
+    }
 }
 
 TEST(Chebyshev, FindsTheLargestEigenvalue) {
