@@ -6,19 +6,26 @@
 #include <tbb/task_arena.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cassert>
 #include <chrono>
 #include <numeric>
 #include <span>
+#include <utility>
 
 #include "fem/elements/assembly.h"
 #include "fem/solve/cholesky.h"
+#include "fem/solve/free_memory.h"
+#include "fem/solve/multigrid/conjugate_gradients.h"
+#include "fem/solve/multigrid/morton.h"
 #include "fem/solve/restraint.h"
 #include "mesh/errors.h"
 
 namespace palpate::fem {
 
 namespace {
+
+constexpr std::size_t together = 8;  // loads whose conjugate gradients read the matrix together
 
 double seconds_since(std::chrono::steady_clock::time_point start) {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -31,6 +38,10 @@ void validate(const ElasticBodyOptions& options) {
     if (options.block < 1 || options.block > 1024) {
         throw InvalidInput(
             fmt::format("block (right-hand sides solved together) is {}; allowed: 1 to 1024.", options.block));
+    }
+    if (!(options.memory >= 0)) {
+        throw InvalidInput(
+            fmt::format("memory (that a factor may take) is {} GB; allowed: 0 and more.", options.memory));
     }
 }
 
@@ -48,6 +59,21 @@ std::vector<int> number_free_nodes(const std::vector<char>& held) {
     return number;
 }
 
+/// What factoring takes: the factor, and the lower half of the matrix, values and rows [GB].
+double factor_memory(const Supernodes& structure, const std::vector<std::vector<int>>& lower) {
+    double blocks = 0;
+    for (const auto& rows : lower) blocks += static_cast<double>(rows.size());
+    return 8e-9 * static_cast<double>(structure.first_value.back()) + 9 * 16e-9 * blocks;
+}
+
+Points numbered_positions(const mesh::VolumeMesh& mesh, const std::vector<int>& number) {
+    Points positions(std::ranges::count_if(number, [](int k) { return k >= 0; }), 3);
+    for (std::size_t i = 0; i < number.size(); ++i) {
+        if (number[i] >= 0) positions.row(number[i]) = mesh.nodes.row(static_cast<Eigen::Index>(i));
+    }
+    return positions;
+}
+
 }  // namespace
 
 struct ElasticBody::Impl {
@@ -58,7 +84,15 @@ struct ElasticBody::Impl {
     ElasticBodyStats stats;
     std::vector<int> number;  // of each node in K, -1: held
     std::unique_ptr<Cholesky> factor;
+    std::unique_ptr<Multigrid> multigrid;  // where there is no factor
+    mutable std::atomic<int> most_iterations = 0;
 
+    void prepare();
+    void make_factor(Elimination elimination);
+    void make_multigrid();
+    void solve_together(Block& X) const;
+    template <class Loads>
+    void solve_some(const Loads& loads, std::span<const Eigen::Index> columns, Eigen::MatrixXd& U) const;
     template <class Loads>
     Eigen::MatrixXd solve(const Loads& loads) const;
     std::vector<Eigen::Index> solving_order(const Eigen::SparseMatrix<double>& loads) const;
@@ -74,36 +108,70 @@ ElasticBody::ElasticBody(mesh::VolumeMesh mesh, const Material& material, const 
     material.validate();
     validate(options);
     check_restraint(mesh, held);
-
     ElasticBodyStats& stats = impl_->stats;
-    stats.dilatation = mesh.is_quadratic() && material.poisson >= 0.45 ? Dilatation::mean : Dilatation::full;
-    arena(options).execute([&] {
-        // The nodes in the order of elimination.
-        auto start = std::chrono::steady_clock::now();
-        std::vector<int>& number = impl_->number = number_free_nodes(held);
-        Elimination elimination = analyse(neighbours(mesh, number, Half::lower), 3);
-        for (int& k : number) {
-            if (k >= 0) k = elimination.position[k];
-        }
-        const double seconds_order = seconds_since(start);
-
-        start = std::chrono::steady_clock::now();
-        const LowerMatrix K = assemble<std::int64_t>(mesh, material, stats.dilatation, number, Half::lower);
-        stats.seconds_assemble = seconds_since(start);
-
-        start = std::chrono::steady_clock::now();
-        impl_->factor =
-            std::make_unique<Cholesky>(std::make_shared<const Supernodes>(std::move(elimination.supernodes)), K);
-        stats.seconds_factor = seconds_order + seconds_since(start);
-        stats.free_dofs = static_cast<int>(K.rows());
-    });
+    constexpr double near_incompressible = 0.45;
+    if (mesh.is_quadratic() && material.poisson >= near_incompressible) stats.dilatation = Dilatation::mean;
     stats.nodes = static_cast<int>(mesh.nodes.rows());
     stats.elements = static_cast<int>(mesh.tetrahedra.rows());
-    stats.factor_entries = impl_->factor->entries();
     impl_->mesh = std::move(mesh);
     impl_->material = material;
     impl_->held = held;
     impl_->options = options;
+    arena(options).execute([&] { impl_->prepare(); });
+}
+
+/// A factor where memory holds it, else a multigrid.
+void ElasticBody::Impl::prepare() {
+    const auto start = std::chrono::steady_clock::now();
+    number = number_free_nodes(held);
+    auto lower = neighbours(mesh, number, Half::lower);
+    Elimination elimination = analyse(lower, 3);
+    const double needed = factor_memory(elimination.supernodes, std::exchange(lower, {}));
+    stats.free_dofs = elimination.supernodes.size();
+    stats.factor_entries = static_cast<double>(elimination.supernodes.first_value.back());
+    stats.seconds_analyse = stats.seconds_factor = seconds_since(start);
+
+    constexpr double share = 0.9;  // of the free memory
+    const double allowed = options.memory > 0 ? options.memory : share * free_memory();
+    if (needed <= allowed) return make_factor(std::move(elimination));
+    elimination = {};
+    stats.note = fmt::format(
+        "A factor of the stiffness matrix ({} unknowns) would take {:.3g} GB of {:.3g} GB: conjugate gradients with "
+        "multigrid instead.",
+        stats.free_dofs, needed, allowed);
+    make_multigrid();
+}
+
+void ElasticBody::Impl::make_factor(Elimination elimination) {
+    // The nodes in the order of elimination.
+    for (int& k : number) {
+        if (k >= 0) k = elimination.position[k];
+    }
+    auto start = std::chrono::steady_clock::now();
+    const LowerMatrix K = assemble<std::int64_t>(mesh, material, stats.dilatation, number, Half::lower);
+    stats.seconds_assemble = seconds_since(start);
+    start = std::chrono::steady_clock::now();
+    factor = std::make_unique<Cholesky>(std::make_shared<const Supernodes>(std::move(elimination.supernodes)), K);
+    stats.seconds_factor += seconds_since(start);
+}
+
+void ElasticBody::Impl::make_multigrid() {
+    auto start = std::chrono::steady_clock::now();
+    Points positions = numbered_positions(mesh, number);
+    const std::vector<int> order = morton_order(positions);
+    std::vector<int> place(order.size());
+    for (std::size_t k = 0; k < order.size(); ++k) place[order[k]] = static_cast<int>(k);
+    for (int& k : number) {
+        if (k >= 0) k = place[k];
+    }
+    positions = Points(positions(order, Eigen::all));
+
+    BlockMatrix<3, 3> K = assemble_blocks(mesh, material, stats.dilatation, number);
+    stats.seconds_assemble = seconds_since(start);
+    start = std::chrono::steady_clock::now();
+    multigrid = std::make_unique<Multigrid>(std::move(K), rigid_modes(positions));
+    stats.seconds_factor += seconds_since(start);
+    stats.levels = multigrid->levels();
 }
 
 ElasticBody::~ElasticBody() = default;
@@ -148,25 +216,45 @@ void ElasticBody::Impl::fill(const Eigen::MatrixXd& loads, std::span<const Eigen
     }
 }
 
+void ElasticBody::Impl::solve_together(Block& X) const {
+    if (factor) return factor->solve(X);
+    const int iterations = conjugate_gradients(*multigrid, X);
+    int most = most_iterations;
+    while (iterations > most && !most_iterations.compare_exchange_weak(most, iterations)) {
+    }
+}
+
+template <class Loads>
+void ElasticBody::Impl::solve_some(const Loads& loads, std::span<const Eigen::Index> columns,
+                                   Eigen::MatrixXd& U) const {
+    // Whole vectors of loads, so that each entry of the matrix is read once; those that are zero are done at once.
+    const std::size_t width = factor || columns.size() < 3 ? columns.size() : together;
+    Block X = Block::Zero(stats.free_dofs, static_cast<Eigen::Index>(width));
+    fill(loads, columns, X);
+    solve_together(X);
+    for (std::size_t i = 0; i < number.size(); ++i) {
+        const Eigen::Index node = number[i];
+        for (std::size_t j = 0; node >= 0 && j < columns.size(); ++j) {
+            U.col(columns[j]).segment<3>(static_cast<Eigen::Index>(3 * i)) = X.col(j).segment<3>(3 * node);
+        }
+    }
+}
+
 template <class Loads>
 Eigen::MatrixXd ElasticBody::Impl::solve(const Loads& loads) const {
     assert(loads.rows() == mesh.nodes.size());
     Eigen::MatrixXd U = Eigen::MatrixXd::Zero(loads.rows(), loads.cols());
     const std::vector<Eigen::Index> order = solving_order(loads);
-    const std::size_t block = options.block, blocks = (order.size() + block - 1) / block;
+    const std::size_t block = factor ? options.block : together, blocks = (order.size() + block - 1) / block;
+    const auto solve_block = [&](std::size_t b) {
+        solve_some(loads, std::span(order).subspan(b * block, std::min(block, order.size() - b * block)), U);
+    };
     arena(options).execute([&] {
-        tbb::parallel_for(std::size_t(0), blocks, [&](std::size_t b) {
-            const auto columns = std::span(order).subspan(b * block, std::min(block, order.size() - b * block));
-            Block X = Block::Zero(stats.free_dofs, static_cast<Eigen::Index>(columns.size()));
-            fill(loads, columns, X);
-            factor->solve(X);
-            for (std::size_t i = 0; i < number.size(); ++i) {
-                const Eigen::Index node = number[i];
-                for (std::size_t j = 0; node >= 0 && j < columns.size(); ++j) {
-                    U.col(columns[j]).template segment<3>(3 * i) = X.col(j).template segment<3>(3 * node);
-                }
-            }
-        });
+        if (factor) {
+            tbb::parallel_for(std::size_t(0), blocks, solve_block);
+        } else {  // threads work on rows
+            for (std::size_t b = 0; b < blocks; ++b) solve_block(b);
+        }
     });
     return U;
 }
@@ -178,5 +266,6 @@ const mesh::VolumeMesh& ElasticBody::mesh() const { return impl_->mesh; }
 const Material& ElasticBody::material() const { return impl_->material; }
 const std::vector<char>& ElasticBody::held() const { return impl_->held; }
 const ElasticBodyStats& ElasticBody::stats() const { return impl_->stats; }
+int ElasticBody::most_iterations() const { return impl_->most_iterations; }
 
 }  // namespace palpate::fem

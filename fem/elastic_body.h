@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "fem/stiffness.h"
@@ -8,19 +9,24 @@
 namespace palpate::fem {
 
 struct ElasticBodyOptions {
-    int threads = 1;  // for blocks of right-hand sides
-    int block = 64;   // right-hand sides solved together, [1, 1024]
+    int threads = 1;    // for blocks of right-hand sides
+    int block = 64;     // right-hand sides solved together with a factor, [1, 1024]
+    double memory = 0;  // that a factor may take [GB], >= 0; 0: nine tenths of what is free
 };
 
 struct ElasticBodyStats {
     int nodes = 0, elements = 0, free_dofs = 0;
-    double factor_entries = 0;  // nonzeros of the Cholesky factor
-    double seconds_assemble = 0, seconds_factor = 0;
+    double factor_entries = 0;                        // nonzeros of the Cholesky factor, made or not
+    double seconds_assemble = 0, seconds_factor = 0;  // or, in place of factoring, to make the multigrid
+    double seconds_analyse = 0;                       // of the latter: to order the unknowns and count the factor
     Dilatation dilatation = Dilatation::full;
+    int levels = 0;    // of the multigrid; 0: there is a factor
+    std::string note;  // why there is no factor, in words; empty: there is one
 };
 
-/// A linearly elastic body, held at some nodes: assembled and factored once (CHOLMOD, supernodal), then solved
-/// for many loads. P2/P0 from nu = 0.45.
+/// A linearly elastic body, held at some nodes: assembled and factored once (by supernodes, ordered by CHOLMOD), then
+/// solved for many loads. Where the factor would not fit into memory, each load is solved for by conjugate gradients
+/// with multigrid instead, to 1e-11 in the energy norm. P2/P0 from nu = 0.45.
 class ElasticBody {
 public:
     /// `held`: a flag per node (n). @throws InvalidInput when nothing, or too little to stop rigid motion, is held;
@@ -31,6 +37,7 @@ public:
     ElasticBody(ElasticBody&&) noexcept;
 
     /// Displacements U of K U = F (3n x p) [mm], zero at the held nodes; F (3n x p) [N]. Safe from several threads.
+    /// @throws SolverFailure when conjugate gradients do not converge.
     Eigen::MatrixXd solve(const Eigen::SparseMatrix<double>& loads) const;
     Eigen::MatrixXd solve(const Eigen::MatrixXd& loads) const;
 
@@ -38,6 +45,8 @@ public:
     const Material& material() const;
     const std::vector<char>& held() const;
     const ElasticBodyStats& stats() const;
+    /// Of conjugate gradients, the most that loads took so far; 0 with a factor.
+    int most_iterations() const;
 
 private:
     struct Impl;

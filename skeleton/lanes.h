@@ -3,13 +3,7 @@
 // Four numbers at a time, one in each lane of a vector unit. For kernels only, in .cpp files: what is here is
 // compiled into each of their versions, for the processors that PALPATE_CLONES names and for any other.
 
-#if defined(__x86_64__) && defined(__gnu_linux__) && defined(__GNUC__) && !defined(__clang__) && \
-    !defined(__SANITIZE_THREAD__) && !defined(__SANITIZE_ADDRESS__)
-#define PALPATE_CLONES __attribute__((target_clones("avx512f", "fma", "default")))
-#else
-#define PALPATE_CLONES
-#endif
-#define PALPATE_INLINE inline __attribute__((always_inline))
+#include "mesh/clones.h"
 
 namespace palpate::skeleton::lanewise {
 

@@ -107,10 +107,11 @@ struct ColumnGather {
     }
 };
 
-template <int nodes, class Index>
+/// `columns_of(c)`: where the three columns of numbered node c are stored, one after the other.
+template <int nodes, class ColumnsOf>
 void fill_values(const mesh::VolumeMesh& mesh, const Material& material, Dilatation dilatation,
                  const NodeElements& elements, const std::vector<int>& number, const std::vector<int>& numbered,
-                 const std::vector<std::vector<int>>& rows, Eigen::SparseMatrix<double, Eigen::ColMajor, Index>& K) {
+                 const std::vector<std::vector<int>>& rows, ColumnsOf&& columns_of) {
     const ElementGradients gradients = element_gradients(mesh);
     const ColumnGather<nodes> gather{gradients, material.shear_modulus(), material.lame_lambda(), dilatation};
     const auto count = static_cast<int>(numbered.size());
@@ -119,7 +120,7 @@ void fill_values(const mesh::VolumeMesh& mesh, const Material& material, Dilatat
         std::vector<int>& place_of = place_by.local();
         for (int c = range.begin(); c != range.end(); ++c) {
             for (std::size_t k = 0; k < rows[c].size(); ++k) place_of[rows[c][k]] = static_cast<int>(3 * k);
-            double* columns = K.valuePtr() + K.outerIndexPtr()[3 * static_cast<Eigen::Index>(c)];
+            double* columns = columns_of(c);
             for (int k = elements.start[numbered[c]]; k < elements.start[numbered[c] + 1]; ++k) {
                 const int element = elements.corners[k] / nodes;
                 int place[nodes];
@@ -164,10 +165,30 @@ Eigen::SparseMatrix<double, Eigen::ColMajor, Index> assemble(const mesh::VolumeM
         std::fill(K.valuePtr() + start[c], K.valuePtr() + start[c + 1], 0.0);
     });
 
+    const auto columns_of = [&](int c) { return K.valuePtr() + start[3 * static_cast<Eigen::Index>(c)]; };
     if (mesh.is_quadratic()) {
-        fill_values<10>(mesh, material, dilatation, elements, number, numbered, rows, K);
+        fill_values<10>(mesh, material, dilatation, elements, number, numbered, rows, columns_of);
     } else {
-        fill_values<4>(mesh, material, dilatation, elements, number, numbered, rows, K);
+        fill_values<4>(mesh, material, dilatation, elements, number, numbered, rows, columns_of);
+    }
+    return K;
+}
+
+BlockMatrix<3, 3> assemble_blocks(const mesh::VolumeMesh& mesh, const Material& material, Dilatation dilatation,
+                                  const std::vector<int>& number) {
+    material.validate();
+    refuse_locking(mesh, material);
+    const NodeElements elements(mesh);
+    const std::vector<int> numbered = numbered_nodes(number);
+    const auto rows = neighbours_of(mesh, elements, number, numbered, Half::both);
+    auto K = with_pattern<3, 3>(rows, static_cast<int>(rows.size()));
+
+    // K is symmetric: the three columns of a node are its three rows.
+    const auto rows_of = [&](int c) { return K.panel(c).data(); };
+    if (mesh.is_quadratic()) {
+        fill_values<10>(mesh, material, dilatation, elements, number, numbered, rows, rows_of);
+    } else {
+        fill_values<4>(mesh, material, dilatation, elements, number, numbered, rows, rows_of);
     }
     return K;
 }

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "fem/solve/multigrid/block_matrix.h"
 #include "fem/stiffness.h"
 
 namespace palpate::fem {
@@ -23,6 +24,10 @@ template <class Index>
 Eigen::SparseMatrix<double, Eigen::ColMajor, Index> assemble(const mesh::VolumeMesh& mesh, const Material& material,
                                                              Dilatation dilatation, const std::vector<int>& number,
                                                              Half half);
+
+/// The same as blocks, both halves: a third of the memory. @throws as assemble.
+BlockMatrix<3, 3> assemble_blocks(const mesh::VolumeMesh& mesh, const Material& material, Dilatation dilatation,
+                                  const std::vector<int>& number);
 
 extern template Eigen::SparseMatrix<double, Eigen::ColMajor, int> assemble<int>(  //
     const mesh::VolumeMesh&, const Material&, Dilatation, const std::vector<int>&, Half);

@@ -170,6 +170,7 @@ private:
             [&] {
                 const fem::ElasticBody elastic(body_, subject_.material, mesh::contains(subject_.supports, body_.nodes),
                                                {.threads = common_.threads});
+                if (!elastic.stats().note.empty()) Console::notice(elastic.stats().note);
                 ProbedBody probed =
                     probe_body(elastic, surface_, subject_.supports, p, c.identify.seed, Console::progress());
                 probed.set.name = c.name;

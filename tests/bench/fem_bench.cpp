@@ -1,14 +1,16 @@
-// How long the reference body takes: bars of quadratic tetrahedra, held at one end, probed on top.
-// Usage: fem_bench [threads]. One line a mesh; wall seconds, peak memory of the process so far.
+// How long the reference body takes: bars of linear and of quadratic tetrahedra, clamped at one end, pulled at nodes on
+// top. One line a mesh; wall seconds, peak memory of the process so far. tests/bench/fem/compare.py runs it beside
+// other codes.
 
 #include <fmt/format.h>
 #include <sys/resource.h>
 
+#include <CLI/CLI.hpp>
 #include <chrono>
-#include <cstdlib>
 
+#include "bench/fem/bars.h"
 #include "fem/elastic_body.h"
-#include "fem/patch_load.h"
+#include "mesh/errors.h"
 
 using namespace palpate;
 
@@ -27,43 +29,63 @@ double peak_gb() {
     return static_cast<double>(usage.ru_maxrss) * 1024e-9;
 }
 
-/// Probes along the top of the bar, aslant.
-Eigen::SparseMatrix<double> probes(const mesh::VolumeMesh& mesh, int count) {
-    std::vector<mesh::Contact> contacts;
-    for (int k = 0; k < count; ++k) {
-        const double x = 20 + 75.0 * (k + 0.5) / count;
-        contacts.push_back({Vec3(x, 10 + 5 * std::sin(k), 20), Vec3(0.1 * std::cos(k), 0, -1), 3.0});
-    }
-    return fem::patch_loads(mesh, contacts, 1e-6);
-}
+struct Settings {
+    int threads = 2, loads = 100;
+    double memory = 0;           // that a factor may take [GB]; 0: as the body decides
+    std::string only, folder{};  // empty: all meshes; nothing is written
+};
 
-void measure(const Eigen::Vector3i& cells, int threads) {
-    const auto mesh = mesh::to_quadratic(mesh::make_bar(Vec3::Zero(), Vec3(100, 20, 20), cells));
-    std::vector<char> held(mesh.nodes.rows());
-    for (Eigen::Index i = 0; i < mesh.nodes.rows(); ++i) held[i] = mesh.nodes(i, 0) < 1e-9;
+void measure(const bench::Bar& bar, const Settings& settings) {
+    const bench::Problem problem = bench::make_problem(bar, settings.loads);
+    if (!settings.folder.empty()) bench::write_problem(std::filesystem::path(settings.folder) / bar.name, problem);
+    const Eigen::SparseMatrix<double> loads = bench::unit_forces(problem), one = loads.leftCols(1);
 
-    const double start = seconds([&] {
-        const fem::ElasticBody body(mesh, {}, held, {.threads = threads});
-        Eigen::SparseMatrix<double> loads;
-        const double patch_100 = seconds([&] { loads = probes(mesh, 100); });
-        const Eigen::SparseMatrix<double> one = loads.leftCols(1);
-        const double solve_1 = seconds([&] { body.solve(one); });
-        const double solve_100 = seconds([&] { body.solve(loads); });
-        fmt::print("{:>8} {:>9} {:>9.3f} {:>9.3f} {:>9.3f} {:>9.4f} {:>9.3f} {:>9.3f}", mesh.nodes.rows(),
-                   mesh.tetrahedra.rows(), body.stats().seconds_assemble, body.stats().seconds_factor,
-                   body.stats().factor_entries * 8e-9, solve_1, solve_100, patch_100);
+    double solve_1 = 0, solve_all = 0;
+    Eigen::MatrixXd U;
+    std::unique_ptr<fem::ElasticBody> body;
+    const double make = seconds([&] {
+        body = std::make_unique<fem::ElasticBody>(
+            problem.mesh, problem.material, problem.held,
+            fem::ElasticBodyOptions{.threads = settings.threads, .memory = settings.memory});
     });
-    fmt::print(" {:>9.3f} {:>9.2f}\n", start, peak_gb());
+    solve_1 = seconds([&] { body->solve(one); });
+    solve_all = seconds([&] { U = body->solve(loads); });
+    const fem::ElasticBodyStats& stats = body->stats();
+    fmt::print("{:<15} {:>7} {:>8} {:>8.3f} {:>8.3f} {:>8.3f} {:>9} {:>8.3f} {:>8.4f} {:>8.2f} {:>8.2f}\n", bar.name,
+               stats.nodes, stats.elements, stats.seconds_assemble, stats.seconds_analyse,
+               stats.seconds_factor - stats.seconds_analyse,
+               stats.levels > 0 ? fmt::format("CG {}", body->most_iterations())
+                                : fmt::format("{:.2f} GB", 8e-9 * stats.factor_entries),
+               solve_1, solve_all / static_cast<double>(loads.cols()), make + solve_all, peak_gb());
     std::fflush(stdout);
+    if (!settings.folder.empty()) {
+        bench::write_displacements(std::filesystem::path(settings.folder) / bar.name / "ours.f64", problem, U);
+    }
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-    const int threads = argc > 1 ? std::atoi(argv[1]) : 2;
-    fmt::print("threads {}\n{:>8} {:>9} {:>9} {:>9} {:>9} {:>9} {:>9} {:>9} {:>9} {:>9}\n", threads, "nodes",
-               "elements", "assemble", "factor", "factor GB", "1 probe", "100", "patches", "all", "peak GB");
-    measure({25, 5, 5}, threads);
-    measure({43, 8, 8}, threads);
-    measure({72, 13, 13}, threads);
+    CLI::App app{"How long the reference body takes"};
+    Settings settings;
+    app.add_option("--threads", settings.threads)->check(CLI::PositiveNumber);
+    app.add_option("--loads", settings.loads)->check(CLI::PositiveNumber);
+    app.add_option("--memory", settings.memory, "that a factor may take [GB]; 0: as the body decides");
+    app.add_option("--only", settings.only, "the mesh of this name, as 20k-quadratic; otherwise all up to 100k nodes");
+    app.add_option("--folder", settings.folder, "where the meshes and the answers are written for other codes");
+    CLI11_PARSE(app, argc, argv);
+
+    fmt::print("threads {}, loads {}\n{:<15} {:>7} {:>8} {:>8} {:>8} {:>8} {:>9} {:>8} {:>8} {:>8} {:>8}\n",
+               settings.threads, settings.loads, "mesh", "nodes", "elements", "assemble", "analyse", "factor", "size",
+               "1 load", "a load", "all", "peak GB");
+    try {
+        for (const bench::Bar& bar : bench::bars()) {
+            const bool is_huge = bar.name.starts_with("300k") || bar.name.starts_with("1000k");
+            if (settings.only.empty() ? !is_huge : bar.name == settings.only) measure(bar, settings);
+        }
+    } catch (const std::runtime_error& error) {
+        fmt::print(stderr, "{}\n", error.what());
+        return 4;
+    }
+    return 0;
 }

@@ -1,0 +1,32 @@
+#pragma once
+
+#include "fem/solve/multigrid/chebyshev.h"
+#include "fem/solve/multigrid/prolongator.h"
+
+namespace palpate::fem {
+
+/// A matrix, what smooths its errors, and the way to the next coarser level.
+template <int b>
+struct Level {
+    BlockMatrix<b, b> A;
+    Chebyshev<b> smoother;
+    BlockMatrix<b, 6> prolongation;
+    BlockMatrix<6, b> restriction;  // its transpose
+};
+
+/// A level, and what is on the next.
+template <int b>
+struct Coarsened {
+    Level<b> level;
+    BlockMatrix<6, 6> A;  // prolongation^T A prolongation
+    RigidModes modes;
+};
+
+/// `strength`: least of a strong connection. @throws SolverFailure when A is singular to rounding.
+template <int b>
+Coarsened<b> coarsen(BlockMatrix<b, b> A, const RigidModes& modes, double strength);
+
+extern template Coarsened<3> coarsen(BlockMatrix<3, 3>, const RigidModes&, double);
+extern template Coarsened<6> coarsen(BlockMatrix<6, 6>, const RigidModes&, double);
+
+}  // namespace palpate::fem
