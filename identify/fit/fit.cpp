@@ -14,7 +14,7 @@ Prediction first_prediction(const PositionDomain& domain, int threads, Eigen::Ve
     constexpr int tries = 6;
     for (int i = 0;; ++i) {
         try {
-            return domain.predict(theta, threads);
+            return domain.predict(theta, threads, nullptr, true);
         } catch (const SolverFailure&) {
             if (i == tries) throw;
             theta.array() += std::log(3.0);
@@ -25,12 +25,13 @@ Prediction first_prediction(const PositionDomain& domain, int threads, Eigen::Ve
 std::optional<Prediction> try_prediction(const PositionDomain& domain, int threads, const Eigen::VectorXd& theta,
                                          const Prediction& near) {
     try {
-        return domain.predict(theta, threads, &near);
+        return domain.predict(theta, threads, &near, true);
     } catch (const SolverFailure&) {
         return std::nullopt;
     }
 }
 
+constexpr double most_numbers = 4e6;    // of a spectrum's vectors
 constexpr double forcing = 1e-3;        // of a step's equations, that may be left of the gradient
 constexpr int stale = 12;               // products, after which the spectrum is found anew
 constexpr double enough_fall = 0.05;    // of what a step promises
@@ -43,6 +44,13 @@ struct Step {
     double promised = 0;  // fall of half of chi^2 and prior
     int products = 0;
 };
+
+/// As many directions as memory and time allow.
+SpectrumOptions spectrum_options(int P) {
+    SpectrumOptions options;
+    options.largest = std::min(options.largest, static_cast<int>(most_numbers / P));
+    return options;
+}
 
 /// (1 + damping + A) dv = -g by conjugate gradients, preconditioned by the spectrum of an A nearby.
 Step damped_step(const SymmetricProduct& A, const Eigen::VectorXd& g, double damping, const Spectrum& near) {
@@ -73,6 +81,7 @@ SymmetricProduct whitened_curvature(const Slopes& slopes, const LogNormalPrior& 
 
 FitResult fit_map(const PositionDomain& domain, const LogNormalPrior& prior, const Eigen::VectorXd& start, int threads,
                   const FitOptions& options) {
+    const int P = domain.parameters().size();
     FitResult fit;
     fit.theta = start;
     fit.prediction = first_prediction(domain, threads, fit.theta);
@@ -96,7 +105,7 @@ FitResult fit_map(const PositionDomain& domain, const LogNormalPrior& prior, con
             g = prior.slopes_by_v(slopes->gradient()) + prior.whitened(fit.theta);
         }
         const SymmetricProduct A = whitened_curvature(*slopes, prior);
-        if (!known) fit.spectrum = leading_spectrum(A, domain.parameters().size(), {}, fit.spectrum.vectors);
+        if (!known) fit.spectrum = leading_spectrum(A, P, spectrum_options(P), fit.spectrum.vectors);
         const double largest = fit.spectrum.values.size() > 0 ? fit.spectrum.values[0] : 1;
         ++fit.iterations;
 
@@ -113,7 +122,8 @@ FitResult fit_map(const PositionDomain& domain, const LogNormalPrior& prior, con
         const Eigen::VectorXd whole = prior.coloured(step.dv);
         const double share = std::min(reach, 1 / whole.cwiseAbs().maxCoeff());
         const Eigen::VectorXd theta = fit.theta + share * whole;
-        std::optional<Prediction> trial = try_prediction(domain, threads, theta, fit.prediction);
+        std::optional<Prediction> trial =
+            try_prediction(domain, threads, theta, domain.advanced(fit.prediction, *slopes, theta - fit.theta));
         ++fit.evaluations;
         double fall = -1, chi_squared = 0;  // of half of chi^2 and prior
         if (trial) {
@@ -146,8 +156,9 @@ FitResult fit_map(const PositionDomain& domain, const LogNormalPrior& prior, con
             slopes.emplace(domain.slopes(fit.theta, fit.prediction));
         }
         fit.spectrum =
-            leading_spectrum(whitened_curvature(*slopes, prior), domain.parameters().size(), {}, fit.spectrum.vectors);
+            leading_spectrum(whitened_curvature(*slopes, prior), P, spectrum_options(P), fit.spectrum.vectors);
     }
+    fit.prediction.tangents.clear();
     return fit;
 }
 

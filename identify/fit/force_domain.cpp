@@ -1,18 +1,14 @@
 #include "identify/fit/force_domain.h"
 
-#include <cblas.h>
-
 #include <Eigen/SparseCholesky>
 #include <algorithm>
 #include <cmath>
 
+#include "identify/fit/quadratic_forms.h"
 #include "mesh/errors.h"
 
 namespace palpate::identify {
 namespace {
-
-// with so large a share of H's entries, and so many numbers, it is multiplied as a dense matrix
-constexpr double dense_share = 0.1, few = 32;
 
 ForceStatistics zero_statistics(int P) { return {Eigen::SparseMatrix<double>(P, P), Eigen::VectorXd::Zero(P), 0, 0}; }
 
@@ -68,39 +64,6 @@ Eigen::VectorXd unbounded(const ForceStatistics& statistics, double weight, cons
     return S.transpose() * ldlt.solve(S * (weight - statistics.g.array()).matrix());
 }
 
-/// x^T H x + 2 g^T x of each row x of X: the diagonal of X H X^T + 2 X g, as one matrix product.
-Eigen::VectorXd dense_forms(const ForceStatistics& statistics, const Eigen::MatrixXd& X) {
-    const Eigen::MatrixXd H = statistics.H;
-    const auto N = static_cast<int>(X.rows()), P = static_cast<int>(H.rows());
-    Eigen::MatrixXd XH(N, P);
-    cblas_dgemm(CblasColMajor, CblasNoTrans, CblasNoTrans, N, P, P, 1, X.data(), N, H.data(), P, 0, XH.data(), N);
-    return XH.cwiseProduct(X).rowwise().sum() + 2 * X * statistics.g;
-}
-
-/// The same by the entries of one triangle of H, a strip of particles side by side that stays in the cache.
-Eigen::VectorXd sparse_forms(const ForceStatistics& statistics, const Eigen::MatrixXd& X) {
-    constexpr Eigen::Index width = 64;
-    using Strip = Eigen::Array<double, width, 1>;
-    const auto N = X.rows(), P = X.cols();
-    Eigen::VectorXd forms(N);
-    Eigen::Array<double, width, Eigen::Dynamic> x = Eigen::Array<double, width, Eigen::Dynamic>::Zero(width, P);
-    for (Eigen::Index begin = 0; begin < N; begin += width) {
-        const Eigen::Index count = std::min(width, N - begin);
-        x.topRows(count) = X.middleRows(begin, count);
-        Strip sum = Strip::Zero();
-        for (Eigen::Index a = 0; a < P; ++a) {
-            Strip slope = Strip::Constant(statistics.g[a]);
-            for (Eigen::SparseMatrix<double>::InnerIterator entry(statistics.H, a); entry && entry.row() <= a;
-                 ++entry) {
-                slope += (entry.row() < a ? 1.0 : 0.5) * entry.value() * x.col(entry.row());
-            }
-            sum += slope * x.col(a);
-        }
-        forms.segment(begin, count) = 2 * sum.head(count);
-    }
-    return forms;
-}
-
 }  // namespace
 
 ForceStatistics operator+(const ForceStatistics& a, const ForceStatistics& b) {
@@ -108,9 +71,7 @@ ForceStatistics operator+(const ForceStatistics& a, const ForceStatistics& b) {
 }
 
 Eigen::VectorXd squared_errors(const ForceStatistics& statistics, const Eigen::MatrixXd& particles) {
-    const auto P = static_cast<double>(statistics.H.rows());
-    const bool dense = P > few && static_cast<double>(statistics.H.nonZeros()) > dense_share * P * P;
-    const Eigen::VectorXd quadratic = dense ? dense_forms(statistics, particles) : sparse_forms(statistics, particles);
+    const Eigen::VectorXd quadratic = quadratic_forms(statistics.H, statistics.g, particles);
     return (quadratic.array() + statistics.c).max(0);
 }
 

@@ -24,7 +24,7 @@ struct ForceStatistics {
     int rows = 0;                   // net forces that were summed
 };
 
-/// Of each particle of multipliers (N x P), all at once (N) [N^2]: a matrix product where H is large and dense.
+/// Of each particle of multipliers (N x P), all at once (N) [N^2]; see quadratic_forms.
 Eigen::VectorXd squared_errors(const ForceStatistics& statistics, const Eigen::MatrixXd& particles);
 
 /// Net forces and net torques on the free spheres in measured configurations, the model's effects in force; exact

@@ -44,11 +44,10 @@ bool effects_have_stiffness(const skeleton::Model& model) {
 
 PositionDomain::PositionDomain(const skeleton::Model& model, skeleton::Law law, Parameters parameters,
                                const std::vector<StateReadings>& readings, int threads)
-    : model_(with_law(model, law)),
-      solvers_(std::make_shared<SolverPool>(*model_)),
-      parameters_(std::move(parameters)),
-      threads_(threads) {
+    : model_(with_law(model, law)), parameters_(std::move(parameters)), threads_(threads) {
     std::ranges::copy_if(readings, std::back_inserter(states_), &StateReadings::tells_stiffness);
+
+    take_law();
 
     const skeleton::State rest = rest_state(*model_);
     const Eigen::VectorXd effects = skeleton::effect_force(*model_, rest);
@@ -57,7 +56,8 @@ PositionDomain::PositionDomain(const skeleton::Model& model, skeleton::Law law, 
     F_.resize(model_->dofs(), static_cast<Eigen::Index>(states_.size()));
     std::vector<double> displacements;
     for (int s = 0; s < static_cast<int>(states_.size()); ++s) {
-        P_.push_back(skeleton::observation_jacobian(*model_, rest, states_[s].points));
+        P_.push_back(std::make_shared<Eigen::SparseMatrix<double>>(
+            skeleton::observation_jacobian(*model_, rest, states_[s].points)));
         F_.col(s) = skeleton::external_force(*model_, rest, states_[s].load) + effects;
         offsets_.emplace_back(Points::Zero(states_[s].rest.rows(), 3));
         displacements.push_back(states_[s].displacement);
@@ -67,6 +67,17 @@ PositionDomain::PositionDomain(const skeleton::Model& model, skeleton::Law law, 
     for (int s = 0; s < static_cast<int>(states_.size()); ++s) offsets_[s] += dented(s, dent_);
     typical_displacement_ = median(displacements);
     set_model_error(0.03);
+}
+
+/// What the model's law is solved with.
+void PositionDomain::take_law() {
+    solvers_ = std::make_shared<SolverPool>(*model_);
+    if (law() == skeleton::Law::linear) {
+        rest_law_ = std::make_shared<RestLaw>(*model_);
+        links_ = rest_law_->links();
+    } else {
+        links_ = std::make_shared<LinksAtRest>(*model_);
+    }
 }
 
 int PositionDomain::coordinates() const {
@@ -117,11 +128,11 @@ double PositionDomain::estimate_model_error(const Prediction& prediction) const 
 }
 
 Prediction PositionDomain::predict_linear(const Eigen::VectorXd& k) const {
-    const SolverPool::Loan solver(*solvers_);
-    const Eigen::MatrixXd U = solver->linear_steps(k, F_.colwise() + G_rest_ * k);
     Prediction prediction;
+    prediction.tangents.push_back(linear_tangent(k));
+    const Eigen::MatrixXd U = prediction.tangents.front()(F_.colwise() + G_rest_ * k);
     for (int s = 0; s < static_cast<int>(states_.size()); ++s) {
-        const Eigen::VectorXd moved = P_[s] * U.col(s);
+        const Eigen::VectorXd moved = *P_[s] * U.col(s);
         prediction.markers.emplace_back(states_[s].rest + offsets_[s] +
                                         moved.reshaped<Eigen::RowMajor>(moved.size() / 3, 3));
         prediction.equilibria.push_back({.state = {}, .iterations = 1, .step = U.col(s)});
@@ -129,18 +140,59 @@ Prediction PositionDomain::predict_linear(const Eigen::VectorXd& k) const {
     return prediction;
 }
 
-Prediction PositionDomain::predict(const Eigen::VectorXd& theta, int threads, const Prediction* start) const {
+TangentSolve PositionDomain::linear_tangent(const Eigen::VectorXd& k) const {
+    return [law = rest_law_, factor = rest_law_->factor(k)](const Eigen::MatrixXd& F) { return factor->solve(F); };
+}
+
+/// A solver on loan, with all that it hangs on.
+struct PositionDomain::Borrowed {
+    explicit Borrowed(const PositionDomain& domain)
+        : model(domain.model_), pool(domain.solvers_), solver(std::make_unique<SolverPool::Loan>(*pool)) {}
+    std::shared_ptr<const skeleton::Model> model;
+    std::shared_ptr<SolverPool> pool;
+    std::unique_ptr<SolverPool::Loan> solver;
+};
+
+std::shared_ptr<PositionDomain::Borrowed> PositionDomain::borrow() const { return std::make_shared<Borrowed>(*this); }
+
+TangentSolve PositionDomain::tangent_of(std::shared_ptr<Borrowed> borrowed) {
+    return [borrowed = std::move(borrowed)](const Eigen::MatrixXd& F) { return (**borrowed->solver).solve_tangent(F); };
+}
+
+TangentSolve PositionDomain::factored(int s, const Eigen::VectorXd& k, const skeleton::Equilibrium& at) const {
+    std::shared_ptr<Borrowed> borrowed = borrow();
+    (**borrowed->solver).factor_tangent(k, states_[s].load, at);
+    return tangent_of(std::move(borrowed));
+}
+
+Prediction PositionDomain::advanced(const Prediction& prediction, const Slopes& slopes,
+                                    const Eigen::VectorXd& step) const {
+    Prediction result{prediction.equilibria, prediction.markers, {}};
+    if (law() == skeleton::Law::linear) return result;  // which starts from nowhere
+    const Eigen::MatrixXd steps = slopes.steps(step);
+    for (std::size_t s = 0; s < result.equilibria.size(); ++s) {
+        skeleton::State& state = result.equilibria[s].state;
+        state = skeleton::advance(state, steps.col(static_cast<Eigen::Index>(s)));
+    }
+    return result;
+}
+
+Prediction PositionDomain::predict(const Eigen::VectorXd& theta, int threads, const Prediction* start,
+                                   bool for_slopes) const {
     const Eigen::VectorXd k = parameters_.stiffness(theta);
     if (law() == skeleton::Law::linear) return predict_linear(k);
 
     Prediction prediction;
     prediction.equilibria.resize(states_.size());
     prediction.markers.resize(states_.size());
+    if (for_slopes) prediction.tangents.resize(states_.size());
     for_each_in_parallel(static_cast<int>(states_.size()), remembers(states_) ? 1 : threads, [&](int s) {
-        const SolverPool::Loan solver(*solvers_);
-        const skeleton::FibreStates before = flowed_before(*model_, *solver, k, states_, s, prediction.equilibria);
+        std::shared_ptr<Borrowed> borrowed = borrow();
+        skeleton::StaticsSolver& solver = **borrowed->solver;
+        const skeleton::FibreStates before = flowed_before(*model_, solver, k, states_, s, prediction.equilibria);
         const skeleton::State* from = start != nullptr ? &start->equilibria[s].state : nullptr;
-        prediction.equilibria[s] = solver->solve(k, states_[s].load, {}, from, before);
+        prediction.equilibria[s] = solver.solve(k, states_[s].load, {}, from, before);
+        if (for_slopes) prediction.tangents[s] = tangent_of(std::move(borrowed));
         prediction.markers[s] = observe(*model_, prediction.equilibria[s], states_[s].points) + offsets_[s];
     });
     return prediction;
@@ -209,7 +261,7 @@ double PositionDomain::common_factor(const Eigen::VectorXd& theta) const {
     const Eigen::MatrixXd U = solver->linear_steps(k, F);
     double up = 0, down = 0;
     for (int s = 0; s < static_cast<int>(states_.size()); ++s) {
-        const Eigen::VectorXd modelled = P_[s] * U.col(s), pulled = P_[s] * U.rightCols<1>();
+        const Eigen::VectorXd modelled = *P_[s] * U.col(s), pulled = *P_[s] * U.rightCols<1>();
         const Eigen::VectorXd weighted = weights_[s].cwiseProduct(modelled);
         const Points rest = states_[s].rest + pulled.reshaped<Eigen::RowMajor>(pulled.size() / 3, 3);
         up += weighted.dot(errors(s, rest));
@@ -221,7 +273,7 @@ double PositionDomain::common_factor(const Eigen::VectorXd& theta) const {
 PositionDomain PositionDomain::linearised(const Eigen::VectorXd& theta, const Prediction& prediction) const {
     PositionDomain result = *this;
     result.model_ = with_law(*model_, skeleton::Law::linear);
-    result.solvers_ = std::make_shared<SolverPool>(*result.model_);
+    result.take_law();
     const Prediction linear = result.predict_linear(parameters_.stiffness(theta));
     for (int s = 0; s < static_cast<int>(states_.size()); ++s) {
         result.offsets_[s] += prediction.markers[s] - linear.markers[s];

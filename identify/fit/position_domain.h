@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "identify/fit/parameters.h"
+#include "identify/fit/rest_law.h"
 #include "identify/fit/slopes.h"
 #include "identify/fit/solver_pool.h"
 #include "identify/set/readings.h"
@@ -14,6 +15,7 @@ namespace palpate::identify {
 struct Prediction {
     std::vector<skeleton::Equilibrium> equilibria;  // (states)
     std::vector<Points> markers;                    // of each state (m x 3) [mm]
+    std::vector<TangentSolve> tangents;             // of each state, or one for all; none: they were not kept
 };
 
 /// Errors of the markers at the model's own equilibria, and their derivatives by theta, the log multipliers.
@@ -43,14 +45,17 @@ public:
     /// is enough: the six readings that a state counts as would be six of very noisy ones else.
     double estimate_model_error(const Prediction& prediction) const;
 
-    /// Equilibria at k(theta). `start`: those of a neighbouring theta. Safe from several threads, with `threads` 1.
-    /// @throws SolverFailure where there is none.
-    Prediction predict(const Eigen::VectorXd& theta, int threads, const Prediction* start = nullptr) const;
+    /// Equilibria at k(theta). `start`: those of a neighbouring theta. `for_slopes`: with the tangents that they leave
+    /// factored. Safe from several threads, with `threads` 1. @throws SolverFailure where there is none.
+    Prediction predict(const Eigen::VectorXd& theta, int threads, const Prediction* start = nullptr,
+                       bool for_slopes = false) const;
+    /// A prediction brought nearer to a theta that is one step away, to first order, for `predict` to start from.
+    Prediction advanced(const Prediction& prediction, const Slopes& slopes, const Eigen::VectorXd& step) const;
     double chi_squared(const Prediction& prediction) const;
     double squared_distance(const Prediction& prediction) const;  // between measured and modelled [mm^2]
     /// ln of the likelihood's constant: - sum ln(sigma sqrt(2 pi)).
     double log_constant() const { return log_constant_; }
-    /// Of the errors, at theta with its equilibria. @pre the domain outlives them.
+    /// Of the errors, at theta with its equilibria.
     Slopes slopes(const Eigen::VectorXd& theta, const Prediction& prediction) const;
 
     /// The dents' amplitudes that explain most of what a prediction leaves, in force from then on: linear least
@@ -69,24 +74,32 @@ public:
     PositionDomain linearised(const Eigen::VectorXd& theta, const Prediction& prediction) const;
 
 private:
+    void take_law();
     Prediction predict_linear(const Eigen::VectorXd& k) const;
+    TangentSolve linear_tangent(const Eigen::VectorXd& k) const;
+    struct Borrowed;
+    std::shared_ptr<Borrowed> borrow() const;
+    static TangentSolve tangent_of(std::shared_ptr<Borrowed> borrowed);  // with what its solver has factored
+    TangentSolve factored(int s, const Eigen::VectorXd& k, const skeleton::Equilibrium& at) const;
     /// Measured less modelled, zero for a missing coordinate (3m).
     Eigen::VectorXd errors(int s, const Points& markers) const;
     Points dented(int s, const Eigen::Matrix<double, 6, 1>& dent) const;  // (m x 3) [mm]
 
     std::shared_ptr<const skeleton::Model> model_;
     std::shared_ptr<SolverPool> solvers_;
+    std::shared_ptr<const RestLaw> rest_law_;  // linear law alone
+    std::shared_ptr<const LinksAtRest> links_;
     Parameters parameters_;
     std::vector<StateReadings> states_;
-    std::vector<Points> offsets_;                 // added to the modelled markers (m x 3) [mm]
-    std::vector<Eigen::MatrixXd> dents_;          // dent_motions of each state's markers (3m x 6), empty without
-    Eigen::Matrix<double, 6, 1> dent_;            // amplitudes [1/MPa]
-    std::vector<Eigen::SparseMatrix<double>> P_;  // of each state at rest (3m x 6N)
-    Eigen::MatrixXd F_;                           // loads and effects at rest (6N x states)
-    Eigen::SparseMatrix<double> G_rest_;          // those of the links, of each stiffness (6N x 3L)
-    std::vector<Eigen::VectorXd> weights_;        // 1 / sigma^2, 0 for a missing coordinate, of each state (3m)
-    bool goes_as_inverse_ = true;                 // displacement, with a factor on all stiffnesses
-    double typical_displacement_ = 0;             // u_0 [mm]
+    std::vector<Points> offsets_;         // added to the modelled markers (m x 3) [mm]
+    std::vector<Eigen::MatrixXd> dents_;  // dent_motions of each state's markers (3m x 6), empty without
+    Eigen::Matrix<double, 6, 1> dent_;    // amplitudes [1/MPa]
+    std::vector<std::shared_ptr<const Eigen::SparseMatrix<double>>> P_;  // of each state at rest (3m x 6N)
+    Eigen::MatrixXd F_;                                                  // loads and effects at rest (6N x states)
+    Eigen::SparseMatrix<double> G_rest_;    // those of the links, of each stiffness (6N x 3L)
+    std::vector<Eigen::VectorXd> weights_;  // 1 / sigma^2, 0 for a missing coordinate, of each state (3m)
+    bool goes_as_inverse_ = true;           // displacement, with a factor on all stiffnesses
+    double typical_displacement_ = 0;       // u_0 [mm]
     double log_constant_ = 0;
     int threads_ = 1;
 };

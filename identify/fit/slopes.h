@@ -1,12 +1,16 @@
 #pragma once
 
 #include <Eigen/SparseCore>
+#include <functional>
 #include <memory>
 #include <vector>
 
-#include "identify/fit/solver_pool.h"
+#include "identify/fit/link_signatures.h"
 
 namespace palpate::identify {
+
+/// T^-1 F (6N x n), of F (6N x n), with the factored tangent T = -dr/dx of an equilibrium; keeps alive what it needs.
+using TangentSolve = std::function<Eigen::MatrixXd(const Eigen::MatrixXd& F)>;
 
 /// Derivatives J = dd / dtheta of the errors d = (measured - modelled) / sigma at one theta, by its equilibria.
 ///
@@ -17,23 +21,32 @@ class Slopes {
 public:
     /// What a state contributes.
     struct State {
-        Eigen::SparseMatrix<double> G;          // dr/dtheta (6N x P)
-        Eigen::SparseMatrix<double> PWP;        // readings pulled back to the spheres, P^T W P (6N x 6N)
-        Eigen::VectorXd PWe;                    // and their errors, P^T W (measured - modelled) (6N)
-        const skeleton::StaticsSolver* solver;  // T, factored
+        LinkSignatures G;                                      // dr/dk
+        std::shared_ptr<const Eigen::SparseMatrix<double>> P;  // d markers / d step (3m x 6N)
+        Eigen::VectorXd weights;                               // W, 1 / sigma^2 (3m)
+        Eigen::VectorXd errors;                                // measured - modelled (3m)
     };
-    using Loans = std::vector<std::unique_ptr<SolverPool::Loan>>;
 
-    /// `loans`: the solvers of the states, kept.
-    Slopes(std::vector<State> states, Loans loans, int threads)
-        : states_(std::move(states)), loans_(std::move(loans)), threads_(threads) {}
+    /// `dk`: dk/dtheta. `tangents`: of each state, or one for all.
+    Slopes(std::vector<State> states, Eigen::SparseMatrix<double> dk, std::vector<TangentSolve> tangents, int threads)
+        : states_(std::move(states)), dk_(std::move(dk)), tangents_(std::move(tangents)), threads_(threads) {}
 
     Eigen::VectorXd gradient() const;                                 // of half the chi^2, J^T d (P)
     Eigen::MatrixXd curvature_times(const Eigen::MatrixXd& V) const;  // J^T J V, of V (P x n)
+    /// How the states follow a step of theta, to first order: T^-1 G dk/dtheta step, a column each (6N x states).
+    Eigen::MatrixXd steps(const Eigen::VectorXd& step) const;
 
 private:
+    using States = std::vector<int>;
+    /// States that are solved for at once, with n columns each.
+    std::vector<States> together(Eigen::Index n) const;
+    const TangentSolve& tangent(const States& states) const;
+    Eigen::MatrixXd moved(const States& states, const Eigen::MatrixXd& K) const;   // T^-1 G K, state after state
+    Eigen::MatrixXd pulled(const States& states, const Eigen::MatrixXd& F) const;  // sum of G^T T^-1 F
+
     std::vector<State> states_;
-    Loans loans_;
+    Eigen::SparseMatrix<double> dk_;  // (stiffnesses x P)
+    std::vector<TangentSolve> tangents_;
     int threads_;
 };
 

@@ -2,6 +2,7 @@
 
 #include "identify/fit/force_domain.h"
 #include "identify/identify.h"
+#include "identify/set/readings.h"
 #include "mesh/progress.h"
 
 namespace palpate::identify {

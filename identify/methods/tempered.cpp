@@ -6,6 +6,7 @@
 
 #include "identify/fit/calibrate.h"
 #include "identify/methods/methods.h"
+#include "identify/particles/drawn.h"
 #include "identify/particles/posterior.h"
 #include "identify/particles/tempered_filter.h"
 #include "identify/set/readings.h"
@@ -15,10 +16,20 @@ namespace palpate::identify {
 namespace {
 
 constexpr double calibration_share = 0.4;  // of the progress
+constexpr int pairs = 8, few_pairs = 2;    // of draws that find the particles' centre; where these are dear
 constexpr int many_parameters = 100;       // the mode is far from the mean's neighbourhood, in more dimensions
 
 /// Beyond so many sphere equilibria for one look at all particles, large rotations are stood in for.
 constexpr double dear_evaluations = 3e4;
+
+/// Beyond so much work for one look at all particles by the linear law, they are not looked at one by one. A factor of
+/// a body in space takes the square of its spheres.
+constexpr double dear_factors = 2e8;
+
+bool is_too_dear(const PositionDomain& domain, int particles) {
+    const double spheres = domain.spheres();
+    return domain.law() == skeleton::Law::linear && particles * spheres * spheres > dear_factors;
+}
 
 /// Whether one look at all particles by the full law costs too much; counted, not timed, so that it never changes.
 bool is_dear(const PositionDomain& domain, int particles) {
@@ -69,16 +80,24 @@ IdentifyResult identify_tempered(const skeleton::Model& model, const Measurement
     propose(calibration.fit);
     std::ranges::for_each(calibration.others, propose);
     int evaluations = 0;  // of all equilibria
+    const bool too_dear = is_too_dear(domain, particles);
     if (parameters.size() > many_parameters) {
-        evaluations +=
-            centre(proposals.front(), domain, prior, calibration.fit.prediction, options.seed, options.threads);
+        evaluations += centre(proposals.front(), domain, prior, calibration.fit.prediction,
+                              too_dear ? few_pairs : pairs, options.seed, options.threads);
     }
     const TemperedOptions how{.particles = particles, .seed = options.seed, .threads = options.threads};
-    TemperedResult filter = tempered_filter(log_density, proposals, how, [&](std::string_view what, double fraction) {
-        report(progress, what, calibration_share + (1 - calibration_share) * fraction);
-    });
+    TemperedResult filter =
+        too_dear ? drawn_particles(log_density, proposals.front(), how)
+                 : tempered_filter(log_density, proposals, how, [&](std::string_view what, double fraction) {
+                       report(progress, what, calibration_share + (1 - calibration_share) * fraction);
+                   });
     evaluations += filter.evaluations;
-    if (!filter.weighed) {
+    if (too_dear) {
+        result.notes.emplace_back(
+            "particles: too large a body to weigh them; they are drawn from the fit's own covariance, by the "
+            "directions "
+            "that the measurements tell most of: intervals are wide rather than narrow, and the evidence is Laplace's");
+    } else if (!filter.weighed) {
         result.notes.emplace_back(
             "particles: too many parameters to weigh them; they are drawn from the fit's own "
             "covariance and moved towards the posterior, and the evidence is Laplace's");

@@ -12,7 +12,6 @@ namespace {
 
 constexpr int centring_looks = 4;                  // at the posterior's slopes, at most
 constexpr double centred = 0.1;                    // of ln pi, that the next step would gain
-constexpr int pairs = 8;                           // of draws, the same at each look
 constexpr std::uint64_t centring_round = 1 << 30;  // of the random streams, beyond any move's
 
 /// ln pi of a domain and a prior, and its slopes by v, theta = mean + C v; averages over draws of a proposal.
@@ -80,7 +79,7 @@ GaussianProposal laplace_proposal(const FitResult& fit, const LogNormalPrior& pr
 }
 
 int centre(GaussianProposal& proposal, const PositionDomain& domain, const LogNormalPrior& prior,
-           const Prediction& near, std::uint64_t seed, int threads) {
+           const Prediction& near, int pairs, std::uint64_t seed, int threads) {
     const auto P = static_cast<int>(proposal.mean.size());
     Eigen::MatrixXd z(P, 2 * pairs);
     for (int i = 0; i < pairs; ++i) {

@@ -26,11 +26,11 @@ GaussianProposal laplace_proposal(const FitResult& fit, const LogNormalPrior& pr
 /// Moves the mean to where the posterior's slope, averaged over the proposal, is zero: the best of all Gaussians of
 /// this covariance (least Kullback-Leibler divergence from them to the posterior). With thousands of links that each
 /// may be half or twice as stiff, a body is softer or stiffer than by the links' middle values, by many sd of what the
-/// measurements tell, so that Laplace's particles, round the mode, nearly all miss. Means over pairs z and -z, and
+/// measurements tell, so that Laplace's particles, round the mode, nearly all miss. Means over `pairs` z and -z, and
 /// Newton's method with the proposal's own covariance, as long as ln pi rises on average. Draws without equilibrium
 /// count nothing.
 /// Returns how often all equilibria were solved.
 int centre(GaussianProposal& proposal, const PositionDomain& domain, const LogNormalPrior& prior,
-           const Prediction& near, std::uint64_t seed, int threads);
+           const Prediction& near, int pairs, std::uint64_t seed, int threads);
 
 }  // namespace palpate::identify

@@ -34,6 +34,25 @@ std::vector<int> low_variance_resample(const Eigen::VectorXd& log_weights, int c
     return chosen;
 }
 
+Eigen::VectorXd reweighted(const Eigen::VectorXd& log_weights, const Eigen::VectorXd& log_ratio, double db) {
+    return log_weights + db * log_ratio;
+}
+
+double temperature_step(const Eigen::VectorXd& log_weights, const Eigen::VectorXd& log_ratio, double b, double wanted) {
+    const auto effective = [&](double db) {
+        Eigen::VectorXd trial = reweighted(log_weights, log_ratio, db);
+        normalise(trial);
+        return effective_samples(trial);
+    };
+    if (effective(1 - b) >= wanted) return 1 - b;
+    double low = 0, high = 1 - b;
+    for (int i = 0; i < 60 && high - low > 1e-3 * high; ++i) {
+        const double middle = (low + high) / 2;
+        (effective(middle) >= wanted ? low : high) = middle;
+    }
+    return high;  // particles without density go with the first step
+}
+
 double weighted_quantile(const Eigen::VectorXd& values, const Eigen::VectorXd& weights, double q) {
     std::vector<int> order(values.size());
     std::iota(order.begin(), order.end(), 0);

@@ -16,6 +16,12 @@ double effective_samples(const Eigen::VectorXd& log_weights);
 /// A particle of weight w is taken floor or ceil (count w) times. [Thrun, Burgard, Fox 2005, table 4.4]
 std::vector<int> low_variance_resample(const Eigen::VectorXd& log_weights, int count, double u);
 
+/// Weights after going from temperature b by db, w (pi / q)^db; not normalised.
+Eigen::VectorXd reweighted(const Eigen::VectorXd& log_weights, const Eigen::VectorXd& log_ratio, double db);
+
+/// The largest step of temperature from b, up to 1, that leaves the wanted effective sample size; never zero.
+double temperature_step(const Eigen::VectorXd& log_weights, const Eigen::VectorXd& log_ratio, double b, double wanted);
+
 /// The value below which the share `q` of the weight lies; `weights` add up to 1.
 double weighted_quantile(const Eigen::VectorXd& values, const Eigen::VectorXd& weights, double q);
 

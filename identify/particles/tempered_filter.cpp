@@ -18,6 +18,9 @@ namespace {
 /// in modes of their own.
 constexpr double particles_per_parameter = 4;
 
+/// More draws than this many times N are not made: moves are cheaper then.
+constexpr double most_draws = 4;
+
 /// Copies part so much further after the last temperature, as their spread is what is told.
 constexpr double further_at_the_end = 2;
 
@@ -82,15 +85,20 @@ public:
         return ratio;
     }
 
-    /// As many of each Gaussian.
-    Cloud draw() const {
-        Cloud cloud{Eigen::MatrixXd(parameters(), options_.particles), {}, {}};
-        for (int i = 0; i < options_.particles; ++i) {
-            cloud.z.col(i) = RandomStream(options_.seed, 0, i).normals(parameters());
-            cloud.from.push_back(i % modes());
+    /// Adds N particles of q, as many of each Gaussian.
+    void draw(Cloud& cloud) const {
+        const int before = cloud.size(), count = options_.particles;
+        Eigen::MatrixXd z(parameters(), count);
+        std::vector<int> from;
+        for (int i = before; i < before + count; ++i) {
+            z.col(i - before) = RandomStream(options_.seed, 0, i).normals(parameters());
+            from.push_back(i % modes());
         }
-        cloud.log_ratio = log_ratio(cloud.z, cloud.from);
-        return cloud;
+        cloud.z.conservativeResize(parameters(), before + count);
+        cloud.z.rightCols(count) = z;
+        cloud.log_ratio.conservativeResize(before + count);
+        cloud.log_ratio.tail(count) = log_ratio(z, from);
+        cloud.from.insert(cloud.from.end(), from.begin(), from.end());
     }
 
     struct Moved {
@@ -132,27 +140,6 @@ private:
     const TemperedOptions& options_;
     std::vector<double> log_peaks_;  // ln q_k(mean)
 };
-
-/// Weights after going from temperature b by db: w (pi / q)^db.
-Eigen::VectorXd reweighted(const Eigen::VectorXd& log_weights, const Eigen::VectorXd& log_ratio, double db) {
-    return log_weights + db * log_ratio;
-}
-
-/// The largest step of temperature that leaves the wanted effective sample size.
-double temperature_step(const Eigen::VectorXd& log_weights, const Eigen::VectorXd& log_ratio, double b, double wanted) {
-    const auto effective = [&](double db) {
-        Eigen::VectorXd trial = reweighted(log_weights, log_ratio, db);
-        normalise(trial);
-        return effective_samples(trial);
-    };
-    if (effective(1 - b) >= wanted) return 1 - b;
-    double low = 0, high = 1 - b;
-    for (int i = 0; i < 60 && high - low > 1e-3 * high; ++i) {
-        const double middle = (low + high) / 2;
-        (effective(middle) >= wanted ? low : high) = middle;
-    }
-    return high;  // never zero: particles without density go with the first step
-}
 
 void resample(Cloud& cloud, Eigen::VectorXd& log_weights, double u) {
     const Cloud before = cloud;
@@ -220,11 +207,34 @@ double spread_of(const Cloud& cloud, const Eigen::VectorXd& log_weights) {
 
 Eigen::VectorXd equal_weights(int n) { return Eigen::VectorXd::Constant(n, -std::log(n)); }
 
+/// Draws of q, weighed by pi / q at once, as many as it takes to be worth the wanted number of equal ones; false, and
+/// nothing done, where that is not within `most_draws` N.
+bool weigh_draws(const Filter& filter, const TemperedOptions& options, Cloud& cloud, TemperedResult& result) {
+    const double wanted = options.least_effective * options.particles;
+    const auto weights_of = [](const Cloud& drawn, Eigen::VectorXd& log_weights) {
+        log_weights = equal_weights(drawn.size()) + drawn.log_ratio;
+        return normalise(log_weights);
+    };
+    Cloud drawn = cloud;
+    Eigen::VectorXd log_weights;
+    double log_evidence = weights_of(drawn, log_weights), effective = effective_samples(log_weights);
+    while (effective < wanted) {
+        if (most_draws * effective * options.particles < wanted * drawn.size()) return false;
+        filter.draw(drawn);
+        log_evidence = weights_of(drawn, log_weights);
+        effective = effective_samples(log_weights);
+    }
+    cloud = std::move(drawn);
+    result.log_weights = std::move(log_weights);
+    result.log_evidence = log_evidence;
+    return true;
+}
+
 /// The weighed particles, from b = 0 to 1; false when copies do not part.
 bool temper(const Filter& filter, const TemperedOptions& options, Mover& mover, Cloud& cloud, TemperedResult& result,
             const Progress& progress) {
+    if (weigh_draws(filter, options, cloud, result)) return true;
     double b = 0;
-    bool copied = false;
     while (b < 1) {
         if (static_cast<int>(result.history.size()) > options.temperatures) {
             throw SolverFailure(
@@ -241,12 +251,9 @@ bool temper(const Filter& filter, const TemperedOptions& options, Mover& mover, 
         result.history.push_back(filter.record(cloud, b, result.log_weights));
         const double spread = spread_of(cloud, result.log_weights);
 
-        // equal weights again, but at the end, where nothing is gained by it; draws that were never copied stay as
-        // they are
-        if (b == 1 && !copied) break;
+        // equal weights again, but at the end, where nothing is gained by it
         if (b < 1) {
             resample(cloud, result.log_weights, RandomStream(options.seed, mover.next_round(), cloud.size()).uniform());
-            copied = true;
         }
         const bool parted = mover.part(cloud, b, spread);
         if (!parted && particles_per_parameter * static_cast<double>(cloud.z.rows()) > cloud.size()) return false;
@@ -265,8 +272,9 @@ TemperedResult tempered_filter(const LogDensity& log_density, const std::vector<
 
     // particles of the proposal, b = 0
     report(progress, "particles", 0);
-    const Cloud drawn = filter.draw();
-    Cloud cloud = drawn;
+    Cloud cloud;
+    filter.draw(cloud);
+    const Cloud drawn = cloud;
     TemperedResult result;
     result.log_weights = equal_weights(options.particles);
     result.history.push_back(filter.record(cloud, 0, result.log_weights));
@@ -287,7 +295,7 @@ TemperedResult tempered_filter(const LogDensity& log_density, const std::vector<
     result.history.push_back(filter.record(cloud, 1, result.log_weights));
     result.particles = result.history.back().particles;
     result.acceptance = mover.acceptance();
-    result.evaluations = (1 + mover.made()) * options.particles;
+    result.evaluations = std::max(cloud.size(), drawn.size()) + mover.made() * options.particles;
     result.log_density.resize(cloud.size());
     result.mode.resize(static_cast<std::size_t>(cloud.size()));
     for (int i = 0; i < cloud.size(); ++i) {

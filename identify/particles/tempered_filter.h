@@ -24,7 +24,7 @@ struct TemperedOptions {
 };
 
 struct TemperedResult {
-    Eigen::MatrixXd particles;        // (N x P)
+    Eigen::MatrixXd particles;        // (N x P); more than N where more draws made moves needless
     Eigen::VectorXd log_weights;      // (N), normalised
     Eigen::VectorXd log_density;      // of each particle (N)
     std::vector<int> mode;            // of each particle: the Gaussian of q that is densest there (N)
@@ -47,7 +47,8 @@ struct TemperedResult {
 /// its k have the density q_k (pi / q)^b, whose sum over k is q^(1-b) pi^b: so modes keep their weights, near or far
 /// from each other, though no particle goes from one to the other.) Moves go on
 /// until copies have parted: until the squares of their ways add up to half of that between two particles; the last
-/// ones, which stay weighted, further. Where q is so near that one temperature does, its draws stay as they are.
+/// ones, which stay weighted, further. Where q is so near that its draws, weighed by pi / q at once, are worth the
+/// wanted number of equal ones, within four times N of them, that is all: such draws are independent, and no copies.
 ///
 /// Where `moves` of them do not part the copies and there are fewer than four particles a parameter (a posterior unlike
 /// q in many of its parameters), resampling would leave a handful of particles in many copies, and intervals far too

@@ -80,7 +80,7 @@ TEST(Centre, HundredsOfLinksAreWeighedWhereLaplaceMisses) {
     const ManyLinks body;
     GaussianProposal proposal = laplace_proposal(body.fit, body.prior);
     const double by_laplace = body.effective_share(proposal);
-    centre(proposal, body.domain, body.prior, body.fit.prediction, 1, 2);
+    centre(proposal, body.domain, body.prior, body.fit.prediction, 8, 1, 2);
     EXPECT_LT(by_laplace, 0.15);
     EXPECT_GT(body.effective_share(proposal), 1.7 * by_laplace);
 }
@@ -95,7 +95,7 @@ TEST(Centre, KeepsAGaussianPosteriorsMean) {
     const LogNormalPrior prior{Eigen::VectorXd::Zero(3), Eigen::VectorXd::Constant(3, 1e-5), nullptr};
     const FitResult fit = fit_map(domain, prior, prior.mean, 1);
     GaussianProposal proposal = laplace_proposal(fit, prior);
-    centre(proposal, domain, prior, fit.prediction, 1, 1);
+    centre(proposal, domain, prior, fit.prediction, 8, 1, 1);
     EXPECT_LT((proposal.mean - fit.theta).norm(), 1e-3 * 1e-5);  // of the prior's sd
 }
 

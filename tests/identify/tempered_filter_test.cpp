@@ -77,20 +77,40 @@ TEST(TemperedFilter, PosteriorOfALinearGaussianProblemIsExact) {
     EXPECT_EQ(result.history.back().temperature, 1);
 }
 
-TEST(TemperedFilter, MovesDoNotDieWithTheDimension) {
-    // proposal = posterior but for a shift that the likelihood of one coordinate makes
-    constexpr int P = 1000;
-    const LogDensity density = [](const Eigen::VectorXd& theta) {
-        double sum = log_normal_density(1, theta[0], 0.5);
+/// A standard normal prior in 1000 dimensions, and readings of 1 of the first `count`.
+LogDensity readings_of_one(int count) {
+    return [count](const Eigen::VectorXd& theta) {
+        double sum = 0;
+        for (int i = 0; i < count; ++i) sum += log_normal_density(1, theta[i], 0.5);
         for (const double t : theta) sum += log_normal_density(t, 0, 1);
         return sum;
     };
-    const TemperedResult result = tempered_filter(density, round(Eigen::VectorXd::Zero(P), 1), {.particles = 400});
+}
+
+TEST(TemperedFilter, MovesDoNotDieWithTheDimension) {
+    // proposal = prior, of whose draws 0.42^3 count
+    const TemperedResult result =
+        tempered_filter(readings_of_one(3), round(Eigen::VectorXd::Zero(1000), 1), {.particles = 400, .moves = 40});
+    EXPECT_TRUE(result.weighed);
     EXPECT_GT(result.acceptance, 0.2);
     const Eigen::VectorXd weights = result.log_weights.array().exp();
     // posterior N(0.8, 0.2); five sigma of 400 draws of which a fifth counts
     EXPECT_NEAR(result.particles.col(0).dot(weights), 0.8, 5 * std::sqrt(0.2 / 80));
-    EXPECT_NEAR(result.log_evidence, log_normal_density(1, 0, std::sqrt(1.25)), 0.3);
+    EXPECT_NEAR(result.log_evidence, 3 * log_normal_density(1, 0, std::sqrt(1.25)), 0.5);
+}
+
+TEST(TemperedFilter, DrawsThatAreNearEnoughAreWeighedAtOnce) {
+    // of the prior's draws one in three counts
+    const TemperedResult result =
+        tempered_filter(readings_of_one(1), round(Eigen::VectorXd::Zero(1000), 1), {.particles = 400});
+    EXPECT_EQ(result.acceptance, 0);  // nothing was moved
+    EXPECT_GT(result.particles.rows(), 400);
+    EXPECT_EQ(result.evaluations, result.particles.rows());
+    EXPECT_GE(result.history.back().effective_samples, 200);
+    const Eigen::VectorXd weights = result.log_weights.array().exp();
+    // posterior N(0.8, 0.2); five sigma of 200
+    EXPECT_NEAR(result.particles.col(0).dot(weights), 0.8, 5 * std::sqrt(0.2 / 200));
+    EXPECT_NEAR(result.log_evidence, log_normal_density(1, 0, std::sqrt(1.25)), 5 * std::sqrt(1.0 / 200));
 }
 
 TEST(TemperedFilter, EqualModesKeepEqualWeights) {

@@ -1,0 +1,65 @@
+#pragma once
+
+#include <memory>
+#include <mutex>
+#include <vector>
+
+#include "fem/solve/cholesky.h"
+#include "identify/fit/link_signatures.h"
+
+namespace palpate::identify {
+
+/// The linear law of a model for one vector k of stiffnesses after another: steps u from rest with K(k) u = F,
+///   K(k) = K_0 + sum_e k_e H_e,
+/// where H_e, what a unit of a stiffness withstands at rest, and K_0, of effects, are found once. Factors by supernodes
+/// [fem::Cholesky], so that ten thousand links and many right-hand sides are products of dense blocks. Safe from
+/// several threads.
+class RestLaw {
+public:
+    /// The model's effects are in force. @throws InvalidInput as skeleton::StaticsSolver.
+    explicit RestLaw(const skeleton::Model& model);
+
+    /// K(k), factored; gives its memory back when it goes.
+    class Factor;
+    /// @throws SolverFailure naming the sphere that nothing keeps in place.
+    std::shared_ptr<const Factor> factor(const Eigen::VectorXd& k) const;
+
+    const std::shared_ptr<const LinksAtRest>& links() const { return links_; }
+
+private:
+    using Block = Eigen::Matrix<double, 6, 6>;
+
+    /// What a factor needs of its law, and leaves to the next one.
+    struct Room {
+        std::vector<int> number;  // of each sphere in the order of elimination, -1: held
+        std::shared_ptr<const fem::Supernodes> structure;
+        std::mutex mutex;
+        std::vector<std::unique_ptr<fem::Cholesky>> idle;
+    };
+
+    Eigen::VectorXd values_at(const Eigen::VectorXd& k) const;
+    void add(int a, int b, const Block& block, double* values) const;
+
+    skeleton::Model model_;
+    std::shared_ptr<const LinksAtRest> links_;
+    std::shared_ptr<Room> room_;
+    std::vector<std::vector<int>> columns_;  // rows of each column of blocks: numbers, its own first, ascending
+    fem::LowerMatrix K_0_;                   // with room for all of K
+};
+
+class RestLaw::Factor {
+public:
+    explicit Factor(std::shared_ptr<Room> room);
+    ~Factor();
+    Factor(const Factor&) = delete;
+    Factor& operator=(const Factor&) = delete;
+    /// K^-1 F (6N x p); rows of held spheres are ignored in F and zero in the result.
+    Eigen::MatrixXd solve(const Eigen::MatrixXd& F) const;
+
+private:
+    friend class RestLaw;
+    std::shared_ptr<Room> room_;
+    std::unique_ptr<fem::Cholesky> factor_;
+};
+
+}  // namespace palpate::identify
