@@ -108,6 +108,7 @@ void tell_particles(const Parameters& parameters, const LogNormalPrior& prior, c
     for (std::size_t i = 0; i < filter.mode.size(); ++i) {
         result.modes[filter.mode[i]].probability += std::exp(filter.log_weights[static_cast<Eigen::Index>(i)]);
     }
+    for (Mode& mode : result.modes) mode.probability = std::min(mode.probability, 1.0);  // sums round
     std::ranges::stable_sort(result.modes, std::greater{}, &Mode::probability);
 
     for (FilterStep& step : filter.history) {
