@@ -43,8 +43,7 @@ Cholesky::Cholesky(std::shared_ptr<const Supernodes> structure, const LowerMatri
     if (!factor(K)) {
         throw SolverFailure(
             "The stiffness matrix is singular: a part of the body can move without resistance. Does it hang on the "
-            "rest "
-            "by one edge or corner only? Repair the surface there, or hold the part.");
+            "rest by one edge or corner only? Repair the surface there, or hold the part.");
     }
 }
 

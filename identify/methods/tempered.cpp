@@ -95,8 +95,8 @@ IdentifyResult identify_tempered(const skeleton::Model& model, const Measurement
     if (too_dear) {
         result.notes.emplace_back(
             "particles: too large a body to weigh them; they are drawn from the fit's own covariance, by the "
-            "directions "
-            "that the measurements tell most of: intervals are wide rather than narrow, and the evidence is Laplace's");
+            "directions that the measurements tell most of: intervals are wide rather than narrow, and the "
+            "evidence is Laplace's");
     } else if (!filter.weighed) {
         result.notes.emplace_back(
             "particles: too many parameters to weigh them; they are drawn from the fit's own "

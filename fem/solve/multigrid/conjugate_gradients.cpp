@@ -16,8 +16,8 @@ Row ratio(const Row& a, const Row& b) { return (b > 0).select(a / b, 0.0); }
     throw SolverFailure(
         how +
         " A part of the body may hang on the rest by one edge or corner only, be held too little, or have elements "
-        "that "
-        "are almost flat: repair or remesh the surface there, or allow more memory for a direct factor.");
+        "that are almost flat: repair or remesh the surface there, or allow more memory for a direct "
+        "factor.");
 }
 
 /// Where A is singular to rounding the preconditioner's own rounding looks like a solution.
