@@ -14,6 +14,7 @@ void take_blas_buffers(int threads) {
     const Eigen::MatrixXd A = Eigen::MatrixXd::Identity(512, 512);  // long enough that all threads are in it at once
     std::barrier all_there(threads);
     std::vector<std::jthread> workers;
+    workers.reserve(threads);
     for (int i = 0; i < threads; ++i)
         workers.emplace_back([&A, &all_there] {
             Eigen::MatrixXd B(A.rows(), A.cols());

@@ -31,8 +31,8 @@ std::vector<std::vector<int>> lower_neighbours(const Pairs& pairs, const std::ve
     }
     for (std::vector<int>& rows : lower) {
         std::ranges::sort(rows);
-        const auto rest = std::ranges::unique(rows);
-        rows.erase(rest.begin(), rest.end());
+        const auto rest = std::unique(rows.begin(), rows.end());
+        rows.erase(rest, rows.end());
     }
     return lower;
 }

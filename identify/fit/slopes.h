@@ -28,8 +28,9 @@ public:
     };
 
     /// `dk`: dk/dtheta. `tangents`: of each state, or one for all.
-    Slopes(std::vector<State> states, Eigen::SparseMatrix<double> dk, std::vector<TangentSolve> tangents, int threads)
-        : states_(std::move(states)), dk_(std::move(dk)), tangents_(std::move(tangents)), threads_(threads) {}
+    Slopes(std::vector<State> states, const Eigen::SparseMatrix<double>& dk, std::vector<TangentSolve> tangents,
+           int threads)
+        : states_(std::move(states)), dk_(dk), tangents_(std::move(tangents)), threads_(threads) {}
 
     Eigen::VectorXd gradient() const;                                 // of half the chi^2, J^T d (P)
     Eigen::MatrixXd curvature_times(const Eigen::MatrixXd& V) const;  // J^T J V, of V (P x n)
