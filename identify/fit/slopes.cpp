@@ -129,6 +129,7 @@ Slopes PositionDomain::slopes(const Eigen::VectorXd& theta, const Prediction& pr
                                         weights_[s], errors(s, prediction.markers[s])});
     });
     std::vector<Slopes::State> found;
+    found.reserve(states.size());
     for (auto& state : states) found.push_back(std::move(*state));
     return {std::move(found), parameters_.derivative(k), std::move(tangents), threads_};
 }
