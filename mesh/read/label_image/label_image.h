@@ -34,8 +34,8 @@ struct LabelImage {
     double voxel_volume() const;  // [mm^3]
 };
 
-/// One reader a format: NIfTI-1 and -2 (.nii, .nii.gz), NRRD (.nrrd, .nhdr), MetaImage (.mha, .mhd). Placing, spacing and
-/// direction are the file's; coordinates are the format's own (NIfTI: right, anterior, superior; the others: left,
+/// One reader a format: NIfTI-1 and -2 (.nii, .nii.gz), NRRD (.nrrd, .nhdr), MetaImage (.mha, .mhd). Placing, spacing
+/// and direction are the file's; coordinates are the format's own (NIfTI: right, anterior, superior; the others: left,
 /// posterior, superior). @throws IoError, InvalidInput with what is wrong in the head, or missing behind it.
 LabelImage read_nifti(const std::filesystem::path& file);
 LabelImage read_nrrd(const std::filesystem::path& file);
