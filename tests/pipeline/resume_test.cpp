@@ -31,6 +31,11 @@ struct Grant {
     rlim_t most;
 };
 
+/// In the names of the tests.
+void PrintTo(const Grant& grant, std::ostream* out) {
+    *out << (grant.resource == RLIMIT_AS ? "address space " : "files ") << grant.most;
+}
+
 /// `palpate run beam.stl -o run` as a process of its own; what it says goes to `said`.
 pid_t start_run(const TemporaryFolder& scratch, const std::string& output, std::optional<Grant> grant = {}) {
     const pid_t child = fork();
@@ -100,7 +105,7 @@ TEST(Resume, AKilledRunEndsAsOneThatRanThrough) {
 
 /// A run that is granted too little ends with a message, leaves no half of a file, and goes on to the same end when it
 /// is granted more.
-class ShortOf : public testing::TestWithParam<std::tuple<Grant, const char*>> {};
+class ShortOf : public testing::TestWithParam<std::tuple<Grant, std::string>> {};
 
 TEST_P(ShortOf, SaysSoAndGoesOnLater) {
     const auto& [grant, message] = GetParam();
@@ -110,7 +115,8 @@ TEST_P(ShortOf, SaysSoAndGoesOnLater) {
 
     const int code = finish(start_run(scratch, "run", grant));
     EXPECT_TRUE(code == 3 || code == 4) << code;
-    EXPECT_TRUE(says(mesh::read_text(scratch / "said"), {"error: ", message})) << mesh::read_text(scratch / "said");
+    EXPECT_TRUE(says(mesh::read_text(scratch / "said"), {"error: ", message.c_str()}))
+        << mesh::read_text(scratch / "said");
     const std::vector<std::string> whole = files_of(scratch / "whole");
     if (fs::exists(scratch / "run")) {
         for (const std::string& file : files_of(scratch / "run")) {
@@ -122,9 +128,9 @@ TEST_P(ShortOf, SaysSoAndGoesOnLater) {
     EXPECT_EQ(files_of(scratch / "run"), whole);
 }
 
-std::vector<std::tuple<Grant, const char*>> too_little() {
+std::vector<std::tuple<Grant, std::string>> too_little() {
     constexpr rlim_t kB = 1000;
-    std::vector<std::tuple<Grant, const char*>> grants = {{{RLIMIT_FSIZE, 4 * kB}, "cannot be written"},
+    std::vector<std::tuple<Grant, std::string>> grants = {{{RLIMIT_FSIZE, 4 * kB}, "cannot be written"},
                                                           {{RLIMIT_FSIZE, 60 * kB}, "cannot be written"}};
 #ifndef __SANITIZE_ADDRESS__  // which addresses terabytes itself
     grants.push_back({{RLIMIT_AS, 500'000 * kB}, "address space is limited to 500 MB"});
