@@ -16,7 +16,7 @@ namespace palpate::mesh {
 namespace {
 
 constexpr double allowed_growth = 0.03;  // share of the volume
-constexpr int growth_points = 2500;      // tell that share to within 0.3 %
+constexpr int growth_points = 2500;      // tell that share to 0.34 %, one sigma
 constexpr double allowed_skin = 0.02;    // share of the area
 
 Surface wrapped_with(const Surface& surface, double alpha, double offset) {
