@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "identify/motion/damping.h"
 #include "identify/set/measurement_set.h"
 #include "mesh/progress.h"
 #include "skeleton/model.h"
@@ -90,6 +91,7 @@ struct IdentifyResult {
     std::vector<double> fit_trace;  // -ln density, but for a constant, at the start and after each step of the last fit
     double model_error = missing;   // of a prediction, beyond the noise, over its displacement; NaN: not estimated
     MeasuredRange measured;
+    std::optional<DampingResult> damping;  // for identify_damping to fill
     int states = 0, coordinates = 0;  // that were weighed
     double log_evidence = 0;
     double acceptance = 0;           // of the moves

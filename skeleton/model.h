@@ -79,6 +79,13 @@ enum class Law {
 };
 inline constexpr std::array<const char*, 2> law_names{"linear", "large-rotation"};
 
+/// How motion dies away: forces -alpha m v on every sphere, and in every link beta times the rate of what it resists.
+/// A mode of angular frequency w has the damping ratio (alpha / w + beta w) / 2. [Rayleigh]
+struct Damping {
+    double alpha = 0;  // [1/s], >= 0
+    double beta = 0;   // [s], >= 0
+};
+
 /// A body as spheres joined by elastic links, with a skin, under the effects that are in force.
 struct Model {
     std::string name;
@@ -89,6 +96,7 @@ struct Model {
     mesh::Surface surface;         // at rest
     std::vector<Attachment> skin;  // of each vertex of the surface
     Eigen::Matrix<double, 6, 1> dent = Eigen::Matrix<double, 6, 1>::Zero();  // amplitudes, see dent_motions [1/MPa]
+    std::optional<Damping> damping;  // as it was identified
     std::vector<mesh::Region> supports;
     std::map<std::string, std::string> provenance;  // where it comes from, in words
 

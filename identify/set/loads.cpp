@@ -88,6 +88,17 @@ skeleton::Load ContactLoads::operator()(const MeasurementSet& set, const LoadSta
     return load;
 }
 
+const LoadState* acting_at(const std::vector<const LoadState*>& loads, double time) {
+    for (const LoadState* load : loads) {
+        if (time <= load->time * (1 + 1e-12)) return load;
+    }
+    return loads.back();
+}
+
+const LoadState* acting_before(const std::vector<const LoadState*>& loads) {
+    return loads.size() > 1 && loads.front()->time == 0 ? loads.front() : nullptr;
+}
+
 bool is_always_loaded(const skeleton::Model& model) {
     return !skeleton::effect_force(model, rest_state(model)).isZero(0);
 }

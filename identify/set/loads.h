@@ -31,6 +31,12 @@ private:
     std::shared_ptr<const skeleton::Cavities> cavities_;  // of the skin; null: it has none
 };
 
+/// The load that acts at a time > 0 of a motion, of a probe's in their order: each acts from the one before it up to
+/// its own time, the last one to the end. @pre there is one
+const LoadState* acting_at(const std::vector<const LoadState*>& loads, double time);
+/// What acted before the beginning: the first of several, if its time is 0; else nothing, null.
+const LoadState* acting_before(const std::vector<const LoadState*>& loads);
+
 /// Does an effect of the model pull at it whatever else acts, as its weight does?
 bool is_always_loaded(const skeleton::Model& model);
 

@@ -27,13 +27,17 @@ void check_places(const MeasurementSet& set) {
     const mesh::Box body = mesh::bounding_box(set.rest_surface.vertices);
     const double allowed = 0.05 * body.longest_side();
 
-    for (const LoadState& state : set.states)
+    const auto check_contacts = [&](const LoadState& state, const char* file) {
         for (const mesh::Contact& contact : state.contacts) {
             const double distance = tree.closest(contact.point).distance;
             if (distance > contact.radius + allowed)
-                refuse(fmt::format("probes.csv: the contact of probe {} at time {}", state.probe, state.time),
+                refuse(fmt::format("{}: the contact of probe {} at time {}", file, state.probe, state.time),
                        contact.point, distance, contact.radius + allowed, body);
         }
+    };
+    for (const LoadState& state : set.states) check_contacts(state, "probes.csv");
+    for (const Recording& recording : set.recordings)
+        for (const LoadState& load : recording.loads) check_contacts(load, "motion_probes.csv");
 
     // The area vectors of a closed surface cancel. In an open one nobody knows what is inside: the box has to do.
     const bool closed =

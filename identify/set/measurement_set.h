@@ -40,6 +40,19 @@ struct LoadState {
     double field_unit = 1;                   // length unit of that file [mm]
 };
 
+/// How a body moved: what acted on it, and what was read meanwhile.
+struct Recording {
+    int probe = 0;
+    // Each acts from the one before it up to its own time, the last one to the end. One of time 0 acted before the
+    // beginning: the body starts from its equilibrium. Without readings.
+    std::vector<LoadState> loads;
+    struct Instant {
+        double time = 0;  // [s]
+        std::vector<Reading> readings;
+    };
+    std::vector<Instant> instants;  // in order of time
+};
+
 struct MaterialGuess {
     double young = missing;  // [MPa]
     double poisson = missing;
@@ -58,7 +71,8 @@ struct MeasurementSet {
     std::optional<double> force_noise;     // 1 sigma [N]
     std::optional<MaterialGuess> material;
     std::vector<Marker> markers;
-    std::vector<LoadState> states;  // in the order of probes.csv
+    std::vector<LoadState> states;      // in the order of probes.csv
+    std::vector<Recording> recordings;  // of bodies in motion; mostly none
 };
 
 /// `path`: the folder or its set.yaml. Units are converted here, once: units.length is the unit of every length of

@@ -11,7 +11,15 @@
 namespace palpate::identify {
 namespace {
 
-std::vector<skeleton::Attachment> attach_markers(const skeleton::Model& model, const std::vector<Marker>& markers) {
+bool is_known_to_act(const MeasurementSet& set, const LoadState& state) {
+    const bool pushed = std::ranges::any_of(state.contacts, [](const mesh::Contact& c) { return !c.force.isZero(0); });
+    const bool is_heavy = !known_gravity(set, state).value_or(Vec3::Zero()).isZero(0);
+    return pushed || is_heavy || known_pressure(state) != 0;
+}
+
+}  // namespace
+
+std::vector<skeleton::Attachment> marker_attachments(const skeleton::Model& model, const std::vector<Marker>& markers) {
     std::vector<skeleton::Attachment> points;
     points.reserve(markers.size());
     const skeleton::Attacher attach(model);
@@ -20,14 +28,6 @@ std::vector<skeleton::Attachment> attach_markers(const skeleton::Model& model, c
     }
     return points;
 }
-
-bool is_known_to_act(const MeasurementSet& set, const LoadState& state) {
-    const bool pushed = std::ranges::any_of(state.contacts, [](const mesh::Contact& c) { return !c.force.isZero(0); });
-    const bool is_heavy = !known_gravity(set, state).value_or(Vec3::Zero()).isZero(0);
-    return pushed || is_heavy || known_pressure(state) != 0;
-}
-
-}  // namespace
 
 double rms(const Points& difference) {
     double sum = 0;
@@ -43,7 +43,7 @@ double rms(const Points& difference) {
 std::vector<StateReadings> collect_readings(const skeleton::Model& model, const MeasurementSet& set) {
     const std::optional<fem::Creep> creep = skeleton::physics_of(model.effects).creep;
     const MeasurementSet borne = creep ? as_elastic(set, *creep) : set;
-    const std::vector<skeleton::Attachment> markers = attach_markers(model, set.markers);
+    const std::vector<skeleton::Attachment> markers = marker_attachments(model, set.markers);
     const ContactLoads loads(model);
     const bool yields = skeleton::physics_of(model.effects).plasticity.has_value();
     const bool always_loaded = is_always_loaded(model) || yields;

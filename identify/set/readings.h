@@ -23,6 +23,9 @@ struct StateReadings {
     std::vector<skeleton::Load> unread;        // what such a body went through since then, or since it was new
 };
 
+/// Where markers hang on a skeleton, one each.
+std::vector<skeleton::Attachment> marker_attachments(const skeleton::Model& model, const std::vector<Marker>& markers);
+
 /// A state each that has labelled readings, in the set's order; unlabelled readings are left out.
 std::vector<StateReadings> collect_readings(const skeleton::Model& model, const MeasurementSet& set);
 

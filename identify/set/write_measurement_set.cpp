@@ -79,16 +79,37 @@ std::string markers_table(const MeasurementSet& set) {
     return text;
 }
 
-std::string positions_table(const MeasurementSet& set) {
-    std::string text = "probe,time,marker,x,y,z,sigma\n";
-    for (const LoadState& state : set.states)
-        for (const Reading& reading : state.readings)
-            text += fmt::format("{},{},{},{},{}\n", state.probe, state.time,
-                                reading.marker < 0
-                                    ? ""
-                                    : fmt::format("{}", set.markers.at(static_cast<std::size_t>(reading.marker)).id),
-                                cells(reading.position), cell(reading.sigma));
+constexpr const char* positions_header = "probe,time,marker,x,y,z,sigma\n";
+
+std::string position_rows(const MeasurementSet& set, int probe, double time, const std::vector<Reading>& readings) {
+    std::string text;
+    for (const Reading& reading : readings) {
+        const auto marker = static_cast<std::size_t>(reading.marker);
+        text += fmt::format("{},{},{},{},{}\n", probe, time,
+                            reading.marker < 0 ? "" : fmt::format("{}", set.markers.at(marker).id),
+                            cells(reading.position), cell(reading.sigma));
+    }
     return text;
+}
+
+std::string positions_table(const MeasurementSet& set) {
+    std::string text = positions_header;
+    for (const LoadState& state : set.states) text += position_rows(set, state.probe, state.time, state.readings);
+    return text;
+}
+
+/// motion_probes.csv and motion_positions.csv, where something moved.
+void write_recordings(const fs::path& folder, const MeasurementSet& set) {
+    if (set.recordings.empty()) return;
+    std::vector<LoadState> loads;
+    std::string text = positions_header;
+    for (const Recording& recording : set.recordings) {
+        loads.insert(loads.end(), recording.loads.begin(), recording.loads.end());
+        for (const Recording::Instant& instant : recording.instants)
+            text += position_rows(set, recording.probe, instant.time, instant.readings);
+    }
+    mesh::write_text(folder / "motion_probes.csv", probes_table(loads));
+    mesh::write_text(folder / "motion_positions.csv", text);
 }
 
 /// What is known to act in states, or nothing.
@@ -149,6 +170,7 @@ void write_measurement_set(const fs::path& folder, const MeasurementSet& set,
         mesh::write_text(temporary / "positions.csv", positions_table(set));
         if (const std::string states = states_table(set); !states.empty())
             mesh::write_text(temporary / "states.csv", states);
+        write_recordings(temporary, set);
         if (extra) extra(temporary);
         move_into_place(temporary, target);
     } catch (const fs::filesystem_error& error) {

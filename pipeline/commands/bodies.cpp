@@ -60,6 +60,21 @@ void warn_of_modulus(const nlohmann::json& compare, const identify::MeasurementS
     if (!words.empty()) Console::warning(words);
 }
 
+std::optional<identify::DampingResult> damping_of(skeleton::Model& model, const identify::MeasurementSet& set,
+                                                  std::uint64_t seed, const Common& common) {
+    try {
+        identify::DampingOptions options;
+        options.seed = seed;
+        options.threads = common.threads;
+        return identify::identify_damping(model, set, options, Console::progress());
+    } catch (const InvalidInput& e) {
+        Console::warning(fmt::format("damping was not identified: {}", e.what()));
+    } catch (const SolverFailure& e) {
+        Console::warning(fmt::format("damping was not identified: {}", e.what()));
+    }
+    return std::nullopt;
+}
+
 identify::DiagnoseOptions diagnose_options(const skeleton::Model& model, const Common& common) {
     identify::DiagnoseOptions options;
     options.known = model.effects;

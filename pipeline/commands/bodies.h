@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "identify/diagnose/diagnose.h"
+#include "identify/motion/damping.h"
 #include "identify/models/reference_body.h"
 #include "identify/set/measurement_set.h"
 #include "pipeline/commands/common.h"
@@ -28,6 +29,11 @@ std::unique_ptr<identify::ReferenceBody> reference_of(const identify::Measuremen
 
 /// Says aloud where a fit's Young's modulus hints at a slip of units. `compare`: with the baseline that was fitted.
 void warn_of_modulus(const nlohmann::json& compare, const identify::MeasurementSet& set);
+
+/// How a model's motion dies away, from the set's recordings, put into the model; nothing without recordings. Where it
+/// cannot be told, that is said aloud.
+std::optional<identify::DampingResult> damping_of(skeleton::Model& model, const identify::MeasurementSet& set,
+                                                  std::uint64_t seed, const Common& common);
 
 /// Options of a diagnosis of what a model lacks besides the effects that it has.
 identify::DiagnoseOptions diagnose_options(const skeleton::Model& model, const Common& common);

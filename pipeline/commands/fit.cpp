@@ -58,7 +58,8 @@ Outcome identify(const IdentifyCommandOptions& options, const Common& common) {
     if (options.search_high) how.search_high = *options.search_high;
     how.seed = common.seed.value_or(how.seed);
     how.threads = common.threads;
-    const identify::IdentifyResult found = identify::identify(model, set, how, Console::progress());
+    identify::IdentifyResult found = identify::identify(model, set, how, Console::progress());
+    found.damping = damping_of(found.model, set, how.seed, common);
     write_identification(output, found);
 
     Outcome outcome;

@@ -46,8 +46,9 @@ Outcome improve(const ImproveCommandOptions& options, const Common& common) {
     std::optional<identify::Diagnosis> found;
     if (options.automatic) found = diagnose_aloud(*reference, given.set, how.diagnose);
     const std::vector<std::string>& effects = found ? found->explanation : options.add;
-    const identify::Ladder ladder = identify::climb(given.model, reference.get(), given.set, effects, how,
-                                                    found ? &*found : nullptr, Console::progress());
+    identify::Ladder ladder = identify::climb(given.model, reference.get(), given.set, effects, how,
+                                              found ? &*found : nullptr, Console::progress());
+    ladder.identified.damping = damping_of(ladder.steps.back().model, given.set, how.identify.seed, common);
     write_ladder(output, ladder);
 
     Outcome outcome;

@@ -238,6 +238,7 @@ private:
                 identify::IdentifyResult found = identify::identify(model_, fit_, options, Console::progress());
                 // In small strain both laws agree, and a real-time model is to be bent far.
                 if (!subject_.set) found.model.law = skeleton::Law::large_rotation;
+                found.damping = damping_of(found.model, fit_, options.seed, common_);
                 Console::notices(found.notes);
                 write_identification(folder_.path() / "identify", found);
                 return summary_json(found);

@@ -113,9 +113,10 @@ json RunInquiry::improve(const skeleton::Model& model, const json& diagnosis) {
     settings["effects"] = effects;
     const fs::path folder = folder_.path() / "improve";
     const bool ran = folder_.stage({"improve", settings, subject_.files, {"skeleton", "diagnose"}, {"improve"}}, [&] {
-        const identify::Ladder ladder =
+        identify::Ladder ladder =
             identify::climb(model, &reference(), set_, effects, how, diagnosis_ && screened_ ? &*diagnosis_ : nullptr,
                             Console::progress());
+        ladder.identified.damping = damping_of(ladder.steps.back().model, set_, how.identify.seed, common_);
         write_ladder(folder, ladder);
         return json{{"steps", ladder.steps.size()}, {"rms_mm", ladder.steps.back().skeleton.rms_mm}};
     });

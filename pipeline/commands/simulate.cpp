@@ -31,14 +31,6 @@ std::vector<Probe> by_probe(const std::vector<identify::LoadState>& states) {
     return probes;
 }
 
-/// The load that acts at a time: a state's since the one before it, the last one's to the end.
-const identify::LoadState& acting_at(const Probe& probe, double time) {
-    for (const identify::LoadState* state : probe) {
-        if (time <= state->time * (1 + 1e-12)) return *state;
-    }
-    return *probe.back();
-}
-
 /// Plays a body through probes and writes its skin, frame by frame.
 class Motion {
 public:
@@ -55,16 +47,18 @@ public:
 
     /// Explicit steps a frame; one where they are implicit.
     int steps() const { return steps_; }
+    const runtime::Damping& damping() const { return body_.damping(); }
 
     nlohmann::json play(const Probe& probe) {
         body_.reset();
+        const identify::LoadState* acting = identify::acting_before(probe);
+        if (acting) press(*acting);
         if (std::ranges::any_of(model_.spheres, &skeleton::Sphere::held)) body_.equilibrium();
-        const identify::LoadState* acting = nullptr;
         double furthest = write_frame();
         for (int frame = 0; frame < frames_; ++frame) {
-            const identify::LoadState& now = acting_at(probe, (frame + 0.5) * dt_);
-            if (&now != acting) press(now);
-            acting = &now;
+            const identify::LoadState* now = identify::acting_at(probe, (frame + 0.5) * dt_);
+            if (now != acting) press(*now);
+            acting = now;
             if (implicit_) {
                 body_.step_implicit(dt_);
             } else {
@@ -120,11 +114,13 @@ Outcome simulate_motion(const SimulateOptions& options, const fs::path& output) 
     std::size_t contacts = 1;
     for (const identify::LoadState& state : states) contacts = std::max(contacts, state.contacts.size());
     Motion motion(options, output, model, static_cast<int>(contacts));
-    Console::notice(options.implicit
-                        ? fmt::format("Motion by implicit steps of {:g} s, damping ratio {:g} of the softest mode.",
-                                      *options.dt, options.damping)
-                        : fmt::format("Motion by {} explicit steps a frame, damping ratio {:g} of the softest mode.",
-                                      motion.steps(), options.damping));
+    Console::notice(fmt::format("Motion by {}; damping {}: {:.3g} 1/s times mass and {:.3g} s times stiffness.",
+                                options.implicit ? fmt::format("implicit steps of {:g} s", *options.dt)
+                                                 : fmt::format("{} explicit steps a frame", motion.steps()),
+                                model.damping && !options.damping
+                                    ? "as identified"
+                                    : fmt::format("ratio {:g} of the softest mode", options.damping.value_or(0.1)),
+                                motion.damping().alpha, motion.damping().beta));
     Outcome outcome;
     nlohmann::json probes = nlohmann::json::array();
     for (const Probe& probe : by_probe(states)) probes.push_back(motion.play(probe));
@@ -134,7 +130,7 @@ Outcome simulate_motion(const SimulateOptions& options, const fs::path& output) 
     outcome.json = {{"file", (output / "simulation.pvd").string()},
                     {"dt_s", *options.dt},
                     {"steps_per_frame", motion.steps()},
-                    {"damping_ratio", options.damping},
+                    {"damping", {{"mass", motion.damping().alpha}, {"stiffness", motion.damping().beta}}},
                     {"probes", probes}};
     return outcome;
 }

@@ -85,6 +85,8 @@ std::string curve_svg(const ChartLine& curve, const EvenAxis& x, const EvenAxis&
             fmt::format(R"(<circle cx="{:.1f}" cy="{:.1f}" r="3" fill="{}"><title>{} at {:g}: {:.4g}</title></circle>)",
                         x(px), y(py), line_colours[style], escape(curve.label), px, py);
     }
+    if (curve.drawn == ChartLine::Drawn::dots) return dots;
+    if (curve.drawn == ChartLine::Drawn::line) dots.clear();
     return fmt::format(R"(<polyline points="{}" fill="none" stroke="{}" stroke-width="2" stroke-dasharray="{}"/>)",
                        points, line_colours[style], line_dashes[style]) +
            dots;

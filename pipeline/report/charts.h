@@ -6,10 +6,11 @@
 
 namespace palpate::pipeline {
 
-/// A named line through points (x, y).
+/// Points (x, y) with a name, as a line, dots, or both.
 struct ChartLine {
     std::string label;
     std::vector<std::pair<double, double>> points;
+    enum class Drawn { both, line, dots } drawn = Drawn::both;
 };
 
 /// Curves over a common axis, as SVG, the y axis from their least to their largest value; "" without two points.

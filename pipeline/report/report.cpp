@@ -7,6 +7,7 @@
 
 #include "mesh/io/atomic_file.h"
 #include "pipeline/report/charts.h"
+#include "pipeline/report/damping_section.h"
 #include "pipeline/report/escape.h"
 #include "pipeline/report/fit_sections.h"
 #include "pipeline/report/inquiry_sections.h"
@@ -195,6 +196,7 @@ void write_report(const fs::path& run, const fs::path& page) {
                 (files.diagnosis.is_null() ? "" : "<p>" + escape(compare_in_words(files.compare)) + "</p>") +
                 pictures(files) + probe_chart(files);
     sections += stiffness_section(files.posterior, files.best + "/posterior.csv") +
+                damping_section(run / files.best) +
                 convergence_section(run / "identify/convergence.csv") + spheres_section(files.quality);
     sections += assumption_list(files) + file_section(files);
     sections += "<h2 id=\"times\">Times</h2>" + stage_table(files);

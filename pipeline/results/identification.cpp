@@ -4,6 +4,7 @@
 
 #include "mesh/io/atomic_file.h"
 #include "pipeline/case/names.h"
+#include "pipeline/results/damping.h"
 #include "pipeline/results/particles_file.h"
 #include "pipeline/results/posterior_file.h"
 #include "pipeline/results/results.h"
@@ -44,6 +45,7 @@ void write_identification(const std::filesystem::path& folder, const identify::I
     mesh::write_text(folder / "particles.csv", particles_csv(found));
     mesh::write_text(folder / "correlations.csv", correlations_csv(found));
     mesh::write_text(folder / "convergence.csv", convergence_csv(found));
+    if (found.damping) mesh::write_text(folder / "damping.csv", damping_csv(*found.damping));
     mesh::write_text(folder / "identify.json", summary_json(found).dump(2) + "\n");
     skeleton::write_model_vtp(folder / "model.vtp", found.model);
     skeleton::write_model(folder / "model.json", found.model);

@@ -4,6 +4,7 @@
 #include <map>
 #include <string>
 
+#include "pipeline/results/damping.h"
 #include "pipeline/results/identification.h"
 #include "pipeline/results/words.h"
 
@@ -84,6 +85,7 @@ std::string identification_in_words(const identify::IdentifyResult& found) {
                                 found.posterior[pair.b].parameter, pair.value);
         }
     }
+    if (found.damping) text.append("\n").append(damping_in_words(to_json(*found.damping)));
     if (!found.notes.empty()) text += "\n";
     for (const std::string& note : found.notes) text += "  " + note + "\n";
     return text;

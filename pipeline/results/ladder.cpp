@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "mesh/io/atomic_file.h"
+#include "pipeline/results/damping.h"
 #include "pipeline/results/json_values.h"
 #include "pipeline/results/ladder_series.h"
 #include "pipeline/results/particles_file.h"
@@ -100,6 +101,7 @@ void write_ladder(const std::filesystem::path& folder, const identify::Ladder& l
     }
     mesh::write_text(folder / "posterior.csv", posterior_csv(ladder.identified.posterior));
     mesh::write_text(folder / "particles.csv", particles_csv(ladder.identified));
+    if (ladder.identified.damping) mesh::write_text(folder / "damping.csv", damping_csv(*ladder.identified.damping));
     mesh::write_text(folder / "identify.json", summary_json(ladder.identified).dump(2) + "\n");
     skeleton::write_model_vtp(folder / "model.vtp", model);
     skeleton::write_model(folder / "model.json", model);

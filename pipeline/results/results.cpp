@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "pipeline/results/damping.h"
 #include "pipeline/results/json_values.h"
 
 namespace palpate::pipeline {
@@ -133,6 +134,7 @@ json summary_json(const identify::IdentifyResult& result) {
               {"displacement_mm", result.measured.displacement},
               {"places_mm", places}}},
             {"equilibria", result.equilibria},
+            {"damping", result.damping ? to_json(*result.damping) : json(nullptr)},
             {"notes", result.notes}};
 }
 

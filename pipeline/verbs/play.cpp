@@ -24,7 +24,8 @@ void Verbs::add_simulate(CLI::App& app) {
     auto* dt =
         sub->add_option("--dt", simulate.dt,
                         "Motion: a frame every so many seconds. The load of a row acts since the row before it,\n"
-                        "that of a probe's last row to the end; each probe finds the body at rest")
+                        "that of a probe's last row to the end. A first row of time 0, before others, is what the\n"
+                        "body is in equilibrium with when it begins; without one it begins at rest")
             ->check(CLI::PositiveNumber)
             ->group("Motion");
     auto* duration = sub->add_option("--duration", simulate.duration, "How long each probe is played [s]")
@@ -32,9 +33,9 @@ void Verbs::add_simulate(CLI::App& app) {
                          ->needs(dt)
                          ->group("Motion");
     dt->needs(duration);
-    sub->add_option("--damping", simulate.damping, "Damping ratio of the softest mode")
+    sub->add_option("--damping", simulate.damping,
+                    "Damping ratio of the softest mode; by default damping as it was identified, or 0.1")
         ->check(CLI::NonNegativeNumber)
-        ->capture_default_str()
         ->needs(dt)
         ->group("Motion");
     sub->add_flag("--implicit", simulate.implicit,

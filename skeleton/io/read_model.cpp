@@ -213,7 +213,8 @@ void read_skin(const JsonField& field, Model& model) {
 Model read_model(const std::filesystem::path& file) {
     const nlohmann::ordered_json json = parse(file);
     const JsonField root(json, file.string());
-    root.allow_only({"format", "name", "law", "spheres", "links", "effects", "skin", "dent", "supports", "provenance"});
+    root.allow_only(
+        {"format", "name", "law", "spheres", "links", "effects", "skin", "dent", "damping", "supports", "provenance"});
     root["format"].choice({"palpate-model/1"});
 
     Model model;
@@ -230,6 +231,11 @@ Model read_model(const std::filesystem::path& file) {
     if (root.has("dent")) {
         const std::vector<JsonField> amplitudes = root["dent"].list(6);
         for (int i = 0; i < 6; ++i) model.dent[i] = amplitudes[i].number();
+    }
+    if (root.has("damping")) {
+        root["damping"].allow_only({"mass", "stiffness"});
+        model.damping = {.alpha = root["damping"]["mass"].number_at_least(0),
+                         .beta = root["damping"]["stiffness"].number_at_least(0)};
     }
     if (root.has("provenance"))
         for (const std::string& key : root["provenance"].keys()) model.provenance[key] = root["provenance"][key].text();

@@ -124,6 +124,9 @@ std::string to_text(const Model& model) {
     }
     if (!model.dent.isZero(0))
         text += "  \"dent\": " + Json(std::vector<double>(model.dent.begin(), model.dent.end())).dump() + ",\n";
+    if (model.damping)
+        text += "  \"damping\": " + Json({{"mass", model.damping->alpha}, {"stiffness", model.damping->beta}}).dump() +
+                ",\n";
     text += "  \"supports\": " + lines(supports) + ",\n";
     text += "  \"provenance\": " + Json(model.provenance).dump() + "\n}\n";
     return text;

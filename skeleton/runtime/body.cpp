@@ -40,8 +40,8 @@ void require_above(const char* what, double value, double least) {
 }  // namespace
 
 void BodyOptions::validate() const {
-    if (!(damping_ratio >= 0) || !std::isfinite(damping_ratio))
-        throw InvalidInput(fmt::format("damping_ratio is {}; it must be at least 0", damping_ratio));
+    if (damping_ratio && !(*damping_ratio >= 0 && std::isfinite(*damping_ratio)))
+        throw InvalidInput(fmt::format("damping_ratio is {}; it must be at least 0", *damping_ratio));
     if (contacts < 0 || contacts > 64)
         throw InvalidInput(fmt::format("contacts is {}; it must lie in 0 to 64", contacts));
     const auto require_share = [](const char* what, double value) {
@@ -93,9 +93,14 @@ struct Body::Impl {
             const bool heavy = model.spheres[i].mass > 0 && model.spheres[i].inertia.determinant() > 0;
             if (moves && !heavy && massless < 0) massless = static_cast<int>(i);
         }
-        if (massless < 0 && held && options.damping_ratio > 0) {
+        if (model.damping && !options.damping_ratio) {
+            damping = {model.damping->alpha, model.damping->beta};
+            return;
+        }
+        const double ratio = options.damping_ratio.value_or(0.1);
+        if (massless < 0 && held && ratio > 0) {
             const double softest = solver.softest_mode(rest.data());
-            if (softest > 0) damping.beta = 2 * options.damping_ratio / softest;
+            if (softest > 0) damping.beta = 2 * ratio / softest;
         }
     }
 

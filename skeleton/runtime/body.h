@@ -4,6 +4,7 @@
 #include <Eigen/Geometry>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -22,8 +23,10 @@ struct Damping {
 };
 
 struct [[gnu::visibility("default")]] BodyOptions {
-    double damping_ratio = 0.1;  // of the softest mode, by beta; >= 0. A body that nothing holds has none, and beta 0
-    int contacts = 8;            // most at a time, in [0, 64]
+    // Of the softest mode, by beta; >= 0. A body that nothing holds has none, and beta 0. Not told: damping as the
+    // model has it, or else a ratio of 0.1.
+    std::optional<double> damping_ratio = {};
+    int contacts = 8;  // most at a time, in [0, 64]
     // Of implicit steps: how far off the last correction of a sphere may be, as a share of the mean link length, and to
     // what share of the one before a correction must come for an old factor to serve on. Both in (0, 1).
     double step_tolerance = 1e-6, step_slower = 0.3;

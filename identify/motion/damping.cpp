@@ -1,0 +1,365 @@
+#include "identify/motion/damping.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "identify/motion/ringing_fit.h"
+#include "identify/particles/tempered_filter.h"
+#include "identify/set/loads.h"
+#include "mesh/errors.h"
+
+namespace palpate::identify {
+namespace {
+
+using Eigen::VectorXd;
+
+double turns_a_second(double omega) { return omega / (2 * M_PI); }
+
+/// What the modes make of the markers' motion without damping, as mean squares (n).
+VectorXd amplitudes(const Ringings& ringings) {
+    VectorXd squares = VectorXd::Zero(ringings.vibration.modes());
+    for (const Ringing& recording : ringings.recordings) {
+        for (std::size_t s = 1; s < recording.stretches.size(); ++s) squares += recording.stretches[s].jump.cwiseAbs2();
+    }
+    return squares.cwiseProduct(ringings.shapes.colwise().squaredNorm().transpose());
+}
+
+/// Half the largest rate of instants over all recordings [Hz]: nothing faster is told apart. [Nyquist]
+double fastest_told(const Ringings& ringings) {
+    double fastest = 0;
+    for (const Ringing& recording : ringings.recordings) {
+        const auto instants = recording.times.size();
+        if (instants < 2) continue;
+        const double lasted = recording.times[instants - 1] - recording.times[0];
+        fastest = std::max(fastest, static_cast<double>(instants - 1) / lasted / 2);
+    }
+    return fastest;
+}
+
+/// The modes that move the markers most, in order of frequency.
+std::vector<int> chosen_modes(const Ringings& ringings, int most) {
+    constexpr double least = 1e-3;  // of the motion's mean square
+    const VectorXd share = amplitudes(ringings) / amplitudes(ringings).sum();
+    const double fastest = fastest_told(ringings);
+    std::vector<int> modes;
+    for (int i = 0; i < share.size(); ++i) {
+        if (share[i] >= least && turns_a_second(ringings.vibration.frequencies[i]) < fastest) modes.push_back(i);
+    }
+    if (modes.empty())
+        throw InvalidInput(
+            fmt::format("the recordings cannot tell damping: of what the loads' changes set in motion "
+                        "nothing is slower than half the {:g} readings a second. Read more often, or "
+                        "let a load act that the body gives way to.",
+                        2 * fastest));
+    std::ranges::sort(modes, [&](int a, int b) { return share[a] > share[b]; });
+    modes.resize(std::min(modes.size(), static_cast<std::size_t>(most)));
+    std::ranges::sort(modes);
+    return modes;
+}
+
+/// How long a row of errors is like itself, in instants: 1 + 2 sum of its correlations, until they are lost; of all
+/// rows together.
+double correlation_time(const Eigen::MatrixXd& errors) {
+    constexpr double lost = 0.05;
+    const double square = errors.squaredNorm();
+    double time = 1;
+    for (Eigen::Index lag = 1; lag < errors.cols() / 2 && square > 0; ++lag) {
+        const double alike =
+            errors.leftCols(errors.cols() - lag).cwiseProduct(errors.rightCols(errors.cols() - lag)).sum() / square;
+        if (alike < lost) break;
+        time += 2 * alike;
+    }
+    return time;
+}
+
+/// How many rows of errors there are as far as they differ: tr(S)^2 / tr(S^2) of their covariance S, what as many
+/// independent rows of so few instants would show beside that taken off.
+double independent_rows(const Eigen::MatrixXd& errors, double instants) {
+    const Eigen::MatrixXd S = errors * errors.transpose();
+    const double square = S.trace() * S.trace();
+    if (square == 0) return static_cast<double>(errors.rows());
+    const double alike = S.squaredNorm() / square, by_chance = 1 / std::max(1.0, instants);
+    return 1 / std::max(alike - by_chance, 1 / static_cast<double>(errors.rows()));
+}
+
+struct Leftover {
+    double square = 0;       // of weighed errors
+    int readings = 0;        // coordinates
+    double independent = 0;  // of them
+};
+
+Leftover leftover(const RingingFit& fit, const Ringings& ringings, const VectorXd& theta) {
+    Leftover all;
+    for (int r = 0; r < static_cast<int>(ringings.recordings.size()); ++r) {
+        const Eigen::MatrixXd errors = fit.errors(theta, r);
+        const auto read = (ringings.recordings[r].weights.array() > 0).count();
+        const double time = correlation_time(errors), instants = static_cast<double>(errors.cols()) / time;
+        all.square += errors.squaredNorm();
+        all.readings += static_cast<int>(read);
+        all.independent += std::min(static_cast<double>(read), instants * independent_rows(errors, instants));
+    }
+    return all;
+}
+
+/// What errors' squares are to be divided by: their variance, times how many readings say the same.
+double variance_of(const Leftover& left, bool noise_is_known) {
+    const double variance = left.square / std::max(1, left.readings);
+    return std::max(variance, noise_is_known ? 1.0 : 1e-18) * left.readings / std::max(1.0, left.independent);
+}
+
+Known known(const VectorXd& values, const VectorXd& weights, double prior_sd, bool logarithms) {
+    Known told;
+    told.mean = weights.dot(values);
+    told.sd = std::sqrt(weights.dot((values.array() - told.mean).square().matrix()));
+    std::vector<int> order(static_cast<std::size_t>(values.size()));
+    std::iota(order.begin(), order.end(), 0);
+    std::ranges::sort(order, {}, [&](int i) { return values[i]; });
+    double sum = 0;
+    for (const int i : order) {
+        const double before = sum;
+        sum += weights[i];
+        for (const auto& [level, at] :
+             {std::pair{0.025, &told.q025}, std::pair{0.5, &told.q50}, std::pair{0.975, &told.q975}}) {
+            if (before < level && sum >= level) *at = values[i];
+        }
+    }
+    const VectorXd ln = logarithms ? VectorXd(values.array().log()) : values;
+    const double middle = weights.dot(ln);
+    told.informed = std::sqrt(weights.dot((ln.array() - middle).square().matrix())) <= 0.7 * prior_sd;
+    return told;
+}
+
+/// A law's fit, and how it is weighed.
+struct Fitted {
+    DampingLaw law;
+    RingingFit fit;
+    VectorXd theta;
+    GaussianProposal proposal;
+    double log_evidence = 0;
+};
+
+Fitted fitted(const Ringings& ringings, DampingLaw law, const VectorXd& start, double variance) {
+    Fitted made{.law = law, .fit = RingingFit(ringings, law), .theta = start, .proposal = {}};
+    made.theta = made.fit.most_probable(start, variance);
+    const LogNormalPrior& prior = made.fit.prior();
+    const Eigen::MatrixXd J = made.fit.slopes(made.theta) * prior.sd.asDiagonal() / std::sqrt(variance);
+    const SymmetricProduct A = [&](const Eigen::MatrixXd& V) -> Eigen::MatrixXd { return J.transpose() * (J * V); };
+    made.proposal = {.mean = made.theta,
+                     .prior = prior,
+                     .spectrum = leading_spectrum(A, static_cast<int>(prior.sd.size())),
+                     .wider = 1 + 1.0 / static_cast<double>(prior.sd.size())};
+    made.log_evidence = -made.fit.half_square(made.theta) / variance - prior.half_square(made.theta) -
+                        (1 + made.proposal.spectrum.values.array()).log().sum() / 2;
+    return made;
+}
+
+/// The start of a law's fit from that of the law `stiffness`: the same, and half of the ratio by mass.
+VectorXd start_of(const VectorXd& stiffness, DampingLaw law) {
+    if (law != DampingLaw::both) return stiffness;
+    VectorXd start(stiffness.size() + 1);
+    start << stiffness[0], 0, stiffness.tail(stiffness.size() - 1);
+    return start;
+}
+
+constexpr double worth_a_law = 1;  // ln evidence that a law must have over those before it
+
+class Identification {
+public:
+    Identification(const MeasurementSet& set, const DampingOptions& options, Ringings ringings)
+        : set_(set), options_(options), ringings_(std::move(ringings)) {}
+
+    DampingResult run() {
+        const Fitted best = best_law();
+        weigh(best);
+        tell_leftover(best);
+        tell_traces(best);
+        return std::move(result_);
+    }
+
+private:
+    /// Noise that is told holds where the model is right; what is left tells where it is not.
+    bool noise_is_known() const { return set_.position_noise.has_value(); }
+
+    Fitted best_law() {
+        const RingingFit stiffness(ringings_, DampingLaw::stiffness);
+        const VectorXd rest = stiffness.prior().mean;
+        // at first all that moves is taken for error, so that no wrong number of cycles is preferred
+        const double coarse = variance_of(leftover(stiffness, ringings_, rest), noise_is_known());
+        VectorXd start = stiffness.most_probable(stiffness.scanned(coarse), coarse);
+        for (int again = 0; again < 2; ++again) {
+            variance_ = variance_of(leftover(stiffness, ringings_, start), noise_is_known());
+            start = stiffness.most_probable(start, variance_);
+        }
+        std::vector<Fitted> fits;
+        fits.push_back(fitted(ringings_, DampingLaw::stiffness, start, variance_));
+        if (ringings_.vibration.modes() > 1) {
+            for (const DampingLaw law : {DampingLaw::mass, DampingLaw::both})
+                fits.push_back(fitted(ringings_, law, start_of(start, law), variance_));
+        }
+        const double most = std::ranges::max_element(fits, {}, &Fitted::log_evidence)->log_evidence;
+        std::size_t best = 0;
+        for (std::size_t i = 0; i < fits.size(); ++i) {
+            if (fits.size() > 1) result_.log_evidence.push_back(fits[i].log_evidence - most);
+            if (fits[i].log_evidence > fits[best].log_evidence + worth_a_law) best = i;
+        }
+        if (std::ranges::count_if(fits, [&](const Fitted& one) { return one.log_evidence > most - worth_a_law; }) > 1 ||
+            fits.size() == 1)
+            result_.notes.emplace_back(
+                "Whether damping grows or falls with frequency is not told: that takes vibrations of frequencies far "
+                "apart.");
+        return std::move(fits[best]);
+    }
+
+    void weigh(const Fitted& best) {
+        TemperedOptions how;
+        how.particles = options_.particles;
+        how.seed = options_.seed;
+        how.threads = options_.threads;
+        const LogDensity log_density = [&](const VectorXd& theta) {
+            return -best.fit.half_square(theta) / variance_ + best.fit.prior().log_density(theta);
+        };
+        const TemperedResult filter = tempered_filter(log_density, {best.proposal}, how);
+        const VectorXd weights = filter.log_weights.array().exp();
+        result_.effective_samples = 1 / weights.squaredNorm();
+        const auto each = [&](const auto& number) {
+            VectorXd values(filter.particles.rows());
+            for (Eigen::Index i = 0; i < values.size(); ++i) values[i] = number(VectorXd(filter.particles.row(i)));
+            return values;
+        };
+        const LogNormalPrior& prior = best.fit.prior();
+        const int speed = best.law == DampingLaw::both ? 2 : 1;
+        result_.law = best.law;
+        result_.ratio = known(each([&](const VectorXd& theta) { return best.fit.common_ratio(theta); }), weights,
+                              prior.sd[0], true);
+        result_.speed =
+            known(each([&](const VectorXd& theta) { return best.fit.speed(theta); }), weights, prior.sd[speed], true);
+        const double slowest = ringings_.vibration.frequencies[0] * result_.speed.q50,
+                     share = best.fit.share_of_mass(best.theta);
+        result_.damping = {.alpha = 2 * share * result_.ratio.q50 * slowest,
+                           .beta = 2 * (1 - share) * result_.ratio.q50 / slowest};
+        tell_modes(best, each, weights);
+    }
+
+    void tell_modes(const Fitted& best, const auto& each, const VectorXd& weights) {
+        const VectorXd amplitude = amplitudes(ringings_);
+        const VectorXd& sd = best.fit.prior().sd;
+        for (int i = 0; i < ringings_.vibration.modes(); ++i) {
+            const auto own = sd.size() - 3 * (ringings_.vibration.modes() - i);
+            const auto frequency = [&](const VectorXd& theta) {
+                return turns_a_second(best.fit.oscillator(theta, i, true).frequency);
+            };
+            const auto ratio = [&](const VectorXd& theta) { return best.fit.oscillator(theta, i, true).ratio; };
+            result_.modes.push_back({.frequency = turns_a_second(ringings_.vibration.frequencies[i]),
+                                     .measured = known(each(frequency), weights, sd[own + 1], true),
+                                     .ratio = known(each(ratio), weights, sd[own], true),
+                                     .played = best.fit.oscillator(best.theta, i, false).ratio,
+                                     .share = amplitude[i] / amplitude.sum()});
+        }
+    }
+
+    void tell_leftover(const Fitted& best) {
+        const Leftover left = leftover(best.fit, ringings_, best.theta);
+        result_.readings = left.readings;
+        result_.independent = left.independent;
+        double errors = 0, moved = 0;
+        for (int r = 0; r < static_cast<int>(ringings_.recordings.size()); ++r) {
+            const Ringing& ringing = ringings_.recordings[r];
+            const Eigen::ArrayXXd unit_errors =
+                best.fit.errors(best.theta, r).array() / ringing.weights.array().max(1e-300);
+            errors += unit_errors.square().sum();
+            for (Eigen::Index t = 0; t < ringing.times.size(); ++t) {
+                const auto& rest = ringing.stretches.back().rests;
+                moved += (ringing.weights.col(t).array() > 0)
+                             .select((ringing.measured.col(t) - rest).array().square(), 0.0)
+                             .sum();
+            }
+        }
+        result_.rms = std::sqrt(errors / left.readings);
+        result_.displacement = std::sqrt(moved / left.readings);
+    }
+
+    /// Of each recording the coordinate that moves most.
+    void tell_traces(const Fitted& best) {
+        for (int r = 0; r < static_cast<int>(ringings_.recordings.size()); ++r) {
+            const Ringing& ringing = ringings_.recordings[r];
+            const Eigen::MatrixXd played = best.fit.played(best.theta, r);
+            Eigen::Index row = 0;
+            (played.colwise() - played.rowwise().mean()).rowwise().squaredNorm().maxCoeff(&row);
+            const Marker& marker = set_.markers[static_cast<std::size_t>(row / 3)];
+            Trace trace{.probe = set_.recordings[r].probe,
+                        .marker = marker.id,
+                        .axis = static_cast<int>(row % 3),
+                        .time = {},
+                        .measured = {},
+                        .played = {}};
+            for (Eigen::Index t = 0; t < ringing.times.size(); ++t) {
+                if (ringing.weights(row, t) == 0) continue;
+                trace.time.push_back(ringing.times[t]);
+                trace.measured.push_back(ringing.measured(row, t) - marker.rest[trace.axis]);
+                trace.played.push_back(played(row, t) - marker.rest[trace.axis]);
+            }
+            result_.traces.push_back(std::move(trace));
+        }
+    }
+
+    const MeasurementSet& set_;
+    const DampingOptions& options_;
+    Ringings ringings_;
+    double variance_ = 1;
+    DampingResult result_;
+};
+
+/// Does weight act, in the model or in the set? Masses have to stay then.
+bool weighs(const skeleton::Model& model, const MeasurementSet& set) {
+    const auto known = [&](const LoadState& state) {
+        return !known_gravity(set, state).value_or(Vec3::Zero()).isZero(0);
+    };
+    return std::ranges::any_of(model.effects,
+                               [](const skeleton::Effect& effect) { return effect.name == "gravity"; }) ||
+           std::ranges::any_of(set.states, known);
+}
+
+/// Makes the model vibrate as fast as the body, where its masses are a guess; else says what differs.
+void settle_speed(skeleton::Model& model, const MeasurementSet& set, DampingResult& result) {
+    constexpr double worth_telling = 0.03;
+    const double speed = result.speed.q50;
+    if (!result.speed.informed || std::abs(speed - 1) < worth_telling) return;
+    if (!set.density && !weighs(model, set)) {
+        result.mass = 1 / (speed * speed);
+        for (skeleton::Sphere& sphere : model.spheres) {
+            sphere.mass *= result.mass;
+            sphere.inertia *= result.mass;
+        }
+        result.notes.push_back(
+            fmt::format("The set tells no density: the model's masses were multiplied by {:.3g}, so "
+                        "that it vibrates as fast as the body.",
+                        result.mass));
+        return;
+    }
+    // as fast as it is, the model is to die away in as many cycles
+    result.damping.alpha /= speed;
+    result.damping.beta *= speed;
+    result.notes.push_back(
+        fmt::format("The body vibrates {:.3g} times as fast as the model: in motion it is {:.2g} times as stiff as at "
+                    "rest, or its density is {:.2g} times what was told.",
+                    speed, speed * speed, 1 / (speed * speed)));
+}
+
+}  // namespace
+
+std::optional<DampingResult> identify_damping(skeleton::Model& model, const MeasurementSet& set,
+                                              const DampingOptions& options, const Progress& progress) {
+    if (set.recordings.empty()) return std::nullopt;
+    report(progress, "Vibrations", 0);
+    const Ringings all = ringings(model, set, options.modes);
+    report(progress, "Damping", 0.1);
+    DampingResult result = Identification(set, options, of_modes(all, chosen_modes(all, options.most))).run();
+    settle_speed(model, set, result);
+    model.damping = result.damping;
+    return result;
+}
+
+}  // namespace palpate::identify

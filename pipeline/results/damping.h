@@ -1,0 +1,20 @@
+#pragma once
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "identify/motion/damping.h"
+
+namespace palpate::pipeline {
+
+/// What identify.json tells of damping.
+nlohmann::json to_json(const identify::DampingResult& found);
+
+/// Where each recording moves most, measured and played, as damping.csv.
+std::string damping_csv(const identify::DampingResult& found);
+
+/// What identify.json tells of damping, for the terminal: a sentence, and a line a mode.
+std::string damping_in_words(const nlohmann::json& damping);
+
+}  // namespace palpate::pipeline
