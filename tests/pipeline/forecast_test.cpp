@@ -212,6 +212,14 @@ TEST_F(Forecasts, ParticlesComeBackAsTheyWereWritten) {
         EXPECT_EQ(read.parameters[p], found.posterior[p].parameter);
 }
 
+/// What tempering leaves of a particle may be less than the least normal number.
+TEST_F(Forecasts, ParticlesMayWeighNextToNothing) {
+    const auto file = folder.write("particles.csv", "weight,elongation\n1,2\n9.5e-309,3\n");
+    EXPECT_LT(read_particles(file).weights[1], 1e-300);
+    folder.write("particles.csv", "weight,elongation\n1,2\n,3\n");
+    EXPECT_THAT(message_of<InvalidInput>([&] { read_particles(file); }), HasSubstr("'' is no weight"));
+}
+
 TEST_F(Forecasts, AnotherModelsParticlesAreRefused) {
     identified(1);
     mesh::write_text(folder / "particles.csv", "weight,elongation:link99\n1,2\n");
