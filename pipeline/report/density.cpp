@@ -13,7 +13,7 @@ namespace {
 constexpr int grid_points = 121;        // points of a density
 constexpr double within_kernel = 5;     // sd, beyond which a particle adds nothing
 constexpr double most_of_normal = 2.5;  // sd that hold nearly all of it
-constexpr double least_spread = 1e-6;   // of ln x: particles that agree are still drawn
+constexpr double least_spread = 1e-3;   // of ln x: particles that agree are drawn so wide
 
 double gaussian(double x) { return std::exp(-x * x / 2) / std::sqrt(2 * std::numbers::pi); }
 
