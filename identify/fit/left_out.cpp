@@ -55,6 +55,7 @@ ForecastError left_out_error(const PositionDomain& domain, const LogNormalPrior&
     for (int s = 0; s < static_cast<int>(probes.size()); ++s) by_probe[probes[s]].push_back(s);
     if (by_probe.size() < least_probes) return {};
     std::vector<std::vector<int>> groups;
+    groups.reserve(by_probe.size());
     for (const auto& [probe, states] : by_probe) groups.push_back(states);
 
     const Slopes slopes = domain.slopes(fit.theta, fit.prediction);
