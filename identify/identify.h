@@ -81,6 +81,14 @@ struct MeasuredRange {
     std::vector<Vec3> places;  // that were touched
 };
 
+/// How far a model is off under a probe that it was not fitted to, beyond the noise: so many mm rms are
+/// `relative` times the root of u^2 + least_displacement^2, with u its rms displacement.
+struct ForecastError {
+    double relative = missing;      // rms over probes, each forecast from all others; NaN: not estimated
+    double least_displacement = 0;  // [mm]
+    int probes = 0;                 // that this was seen on
+};
+
 struct IdentifyResult {
     skeleton::Model model;                  // with the law and the most probable stiffness; burion2008: the mean
     std::vector<PosteriorRow> posterior;    // a row per parameter
@@ -90,6 +98,7 @@ struct IdentifyResult {
     std::vector<FilterStep> history;
     std::vector<double> fit_trace;  // -ln density, but for a constant, at the start and after each step of the last fit
     double model_error = missing;   // of a prediction, beyond the noise, over its displacement; NaN: not estimated
+    ForecastError forecast_error;
     MeasuredRange measured;
     std::optional<DampingResult> damping;  // for identify_damping to fill
     int states = 0, coordinates = 0;  // that were weighed

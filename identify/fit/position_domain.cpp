@@ -91,13 +91,22 @@ int PositionDomain::effective_coordinates() const {
     });
 }
 
+double PositionDomain::squared_scale(int s) const {
+    return square(states_[s].displacement) + square(least_displacement());
+}
+
+double PositionDomain::squared_noise(int s) const {
+    const Eigen::VectorXd& noise = states_[s].noise;
+    return noise.unaryExpr(&noise_of).squaredNorm() / static_cast<double>(noise.size());
+}
+
 void PositionDomain::set_model_error(double rel) {
     weights_.clear();
     log_constant_ = 0;
-    for (const StateReadings& state : states_) {
+    for (int s = 0; s < static_cast<int>(states_.size()); ++s) {
+        const StateReadings& state = states_[s];
         const double share = std::max(1.0, state.coordinates / readings_per_state);
-        const double model_variance =
-            share * square(rel) * (square(state.displacement) + square(typical_displacement_ / 3));
+        const double model_variance = share * square(rel) * squared_scale(s);
         Eigen::VectorXd weights = Eigen::VectorXd::Zero(3 * state.rest.rows());
         for (Eigen::Index i = 0; i < state.rest.rows(); ++i) {
             const double variance = square(noise_of(state.noise[i])) + model_variance;
@@ -117,11 +126,10 @@ double PositionDomain::estimate_model_error(const Prediction& prediction) const 
     double chi_squared = 0;  // of the noise alone
     for (int s = 0; s < static_cast<int>(states_.size()); ++s) {
         const StateReadings& state = states_[s];
-        const double noise = state.noise.unaryExpr(&noise_of).squaredNorm() / static_cast<double>(state.noise.size());
+        const double noise = squared_noise(s);
         const double left = errors(s, prediction.markers[s]).squaredNorm() / state.coordinates;
         chi_squared += state.coordinates * left / noise;
-        squares.push_back(std::max(0.0, left - noise) /
-                          (square(state.displacement) + square(typical_displacement_ / 3)));
+        squares.push_back(std::max(0.0, left - noise) / squared_scale(s));
     }
     if (chi_squared < coordinates() + noise_sd * std::sqrt(2.0 * coordinates())) return 0;
     return std::sqrt(median(squares) / 0.89);

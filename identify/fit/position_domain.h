@@ -39,6 +39,11 @@ public:
     skeleton::Law law() const { return model_->law; }
     int spheres() const { return static_cast<int>(model_->spheres.size()); }
 
+    /// What a state's model error is told in shares of, u^2 + (u_0 / 3)^2 [mm^2].
+    double squared_scale(int s) const;
+    double least_displacement() const { return typical_displacement_ / 3; }  // u_0 / 3 [mm]
+    double squared_noise(int s) const;                                       // mean over a state's readings [mm^2]
+
     /// Sets all sigmas.
     void set_model_error(double rel);
     /// The `rel` that explains what a prediction leaves beyond the noise: the median over the states. 0 where the noise

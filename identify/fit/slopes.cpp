@@ -109,6 +109,10 @@ Eigen::MatrixXd Slopes::steps(const Eigen::VectorXd& step) const {
     return all;
 }
 
+Eigen::MatrixXd Slopes::moved_markers(int state, const Eigen::MatrixXd& V) const {
+    return *states_[state].P * moved({state}, dk_ * V);
+}
+
 Slopes PositionDomain::slopes(const Eigen::VectorXd& theta, const Prediction& prediction) const {
     const Eigen::VectorXd k = parameters_.stiffness(theta);
     const int count = static_cast<int>(states_.size());

@@ -36,6 +36,10 @@ public:
     Eigen::MatrixXd curvature_times(const Eigen::MatrixXd& V) const;  // J^T J V, of V (P x n)
     /// How the states follow a step of theta, to first order: T^-1 G dk/dtheta step, a column each (6N x states).
     Eigen::MatrixXd steps(const Eigen::VectorXd& step) const;
+    /// How a state's markers follow steps of theta, V (P x n), to first order (3m x n).
+    Eigen::MatrixXd moved_markers(int state, const Eigen::MatrixXd& V) const;
+    const Eigen::VectorXd& weights(int state) const { return states_[state].weights; }
+    const Eigen::VectorXd& errors(int state) const { return states_[state].errors; }
 
 private:
     using States = std::vector<int>;

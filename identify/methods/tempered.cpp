@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "identify/fit/calibrate.h"
+#include "identify/fit/left_out.h"
 #include "identify/methods/methods.h"
 #include "identify/particles/drawn.h"
 #include "identify/particles/posterior.h"
@@ -38,6 +39,12 @@ bool is_dear(const PositionDomain& domain, int particles) {
                dear_evaluations;
 }
 
+std::vector<int> probes_of(const PositionDomain& domain, const MeasurementSet& set) {
+    std::vector<int> probes;
+    for (const StateReadings& state : domain.states()) probes.push_back(set.states[state.state].probe);
+    return probes;
+}
+
 }  // namespace
 
 IdentifyResult identify_tempered(const skeleton::Model& model, const MeasurementSet& set,
@@ -49,6 +56,8 @@ IdentifyResult identify_tempered(const skeleton::Model& model, const Measurement
     IdentifyResult result;
     result.notes = std::move(calibration.notes);
     const LogNormalPrior& prior = calibration.prior;
+    result.forecast_error =
+        left_out_error(calibration.domain, prior, calibration.fit, probes_of(calibration.domain, set), options.threads);
     const Parameters& parameters = calibration.domain.parameters();
 
     // what the particles are weighed by
@@ -109,6 +118,10 @@ IdentifyResult identify_tempered(const skeleton::Model& model, const Measurement
             "{} different stiffnesses explain the measurements, of which the model holds one: the particles "
             "tell how probable each is",
             result.modes.size()));
+    }
+    if (!std::isnan(result.forecast_error.relative)) {
+        result.notes.push_back(fmt::format("a probe that is left out of the fit: off by {:.2g} % of its displacement",
+                                           100 * result.forecast_error.relative));
     }
     result.fit_trace = calibration.fit.trace;
     result.model_error = calibration.model_error;

@@ -52,6 +52,7 @@ void read_skeleton(const YamlFields& yaml, Case& c) {
     read_if(yaml, "links", c.skeleton.links,
             [&](auto& key) { return parse(link_kinds, yaml.text(key), yaml.where(key)); });
     read_if(yaml, "zones", c.skeleton.zones, [&](auto& key) { return yaml.integer(key, 1, 1000); });
+    read_if(yaml, "sphere_curve", c.sphere_curve, [&](auto& key) { return yaml.boolean(key); });
     yaml.finish();
 }
 
@@ -185,6 +186,7 @@ void override_case(Case& c, const CaseOverrides& say) {
     if (say.edge_length) c.edge_length = *say.edge_length;
     if (say.linear_elements) c.linear_elements = true;
     if (say.no_reference) c.diagnose.reference = false;
+    if (say.sphere_curve) c.sphere_curve = true;
     if (say.spheres) c.skeleton.spheres = *say.spheres;
     if (say.coverage) c.skeleton.coverage = *say.coverage;
     if (!say.links.empty()) c.skeleton.links = parse(link_kinds, say.links, "--links");

@@ -69,6 +69,7 @@ struct Case {
     double edge_length = 0;  // of the tetrahedra [mm]; 0: 6 % of the longest side, 7 % where effects are looked for
     bool linear_elements = false;
     skeleton::BuildOptions skeleton;
+    bool sphere_curve = false;  // measure what more and fewer spheres would do
     ProbeOptions probing{.probes = 60, .held_out = 12};
     identify::IdentifyOptions identify;
     InquiryOptions diagnose;
@@ -82,7 +83,7 @@ struct CaseOverrides {
     std::optional<int> spheres, zones, probes, markers, particles, label;
     std::string parameters, method, domain, links;  // empty: not said
     std::optional<std::uint64_t> seed;
-    bool linear_elements = false, no_reference = false;
+    bool linear_elements = false, no_reference = false, sphere_curve = false;
 };
 
 /// A case from a case.yaml, a measurement set (folder or set.yaml) or a bare mesh, told apart by what they are.

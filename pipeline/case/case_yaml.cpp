@@ -76,9 +76,10 @@ std::string to_yaml(const Case& c) {
         "  spheres: {}          # that are free to move; 0: by the body's shape\n"
         "  coverage: {}         # [mm] no surface further outside the spheres; 0: 5 % of the longest side\n"
         "  links: {}            # full; burion2008: the paper's elongation, flexion, torsion\n"
-        "  zones: {}\n",
+        "  zones: {}\n"
+        "  sphere_curve: {}     # measure what fewer and more spheres would do: takes several times as long\n",
         c.edge_length, c.linear_elements, c.skeleton.spheres, c.skeleton.coverage,
-        name_of(link_kinds, c.skeleton.links), c.skeleton.zones);
+        name_of(link_kinds, c.skeleton.links), c.skeleton.zones, c.sphere_curve);
     if (c.mesh) {
         const ProbeOptions& p = c.probing;
         text += fmt::format(

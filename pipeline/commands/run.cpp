@@ -5,6 +5,7 @@
 #include "mesh/io/region_yaml.h"
 #include "mesh/io/vtk_files.h"
 #include "mesh/read_surface.h"
+#include "pipeline/commands/run_curve.h"
 #include "pipeline/commands/run_inquiry.h"
 #include "pipeline/commands/run_summary.h"
 #include "pipeline/reference/accuracy.h"
@@ -53,6 +54,8 @@ public:
         if (subject_.set) results.diagnosis = inquiry.diagnose(start);
         results.compare = compare_all(inquiry);
         if (subject_.set) results.ladder = inquiry.improve(start, results.diagnosis);
+        measure_sphere_curve(folder_, subject_, {.repaired = {}, .surface = surface_, .volume = body_, .notes = {}},
+                             start, common_);
         write_view_script(folder_.path() / "view.py");
         write_report(folder_.path(), folder_.path() / "report.html");
         return conclude(results);

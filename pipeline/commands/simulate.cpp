@@ -193,8 +193,10 @@ Outcome simulate(const SimulateOptions& options, const Common& common) {
         const Vec3 sizes = model.surface.vertices.colwise().maxCoeff() - model.surface.vertices.colwise().minCoeff();
         const std::vector<std::string> beyond = extrapolations(doubts->measured, states, forecasts, sizes.maxCoeff());
         Console::notices(beyond);
+        if (doubts->forecast_error.relative == 0)
+            Console::notice("Intervals are of stiffness alone: how far the model itself is off was not estimated.");
         outcome.json["draws"] = doubts->draws.size();
-        outcome.json["model_error"] = doubts->model_error;
+        outcome.json["forecast_error"] = doubts->forecast_error.relative;
         outcome.json["extrapolations"] = beyond;
     }
     outcome.text += fmt::format("Next: paraview {}\n", (output / "simulation.pvd").string());

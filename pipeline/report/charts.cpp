@@ -6,32 +6,14 @@
 #include <cmath>
 
 #include "pipeline/report/escape.h"
+#include "pipeline/report/svg.h"
 
 namespace palpate::pipeline {
 namespace {
 
 constexpr double width = 460, left = 56, right = 28;  // [px]
 
-/// A step of 1, 2 or 5 times a power of ten that cuts the range in about four.
-double nice_step(double range) {
-    const double rough = range / 4, power = std::pow(10.0, std::floor(std::log10(rough)));
-    for (const double digit : {1.0, 2.0, 5.0}) {
-        if (digit * power >= rough) return digit * power;
-    }
-    return 10 * power;
-}
-
-std::string words_at(double x, double y, const std::string& words, const char* anchor = "start") {
-    return fmt::format(R"(<text x="{:.1f}" y="{:.1f}" text-anchor="{}">{}</text>)", x, y, anchor, escape(words));
-}
-
-std::string stroke(double x1, double y1, double x2, double y2, const char* style) {
-    return fmt::format(R"(<line x1="{:.1f}" y1="{:.1f}" x2="{:.1f}" y2="{:.1f}" {}/>)", x1, y1, x2, y2, style);
-}
-
-std::string open(double height, const std::string& title) {
-    return fmt::format(R"(<svg viewBox="0 0 {} {:.0f}" role="img" aria-label="{}">)", width, height, escape(title));
-}
+std::string open(double height, const std::string& title) { return open_svg(width, height, title); }
 
 constexpr double top = 30, bottom = 200;  // of bars [px]
 

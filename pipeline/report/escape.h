@@ -1,5 +1,6 @@
 #pragma once
 
+#include <nlohmann/json.hpp>
 #include <string>
 
 namespace palpate::pipeline {
@@ -28,6 +29,13 @@ inline std::string escape(const std::string& text) {
                 safe += c;
         }
     }
+    return safe;
+}
+
+/// JSON as it may stand in a script element: no "</script>" ends it.
+inline std::string as_script_data(const nlohmann::json& data) {
+    std::string safe;
+    for (const char c : data.dump()) safe += c == '<' ? "\\u003c" : std::string(1, c);
     return safe;
 }
 

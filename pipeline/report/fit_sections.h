@@ -3,16 +3,10 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
-#include <vector>
-
-#include "identify/identify.h"
 
 namespace palpate::pipeline {
 
 // Sections of the report page on the fit itself; "" where a run has nothing to show there.
-
-/// Posteriors against priors, those that the data inform first. `file`: where all of them stand, within the run.
-std::string stiffness_section(const std::vector<identify::PosteriorRow>& posterior, const std::string& file);
 
 /// How the search and the particles went. `convergence`: identify/convergence.csv.
 std::string convergence_section(const std::filesystem::path& convergence);

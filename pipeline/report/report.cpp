@@ -14,6 +14,7 @@
 #include "pipeline/report/page/page_parts.h"
 #include "pipeline/report/picture.h"
 #include "pipeline/report/run_files.h"
+#include "pipeline/report/stiffness_section.h"
 #include "pipeline/report/view_data.h"
 #include "pipeline/results/compare_words.h"
 #include "pipeline/results/diagnosis_words.h"
@@ -105,7 +106,8 @@ std::string probe_chart(const RunFiles& files) {
 
 std::string stage_table(const RunFiles& files) {
     std::string rows;
-    for (const char* stage : {"mesh", "skeleton", "measurements", "identify", "diagnose", "compare", "improve"}) {
+    for (const char* stage :
+         {"mesh", "skeleton", "measurements", "identify", "diagnose", "compare", "improve", "sphere_curve"}) {
         if (!files.record["stages"].contains(stage)) continue;
         const json& s = files.record["stages"][stage];
         std::string figures;
@@ -137,13 +139,6 @@ std::string assumption_list(const RunFiles& files) {
     return items.empty() ? "" : "<h2 id=\"noted\">Assumed and noted</h2><ul>" + items + "</ul>";
 }
 
-/// JSON as it may stand in a script element: no "</script>" ends it.
-std::string as_script_data(const json& data) {
-    std::string safe;
-    for (const char c : data.dump()) safe += c == '<' ? "\\u003c" : std::string(1, c);
-    return safe;
-}
-
 std::string view_section(const RunFiles& files, const fs::path& run) {
     const json data = view_data(run, files.record, files.compare, files.ladder, files.posterior);
     if (data.is_null()) {
@@ -172,6 +167,8 @@ std::string file_section(const RunFiles& files) {
         "/posterior.csv</code> holds every stiffness with its interval, <code>compare/compare.json</code> "
         "every error</li>";
     if (improved) html += "<li><code>improve/ladder.pvd</code>: play it, and the error falls</li>";
+    if (files.quality.is_null())
+        html += "<li><code>palpate run ... --sphere-curve</code> measures what fewer and more spheres would do</li>";
     return html + "<li><code>palpate info .</code> in the run folder tells what lies there</li></ul>";
 }
 
@@ -195,7 +192,7 @@ void write_report(const fs::path& run, const fs::path& page) {
     sections += "<h2 id=\"errors\">Where it is wrong</h2>" +
                 (files.diagnosis.is_null() ? "" : "<p>" + escape(compare_in_words(files.compare)) + "</p>") +
                 pictures(files) + probe_chart(files);
-    sections += stiffness_section(files.posterior, files.best + "/posterior.csv") +
+    sections += stiffness_section(files.posterior, files.particles, files.prior, files.best + "/posterior.csv") +
                 damping_section(run / files.best) +
                 convergence_section(run / "identify/convergence.csv") + spheres_section(files.quality);
     sections += assumption_list(files) + file_section(files);

@@ -9,6 +9,7 @@
 #include "mesh/errors.h"
 #include "mesh/io/atomic_file.h"
 #include "mesh/io/poly_data.h"
+#include "mesh/io/yaml_fields.h"
 #include "pipeline/results/posterior_file.h"
 #include "skeleton/model_io.h"
 
@@ -29,12 +30,19 @@ namespace {
 
 json read_if_there(const fs::path& file) { return fs::exists(file) ? read_json(file) : json(); }
 
-/// As `skeleton --quality` leaves it beside a model.
+/// As `skeleton --quality` leaves it beside a model, else the run's own short one.
 json read_quality(const fs::path& folder) {
     for (const auto& entry : fs::directory_iterator(folder)) {
         if (entry.path().filename().string().ends_with("_quality.json")) return read_json(entry.path());
     }
-    return {};
+    return read_if_there(folder / "sphere_curve.json");
+}
+
+/// What the settings of a run (case.yaml) say of it.
+PriorKind prior_in(const fs::path& settings) {
+    const mesh::YamlFields yaml = mesh::YamlFields::from_file(settings);
+    const bool is_even = yaml.has("identify") && yaml.mapping("identify").text("method") == "burion2008";
+    return is_even ? PriorKind::even : PriorKind::log_normal;
 }
 
 std::vector<Dot> errors_before(const json& compare) {
@@ -94,6 +102,9 @@ RunFiles read_run(const fs::path& run) {
     files.settings = mesh::read_text(run / "case.yaml");
     files.best = files.ladder.is_null() ? "identify" : "improve";
     files.posterior = read_posterior(run / files.best / "posterior.csv");
+    if (const fs::path particles = run / files.best / "particles.csv"; fs::exists(particles))
+        files.particles = read_particles(particles);
+    files.prior = prior_in(run / "case.yaml");
     files.model = skeleton::read_model(run / files.best / "model.json");
     files.errors_before = errors_before(files.compare);
     if (!files.ladder.is_null() && files.ladder["steps"].size() > 1) {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "identify/identify.h"
+#include "pipeline/report/density.h"
 #include "pipeline/report/picture.h"
 #include "skeleton/model.h"
 
@@ -18,6 +19,8 @@ struct RunFiles {
     std::string settings;
     std::string best;                               // the folder of the model to use: "improve" where there is one
     std::vector<identify::PosteriorRow> posterior;  // of that model
+    ParticleSet particles;                          // of the same identification; there may be none
+    PriorKind prior = PriorKind::log_normal;
     skeleton::Model model;
     std::vector<Dot> errors_before, errors_after;  // rms of each marker; after: with all effects in, may be empty
 };

@@ -12,8 +12,8 @@ namespace palpate::pipeline {
 
 /// What an identification left open about a model.
 struct Doubts {
-    std::vector<Eigen::VectorXd> draws;  // stiffnesses from the posterior, equally likely, as StiffnessOrder says
-    double model_error = 0;              // of a prediction over its displacement, beyond what the draws tell
+    std::vector<Eigen::VectorXd> draws;      // stiffnesses from the posterior, equally likely, as StiffnessOrder says
+    identify::ForecastError forecast_error;  // 0 where nothing tells it
     identify::MeasuredRange measured;
 };
 
@@ -25,12 +25,19 @@ std::optional<Doubts> read_doubts(const skeleton::Model& model, const std::files
 struct Forecast {
     skeleton::Equilibrium equilibrium;
     Points displacement;       // (vertices x 3) [mm]
-    Eigen::VectorXd sd;        // of a coordinate, at each vertex [mm]; empty: not known
+    Eigen::VectorXd sd;        // of a coordinate, at each vertex: 95 % lie within 1.96 of it [mm]; empty: not known
     double largest = 0;        // displacement [mm]
-    double low = 0, high = 0;  // 95 % of the posterior there [mm]
+    double low = 0, high = 0;  // where it lies with 95 % [mm]
 };
 
 /// Under each load, with what is in doubt where that is told. Draws that do not bear a load are left out.
+///
+/// Why 95 % of what is measured later lie within. The draws tell what stiffness leaves open, which is little: most of
+/// what a coarse model errs by, no stiffness mends. How large that is, probes tell that the fit had not seen
+/// (left_out_error); neither what it leaves where it was fitted nor the median that the likelihood weighs readings by,
+/// as places differ by a factor of ten and the few bad ones make up most of the mean square. That mean square is of n
+/// probes: an error over its root is Student's t with n degrees of freedom [Gelman et al., Bayesian Data
+/// Analysis, 3.2].
 /// @throws SolverFailure where the model itself does not.
 std::vector<Forecast> forecast(const skeleton::Model& model, const std::vector<skeleton::Load>& loads,
                                const std::optional<Doubts>& doubts, int threads);

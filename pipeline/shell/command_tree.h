@@ -12,6 +12,7 @@ struct FlagHelp {
     std::string what;                // in a sentence
     bool takes_value = false;
     std::vector<std::string> choices;  // the values that there are; none: any
+    bool repeatable = false;           // it may be said more than once
 };
 
 struct VerbHelp {

@@ -39,15 +39,19 @@ std::string zsh_quoted(const std::string& text) {
     return safe;
 }
 
-/// '(-o --output)'{-o,--output}'[what]:value:action'
+/// '(-o --output)'{-o,--output=}'[what]:value:action': said once, the value of a long name in its word or the next one.
 std::string zsh_flag(const FlagHelp& flag) {
     const std::string value =
         !flag.takes_value
             ? ""
             : ":value:" + (flag.choices.empty() ? "_files" : fmt::format("({})", fmt::join(flag.choices, " ")));
-    const std::string told = fmt::format("'[{}]{}'", zsh_quoted(flag.what), value);
-    if (flag.names.size() == 1) return flag.names.front() + told;
-    return fmt::format("{{{}}}{}", fmt::join(flag.names, ","), told);
+    std::vector<std::string> names = flag.names;
+    for (std::string& name : names) {
+        if (flag.takes_value && name.starts_with("--")) name += "=";
+    }
+    const std::string how_often = flag.repeatable ? "'*'" : fmt::format("'({})'", fmt::join(flag.names, " "));
+    return how_often + (names.size() == 1 ? names.front() : fmt::format("{{{}}}", fmt::join(names, ","))) +
+           fmt::format("'[{}]{}'", zsh_quoted(flag.what), value);
 }
 
 }  // namespace
@@ -86,12 +90,11 @@ complete -F _palpate palpate
 }
 
 std::string zsh_completion(const CommandTree& tree) {
-    std::string verbs, cases;
-    std::string common;
-    for (const FlagHelp& flag : tree.common) common += " \\\n        " + zsh_flag(flag);
+    std::string common, verbs, cases;
+    for (const FlagHelp& flag : tree.common) common += "    " + zsh_flag(flag) + "\n";
     for (const VerbHelp& verb : tree.verbs) {
         verbs += fmt::format("    '{}:{}'\n", verb.name, zsh_quoted(verb.what));
-        cases += fmt::format("    {})\n      _arguments{}", verb.name, common);
+        cases += fmt::format("    {})\n      _arguments $common", verb.name);
         for (const FlagHelp& flag : verb.flags) cases += " \\\n        " + zsh_flag(flag);
         cases += verb.positional_words.empty()
                      ? " \\\n        '*:file:_files' ;;\n"
@@ -101,18 +104,24 @@ std::string zsh_completion(const CommandTree& tree) {
         R"(#compdef palpate
 # Completion of palpate for zsh: put this file as _palpate into a folder of $fpath.
 _palpate() {{
+  local context state state_descr line
+  typeset -A opt_args
+  local -a common=(
+{}  )
   local -a verbs=(
 {}  )
-  if (( CURRENT == 2 )); then _describe command verbs; return; fi
-  local verb="$words[2]"
-  shift words
-  (( CURRENT-- ))
-  case "$verb" in
+  _arguments -C $common '(-)1:command:->verb' '(-)*::argument:->of_verb'
+  case "$state" in
+    verb) _describe command verbs; return ;;
+    of_verb) ;;
+    *) return ;;
+  esac
+  case "$words[1]" in
 {}  esac
 }}
 _palpate "$@"
 )",
-        verbs, cases);
+        common, verbs, cases);
 }
 
 }  // namespace palpate::pipeline

@@ -25,6 +25,9 @@ void Verbs::add_run(CLI::App& app) {
     add_skeleton_flags(sub, run.say);
     add_probing_flags(sub, run.say);
     add_identify_flags(sub, run.say);
+    sub->add_flag("--sphere-curve", run.say.sphere_curve,
+                  "Measure what fewer and more spheres would do: takes several times as long")
+        ->group("Skeleton");
     sub->add_flag("--no-reference", run.say.no_reference, "Do not ask what the model lacks: fast")->group("Diagnosis");
 }
 

@@ -24,8 +24,11 @@ std::vector<std::string> choices_in(const std::string& type) {
 }
 
 FlagHelp flag_of(const CLI::Option& option) {
-    FlagHelp flag{
-        .names = {}, .what = option.get_description(), .takes_value = option.get_type_size_max() > 0, .choices = {}};
+    FlagHelp flag{.names = {},
+                  .what = option.get_description(),
+                  .takes_value = option.get_expected_max() > 0,
+                  .choices = {},
+                  .repeatable = option.get_expected_max() > 1};
     for (const std::string& name : option.get_snames()) flag.names.push_back("-" + name);
     for (const std::string& name : option.get_lnames()) flag.names.push_back("--" + name);
     flag.choices = choices_in(option.get_type_name());

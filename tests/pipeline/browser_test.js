@@ -48,6 +48,14 @@
     await press('.'); expect(at('frame').value !== slider, 'a full stop goes to no other state');
     await press(' '); expect(at('play').getAttribute('aria-pressed') === 'true', 'the space bar does not play');
     await press(' ');
+    // any number's density can be chosen, as by the keys of a list
+    const number = at('density-of');
+    if (number) {
+      number.selectedIndex = 1;
+      number.dispatchEvent(new Event('input', {bubbles: true}));
+      const name = number.value.replace(' ●', '');
+      expect(at('density').querySelector('svg')?.getAttribute('aria-label').startsWith(`${name}: `), `the density of ${name} is not shown`);
+    }
     // nothing sticks out, each control has a name, sections can be reached
     expect(document.documentElement.scrollWidth <= innerWidth, `the page is ${document.documentElement.scrollWidth} px wide in ${innerWidth}`);
     for (const control of document.querySelectorAll('select, input, button')) {

@@ -57,9 +57,11 @@ def check(report, scratch, name):
 with tempfile.TemporaryDirectory() as folder:
     at = pathlib.Path(folder)
     palpate("new", at / "case")
-    palpate("run", at / "case/case.yaml", "-o", at / "run", "--probes", 6, "--spheres", 8, "--parameters", "uniform",
+    palpate("run", at / "case/case.yaml", "-o", at / "run", "--probes", 6, "--spheres", 8, "--parameters", "links",
             "--particles", 40, "--edge-length", 8)
     check(at / "run/report.html", at, "simulated")
+    if 'id="density-of"' not in (at / "run/report.html").read_text():
+        failures.append("simulated: no number's density can be chosen")
     palpate("probe", at / "run/identify/model.json", "-o", at / "riddle", "--hide", "gravity", "--probes", 5, "--markers", 25)
     palpate("run", at / "riddle", "-o", at / "measured", "--parameters", "uniform", "--particles", 40, "--edge-length", 12)
     check(at / "measured/report.html", at, "measured")

@@ -5,13 +5,17 @@
 
 #include <random>
 
+#include "identify/compare.h"
 #include "identify/set/loads.h"
 #include "identify/set/twin.h"
 #include "mesh/errors.h"
 #include "mesh/io/atomic_file.h"
+#include "pipeline/quality/probed_body.h"
+#include "pipeline/reference/body.h"
 #include "pipeline/results/identification.h"
 #include "pipeline/results/particles_file.h"
 #include "samples/lattice.h"
+#include "skeleton/build.h"
 #include "tests/messages.h"
 #include "tests/temporary_folder.h"
 
@@ -88,6 +92,80 @@ TEST_F(Forecasts, IntervalsHoldTheTruth) {
     EXPECT_GE(held, 0.85 * all);  // 95 % of 36 that hang together by the posterior they share
 }
 
+Eigen::Index nearest_vertex(const mesh::Surface& surface, const Vec3& point) {
+    Eigen::Index nearest = 0;
+    (surface.vertices.rowwise() - point.transpose()).rowwise().squaredNorm().minCoeff(&nearest);
+    return nearest;
+}
+
+/// A bar in finite elements, probed; a skeleton of six spheres, which is coarse, fitted to some of the probes with one
+/// number a kind, which no noise leaves in doubt.
+struct CoarseForecast {
+    explicit CoarseForecast(std::uint64_t seed) {
+        Subject subject;
+        subject.surface = mesh::make_box({0, 0, 0}, {60, 20, 20}, {6, 2, 2});
+        subject.supports = {mesh::BoxRegion{{-1, -1, -1}, {3, 21, 21}}};
+        subject.settings.edge_length = 10;
+        subject.settings.identify.seed = seed;
+        const ProbedQuality probed = probe_for_quality(subject, {.fit = 12, .held_out = 24, .threads = 2});
+        held_out = probed.held_out;
+        const Body body = make_body(subject, {.edge_length = 10});
+        const identify::IdentifyOptions options{
+            .scope = identify::Scope::uniform, .law = identify::LawChoice::linear, .fixed = {}, .threads = 2};
+        const identify::IdentifyResult found = identify::identify(
+            skeleton::build_skeleton(body.surface, body.volume, subject.material, subject.supports, {.spheres = 6}),
+            probed.fit, options);
+        model = found.model;
+        const TemporaryFolder folder;
+        write_identification(folder.path(), found);
+        doubts = *read_doubts(model, folder.path(), 32);
+    }
+
+    /// How many of the coordinates held out lie within 1.96 sd, and how many there are.
+    std::pair<int, int> within() const {
+        const identify::ContactLoads to_load(model);
+        std::vector<skeleton::Load> loads;
+        for (const identify::LoadState& state : held_out.states) loads.push_back(to_load(state.contacts));
+        const std::vector<Forecast> told = forecast(model, loads, doubts, 2);
+        const identify::Comparison comparison = identify::compare(model, held_out, 2);
+        int held = 0, all = 0;
+        for (std::size_t s = 0; s < loads.size(); ++s) {
+            if (held_out.states[s].contacts.empty()) continue;
+            const auto& readings = held_out.states[s].readings;
+            for (std::size_t r = 0; r < readings.size(); ++r) {
+                const Vec3& rest = held_out.markers[static_cast<std::size_t>(readings[r].marker)].rest;
+                const double sd = told[s].sd[nearest_vertex(model.surface, rest)];
+                const Vec3 error =
+                    readings[r].position - comparison.predicted[s].row(static_cast<Eigen::Index>(r)).transpose();
+                held += static_cast<int>((error.array().abs() <= 1.96 * sd).count());
+                all += 3;
+            }
+        }
+        return {held, all};
+    }
+
+    skeleton::Model model;
+    identify::MeasurementSet held_out;
+    Doubts doubts;
+};
+
+/// No stiffness mends what a coarse model errs by: intervals that knew of stiffness alone would hold next to nothing.
+TEST(ForecastOfACoarseModel, HoldsNinetyFivePercentOfWhatWasNotFitted) {
+    int held = 0, all = 0, held_by_stiffness = 0;
+    for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+        CoarseForecast coarse(seed);
+        const auto [within, readings] = coarse.within();
+        held += within;
+        all += readings;
+        coarse.doubts.forecast_error = {0, 0, 0};
+        held_by_stiffness += coarse.within().first;
+    }
+    // readings of 72 probes, alike within each: their share scatters by some 1.5 %
+    EXPECT_GT(held, 0.90 * all);
+    EXPECT_LT(held, 0.99 * all);
+    EXPECT_LT(held_by_stiffness, 0.7 * all);
+}
+
 TEST_F(Forecasts, OfARigidlyKnownModelAreItsOwn) {
     const identify::ContactLoads to_load(truth);
     const std::vector<skeleton::Load> loads{to_load(random_pushes(truth, 1, 3).front().contacts)};
@@ -132,6 +210,14 @@ TEST_F(Forecasts, ParticlesComeBackAsTheyWereWritten) {
     EXPECT_LT((read.weights - last.log_weights.array().exp().matrix()).norm(), 1e-5);
     for (std::size_t p = 0; p < found.posterior.size(); ++p)
         EXPECT_EQ(read.parameters[p], found.posterior[p].parameter);
+}
+
+/// What tempering leaves of a particle may be less than the least normal number.
+TEST_F(Forecasts, ParticlesMayWeighNextToNothing) {
+    const auto file = folder.write("particles.csv", "weight,elongation\n1,2\n9.5e-309,3\n");
+    EXPECT_LT(read_particles(file).weights[1], 1e-300);
+    folder.write("particles.csv", "weight,elongation\n1,2\n,3\n");
+    EXPECT_THAT(message_of<InvalidInput>([&] { read_particles(file); }), HasSubstr("'' is no weight"));
 }
 
 TEST_F(Forecasts, AnotherModelsParticlesAreRefused) {

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <map>
 #include <nlohmann/json.hpp>
 
 #include "identify/compare.h"
@@ -31,18 +32,22 @@ using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
+commands::RunOptions beam_options(const std::filesystem::path& from, const std::filesystem::path& to) {
+    commands::RunOptions options{.input = from / "beam.stl", .output = to, .say = {}};
+    options.say.edge_length = 14;
+    options.say.spheres = 6;
+    options.say.probes = 6;
+    options.say.particles = 40;
+    options.say.parameters = "uniform";
+    return options;
+}
+
 /// A run on a small beam, made once for all tests.
 const std::filesystem::path& beam_run() {
     static const TemporaryFolder scratch;
     static const std::filesystem::path run = [] {
         mesh::write_surface(scratch / "beam.stl", mesh::make_box({0, 0, 0}, {100, 20, 20}, {10, 2, 2}));
-        commands::RunOptions options{.input = scratch / "beam.stl", .output = scratch / "run", .say = {}};
-        options.say.edge_length = 14;
-        options.say.spheres = 6;
-        options.say.probes = 6;
-        options.say.particles = 40;
-        options.say.parameters = "uniform";
-        commands::run(options, {});
+        commands::run(beam_options(scratch.path(), scratch / "run"), {});
         return scratch / "run";
     }();
     return run;
@@ -81,6 +86,26 @@ TEST(ReportPage, HoldsEverySectionThatTheRunHasAndNoOther) {
 TEST(ReportPage, OfNoRunSaysSo) {
     const TemporaryFolder scratch;
     EXPECT_THROW(write_report(scratch.path(), scratch / "report.html"), InvalidInput);
+}
+
+/// A quarter, half, as many and twice as many spheres as the run has; gone again where nobody asks.
+TEST(SphereCurve, IsMeasuredWhereItIsAskedFor) {
+    const TemporaryFolder scratch;
+    std::filesystem::copy(beam_run(), scratch / "run", std::filesystem::copy_options::recursive);
+    commands::RunOptions options = beam_options(beam_run().parent_path(), scratch / "run");
+    options.say.sphere_curve = true;
+    commands::run(options, {});
+    const json curve = json::parse(mesh::read_text(scratch / "run/skeleton/sphere_curve.json"));
+    std::map<int, bool> rungs;
+    for (const json& rung : curve["rungs"]) rungs[rung["spheres"]] = rung["own"];
+    EXPECT_EQ(rungs, (std::map<int, bool>{{1, false}, {3, false}, {6, true}, {12, false}}));
+    EXPECT_THAT(mesh::read_text(scratch / "run/report.html"), HasSubstr("id=\"spheres\""));
+
+    options.say.sphere_curve = false;
+    commands::run(options, {});
+    EXPECT_FALSE(std::filesystem::exists(scratch / "run/skeleton/sphere_curve.json"));
+    EXPECT_THAT(mesh::read_text(scratch / "run/report.html"),
+                AllOf(Not(HasSubstr("id=\"spheres\"")), HasSubstr("--sphere-curve")));
 }
 
 TEST(ViewData, HoldsTheBodyAndEachAnswer) {
@@ -190,11 +215,13 @@ TEST(MissingSection, PutsEveryCandidateInWords) {
 }
 
 TEST(SpheresSection, DrawsTheCurveWhereThereIsOne) {
-    const auto rung = [](int spheres, double rms) {
-        return json{{"spheres", spheres}, {"error", {{"rms", rms}, {"median", rms / 2}, {"p90", 2 * rms}}}};
+    const auto rung = [](int spheres, double rms, bool own) {
+        return json{
+            {"own", own}, {"spheres", spheres}, {"error", {{"rms", rms}, {"median", rms / 2}, {"p90", 2 * rms}}}};
     };
-    EXPECT_THAT(spheres_section({{"rungs", {rung(8, 0.3), rung(64, 0.1)}}}),
-                AllOf(HasSubstr("rms at 8: 30"), HasSubstr("90th percentile at 64: 20")));
+    const json rungs{rung(8, 0.3, true), rung(64, 0.1, false)};
+    EXPECT_THAT(spheres_section({{"rungs", rungs}}),
+                AllOf(HasSubstr("rms at 8: 30"), HasSubstr("90th percentile at 64: 20"), HasSubstr("8 free spheres")));
     EXPECT_EQ(spheres_section(nullptr), "");
 }
 

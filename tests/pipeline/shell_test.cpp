@@ -28,7 +28,8 @@ CommandTree small_tree() {
                        .positionals = {"INPUT"},
                        .positional_words = {},
                        .flags = {{{"-o", "--output"}, "Where it's written", true, {}},
-                                 {{"--body"}, "What errors are judged on", true, {"reference", "skeleton"}}}},
+                                 {{"--body"}, "What errors are judged on", true, {"reference", "skeleton"}},
+                                 {{"--without"}, "What is left out", true, {"gravity", "contact"}, true}}},
                       {.name = "effects",
                        .what = "The catalogue.",
                        .examples = {},
@@ -72,6 +73,40 @@ TEST(Completion, WorksInBash) {
     EXPECT_EQ(complete("palpate run --o", 2), "--output\n");
     EXPECT_EQ(complete("palpate run --body s", 3), "skeleton\n");
     EXPECT_EQ(complete("palpate effects g", 2), "gravity\n");
+}
+
+/// Zsh itself completes with it, at a terminal of its own: what stands on the line after the tab key.
+TEST(Completion, WorksInZsh) {
+    if (std::system("command -v zsh > /dev/null") != 0) GTEST_SKIP() << "there is no zsh";
+    const TemporaryFolder scratch;
+    scratch.write("_palpate", zsh_completion(small_tree()));
+    scratch.write("gravel", "");
+    const auto complete = [&](const std::string& typed) {
+        const std::string at = scratch.path().string();
+        // the terminal's own answer to ^T writes the line down
+        scratch.write("ask", "zmodload zsh/zpty; cd " + at + R"(
+zpty shell zsh -f -i
+zpty -w shell "fpath=($PWD \$fpath); autoload -Uz compinit; compinit -u -D"
+zpty -w shell 'tell() { print -r -- "$BUFFER" > answer; zle send-break }; zle -N tell; bindkey "^T" tell'
+zpty -w shell "bindkey '^I' complete-word; print rea''dy"
+zpty -r shell seen '*ready*'
+zpty -w -n shell $')" + typed + R"(\t\C-T'
+repeat 200; do [[ -s answer ]] && break; sleep 0.05; done
+zpty -d shell
+)");
+        std::filesystem::remove(scratch / "answer");
+        EXPECT_EQ(std::system(("timeout 60 zsh -f " + (scratch / "ask").string()).c_str()), 0);
+        return mesh::read_text(scratch / "answer");
+    };
+    EXPECT_EQ(complete("palpate ru"), "palpate run \n");
+    EXPECT_EQ(complete("palpate --json ru"), "palpate --json run \n") << "what is common may stand before the verb";
+    EXPECT_EQ(complete("palpate run --js"), "palpate run --json \n");
+    EXPECT_EQ(complete("palpate run --body=s"), "palpate run --body=skeleton \n");
+    EXPECT_EQ(complete("palpate run --body s"), "palpate run --body skeleton \n");
+    EXPECT_EQ(complete("palpate effects --json gr"), "palpate effects --json gravity \n") << "--json takes no value";
+    EXPECT_EQ(complete("palpate run --body skeleton --bo"), "palpate run --body skeleton --bo\n") << "said already";
+    EXPECT_EQ(complete("palpate run --without contact --wi"), "palpate run --without contact --without=\n");
+    EXPECT_EQ(complete("palpate run -o gr"), "palpate run -o gravel \n");
 }
 
 TEST(ManPage, TellsEveryVerbWithItsFlags) {

@@ -1,0 +1,66 @@
+#include "pipeline/commands/run_curve.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "mesh/errors.h"
+#include "mesh/io/atomic_file.h"
+#include "pipeline/commands/run_summary.h"
+#include "pipeline/quality/quality_files.h"
+
+namespace palpate::pipeline::commands {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+constexpr const char* curve_file = "skeleton/sphere_curve.json";
+QualityOptions how_to_measure(const skeleton::Model& model, const Common& common) {
+    const auto free = static_cast<int>(std::ranges::count(model.spheres, false, &skeleton::Sphere::held));
+    QualityOptions options;
+    options.spheres.clear();
+    for (const int count : {free / 4, free / 2, 2 * free}) {
+        if (count >= 1) options.spheres.push_back(count);
+    }
+    options.threads = common.threads;
+    return options;
+}
+
+std::string in_words(const json& rungs) {
+    std::string words;
+    for (const json& rung : rungs) {
+        words += fmt::format("{}{:.3g} % with {}", words.empty() ? "" : ", ", 100 * rung["error"]["rms"].get<double>(),
+                             rung["spheres"].get<int>());
+    }
+    return words + " free spheres";
+}
+
+}  // namespace
+
+void measure_sphere_curve(RunFolder& folder, const Subject& subject, const Body& body, const skeleton::Model& model,
+                          const Common& common) {
+    if (!subject.settings.sphere_curve || subject.settings.model) {
+        fs::remove(folder.path() / curve_file);
+        return;
+    }
+    try {
+        const bool ran = folder.stage(
+            {"sphere_curve", {{"seed", subject.settings.identify.seed}}, {}, {"mesh", "skeleton"}, {curve_file}}, [&] {
+                const Quality quality =
+                    measure_quality(subject, body, model, how_to_measure(model, common), Console::progress());
+                mesh::write_text(folder.path() / curve_file, quality_json(quality).dump(1) + "\n");
+                return json{{"rungs", quality.rungs.size()}};
+            });
+        tell_stage(folder, "sphere_curve", ran,
+                   in_words(json::parse(mesh::read_text(folder.path() / curve_file))["rungs"]));
+        return;
+    } catch (const InvalidInput& e) {
+        Console::warning(std::string("What more spheres would do stays unknown: ") + e.what());
+    } catch (const SolverFailure& e) {
+        Console::warning(std::string("What more spheres would do stays unknown: ") + e.what());
+    }
+    fs::remove(folder.path() / curve_file);
+}
+
+}  // namespace palpate::pipeline::commands
