@@ -111,7 +111,7 @@ Outcome effects(const EffectsOptions& options, const Common& common);
 struct SimulateOptions {
     std::filesystem::path model, probes, output;
     std::optional<double> dt = {}, duration = {};  // motion, a frame every dt [s]; absent: equilibria
-    std::optional<double> damping;                 // ratio of the softest mode [-]; none: the model's, or 0.1
+    std::optional<double> damping = {};            // ratio of the softest mode [-]; none: the model's, or 0.1
     bool implicit = false;                         // a step a frame, stable at any size, in place of small ones
     std::filesystem::path posterior = {};          // folder of particles.csv; empty: the model's own, if there is one
     int draws = 32;                                // from it, for intervals of equilibria; 0: none
