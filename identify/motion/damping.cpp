@@ -41,7 +41,7 @@ double fastest_told(const Ringings& ringings) {
 
 /// The modes that move the markers most, in order of frequency.
 std::vector<int> chosen_modes(const Ringings& ringings, int most) {
-    constexpr double least = 1e-3;  // of the motion's mean square
+    constexpr double least = 0.01;  // of the mean square of the motion: what is less drowns in errors of the others
     const VectorXd share = amplitudes(ringings) / amplitudes(ringings).sum();
     const double fastest = fastest_told(ringings);
     std::vector<int> modes;
@@ -205,11 +205,9 @@ private:
             if (fits.size() > 1) result_.log_evidence.push_back(fits[i].log_evidence - most);
             if (fits[i].log_evidence > fits[best].log_evidence + worth_a_law) best = i;
         }
-        if (std::ranges::count_if(fits, [&](const Fitted& one) { return one.log_evidence > most - worth_a_law; }) > 1 ||
-            fits.size() == 1)
-            result_.notes.emplace_back(
-                "Whether damping grows or falls with frequency is not told: that takes vibrations of frequencies far "
-                "apart.");
+        const auto rivals =
+            std::ranges::count_if(fits, [&](const Fitted& one) { return one.log_evidence > most - worth_a_law; });
+        result_.law_is_told = fits.size() > 1 && rivals == 1;
         return std::move(fits[best]);
     }
 

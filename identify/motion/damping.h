@@ -41,11 +41,11 @@ struct Trace {
 
 struct DampingResult {
     DampingLaw law = DampingLaw::stiffness;
+    bool law_is_told = false;          // by the data; in doubt damping goes with stiffness
     skeleton::Damping damping;         // to be played, of the posterior's means
     Known ratio;                       // of the slowest of the modes, by the law
     Known speed;                       // of the body's vibrations over the model's, of all modes
-    std::vector<double> log_evidence;  // of each law, less the largest; empty where one mode alone was seen.
-                                       // In doubt damping goes with stiffness
+    std::vector<double> log_evidence;  // of each law, less the largest; empty where one mode alone was seen
     std::vector<DampedMode> modes;     // the slowest first
     double rms = 0, displacement = 0;  // of what is left, and of the motion [mm]
     double mass = 1;                   // the model's masses were multiplied by that

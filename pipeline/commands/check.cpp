@@ -18,6 +18,7 @@ std::string describe_set(const identify::MeasurementSet& set) {
     for (const auto& state : set.states) readings += state.readings.size();
     std::string text = fmt::format("{} states ({} loaded), {} markers, {} readings", set.states.size(), loaded,
                                    set.markers.size(), readings);
+    if (!set.recordings.empty()) text += fmt::format(", {} recordings of motion", set.recordings.size());
     if (!set.position_noise) text += "; no noise is stated";
     return text + ".\n";
 }

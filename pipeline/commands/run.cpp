@@ -284,7 +284,9 @@ private:
 
     Outcome conclude(RunResults results) const {
         results.posterior = read_posterior(folder_.path() / "identify/posterior.csv");
-        results.modes = json::parse(mesh::read_text(folder_.path() / "identify/identify.json"))["modes"];
+        const json identified = json::parse(mesh::read_text(folder_.path() / "identify/identify.json"));
+        results.modes = identified["modes"];
+        results.damping = identified["damping"];
         results.spheres = static_cast<int>(model_.spheres.size());
         results.links = static_cast<int>(model_.links.size());
         return outcome_of(subject_, results, folder_);

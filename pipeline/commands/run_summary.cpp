@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "pipeline/results/compare_words.h"
+#include "pipeline/results/damping.h"
 #include "pipeline/results/diagnosis_words.h"
 #include "pipeline/results/ladder.h"
 
@@ -34,6 +35,7 @@ std::string summary(const Subject& subject, const RunResults& results, const fs:
                                    results.links, compare_in_words(results.compare));
     if (!results.diagnosis.is_null()) text += diagnosis_in_words(results.diagnosis) + "\n";
     if (!results.ladder.is_null()) text += ladder_in_words(results.ladder);
+    if (!results.damping.is_null()) text += damping_in_words(results.damping);
     return text + fmt::format("\nReport: {}\nParaView: paraview --script={}\nNext: {}\n",
                               (run / "report.html").string(), (run / "view.py").string(),
                               next_command(subject, results, run));

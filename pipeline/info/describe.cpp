@@ -79,6 +79,10 @@ Description describe_set(const fs::path& path) {
     Description told{.kind = "a measurement set, '" + set.name + "'", .lines = {}, .next = {}};
     told.lines.push_back(fmt::format("{} states, {} of them loaded; {} markers, {} readings", set.states.size(), loaded,
                                      set.markers.size(), readings));
+    for (const identify::Recording& recording : set.recordings) {
+        told.lines.push_back(fmt::format("probe {} in motion: {} instants, to {:g} s", recording.probe,
+                                         recording.instants.size(), recording.instants.back().time));
+    }
     told.lines.push_back(fmt::format("held by {} region{}; surface of {} vertices", set.supports.size(),
                                      set.supports.size() == 1 ? "" : "s", set.rest_surface.vertices.rows()));
     told.lines.push_back(set.position_noise ? fmt::format("noise {:.3g} mm (1 sigma)", *set.position_noise)

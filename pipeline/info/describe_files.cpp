@@ -49,6 +49,7 @@ const std::map<std::string, std::string>& tables() {
         {"probe,time,marker", "measured positions of markers"},
         {"probe,time,gx", "gravity and pressure that are known to act"},
         {"marker,x,y,z", "markers at rest"},
+        {"probe,marker,axis,time", "a body in motion, measured and played"},
         {"own,spheres,", "errors of skeletons over their number of spheres"}};
     return kinds;
 }

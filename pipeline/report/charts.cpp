@@ -98,11 +98,9 @@ std::string line_chart(const std::vector<ChartLine>& curves, const std::string& 
         svg += curve_svg(curves[i], x, y, i);
         if (curves.size() < 2) continue;
         const double key = left + 150.0 * static_cast<double>(i);
-        svg +=
-            fmt::format(
-                R"(<line x1="{0:.0f}" x2="{1:.0f}" y1="32" y2="32" stroke="{2}" stroke-width="2" stroke-dasharray="{3}"/>)",
-                key, key + 24, line_colours[i % std::size(line_colours)], line_dashes[i % std::size(line_dashes)]) +
-            words_at(key + 30, 36, curves[i].label);
+        ChartLine sample{.label = curves[i].label, .points = {{0, 0}, {0.5, 0}, {1, 0}}, .drawn = curves[i].drawn};
+        if (sample.drawn == ChartLine::Drawn::both) sample.drawn = ChartLine::Drawn::line;
+        svg += curve_svg(sample, {0, 1, key, key + 24}, {0, 1, 32, 32}, i) + words_at(key + 30, 36, curves[i].label);
     }
     return svg + "</svg>";
 }

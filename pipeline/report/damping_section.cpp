@@ -10,6 +10,7 @@
 #include "pipeline/report/charts.h"
 #include "pipeline/report/escape.h"
 #include "pipeline/report/run_files.h"
+#include "pipeline/results/damping.h"
 
 namespace palpate::pipeline {
 namespace {
@@ -71,10 +72,11 @@ std::string damping_section(const std::filesystem::path& folder) {
     if (!std::filesystem::exists(folder / "damping.csv")) return {};
     const json damping = read_json(folder / "identify.json")["damping"];
     std::string html = fmt::format(
-        "<h2 id=\"damping\">How motion dies away</h2><p>The slowest vibration that was seen has a damping ratio of {}. "
+        "<h2 id=\"damping\">How motion dies away</h2><p>The slowest vibration that was seen has a damping ratio of {}; "
+        "{}. "
         "Motion of {:.3g} mm rms is followed to {:.2g} mm.</p><div class=\"pair\">{}</div>{}",
-        interval(damping["ratio"]), damping["displacement_mm"].get<double>(), damping["rms_mm"].get<double>(),
-        trace_charts(folder / "damping.csv"), mode_table(damping["modes"]));
+        interval(damping["modes"][0]["ratio"]), how_it_goes(damping), damping["displacement_mm"].get<double>(),
+        damping["rms_mm"].get<double>(), trace_charts(folder / "damping.csv"), mode_table(damping["modes"]));
     for (const json& note : damping["notes"]) html += "<p>" + escape(note.get<std::string>()) + "</p>";
     return html +
            "<p class=\"soft\">Intervals hold 95 % of the posterior; ● known better than before. As played: by the "

@@ -193,8 +193,8 @@ void write_report(const fs::path& run, const fs::path& page) {
                 (files.diagnosis.is_null() ? "" : "<p>" + escape(compare_in_words(files.compare)) + "</p>") +
                 pictures(files) + probe_chart(files);
     sections += stiffness_section(files.posterior, files.particles, files.prior, files.best + "/posterior.csv") +
-                damping_section(run / files.best) +
-                convergence_section(run / "identify/convergence.csv") + spheres_section(files.quality);
+                damping_section(run / files.best) + convergence_section(run / "identify/convergence.csv") +
+                spheres_section(files.quality);
     sections += assumption_list(files) + file_section(files);
     sections += "<h2 id=\"times\">Times</h2>" + stage_table(files);
     sections +=

@@ -12,14 +12,10 @@ json to_json(const identify::Known& known) {
             {"q50", known.q50},   {"q975", known.q975}, {"informed", known.informed}};
 }
 
-std::string interval(const json& known, const char* unit) {
-    return fmt::format("{:.3g}{} ({:.3g} to {:.3g})", known["q50"].get<double>(), unit, known["q025"].get<double>(),
+std::string interval(const json& known) {
+    return fmt::format("{:.3g} ({:.3g} to {:.3g})", known["q50"].get<double>(), known["q025"].get<double>(),
                        known["q975"].get<double>());
 }
-
-constexpr const char* how_it_goes[] = {"it grows with frequency, as links resist the rates of their strains",
-                                       "it falls with frequency, as masses resist their velocities",
-                                       "by mass and by stiffness"};
 
 }  // namespace
 
@@ -35,6 +31,7 @@ json to_json(const identify::DampingResult& found) {
     for (std::size_t law = 0; law < found.log_evidence.size(); ++law)
         evidence[identify::damping_law_names[law]] = found.log_evidence[law];
     return {{"law", identify::damping_law_names[static_cast<std::size_t>(found.law)]},
+            {"law_is_told", found.law_is_told},
             {"mass", found.damping.alpha},
             {"stiffness", found.damping.beta},
             {"ratio", to_json(found.ratio)},
@@ -61,21 +58,26 @@ std::string damping_csv(const identify::DampingResult& found) {
     return text;
 }
 
+std::string how_it_goes(const json& damping) {
+    if (!damping["law_is_told"].get<bool>())
+        return "whether it grows or falls with frequency is not told, which takes vibrations of frequencies far apart";
+    const std::string law = damping["law"];
+    if (law == "stiffness") return "it grows with frequency, as links resist the rates of their strains";
+    return law == "mass" ? "it falls with frequency, as masses resist their velocities" : "by mass and by stiffness";
+}
+
 std::string damping_in_words(const json& damping) {
-    const auto& names = identify::damping_law_names;
-    const auto law = static_cast<std::size_t>(
-        std::distance(names.begin(), std::find(names.begin(), names.end(), damping["law"].get<std::string>())));
     std::string text = fmt::format(
-        "  Damping: ratio {} of the slowest vibration that was seen, {}.\n"
+        "  Damping: ratio {} of the slowest vibration that was seen; {}.\n"
         "  Motion of {:.3g} mm rms is followed to {:.2g} mm; the body vibrates {} times as fast as the model.\n"
         "  {:>10} {:>26} {:>28} {:>8} {:>8}\n",
-        interval(damping["ratio"], ""), how_it_goes[law], damping["displacement_mm"].get<double>(),
-        damping["rms_mm"].get<double>(), interval(damping["speed"], ""), "model [Hz]", "measured [Hz]", "damping ratio",
+        interval(damping["modes"][0]["ratio"]), how_it_goes(damping), damping["displacement_mm"].get<double>(),
+        damping["rms_mm"].get<double>(), interval(damping["speed"]), "model [Hz]", "measured [Hz]", "damping ratio",
         "played", "share");
     for (const json& mode : damping["modes"]) {
         text += fmt::format("  {:>10.3g} {:>26} {:>28} {:>8.3g} {:>6.1f} %{}\n", mode["frequency_hz"].get<double>(),
-                            interval(mode["measured_hz"], ""), interval(mode["ratio"], ""),
-                            mode["played_ratio"].get<double>(), 100 * mode["share"].get<double>(),
+                            interval(mode["measured_hz"]), interval(mode["ratio"]), mode["played_ratio"].get<double>(),
+                            100 * mode["share"].get<double>(),
                             mode["ratio"]["informed"].get<bool>() ? "" : "  not told by the data");
     }
     for (const json& note : damping["notes"]) text += "  " + note.get<std::string>() + "\n";

@@ -14,6 +14,9 @@ nlohmann::json to_json(const identify::DampingResult& found);
 /// Where each recording moves most, measured and played, as damping.csv.
 std::string damping_csv(const identify::DampingResult& found);
 
+/// How damping goes with frequency, in words.
+std::string how_it_goes(const nlohmann::json& damping);
+
 /// What identify.json tells of damping, for the terminal: a sentence, and a line a mode.
 std::string damping_in_words(const nlohmann::json& damping);
 

@@ -52,7 +52,7 @@ PALPATE_API palpate_status palpate_sphere(const palpate_body* body, int sphere, 
                                           double orientation[4]);
 
 PALPATE_API palpate_status palpate_set_gravity(palpate_body* body, const double g[3]);
-/* alpha [1/s], beta [s]. */
+/* alpha [1/s], beta [s], in place of the model's own or, where it has none, of a ratio of 0.1 of the softest mode. */
 PALPATE_API palpate_status palpate_set_damping(palpate_body* body, double alpha, double beta);
 
 /* Takes hold of the skin nearest to a point [mm], over a radius (0: at the point). */
