@@ -46,20 +46,29 @@ Reader written(const char* name, const std::string& file, const std::string& tex
 
 /// One file of a measurement set.
 Reader set(const char* file) {
-    return {file,
-            [=](const fs::path& folder) {
-                identify::MeasurementSet set;
-                set.rest_surface = small_box();
-                set.supports = {mesh::BoxRegion{Vec3(-1, -1, -1), Vec3(1, 21, 21)}};
-                set.markers = {{0, Vec3(100, 10, 20), std::nullopt}, {4, Vec3(50, 10, 25), Vec3(50, 10, 20)}};
-                set.states = {{.probe = 1,
-                               .contacts = {{Vec3(100, 10, 20), Vec3(0, 0, -1), 3}},
-                               .readings = {{0, Vec3(100, 10, 18), 0.1}, {1, Vec3(50, 10, 24), identify::missing}},
-                               .gravity = Vec3(0, 0, -9810)}};
-                identify::write_measurement_set(folder / "set", set);
-                return folder / "set" / file;
-            },
-            [](const fs::path& folder) { identify::read_measurement_set(folder / "set"); }};
+    return {
+        file,
+        [=](const fs::path& folder) {
+            identify::MeasurementSet set;
+            set.rest_surface = small_box();
+            set.supports = {mesh::BoxRegion{Vec3(-1, -1, -1), Vec3(1, 21, 21)}};
+            set.markers = {{0, Vec3(100, 10, 20), std::nullopt}, {4, Vec3(50, 10, 25), Vec3(50, 10, 20)}};
+            set.states = {{.probe = 1,
+                           .contacts = {{Vec3(100, 10, 20), Vec3(0, 0, -1), 3}},
+                           .readings = {{0, Vec3(100, 10, 18), 0.1}, {1, Vec3(50, 10, 24), identify::missing}},
+                           .gravity = Vec3(0, 0, -9810)}};
+            set.recordings = {
+                {.probe = 2,
+                 .loads = {{.probe = 2, .contacts = {{Vec3(100, 10, 20), Vec3(0, 0, -1), 3}}}, {.probe = 2, .time = 1}},
+                 .instants = {{0, {{0, Vec3(100, 10, 18), 0.1}}}, {0.01, {{0, Vec3(100, 10, 19), 0.1}}}}}};
+            identify::write_measurement_set(folder / "set", set);
+            // as STL, which is read in no time
+            mesh::write_surface(folder / "set/rest.stl", set.rest_surface);
+            std::string yaml = mesh::read_text(folder / "set/set.yaml");
+            mesh::write_text(folder / "set/set.yaml", yaml.replace(yaml.find("rest.vtp"), 8, "rest.stl"));
+            return folder / "set" / file;
+        },
+        [](const fs::path& folder) { identify::read_measurement_set(folder / "set"); }};
 }
 
 Reader model() {
@@ -185,7 +194,9 @@ std::vector<Reader> all_readers() {
             set("probes.csv"),
             set("markers.csv"),
             set("positions.csv"),
-            set("states.csv")};
+            set("states.csv"),
+            set("motion_probes.csv"),
+            set("motion_positions.csv")};
 }
 
 }  // namespace palpate::fuzz
