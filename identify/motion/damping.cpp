@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "identify/motion/leftover.h"
 #include "identify/motion/ringing_fit.h"
 #include "identify/particles/tempered_filter.h"
 #include "identify/set/loads.h"
@@ -58,56 +59,6 @@ std::vector<int> chosen_modes(const Ringings& ringings, int most) {
     modes.resize(std::min(modes.size(), static_cast<std::size_t>(most)));
     std::ranges::sort(modes);
     return modes;
-}
-
-/// How long a row of errors is like itself, in instants: 1 + 2 sum of its correlations, until they are lost; of all
-/// rows together.
-double correlation_time(const Eigen::MatrixXd& errors) {
-    constexpr double lost = 0.05;
-    const double square = errors.squaredNorm();
-    double time = 1;
-    for (Eigen::Index lag = 1; lag < errors.cols() / 2 && square > 0; ++lag) {
-        const double alike =
-            errors.leftCols(errors.cols() - lag).cwiseProduct(errors.rightCols(errors.cols() - lag)).sum() / square;
-        if (alike < lost) break;
-        time += 2 * alike;
-    }
-    return time;
-}
-
-/// How many rows of errors there are as far as they differ: tr(S)^2 / tr(S^2) of their covariance S, what as many
-/// independent rows of so few instants would show beside that taken off.
-double independent_rows(const Eigen::MatrixXd& errors, double instants) {
-    const Eigen::MatrixXd S = errors * errors.transpose();
-    const double square = S.trace() * S.trace();
-    if (square == 0) return static_cast<double>(errors.rows());
-    const double alike = S.squaredNorm() / square, by_chance = 1 / std::max(1.0, instants);
-    return 1 / std::max(alike - by_chance, 1 / static_cast<double>(errors.rows()));
-}
-
-struct Leftover {
-    double square = 0;       // of weighed errors
-    int readings = 0;        // coordinates
-    double independent = 0;  // of them
-};
-
-Leftover leftover(const RingingFit& fit, const Ringings& ringings, const VectorXd& theta) {
-    Leftover all;
-    for (int r = 0; r < static_cast<int>(ringings.recordings.size()); ++r) {
-        const Eigen::MatrixXd errors = fit.errors(theta, r);
-        const auto read = (ringings.recordings[r].weights.array() > 0).count();
-        const double time = correlation_time(errors), instants = static_cast<double>(errors.cols()) / time;
-        all.square += errors.squaredNorm();
-        all.readings += static_cast<int>(read);
-        all.independent += std::min(static_cast<double>(read), instants * independent_rows(errors, instants));
-    }
-    return all;
-}
-
-/// What errors' squares are to be divided by: their variance, times how many readings say the same.
-double variance_of(const Leftover& left, bool noise_is_known) {
-    const double variance = left.square / std::max(1, left.readings);
-    return std::max(variance, noise_is_known ? 1.0 : 1e-18) * left.readings / std::max(1.0, left.independent);
 }
 
 Known known(const VectorXd& values, const VectorXd& weights, double prior_sd, bool logarithms) {
@@ -181,16 +132,16 @@ public:
 
 private:
     /// Noise that is told holds where the model is right; what is left tells where it is not.
-    bool noise_is_known() const { return set_.position_noise.has_value(); }
+    bool noise_is_told() const { return set_.position_noise.has_value(); }
 
     Fitted best_law() {
         const RingingFit stiffness(ringings_, DampingLaw::stiffness);
         const VectorXd rest = stiffness.prior().mean;
         // at first all that moves is taken for error, so that no wrong number of cycles is preferred
-        const double coarse = variance_of(leftover(stiffness, ringings_, rest), noise_is_known());
+        const double coarse = variance_of(leftover(stiffness, ringings_, rest), noise_is_told());
         VectorXd start = stiffness.most_probable(stiffness.scanned(coarse), coarse);
         for (int again = 0; again < 2; ++again) {
-            variance_ = variance_of(leftover(stiffness, ringings_, start), noise_is_known());
+            variance_ = variance_of(leftover(stiffness, ringings_, start), noise_is_told());
             start = stiffness.most_probable(start, variance_);
         }
         std::vector<Fitted> fits;
