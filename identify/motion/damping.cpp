@@ -61,7 +61,8 @@ std::vector<int> chosen_modes(const Ringings& ringings, int most) {
     return modes;
 }
 
-Known known(const VectorXd& values, const VectorXd& weights, double prior_sd, bool logarithms) {
+/// Of weighed positive values; informed by their logarithms, of which the prior's sd is told.
+Known known(const VectorXd& values, const VectorXd& weights, double prior_sd) {
     Known told;
     told.mean = weights.dot(values);
     told.sd = std::sqrt(weights.dot((values.array() - told.mean).square().matrix()));
@@ -77,7 +78,7 @@ Known known(const VectorXd& values, const VectorXd& weights, double prior_sd, bo
             if (before < level && sum >= level) *at = values[i];
         }
     }
-    const VectorXd ln = logarithms ? VectorXd(values.array().log()) : values;
+    const VectorXd ln = values.array().log();
     const double middle = weights.dot(ln);
     told.informed = std::sqrt(weights.dot((ln.array() - middle).square().matrix())) <= 0.7 * prior_sd;
     return told;
@@ -181,10 +182,10 @@ private:
         const LogNormalPrior& prior = best.fit.prior();
         const int speed = best.law == DampingLaw::both ? 2 : 1;
         result_.law = best.law;
-        result_.ratio = known(each([&](const VectorXd& theta) { return best.fit.common_ratio(theta); }), weights,
-                              prior.sd[0], true);
+        result_.ratio =
+            known(each([&](const VectorXd& theta) { return best.fit.common_ratio(theta); }), weights, prior.sd[0]);
         result_.speed =
-            known(each([&](const VectorXd& theta) { return best.fit.speed(theta); }), weights, prior.sd[speed], true);
+            known(each([&](const VectorXd& theta) { return best.fit.speed(theta); }), weights, prior.sd[speed]);
         const double slowest = ringings_.vibration.frequencies[0] * result_.speed.q50,
                      share = best.fit.share_of_mass(best.theta);
         result_.damping = {.alpha = 2 * share * result_.ratio.q50 * slowest,
@@ -202,8 +203,8 @@ private:
             };
             const auto ratio = [&](const VectorXd& theta) { return best.fit.oscillator(theta, i, true).ratio; };
             result_.modes.push_back({.frequency = turns_a_second(ringings_.vibration.frequencies[i]),
-                                     .measured = known(each(frequency), weights, sd[own + 1], true),
-                                     .ratio = known(each(ratio), weights, sd[own], true),
+                                     .measured = known(each(frequency), weights, sd[own + 1]),
+                                     .ratio = known(each(ratio), weights, sd[own]),
                                      .played = best.fit.oscillator(best.theta, i, false).ratio,
                                      .share = amplitude[i] / amplitude.sum()});
         }

@@ -292,5 +292,22 @@ TEST(SimulateMotion, RingsAndComesToRestInTheEquilibrium) {
     }
 }
 
+TEST(SimulateMotion, BeginsInTheEquilibriumOfARowOfTimeZero) {
+    const TemporaryFolder scratch;
+    skeleton::Model model = exported_model();
+    model.damping = {.alpha = 0, .beta = 0.01};
+    skeleton::write_model(scratch / "model.json", model);
+    const std::string pressed = "probe,time,x,y,z,fx,fy,fz,radius\n1,0,80,80,40,0,0,-2,0\n";
+    mesh::write_text(scratch / "pressed.csv", pressed);
+    mesh::write_text(scratch / "released.csv", pressed + "1,1,0,0,0,0,0,0,0\n");
+    const double start = commands::simulate({scratch / "model.json", scratch / "pressed.csv", scratch / "still"}, {})
+                             .json["states"][0]["max_displacement_mm"];
+    commands::SimulateOptions moving{scratch / "model.json", scratch / "released.csv", scratch / "moved", 0.001, 0.3};
+    moving.implicit = true;
+    const nlohmann::json told = commands::simulate(moving, {}).json;
+    EXPECT_NEAR(told["probes"][0]["max_displacement_mm"].get<double>(), start, 0.01 * start);  // where it was let go
+    EXPECT_EQ(told["damping"]["stiffness"], 0.01);
+}
+
 }  // namespace
 }  // namespace palpate::pipeline

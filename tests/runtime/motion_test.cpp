@@ -139,6 +139,18 @@ TEST(LiveMotion, DiesAwayAtTheRatioToldOfTheSoftestMode) {
     EXPECT_NEAR(body.position(1).x() - 10, std::exp(-zeta * w * T), 1e-3);
 }
 
+TEST(LiveMotion, DiesAwayAsTheModelSaysUnlessToldOtherwise) {
+    skeleton::Model model = make_chain(2);
+    model.damping = {.alpha = 3, .beta = 0.25};
+    EXPECT_EQ(Body(model).damping().alpha, 3);
+    EXPECT_EQ(Body(model).damping().beta, 0.25);
+    const Body told(model, {.damping_ratio = 0.2});
+    EXPECT_EQ(told.damping().alpha, 0);
+    EXPECT_GT(told.damping().beta, 0);
+    model.damping.reset();
+    EXPECT_NEAR(Body(model).damping().beta, told.damping().beta / 2, 1e-9 * told.damping().beta);  // 0.1
+}
+
 TEST(LiveMotion, IsTheSameEachTime) {
     skeleton::Model model = make_full_lattice({4, 3, 2});
     const auto play = [&] {

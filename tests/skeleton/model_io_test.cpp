@@ -88,6 +88,7 @@ TEST_F(ModelFile, IsReadBackEqual) {
     model.supports = {mesh::BoxRegion{{-1, -2, -3}, {1, 2, 3}}, mesh::SphereRegion{{1, 2, 3}, 4},
                       mesh::PlaneRegion{{0, 0, 1}, {0, 0, 2}, 0.5}, mesh::PointsRegion{points, 0.25}};
     model.provenance = {{"mesh", "liver.stl"}, {"identified", "no"}};
+    model.damping = {.alpha = 0.5, .beta = 0.125};
 
     write_model(file, model);
     const Model read = read_model(file);
@@ -127,6 +128,9 @@ TEST_F(ModelFile, IsReadBackEqual) {
     EXPECT_EQ(read.supports.size(), 4u);
     EXPECT_EQ(std::get<mesh::PointsRegion>(read.supports[3]).points, points);
     EXPECT_EQ(read.provenance, model.provenance);
+    ASSERT_TRUE(read.damping.has_value());
+    EXPECT_EQ(read.damping->alpha, 0.5);
+    EXPECT_EQ(read.damping->beta, 0.125);
 }
 
 TEST_F(ModelFile, WhatCanBeDerivedMayBeMissing) {
@@ -206,9 +210,11 @@ TEST_F(ModelFile, EveryFaultIsNamed) {
     EXPECT_EQ(top(R"("law": "quadratic")"), "law: is '\"quadratic\"', but must be one of 'linear', 'large-rotation'");
     EXPECT_EQ(top(R"("name": 3)"), "name: is '3', but must be a text");
     EXPECT_EQ(top(R"("provenance": [])"), "provenance: is '[]', but must be an object");
+    EXPECT_EQ(top(R"("damping": {"mass": 1})"), "damping: the field 'stiffness' is missing");
+    EXPECT_EQ(top(R"("damping": {"mass": -1, "stiffness": 0})"), "damping.mass: is '-1', but must be at least 0");
     EXPECT_EQ(top(R"("skni": [])"),
               "the field 'skni' is not known (did you mean 'skin'?); known are 'format', 'name', 'law', 'spheres', "
-              "'links', 'effects', 'skin', 'dent', 'supports', 'provenance'");
+              "'links', 'effects', 'skin', 'dent', 'damping', 'supports', 'provenance'");
 }
 
 TEST_F(ModelFile, FaultsOfEffectsAreNamed) {
