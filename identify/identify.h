@@ -101,7 +101,7 @@ struct IdentifyResult {
     ForecastError forecast_error;
     MeasuredRange measured;
     std::optional<DampingResult> damping;  // for identify_damping to fill
-    int states = 0, coordinates = 0;  // that were weighed
+    int states = 0, coordinates = 0;       // that were weighed
     double log_evidence = 0;
     double acceptance = 0;           // of the moves
     int equilibria = 0;              // solved

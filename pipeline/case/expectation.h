@@ -15,7 +15,7 @@ struct RunResults {
     nlohmann::json diagnosis = nullptr;  // as in diagnosis.json; null: it was not asked
     nlohmann::json ladder = nullptr;     // as in ladder.json; null: likewise
     std::vector<identify::PosteriorRow> posterior = {};
-    nlohmann::json modes = nullptr;  // as in identify.json
+    nlohmann::json modes = nullptr;    // as in identify.json
     nlohmann::json damping = nullptr;  // as in identify.json; null: the set holds no motion
     int spheres = 0, links = 0;
 };
