@@ -96,7 +96,7 @@ struct Model {
     mesh::Surface surface;         // at rest
     std::vector<Attachment> skin;  // of each vertex of the surface
     Eigen::Matrix<double, 6, 1> dent = Eigen::Matrix<double, 6, 1>::Zero();  // amplitudes, see dent_motions [1/MPa]
-    std::optional<Damping> damping;  // as it was identified
+    std::optional<Damping> damping;                                          // as it was identified
     std::vector<mesh::Region> supports;
     std::map<std::string, std::string> provenance;  // where it comes from, in words
 

@@ -4,8 +4,8 @@
 #include <memory>
 
 #include "identify/diagnose/diagnose.h"
-#include "identify/motion/damping.h"
 #include "identify/models/reference_body.h"
+#include "identify/motion/damping.h"
 #include "identify/set/measurement_set.h"
 #include "pipeline/commands/common.h"
 #include "skeleton/model.h"

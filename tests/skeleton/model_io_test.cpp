@@ -211,7 +211,8 @@ TEST_F(ModelFile, EveryFaultIsNamed) {
     EXPECT_EQ(top(R"("name": 3)"), "name: is '3', but must be a text");
     EXPECT_EQ(top(R"("provenance": [])"), "provenance: is '[]', but must be an object");
     EXPECT_EQ(top(R"("damping": {"mass": 1})"), "damping: the field 'stiffness' is missing");
-    EXPECT_EQ(top(R"("damping": {"mass": -1, "stiffness": 0})"), "damping.mass: is '-1', but must be a number of at least 0");
+    EXPECT_EQ(top(R"("damping": {"mass": -1, "stiffness": 0})"),
+              "damping.mass: is '-1', but must be a number of at least 0");
     EXPECT_EQ(top(R"("skni": [])"),
               "the field 'skni' is not known (did you mean 'skin'?); known are 'format', 'name', 'law', 'spheres', "
               "'links', 'effects', 'skin', 'dent', 'damping', 'supports', 'provenance'");
