@@ -4,10 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include "identify/motion/leftover.h"
 #include "identify/motion/ringing_fit.h"
+#include "identify/particles/resampling.h"
 #include "identify/particles/tempered_filter.h"
 #include "identify/set/loads.h"
 #include "mesh/errors.h"
@@ -66,18 +66,9 @@ Known known(const VectorXd& values, const VectorXd& weights, double prior_sd) {
     Known told;
     told.mean = weights.dot(values);
     told.sd = std::sqrt(weights.dot((values.array() - told.mean).square().matrix()));
-    std::vector<int> order(static_cast<std::size_t>(values.size()));
-    std::iota(order.begin(), order.end(), 0);
-    std::ranges::sort(order, {}, [&](int i) { return values[i]; });
-    double sum = 0;
-    for (const int i : order) {
-        const double before = sum;
-        sum += weights[i];
-        for (const auto& [level, at] :
-             {std::pair{0.025, &told.q025}, std::pair{0.5, &told.q50}, std::pair{0.975, &told.q975}}) {
-            if (before < level && sum >= level) *at = values[i];
-        }
-    }
+    told.q025 = weighted_quantile(values, weights, 0.025);
+    told.q50 = weighted_quantile(values, weights, 0.5);
+    told.q975 = weighted_quantile(values, weights, 0.975);
     const VectorXd ln = values.array().log();
     const double middle = weights.dot(ln);
     told.informed = std::sqrt(weights.dot((ln.array() - middle).square().matrix())) <= 0.7 * prior_sd;
