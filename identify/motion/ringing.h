@@ -42,8 +42,7 @@ struct Ringings {
     std::vector<Ringing> recordings;
 };
 
-/// @throws InvalidInput as vibration, and naming a recording that begins in no equilibrium; SolverFailure as
-/// equilibrium.
+/// @throws InvalidInput as vibration and equilibrium; SolverFailure likewise.
 Ringings ringings(const skeleton::Model& model, const MeasurementSet& set, int modes);
 
 /// The same of some of the modes.

@@ -9,8 +9,8 @@
 namespace palpate::identify {
 namespace {
 
-// What is believed before measuring: soft bodies ring with ratios of 0.01 to 0.3 and more [Fung 1993; Ward & Sweeney
-// 2004], densities and rates make frequencies differ by a third, and a skeleton's modes are nearly the body's.
+// What is believed before measuring: 95 % of ratios lie in 0.006 to 0.6, densities and rates make frequencies differ by
+// a third, and a skeleton's modes are nearly the body's.
 constexpr double middle_ratio = 0.06, ratio_sd = 1.2, share_sd = 1.5, speed_sd = 0.35;
 constexpr double own_ratio_sd = 0.35, own_speed_sd = 0.05, own_gain_sd = 0.2;
 

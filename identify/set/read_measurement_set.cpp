@@ -57,8 +57,8 @@ MeasurementSet read_measurement_set(const fs::path& path) {
             fmt::format("{}: the set has no readings. Add measured marker positions, or a full field for "
                         "every state.",
                         (set.folder / "positions.csv").string()));
-    if (const fs::path moved = set.folder / "motion_positions.csv"; fs::exists(moved))
-        reader.read_recordings(set.folder / "motion_probes.csv", moved);
+    const fs::path loads = set.folder / "motion_probes.csv", moved = set.folder / "motion_positions.csv";
+    if (fs::exists(loads) || fs::exists(moved)) reader.read_recordings(loads, moved);
     check_places(set);
     return set;
 }

@@ -160,7 +160,7 @@ void TableReader::read_positions(const fs::path& file) {
     }
 }
 
-void TableReader::add_to_recording(const CsvTable& table, int row, std::map<int, Recording*>& recording_of) const {
+void TableReader::add_to_recording(const CsvTable& table, int row, const std::map<int, std::size_t>& recording_of) {
     const auto [probe, time] = state_key(table, row);
     const auto found = recording_of.find(probe);
     if (found == recording_of.end())
@@ -172,7 +172,7 @@ void TableReader::add_to_recording(const CsvTable& table, int row, std::map<int,
     if (reading.marker < 0)
         throw InvalidInput(
             fmt::format("{}: a reading of a body in motion has no marker. Give its number.", table.where(row)));
-    std::vector<Recording::Instant>& instants = found->second->instants;
+    std::vector<Recording::Instant>& instants = set_.recordings[found->second].instants;
     if (time < 0 || (!instants.empty() && time < instants.back().time))
         throw InvalidInput(
             fmt::format("{}, column time: {} comes after {} in probe {}. Count time from the beginning of the probe, "
@@ -189,14 +189,12 @@ void TableReader::add_to_recording(const CsvTable& table, int row, std::map<int,
 void TableReader::read_recordings(const fs::path& loads, const fs::path& readings) {
     MeasurementSet moved;
     TableReader(moved, units_).read_probes(loads);
-    std::map<int, std::size_t> index;
+    std::map<int, std::size_t> recording_of;
     for (LoadState& load : moved.states) {
-        const auto [entry, is_new] = index.try_emplace(load.probe, set_.recordings.size());
+        const auto [entry, is_new] = recording_of.try_emplace(load.probe, set_.recordings.size());
         if (is_new) set_.recordings.push_back({.probe = load.probe, .loads = {}, .instants = {}});
         set_.recordings[entry->second].loads.push_back(std::move(load));
     }
-    std::map<int, Recording*> recording_of;
-    for (const auto& [probe, i] : index) recording_of.emplace(probe, &set_.recordings[i]);
     const CsvTable table(readings, {"probe", "time", "marker", "x", "y", "z"}, {"sigma"});
     for (int row = 0; row < table.rows(); ++row) add_to_recording(table, row, recording_of);
     for (const Recording& recording : set_.recordings) {

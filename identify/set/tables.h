@@ -41,7 +41,7 @@ private:
     void check_time(const StateKey& key, const std::string& where);
     Reading read_position(const mesh::CsvTable& table, int row) const;
     /// @throws InvalidInput where the reading has no marker, its probe no load, or time runs backwards.
-    void add_to_recording(const mesh::CsvTable& table, int row, std::map<int, Recording*>& recording_of) const;
+    void add_to_recording(const mesh::CsvTable& table, int row, const std::map<int, std::size_t>& recording_of);
 
     MeasurementSet& set_;
     const SetUnits& units_;

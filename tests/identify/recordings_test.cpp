@@ -66,6 +66,11 @@ TEST_F(RecordingFiles, TellWhatIsWrongWithThem) {
                      {"motion_probes.csv", "off the rest surface"}));
 }
 
+TEST_F(RecordingFiles, OneWithoutTheOtherIsMissed) {
+    std::filesystem::remove(folder / "motion_positions.csv");
+    EXPECT_TRUE(says(message_of<IoError>([&] { read(); }), {"motion_positions.csv"}));
+}
+
 TEST(LoadsOfAMotion, ActFromTheOneBeforeThemOn) {
     const LoadState first{.probe = 1, .time = 0}, second{.probe = 1, .time = 0.5}, third{.probe = 1, .time = 2};
     const std::vector<const LoadState*> loads{&first, &second, &third};
