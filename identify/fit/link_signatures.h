@@ -35,6 +35,7 @@ public:
     LinkSignatures(std::shared_ptr<const LinksAtRest> links, const skeleton::Equilibrium& equilibrium,
                    skeleton::Law law);
 
+    Eigen::Index dofs() const { return of_volumes_.rows(); }           // 6N
     Eigen::MatrixXd times(const Eigen::MatrixXd& K) const;             // G K (6N x n), of K (stiffnesses x n)
     Eigen::MatrixXd transposed_times(const Eigen::MatrixXd& F) const;  // G^T F (stiffnesses x n), of F (6N x n)
 

@@ -10,19 +10,21 @@ bool remembers(const std::vector<StateReadings>& states) {
     return std::ranges::any_of(states, [](const StateReadings& s) { return s.before >= 0 || !s.unread.empty(); });
 }
 
-skeleton::FibreStates flowed_before(const skeleton::Model& model, skeleton::StaticsSolver& solver,
-                                    const Eigen::VectorXd& k, const std::vector<StateReadings>& states, int state,
-                                    const std::vector<skeleton::Equilibrium>& so_far) {
+Lived lived_before(const skeleton::Model& model, skeleton::StaticsSolver& solver, const Eigen::VectorXd& k,
+                   const std::vector<StateReadings>& states, int state,
+                   const std::vector<skeleton::Equilibrium>& so_far, const std::vector<skeleton::Equilibrium>* near) {
     const StateReadings& own = states[state];
-    skeleton::FibreStates before;
+    Lived lived;
     if (own.before >= 0) {
         if (so_far[own.before].step.size() == 0) throw SolverFailure("a state before had no equilibrium");
-        before = skeleton::flowed(model, so_far[own.before]);
+        lived.flowed = skeleton::flowed(model, so_far[own.before]);
     }
     for (const skeleton::Load& load : own.unread) {
-        before = skeleton::flowed(model, solver.solve(k, load, {}, nullptr, before));
+        const skeleton::State* start = near ? &(*near)[lived.unread.size()].state : nullptr;
+        lived.unread.push_back(solver.solve(k, load, {}, start, lived.flowed));
+        lived.flowed = skeleton::flowed(model, lived.unread.back());
     }
-    return before;
+    return lived;
 }
 
 }  // namespace palpate::identify

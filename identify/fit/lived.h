@@ -8,11 +8,18 @@ namespace palpate::identify {
 /// Does the material remember? Then states are played in their order.
 bool remembers(const std::vector<StateReadings>& states);
 
-/// How far a model's links had flowed before a state: after what it went through since the last state that was read,
-/// whose equilibrium is among those found `so_far`, in the states' order. Empty where nothing yields.
-/// @throws SolverFailure when a state in between has no equilibrium.
-skeleton::FibreStates flowed_before(const skeleton::Model& model, skeleton::StaticsSolver& solver,
-                                    const Eigen::VectorXd& k, const std::vector<StateReadings>& states, int state,
-                                    const std::vector<skeleton::Equilibrium>& so_far);
+/// What a body had gone through before a state.
+struct Lived {
+    std::vector<skeleton::Equilibrium> unread;  // since the last state that was read, in their order
+    skeleton::FibreStates flowed;               // how far its links had flowed; empty where nothing yields
+};
+
+/// Of a model whose equilibria in the states that were read are among those found `so_far`, in the states' order.
+/// `near`: where the unread ones stood at neighbouring stiffnesses.
+/// @throws SolverFailure when an unread state has no equilibrium.
+Lived lived_before(const skeleton::Model& model, skeleton::StaticsSolver& solver, const Eigen::VectorXd& k,
+                   const std::vector<StateReadings>& states, int state,
+                   const std::vector<skeleton::Equilibrium>& so_far,
+                   const std::vector<skeleton::Equilibrium>* near = nullptr);
 
 }  // namespace palpate::identify

@@ -138,6 +138,7 @@ double PositionDomain::estimate_model_error(const Prediction& prediction) const 
 Prediction PositionDomain::predict_linear(const Eigen::VectorXd& k) const {
     Prediction prediction;
     prediction.tangents.push_back(linear_tangent(k));
+    prediction.unread.resize(states_.size());
     const Eigen::MatrixXd U = prediction.tangents.front()(F_.colwise() + G_rest_ * k);
     for (int s = 0; s < static_cast<int>(states_.size()); ++s) {
         const Eigen::VectorXd moved = *P_[s] * U.col(s);
@@ -167,20 +168,25 @@ TangentSolve PositionDomain::tangent_of(std::shared_ptr<Borrowed> borrowed) {
     return [borrowed = std::move(borrowed)](const Eigen::MatrixXd& F) { return (**borrowed->solver).solve_tangent(F); };
 }
 
-TangentSolve PositionDomain::factored(int s, const Eigen::VectorXd& k, const skeleton::Equilibrium& at) const {
+TangentSolve PositionDomain::factored(const skeleton::Load& load, const Eigen::VectorXd& k,
+                                      const skeleton::Equilibrium& at) const {
     std::shared_ptr<Borrowed> borrowed = borrow();
-    (**borrowed->solver).factor_tangent(k, states_[s].load, at);
+    (**borrowed->solver).factor_tangent(k, load, at);
     return tangent_of(std::move(borrowed));
 }
 
 Prediction PositionDomain::advanced(const Prediction& prediction, const Slopes& slopes,
                                     const Eigen::VectorXd& step) const {
-    Prediction result{prediction.equilibria, prediction.markers, {}};
+    Prediction result{prediction.equilibria, prediction.markers, {}, prediction.unread};
     if (law() == skeleton::Law::linear) return result;  // which starts from nowhere
     const Eigen::MatrixXd steps = slopes.steps(step);
+    Eigen::Index column = 0;
+    const auto advance = [&](skeleton::Equilibrium& at) {
+        at.state = skeleton::advance(at.state, steps.col(column++));
+    };
     for (std::size_t s = 0; s < result.equilibria.size(); ++s) {
-        skeleton::State& state = result.equilibria[s].state;
-        state = skeleton::advance(state, steps.col(static_cast<Eigen::Index>(s)));
+        std::ranges::for_each(result.unread[s], advance);
+        advance(result.equilibria[s]);
     }
     return result;
 }
@@ -193,13 +199,16 @@ Prediction PositionDomain::predict(const Eigen::VectorXd& theta, int threads, co
     Prediction prediction;
     prediction.equilibria.resize(states_.size());
     prediction.markers.resize(states_.size());
+    prediction.unread.resize(states_.size());
     if (for_slopes) prediction.tangents.resize(states_.size());
     for_each_in_parallel(static_cast<int>(states_.size()), remembers(states_) ? 1 : threads, [&](int s) {
         std::shared_ptr<Borrowed> borrowed = borrow();
         skeleton::StaticsSolver& solver = **borrowed->solver;
-        const skeleton::FibreStates before = flowed_before(*model_, solver, k, states_, s, prediction.equilibria);
+        Lived lived = lived_before(*model_, solver, k, states_, s, prediction.equilibria,
+                                   start != nullptr ? &start->unread[s] : nullptr);
         const skeleton::State* from = start != nullptr ? &start->equilibria[s].state : nullptr;
-        prediction.equilibria[s] = solver.solve(k, states_[s].load, {}, from, before);
+        prediction.equilibria[s] = solver.solve(k, states_[s].load, {}, from, lived.flowed);
+        prediction.unread[s] = std::move(lived.unread);
         if (for_slopes) prediction.tangents[s] = tangent_of(std::move(borrowed));
         prediction.markers[s] = observe(*model_, prediction.equilibria[s], states_[s].points) + offsets_[s];
     });

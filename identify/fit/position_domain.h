@@ -16,6 +16,8 @@ struct Prediction {
     std::vector<skeleton::Equilibrium> equilibria;  // (states)
     std::vector<Points> markers;                    // of each state (m x 3) [mm]
     std::vector<TangentSolve> tangents;             // of each state, or one for all; none: they were not kept
+    // What a body that yields went through before each state, since the last one that was read (states).
+    std::vector<std::vector<skeleton::Equilibrium>> unread;
 };
 
 /// Errors of the markers at the model's own equilibria, and their derivatives by theta, the log multipliers.
@@ -85,7 +87,7 @@ private:
     struct Borrowed;
     std::shared_ptr<Borrowed> borrow() const;
     static TangentSolve tangent_of(std::shared_ptr<Borrowed> borrowed);  // with what its solver has factored
-    TangentSolve factored(int s, const Eigen::VectorXd& k, const skeleton::Equilibrium& at) const;
+    TangentSolve factored(const skeleton::Load& load, const Eigen::VectorXd& k, const skeleton::Equilibrium& at) const;
     /// Measured less modelled, zero for a missing coordinate (3m).
     Eigen::VectorXd errors(int s, const Points& markers) const;
     Points dented(int s, const Eigen::Matrix<double, 6, 1>& dent) const;  // (m x 3) [mm]

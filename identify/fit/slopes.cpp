@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <optional>
 
+#include "identify/fit/lived.h"
 #include "identify/fit/position_domain.h"
 #include "identify/parallel.h"
 
@@ -27,6 +28,14 @@ Eigen::MatrixXd sum_of_parts(int count, int threads, const std::function<Eigen::
 }
 
 }  // namespace
+
+Slopes::Slopes(std::vector<State> states, const Eigen::SparseMatrix<double>& dk, std::vector<TangentSolve> tangents,
+               int threads)
+    : states_(std::move(states)), dk_(dk), tangents_(std::move(tangents)), threads_(threads) {
+    for (int s = 0; s < static_cast<int>(states_.size()); ++s) {
+        if (states_[s].P) read_.push_back(s);
+    }
+}
 
 std::vector<Slopes::States> Slopes::together(Eigen::Index n) const {
     const bool shared = tangents_.size() == 1;
@@ -63,15 +72,61 @@ Eigen::MatrixXd Slopes::pulled(const States& states, const Eigen::MatrixXd& F) c
     return sum;
 }
 
+std::vector<Eigen::MatrixXd> Slopes::lived(int last, const Eigen::MatrixXd& K) const {
+    std::vector<Eigen::MatrixXd> X(last + 1), Z(last + 1);  // Z: of what has flowed (14L x n)
+    for (int s = 0; s <= last; ++s) {
+        const Life& life = *states_[s].life;
+        Eigen::MatrixXd F = states_[s].G.times(K);
+        if (life.before >= 0) F += life.flow.pulls * Z[life.before];
+        X[s] = tangents_[s](F);
+        Z[s] = life.flow.follows * X[s];
+        if (life.before >= 0) Z[s] += life.flow.lasts * Z[life.before];
+    }
+    return X;
+}
+
+Eigen::MatrixXd Slopes::pulled_through(std::vector<Eigen::MatrixXd> F) const {
+    std::vector<Eigen::MatrixXd> Z(F.size());  // what the states after it make of what has flowed (14L x n)
+    Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(dk_.rows(), F.front().cols());
+    for (int s = static_cast<int>(F.size()) - 1; s >= 0; --s) {
+        const Life& life = *states_[s].life;
+        if (Z[s].size() > 0) F[s] += life.flow.follows.transpose() * Z[s];
+        const Eigen::MatrixXd X = tangents_[s](F[s]);
+        sum += states_[s].G.transposed_times(X);
+        if (life.before < 0) continue;
+        Eigen::MatrixXd handed = life.flow.pulls.transpose() * X;
+        if (Z[s].size() > 0) handed += life.flow.lasts.transpose() * Z[s];
+        if (Z[life.before].size() == 0) Z[life.before].setZero(handed.rows(), handed.cols());
+        Z[life.before] += handed;
+    }
+    return sum;
+}
+
+Eigen::MatrixXd Slopes::seen(const State& state, const Eigen::MatrixXd& X) {
+    if (!state.P) return Eigen::MatrixXd::Zero(X.rows(), X.cols());
+    const Eigen::MatrixXd weighted = state.weights.asDiagonal() * (*state.P * X).eval();
+    return state.P->transpose() * weighted;
+}
+
+Eigen::VectorXd Slopes::pull_of_errors(const State& state) {
+    if (!state.P) return Eigen::VectorXd::Zero(state.G.dofs());
+    return state.P->transpose() * state.weights.cwiseProduct(state.errors);
+}
+
 Eigen::VectorXd Slopes::gradient() const {
     // J^T d = -G^T T^-1 P^T W (measured - modelled)
+    if (remembers()) {
+        std::vector<Eigen::MatrixXd> F(states_.size());
+        std::ranges::transform(states_, F.begin(), &Slopes::pull_of_errors);
+        return -(dk_.transpose() * pulled_through(std::move(F)).col(0));
+    }
     const std::vector<States> parts = together(1);
     const Eigen::MatrixXd sum = sum_of_parts(static_cast<int>(parts.size()), threads_, [&](int p) {
         Eigen::MatrixXd F;
         for (std::size_t i = 0; i < parts[p].size(); ++i) {
-            const State& state = states_[parts[p][i]];
-            if (i == 0) F.resize(state.P->cols(), std::ssize(parts[p]));
-            F.col(static_cast<Eigen::Index>(i)) = state.P->transpose() * state.weights.cwiseProduct(state.errors);
+            const Eigen::VectorXd pull = pull_of_errors(states_[parts[p][i]]);
+            if (i == 0) F.resize(pull.size(), std::ssize(parts[p]));
+            F.col(static_cast<Eigen::Index>(i)) = pull;
         }
         return pulled(parts[p], F);
     });
@@ -81,14 +136,17 @@ Eigen::VectorXd Slopes::gradient() const {
 Eigen::MatrixXd Slopes::curvature_times(const Eigen::MatrixXd& V) const {
     // J^T J V = G^T T^-1 P^T W P T^-1 G V
     const Eigen::MatrixXd K = dk_ * V;
+    if (remembers()) {
+        std::vector<Eigen::MatrixXd> X = lived(static_cast<int>(states_.size()) - 1, K);
+        std::ranges::transform(states_, X, X.begin(), &Slopes::seen);
+        return dk_.transpose() * pulled_through(std::move(X));
+    }
     const std::vector<States> parts = together(V.cols());
     const Eigen::MatrixXd sum = sum_of_parts(static_cast<int>(parts.size()), threads_, [&](int p) {
         Eigen::MatrixXd X = moved(parts[p], K);
         for (std::size_t i = 0; i < parts[p].size(); ++i) {
-            const State& state = states_[parts[p][i]];
             auto own = X.middleCols(static_cast<Eigen::Index>(i) * V.cols(), V.cols());
-            const Eigen::MatrixXd seen = state.weights.asDiagonal() * (*state.P * own).eval();
-            own = state.P->transpose() * seen;
+            own = seen(states_[parts[p][i]], own);
         }
         return pulled(parts[p], X);
     });
@@ -97,9 +155,14 @@ Eigen::MatrixXd Slopes::curvature_times(const Eigen::MatrixXd& V) const {
 
 Eigen::MatrixXd Slopes::steps(const Eigen::VectorXd& step) const {
     const Eigen::VectorXd dk = dk_ * step;
-    const std::vector<States> parts = together(1);
-    std::vector<Eigen::MatrixXd> found(parts.size());
-    for_each_in_parallel(static_cast<int>(parts.size()), threads_, [&](int p) { found[p] = moved(parts[p], dk); });
+    std::vector<Eigen::MatrixXd> found;
+    if (remembers()) {
+        found = lived(static_cast<int>(states_.size()) - 1, dk);
+    } else {
+        const std::vector<States> parts = together(1);
+        found.resize(parts.size());
+        for_each_in_parallel(static_cast<int>(parts.size()), threads_, [&](int p) { found[p] = moved(parts[p], dk); });
+    }
     Eigen::MatrixXd all(found.front().rows(), std::ssize(states_));
     Eigen::Index column = 0;
     for (const Eigen::MatrixXd& part : found) {
@@ -110,32 +173,62 @@ Eigen::MatrixXd Slopes::steps(const Eigen::VectorXd& step) const {
 }
 
 Eigen::MatrixXd Slopes::moved_markers(int state, const Eigen::MatrixXd& V) const {
-    return *states_[state].P * moved({state}, dk_ * V);
+    const int s = read_[state];
+    return *states_[s].P * (remembers() ? lived(s, dk_ * V).back() : moved({s}, dk_ * V));
 }
 
 Slopes PositionDomain::slopes(const Eigen::VectorXd& theta, const Prediction& prediction) const {
     const Eigen::VectorXd k = parameters_.stiffness(theta);
-    const int count = static_cast<int>(states_.size());
-    const bool linear = law() == skeleton::Law::linear, has_tangents = !prediction.tangents.empty();
+    const bool linear = law() == skeleton::Law::linear;
+
+    // all equilibria, unread ones before the one that was read next
+    struct Stage {
+        int state;
+        const skeleton::Load* load;
+        const skeleton::Equilibrium* at;
+        bool is_read;
+        int before = -1;
+    };
+    std::vector<Stage> stages;
+    std::vector<int> stage_of(states_.size());
+    for (int s = 0; s < static_cast<int>(states_.size()); ++s) {
+        int before = states_[s].before >= 0 ? stage_of[states_[s].before] : -1;
+        const auto append = [&](const skeleton::Load& load, const skeleton::Equilibrium& at, bool is_read) {
+            stages.push_back({s, &load, &at, is_read, before});
+            before = static_cast<int>(stages.size()) - 1;
+        };
+        for (std::size_t u = 0; u < prediction.unread[s].size(); ++u) {
+            append(states_[s].unread[u], prediction.unread[s][u], false);
+        }
+        append(states_[s].load, prediction.equilibria[s], true);
+        stage_of[s] = before;
+    }
 
     // the linear law has one tangent for all states
-    std::vector<TangentSolve> tangents = prediction.tangents;
-    if (linear && !has_tangents) tangents = {linear_tangent(k)};
-    if (!linear) tangents.resize(count);
-    std::vector<std::optional<Slopes::State>> states(count);
-    for_each_in_parallel(count, threads_, [&](int s) {
-        const skeleton::Equilibrium& at = prediction.equilibria[s];
-        if (!linear && !has_tangents) tangents[s] = factored(s, k, at);
-        states[s].emplace(Slopes::State{LinkSignatures(links_, at, law()),
-                                        linear ? P_[s]
-                                               : std::make_shared<Eigen::SparseMatrix<double>>(
-                                                     observation_jacobian(*model_, at, states_[s].points)),
-                                        weights_[s], errors(s, prediction.markers[s])});
+    const int count = static_cast<int>(stages.size());
+    std::vector<TangentSolve> tangents(linear ? 1 : count);
+    if (linear) tangents[0] = prediction.tangents.empty() ? linear_tangent(k) : prediction.tangents.front();
+    const skeleton::PlacedLinks* const yielding = !linear && remembers(states_) ? &links_->placed : nullptr;
+    std::vector<std::optional<Slopes::State>> found(count);
+    for_each_in_parallel(count, threads_, [&](int i) {
+        const Stage& stage = stages[i];
+        const int s = stage.state;
+        const bool is_factored = stage.is_read && !prediction.tangents.empty();
+        if (!linear) tangents[i] = is_factored ? prediction.tangents[s] : factored(*stage.load, k, *stage.at);
+        Slopes::State& state = found[i].emplace(Slopes::State{LinkSignatures(links_, *stage.at, law()), {}, {}, {}});
+        if (stage.is_read) {
+            state.P = linear ? P_[s]
+                             : std::make_shared<Eigen::SparseMatrix<double>>(
+                                   observation_jacobian(*model_, *stage.at, states_[s].points));
+            state.weights = weights_[s];
+            state.errors = errors(s, prediction.markers[s]);
+        }
+        if (yielding) state.life = {stage.before, yielding->flow_slopes(k, stage.at->state, stage.at->before)};
     });
-    std::vector<Slopes::State> found;
-    found.reserve(states.size());
-    for (auto& state : states) found.push_back(std::move(*state));
-    return {std::move(found), parameters_.derivative(k), std::move(tangents), threads_};
+    std::vector<Slopes::State> all;
+    all.reserve(found.size());
+    for (auto& state : found) all.push_back(std::move(*state));
+    return {std::move(all), parameters_.derivative(k), std::move(tangents), threads_};
 }
 
 }  // namespace palpate::identify

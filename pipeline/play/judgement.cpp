@@ -14,7 +14,7 @@ Judgement::Judgement(skeleton::Model model, const identify::MeasurementSet& set)
 
 Judgement::Error Judgement::judge(int r) {
     const identify::StateReadings& own = readings_[r];
-    const skeleton::FibreStates before = identify::flowed_before(model_, solver_, k_, readings_, r, so_far_);
+    const skeleton::FibreStates before = identify::lived_before(model_, solver_, k_, readings_, r, so_far_).flowed;
     played_[r] = identify::solve_as_far_as_it_bears(solver_, k_, own.load, before);
     so_far_[r] = played_[r].equilibrium;
     const Points predicted = skeleton::observed(model_, so_far_[r], played_[r].load, own.points);

@@ -25,7 +25,7 @@ std::vector<identify::Borne> play(const skeleton::Model& model, const identify::
             continue;
         }
         const int r = found->second;
-        const skeleton::FibreStates before = identify::flowed_before(model, solver, k, read, r, so_far);
+        const skeleton::FibreStates before = identify::lived_before(model, solver, k, read, r, so_far).flowed;
         played.push_back(identify::solve_as_far_as_it_bears(solver, k, read[r].load, before));
         so_far[r] = played.back().equilibrium;
     }

@@ -60,18 +60,22 @@ LinkFibre PlacedLinks::fibre(size_t link, int j, const State& state) const {
             state.R[a],          state.x.row(b).transpose(), state.R[b]};
 }
 
+// L^2 of one fibre's share of the link.
+double PlacedLinks::share(size_t link, int j) const {
+    return fibre_weights[j] * links_[link].length * links_[link].length;
+}
+
 // L^2 (w / 3 + p) of one fibre's share: its energy at unit kE.
 StretchTerms PlacedLinks::fibre_terms(size_t link, int j, double stretch, bool with_second,
                                       const FibreStates& before) const {
-    const double share = fibre_weights[j] * links_[link].length * links_[link].length;
     StretchTerms sum;
     for (const auto& effect : material_) {
         const Vec3 X = middle(links_[link], rest_);
-        sum += (share / 3) * uniaxial(*effect, X, directions_[link], stretch, with_second);
+        sum += (share(link, j) / 3) * uniaxial(*effect, X, directions_[link], stretch, with_second);
     }
     if (plasticity_) {
         const FibreState had = before.empty() ? FibreState() : before[fibres_per_link * link + j];
-        sum += share * plastic_terms(*plasticity_, had, stretch);
+        sum += share(link, j) * plastic_terms(*plasticity_, had, stretch);
     }
     return sum;
 }
@@ -189,14 +193,45 @@ FibreStates PlacedLinks::flowed(const State& state, const FibreStates& before) c
     return now;
 }
 
+FlowSlopes PlacedLinks::flow_slopes(const Eigen::VectorXd& k, const State& state, const FibreStates& before) const {
+    std::vector<Eigen::Triplet<double>> pulls, follows, lasts;
+    for (size_t l = 0; l < links_.size(); ++l)
+        for (int j = 0; j < fibres_per_link; ++j) {
+            const int z = 2 * static_cast<int>(fibres_per_link * l + j);
+            const FibreState had = before.empty() ? FibreState() : before[z / 2];
+            const LinkFibre one = fibre(l, j, state);
+            const Eigen::Matrix<double, 2, 3> slopes = skeleton::flow_slopes(*plasticity_, had, one.stretch());
+            Vec12 stretches = Vec12::Zero();
+            one.add_gradient({.energy = 0, .first = 1, .second = 0}, stretches);
+            // The energy's derivative is -strain, so what has flowed pulls with it.
+            const double stiffness = scales_[l] * k[order_.of_link(static_cast<Eigen::Index>(l), 0)] * share(l, j);
+            for (int c = 0; c < 2; ++c) {
+                for (int r = 0; r < 2; ++r)
+                    if (slopes(r, 1 + c) != 0) lasts.emplace_back(z + r, z + c, slopes(r, 1 + c));
+                for (int i = 0; i < 12; ++i) {
+                    const int row = i < 6 ? 6 * links_[l].a + i : 6 * links_[l].b + i - 6;
+                    if (slopes(0, 1 + c) != 0)
+                        pulls.emplace_back(row, z + c, stiffness * slopes(0, 1 + c) * stretches[i]);
+                    if (slopes(c, 0) != 0) follows.emplace_back(z + c, row, slopes(c, 0) * stretches[i]);
+                }
+            }
+        }
+    const Eigen::Index dofs = 6 * rest_.x.rows(), flows = 2 * fibres_per_link * std::ssize(links_);
+    FlowSlopes result{Eigen::SparseMatrix<double>(dofs, flows), Eigen::SparseMatrix<double>(flows, dofs),
+                      Eigen::SparseMatrix<double>(flows, flows)};
+    result.pulls.setFromTriplets(pulls.begin(), pulls.end());
+    result.follows.setFromTriplets(follows.begin(), follows.end());
+    result.lasts.setFromTriplets(lasts.begin(), lasts.end());
+    return result;
+}
+
 Stiffnesses PlacedLinks::rest_stiffness(size_t l, const Stiffnesses& k) const {
     if (plain_) return k;
     // Fibres stiffen tension and bending alike.
     double stiffer = 1;
     if (!material_.empty()) {
-        const double share = fibre_weights[0] * links_[l].length * links_[l].length;
         const StretchTerms on_axis = fibre_terms(l, 0, fibre(l, 0, rest_).stretch(), true, {});
-        stiffer += std::max(0.0, on_axis.second / share);
+        stiffer += std::max(0.0, on_axis.second / share(l, 0));
     }
     Stiffnesses own = k;
     own.head<3>() << (stiffer + shear_) * k[0], stiffer * k[1], k[2] + torsion_ * k[1];

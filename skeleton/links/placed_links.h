@@ -10,6 +10,15 @@
 
 namespace palpate::skeleton {
 
+/// How what has flowed goes on from one state to the next, to first order. With z the strain and the sum of each fibre
+/// (14L), as FibreState orders them,
+///   d net force = pulls dz_before,   dz = follows step + lasts dz_before.
+struct FlowSlopes {
+    Eigen::SparseMatrix<double> pulls;    // [N] (6N x 14L)
+    Eigen::SparseMatrix<double> follows;  // (14L x 6N)
+    Eigen::SparseMatrix<double> lasts;    // (14L x 14L)
+};
+
 /// A model's links, with the effects in force that are in the material or in the links themselves. At stiffness
 /// (kE, kF, kT) a link's energy is
 ///   s (kE e_E + kF e_F + kT e_T + torsion kF e_T + shear kE e_S + kE L^2 sum_j W_j (w(lambda_j) / 3 + p(lambda_j)))
@@ -39,6 +48,8 @@ public:
 
     /// How far the fibres have flowed once they stood in a state (7L); empty when nothing yields.
     FibreStates flowed(const State& state, const FibreStates& before = {}) const;
+    /// Its derivatives in a state at stiffnesses k. @pre the material yields.
+    FlowSlopes flow_slopes(const Eigen::VectorXd& k, const State& state, const FibreStates& before = {}) const;
 
     /// A link's stiffnesses at rest, with what effects add to them.
     Stiffnesses rest_stiffness(size_t link, const Stiffnesses& k) const;
@@ -48,6 +59,7 @@ public:
 private:
     double scale_of(const Link& link, const FibreOffsets& offsets, const fem::Effects& effects) const;
     LinkFibre fibre(size_t link, int j, const State& state) const;
+    double share(size_t link, int j) const;
     StretchTerms fibre_terms(size_t link, int j, double stretch, bool with_second, const FibreStates& before) const;
     void add_effects(size_t link, const State& state, const FibreStates& before, bool with_hessian,
                      LinkTerms& terms) const;

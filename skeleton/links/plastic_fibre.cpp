@@ -20,6 +20,19 @@ FibreState flow(const fem::Plasticity& plasticity, const FibreState& before, dou
     return {before.strain + std::copysign(more, lambda - 1 - before.strain), before.accumulated + more};
 }
 
+Eigen::Matrix<double, 2, 3> flow_slopes(const fem::Plasticity& plasticity, const FibreState& before, double lambda) {
+    Eigen::Matrix<double, 2, 3> slopes;
+    slopes << 0, 1, 0, 0, 0, 1;
+    if (flowed(plasticity, before, lambda) > 0) {
+        const double sign = std::copysign(1.0, lambda - 1 - before.strain);
+        const Eigen::RowVector3d more =
+            Eigen::RowVector3d(sign, -sign, -plasticity.hardening) / (1 + plasticity.hardening);
+        slopes.row(0) += sign * more;
+        slopes.row(1) += more;
+    }
+    return slopes;
+}
+
 StretchTerms plastic_terms(const fem::Plasticity& plasticity, const FibreState& before, double lambda) {
     const double more = flowed(plasticity, before, lambda);
     const FibreState now = flow(plasticity, before, lambda);

@@ -20,6 +20,9 @@ using FibreStates = std::vector<FibreState>;
 /// [Simo & Hughes 1998, box 1.4]
 FibreState flow(const fem::Plasticity& plasticity, const FibreState& before, double lambda);
 
+/// Its derivatives by lambda and by the strain and the sum before: of the strain in the first row, of the sum below.
+Eigen::Matrix<double, 2, 3> flow_slopes(const fem::Plasticity& plasticity, const FibreState& before, double lambda);
+
 /// What yielding adds to the elastic energy 1/2 e^2 of a fibre, e = lambda - 1 the strain by which links measure
 /// theirs, as a share of Young's modulus [-]:
 ///   p(e) = min over e_p of  1/2 (e - e_p)^2 + y |e_p - e_p0| + h/2 (a^2 - a_0^2)  -  1/2 e^2,   a = a_0 + |e_p -

@@ -64,6 +64,48 @@ TEST_P(CalibrationWithEffects, GradientIsThatOfChiSquared) {
     EXPECT_LT((gradient - numeric).norm(), 1e-5 * numeric.norm());  // differences of step 1e-5 carry seven digits
 }
 
+// A body that yields goes through all states: what it has flowed in one pulls in those after it, whoever read them.
+TEST(CalibrationWithEffects, GradientKnowsWhatHasFlowed) {
+    const skeleton::Model model = lattice_under_all(Law::large_rotation);
+    skeleton::Model truth = model;
+    for (skeleton::Link& link : truth.links) link.stiffness.head<2>() << 1.5, 500;
+    std::vector<Marker> markers = markers_on_spheres(model);
+    markers.resize(8);
+    MeasurementSet set = simulate_measurements(
+        truth, push_spheres(model, {{0, 0, -9}, {0, 0, 0}, {14, 3, 0}, {0, 8, 0}, {0, 0, 0}}), markers, 0.05);
+    set.continuous = true;
+    for (const int unread : {2, 3}) set.states[unread].readings.clear();
+    const PositionDomain domain = make_domain(model, Scope::links, set);
+    const Eigen::VectorXd theta = 0.1 * Eigen::VectorXd::LinSpaced(domain.parameters().size(), -1, 1);
+    const Prediction there = domain.predict(theta, 1);
+    const Slopes slopes = domain.slopes(theta, there);
+    const Eigen::VectorXd gradient = slopes.gradient();
+
+    constexpr double h = 1e-5;
+    Eigen::VectorXd numeric(theta.size());
+    for (Eigen::Index p = 0; p < theta.size(); ++p) {
+        const Eigen::VectorXd step = h * Eigen::VectorXd::Unit(theta.size(), p);
+        numeric[p] = (domain.chi_squared(domain.predict(theta + step, 1)) -
+                      domain.chi_squared(domain.predict(theta - step, 1))) /
+                     (4 * h);
+    }
+    // Differences of step 1e-5 carry seven digits, but for the fibres that begin to yield on the way.
+    EXPECT_LT((gradient - numeric).norm(), 1e-4 * numeric.norm());
+    for (const skeleton::FibreState& fibre : there.equilibria.back().before) EXPECT_GE(fibre.accumulated, 0);
+    EXPECT_TRUE(
+        std::ranges::any_of(there.equilibria.back().before, [](const auto& f) { return f.accumulated > 0.01; }));
+
+    // J^T J from both sides
+    const Eigen::VectorXd v = theta.array().sin();
+    const Eigen::VectorXd unread_too = slopes.steps(v).row(slopes.steps(v).rows() - 1);
+    EXPECT_EQ(unread_too.size(), 5);
+    double squares = 0;
+    for (int s = 0; s < 3; ++s) {
+        squares += slopes.moved_markers(s, v).col(0).cwiseAbs2().dot(slopes.weights(s));
+    }
+    EXPECT_NEAR(v.dot(slopes.curvature_times(v).col(0)), squares, 1e-9 * squares);
+}
+
 INSTANTIATE_TEST_SUITE_P(Laws, CalibrationWithEffects,
                          testing::Combine(testing::Values(Law::linear, Law::large_rotation),
                                           testing::Values(Scope::uniform, Scope::links)));

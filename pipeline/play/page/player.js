@@ -19,11 +19,9 @@ class Player {
 
     this.rest = Float32Array.from(first.skin.vertices.flat());
     this.triangles = Int32Array.from(first.skin.triangles.flat());
-    const low = [Infinity, Infinity, Infinity], high = low.map((v) => -v);
-    this.rest.forEach((v, i) => { low[i % 3] = Math.min(low[i % 3], v); high[i % 3] = Math.max(high[i % 3], v); });
-    this.camera = new Camera(low, high);
-    this.camera.distance *= 1.2;  // room to pull
-    this.size = this.camera.size;
+    const box = new Box().hold(this.rest), canvas = this.at('canvas'), roomToPull = 1.5;
+    this.camera = new Camera(box, canvas.clientWidth / canvas.clientHeight || 1, roomToPull);
+    this.size = box.size();
     this.colours = new Float32Array(this.rest.length);
     this.pinned = [];        // touches that go on pulling
     this.loads = [];         // touches of the probe that is replayed
@@ -32,7 +30,7 @@ class Player {
     this.wake();
 
     const held = first.spheres.filter((s) => s.held).map((s) => s.center);
-    const support = held.length ? times3(held.reduce((a, b) => plus3(a, b), [0, 0, 0]), 1 / held.length) : low;
+    const support = held.length ? times3(held.reduce((a, b) => plus3(a, b), [0, 0, 0]), 1 / held.length) : box.low;
     this.points = spreadVertices(this.rest, support, 24);
     this.chosen = {model: data.models.length - 1, off: new Set(), probe: -1, point: -1};
   }

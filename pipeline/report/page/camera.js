@@ -8,20 +8,48 @@ const timesMatrix = (a, b) => Array.from({length: 9}, (_, i) => {
 const aboutX = (t) => [1, 0, 0, 0, Math.cos(t), Math.sin(t), 0, -Math.sin(t), Math.cos(t)];
 const aboutY = (t) => [Math.cos(t), 0, -Math.sin(t), 0, 1, 0, Math.sin(t), 0, Math.cos(t)];
 
+/// A box round points.
+class Box {
+  low = [Infinity, Infinity, Infinity];
+  high = [-Infinity, -Infinity, -Infinity];
+  /// Points, or balls where radii are given, moved by so many times their vectors.
+  hold(points, vectors, times, radii) {
+    points.forEach((p, i) => {
+      const at = p + (vectors && vectors.length ? times * vectors[i] : 0), radius = radii ? radii[Math.floor(i / 3)] : 0;
+      this.low[i % 3] = Math.min(this.low[i % 3], at - radius);
+      this.high[i % 3] = Math.max(this.high[i % 3], at + radius);
+    });
+    return this;
+  }
+  size() { return Math.hypot(...this.high.map((h, i) => h - this.low[i])) || 1; }
+}
+
+const tangent = Math.tan(0.3);  // of half the angle that is seen
+
 class Camera {
-  /// Looks at a box from a little above its broader side, z upwards.
-  constructor(low, high) {
-    this.size = Math.hypot(...high.map((h, i) => h - low[i])) || 1;
+  /// Looks at a box from a little above its broader side, z upwards, so that a picture of that aspect (width over
+  /// height) holds all of it; from `room` times as far.
+  constructor(box, aspect, room = 1) {
+    const {low, high} = box;
+    this.size = box.size();
     this.middle = high.map((h, i) => (h + low[i]) / 2);
     const alongX = high[0] - low[0] >= high[1] - low[1];
     const right = alongX ? [1, 0, 0] : [0, 1, 0], up = [0, 0, 1], front = alongX ? [0, -1, 0] : [1, 0, 0];
     this.home = timesMatrix(aboutX(0.4), timesMatrix(aboutY(-0.5), [0, 1, 2].flatMap((k) => [right[k], up[k], front[k]])));
+    const narrow = Math.min(1, aspect) / tangent, fills = 0.93;
+    this.enough = 0;
+    for (let corner = 0; corner < 8; ++corner) {
+      const at = this.middle.map((m, i) => (corner >> i & 1 ? high[i] : low[i]) - m);
+      const [x, y, z] = [0, 1, 2].map((row) => at.reduce((sum, v, i) => sum + this.home[3 * i + row] * v, 0));
+      this.enough = Math.max(this.enough, z + narrow * Math.max(Math.abs(x) / aspect, Math.abs(y)) / fills);
+    }
+    this.enough *= room;
     this.reset();
   }
   reset() {
     this.turned = this.home;
     this.target = [...this.middle];
-    this.distance = 1.5 * this.size;
+    this.distance = this.enough || 1;
   }
   turn(dx, dy) { this.turned = timesMatrix(aboutX(dy), timesMatrix(aboutY(dx), this.turned)); }
   zoom(factor) { this.distance = Math.min(Math.max(this.distance * factor, 0.05 * this.size), 20 * this.size); }
@@ -38,7 +66,7 @@ class Camera {
   }
   projection(aspect) {
     const near = 0.01 * this.distance, far = this.distance + 4 * this.size;
-    const f = 1 / Math.tan(0.3), narrow = Math.min(1, aspect);  // a narrow picture shows as much across
+    const f = 1 / tangent, narrow = Math.min(1, aspect);  // a narrow picture shows as much across
     return [f * narrow / aspect, 0, 0, 0, 0, f * narrow, 0, 0, 0, 0, (far + near) / (near - far), -1, 0, 0,
       2 * far * near / (near - far), 0];
   }

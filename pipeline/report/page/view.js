@@ -5,9 +5,7 @@ function startView() {
   const at = (id) => document.getElementById(id);
   const run = readRun(at('run-data').textContent);
   const rest = run.surface.points, body = rest.length ? rest : run.spheres.centers;
-  const low = [Infinity, Infinity, Infinity], high = low.map((v) => -v);
-  body.forEach((v, i) => { low[i % 3] = Math.min(low[i % 3], v); high[i % 3] = Math.max(high[i % 3], v); });
-  const camera = new Camera(low, high), size = camera.size, reach = 0.25 * size;
+  const size = new Box().hold(body).size(), reach = 0.25 * size;
   let scene;
   try {
     scene = new Scene(at('canvas'), run.surface.triangles);
@@ -52,6 +50,13 @@ function startView() {
   const round = (v) => +v.toPrecision(2);
   at('magnify').value = furthest > 0 && furthest < 0.03 * size ? round(0.1 * size / furthest) : 1;
   at('lengthen').value = worst > 0 ? Math.max(1, round(0.12 * size / worst)) : 1;
+  // The picture holds the body at rest and, as far as it is magnified now, all that it does.
+  const box = new Box().hold(body), moves = +at('magnify').value;
+  box.hold(run.spheres.centers, null, 0, run.spheres.radii);
+  run.states.forEach((s) => s.measured && box.hold(rest, s.measured, moves));
+  run.steps[0].states.forEach((s) => { box.hold(rest, s.skin, moves); box.hold(run.spheres.centers, s.spheres, moves, run.spheres.radii); });
+  const camera = new Camera(box, at('canvas').clientWidth / at('canvas').clientHeight || 1);
+
   // First the state that goes most wrong, which is what the page is about.
   const first = run.steps[0].states.reduce((best, s, i, all) => (s.rms > (all[best].rms || 0) ? i : best), 0);
 
@@ -97,8 +102,8 @@ function startView() {
     const magnify = +at('magnify').value || 0, quantity = quantities[+at('colour').value], scale = scaleOf(quantity);
     const state = run.steps[shown.step].states[shown.state], now = run.states[shown.state], markers = state.markers;
     const values = quantity.links ? null : valuesOf(quantity, state);
-    const box = at('canvas').getBoundingClientRect(), dots = Math.min(devicePixelRatio || 1, 2);
-    scene.begin(camera, Math.round(box.width * dots), Math.round(box.height * dots));
+    const area = at('canvas').getBoundingClientRect(), dots = Math.min(devicePixelRatio || 1, 2);
+    scene.begin(camera, Math.round(area.width * dots), Math.round(area.height * dots));
 
     const spheres = added(run.spheres.centers, between((s) => s.spheres, share), magnify);
     const skin = added(rest, between((s) => s.skin, share), magnify);
