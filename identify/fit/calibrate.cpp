@@ -18,10 +18,10 @@ constexpr double first_error = 0.03;  // relative model error to begin with
 constexpr double least_error = 1e-6;  // the model error never falls below it: no model is exact
 // of half the chi^2: a hundredth of a posterior's sd; a tenth where another fit follows
 constexpr FitOptions settled{.tolerance = 1e-4}, nearly{.tolerance = 1e-2, .final_spectrum = false};
-constexpr int steps_with_memory = 8;  // of a fit whose states are lived through
-constexpr int most_rounds = 6;        // of finer fits
-constexpr double falling = 0.8;       // of the model error, after a round
-constexpr int states_at_first = 12;   // that choose the law, the most displaced ones
+constexpr int patience_with_memory = 6;  // fibres that begin to yield are kinks
+constexpr int most_rounds = 6;           // of finer fits
+constexpr double falling = 0.8;          // of the model error, after a round
+constexpr int states_at_first = 12;      // that choose the law, the most displaced ones
 
 LogNormalPrior prior_round(const Eigen::VectorXd& mean, double sd) {
     return {mean, Eigen::VectorXd::Constant(mean.size(), sd), nullptr};
@@ -110,8 +110,7 @@ public:
 
     FitResult fit(const PositionDomain& domain, const LogNormalPrior& prior, const Eigen::VectorXd& start,
                   FitOptions how) {
-        // Slopes leave out what the states before would have left: the last digits take long.
-        if (remembers(readings_)) how.iterations = std::min(how.iterations, steps_with_memory);
+        if (remembers(readings_)) how.patience = patience_with_memory;
         FitResult result = fit_map(domain, prior, start, options_.threads, how);
         equilibria_ += result.evaluations * static_cast<int>(domain.states().size());
         return result;

@@ -73,6 +73,11 @@ Step damped_step(const SymmetricProduct& A, const Eigen::VectorXd& g, double dam
     return step;
 }
 
+bool stalls(const std::vector<double>& trace, const FitOptions& options) {
+    const auto past = static_cast<std::size_t>(options.patience);
+    return past > 0 && trace.size() > past && trace[trace.size() - 1 - past] - trace.back() < 100 * options.tolerance;
+}
+
 }  // namespace
 
 SymmetricProduct whitened_curvature(const Slopes& slopes, const LogNormalPrior& prior) {
@@ -106,6 +111,10 @@ FitResult fit_map(const PositionDomain& domain, const LogNormalPrior& prior, con
         }
         const SymmetricProduct A = whitened_curvature(*slopes, prior);
         if (!known) fit.spectrum = leading_spectrum(A, P, spectrum_options(P), fit.spectrum.vectors);
+        if (stalls(fit.trace, options)) {
+            fit.converged = true;
+            break;
+        }
         const double largest = fit.spectrum.values.size() > 0 ? fit.spectrum.values[0] : 1;
         ++fit.iterations;
 

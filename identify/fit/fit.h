@@ -12,7 +12,10 @@ SymmetricProduct whitened_curvature(const Slopes& slopes, const LogNormalPrior& 
 
 struct FitOptions {
     int iterations = 60;
-    double tolerance = 1e-8;         // stop when the next step promises to lower half the chi^2 by less
+    double tolerance = 1e-8;  // stop when the next step promises to lower half the chi^2 by less
+    /// Or when so many iterations lowered it by less than a hundred times that, where kinks keep the promise from
+    /// coming true; 0: never.
+    int patience = 0;
     const Spectrum* near = nullptr;  // of a fit nearby
     bool final_spectrum = true;      // else one on the way is left, good enough to count effective parameters
 };

@@ -7,6 +7,8 @@ namespace palpate::skeleton {
 
 namespace {
 
+constexpr double enough_fall = 1e-4;  // of what the slope at the start promises
+
 // What is sought, all together.
 struct Problem {
     SkeletonSystem& system;
@@ -27,14 +29,19 @@ bool factor_shifted(const Problem& problem, double& shift) {
     return true;
 }
 
-// Moves along `step` so far that the potential falls as it should [Armijo], or only rounding is left of it.
+// Moves along `step` so far that the potential falls as it should [Armijo]. Where that drowns in rounding, as terms of
+// a link cancel, the slopes at both ends tell its fall. [Hager & Zhang 2005]
 bool descend(const Problem& problem, const Eigen::VectorXd& step, State& state, Balance& here) {
     const double slope = here.net.dot(step);
     double share = problem.system.step_limit(step);
     for (int halving = 0; halving < 27; ++halving, share /= 2) {
         const State trial = advance(state, share * step);
         const Balance there = problem.balance(trial);
-        if (there.potential <= here.potential - 1e-4 * share * slope + here.rounding) {
+        const double fall = here.potential - there.potential, left = there.net.dot(step);
+        const bool falls = fall >= enough_fall * share * slope - here.rounding;
+        const bool falls_by_slopes =
+            fall >= -1e3 * here.rounding && left >= (2 * enough_fall - 1) * slope && there.largest < here.largest;
+        if (falls || falls_by_slopes) {
             state = trial;
             here = there;
             return true;
