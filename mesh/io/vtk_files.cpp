@@ -71,7 +71,8 @@ void write(const std::filesystem::path& file, vtkDataSet* data) {
     const VtkErrors errors;
     writer->WriteToOutputStringOn();
     writer->SetInputData(data);
-    writer->SetDataModeToAppended();
+    // Inline: the ParaView of an up-to-date Debian 12 finds no data appended to the file, since its Expat defers parsing.
+    writer->SetDataModeToBinary();
     writer->SetCompressorTypeToZLib();
     if (writer->Write() == 0 || errors.heard() || writer->GetErrorCode() != 0) {
         throw IoError(fmt::format(

@@ -144,14 +144,12 @@ class Browser:
 
 
 def displacement_in(file):
-    """The array "displacement [mm]" of a .vtp: appended, in base64, each array zipped in blocks."""
-    text = file.read_text()
-    offset = int(re.search(r'Name="displacement \[mm\]"[^>]*offset="(\d+)"', text).group(1))
-    appended = text[text.index("_", text.index("<AppendedData")) + 1:][offset:]
-    blocks = struct.unpack("<I", base64.b64decode(appended[:8])[:4])[0]
+    """The array "displacement [mm]" of a .vtp: in base64, zipped in blocks."""
+    text = re.search(r'Name="displacement \[mm\]"[^>]*>\s*([A-Za-z0-9+/=]+)', file.read_text()).group(1)
+    blocks = struct.unpack("<I", base64.b64decode(text[:8])[:4])[0]
     header_length = (4 * (3 + blocks) + 2) // 3 * 4
-    sizes = struct.unpack(f"<{3 + blocks}I", base64.b64decode(appended[:header_length])[:4 * (3 + blocks)])[3:]
-    packed = base64.b64decode(appended[header_length:header_length + (sum(sizes) + 2) // 3 * 4])
+    sizes = struct.unpack(f"<{3 + blocks}I", base64.b64decode(text[:header_length])[:4 * (3 + blocks)])[3:]
+    packed = base64.b64decode(text[header_length:header_length + (sum(sizes) + 2) // 3 * 4])
     raw, at = b"", 0
     for size in sizes:
         raw += zlib.decompress(packed[at:at + size])
