@@ -72,8 +72,14 @@ Eigen::VectorXd error_of(const Problem& problem, const Played& played) {
 /// A fit in progress, at fixed V.
 class Descent {
 public:
-    Descent(const BodyModel& model, const Problem& problem, const Priors& priors, int threads, Refit& at)
-        : model_(model), problem_(problem), priors_(priors), threads_(threads), at_(at) {}
+    Descent(const BodyModel& model, const Problem& problem, const Priors& priors, const RefitOptions& options,
+            Refit& at)
+        : model_(model),
+          problem_(problem),
+          priors_(priors),
+          threads_(options.threads),
+          rival_(std::max(1.0, options.rival)),
+          at_(at) {}
 
     void run(int most_steps) {
         double now = objective(*at_.V, at_.error, priors_, at_.explanation.all());
@@ -88,7 +94,7 @@ public:
             Eigen::VectorXd move = bounded_move(H, g, priors_, x);
             at_.covariance = H.llt().solve(Eigen::MatrixXd::Identity(x.size(), x.size()));
             at_.converged = 0.5 * g.dot(move) < settled(now, problem_.rows());
-            if (at_.converged) return;
+            if (at_.converged || is_hopeless(now, 0.5 * g.dot(move))) return;
             move *= std::min(1.0, 1 / move.cwiseQuotient(priors_.step).cwiseAbs().maxCoeff());
             ++at_.steps;
             if (!advance(move, now)) return;
@@ -97,6 +103,15 @@ public:
     }
 
 private:
+    /// Behind its rival, and too slow to come near it?
+    bool is_hopeless(double now, double promised) const {
+        constexpr int first_steps = 3;  // whose slopes are those of another place
+        constexpr int many_steps = 6;
+        const double rivals = 0.5 * rival_ * rival_ * static_cast<double>(problem_.rows());
+        const bool is_slow = at_.steps >= first_steps && now - 3 * promised > 1.5 * 1.5 * rivals;
+        return is_slow || (at_.steps >= many_steps && now > 5 * 5 * rivals);
+    }
+
     /// Plays a step, shortened until the objective falls. False when none was found.
     bool advance(const Eigen::VectorXd& move, double& now) {
         const Eigen::VectorXd x = at_.explanation.all();
@@ -138,6 +153,7 @@ private:
     const Problem& problem_;
     const Priors& priors_;
     int threads_;
+    double rival_;  // whitened rms, at least that of noise
     Refit& at_;
     std::vector<Eigen::MatrixXd> steps_;  // J^-1 times the signatures, of each action
 };
@@ -219,7 +235,7 @@ Refit refit(const BodyModel& model, const Problem& problem, const Explanation& e
         at.V.emplace(reading_weights(model, problem, at.explanation, at.played, options.nuisances),
                      Eigen::MatrixXd(problem.rows(), 0), Eigen::VectorXd(0));
     }
-    Descent descent(model, problem, priors, options.threads, at);
+    Descent descent(model, problem, priors, options, at);
     descent.run(options.steps);
     constexpr double hopeless = 2;  // rms left, whitened
     const double left = std::sqrt(at.error.dot(at.V->apply(at.error).col(0)) / static_cast<double>(problem.rows()));

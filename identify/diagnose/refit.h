@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <optional>
 
 #include "identify/diagnose/fit.h"
@@ -33,6 +34,9 @@ struct Refit {
 struct RefitOptions {
     int threads = 1;
     int steps = 12;  // Gauss-Newton's in each of two rounds, at most
+    /// Whitened rms that another fit has left. A fit is given up that would leave 1.5 times as much even if it gained
+    /// thrice what its slopes promise, or that has five times as much after six steps.
+    double rival = INFINITY;
     NuisanceOptions nuisances;
 };
 

@@ -111,7 +111,9 @@ std::optional<Explained> Search::refit_from(const Explanation& explanation, cons
                                             const std::vector<std::shared_ptr<const Effect>>& effects) const {
     try {
         const Problem& problem = problem_for(explanation);
-        Explained result{.effects = effects, .fit = refit(model_, problem, explanation, options_.refit, &start)};
+        RefitOptions how = options_.refit;
+        if (leader()) how.rival = leader()->fit.whitened_rms;
+        Explained result{.effects = effects, .fit = refit(model_, problem, explanation, how, &start)};
         result.log_bayes_factor = result.fit.log_evidence - baselines_.best().log_evidence;
         result.held_out = leave_probes_out(problem, result.fit);
         return result;

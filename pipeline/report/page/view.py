@@ -198,14 +198,17 @@ for view, build in zip(views, builders):
     shown.Color = [0, 0, 0]
     shown.FontSize = 13
     view.CameraParallelProjection = 1
+
+# Views know their sizes only now.
+layout.SetSize(1800, 1100)
+for view in views:
+    Render(view)
     view.ResetCamera()
     camera = view.GetActiveCamera()
     camera.Elevation(-60)
     camera.Azimuth(20)
     view.ResetCamera(True)
-
-layout.SetSize(1800, 1100)
-for view in views:
+    view.CameraParallelScale *= 1.1  # room for the legend
     Render(view)
 if len(sys.argv) > 1 and sys.argv[-1].endswith(".png"):
     SaveScreenshot(sys.argv[-1], layout, ImageResolution=[1800, 1100])
