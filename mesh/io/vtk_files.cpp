@@ -71,7 +71,7 @@ void write(const std::filesystem::path& file, vtkDataSet* data) {
     const VtkErrors errors;
     writer->WriteToOutputStringOn();
     writer->SetInputData(data);
-    // Inline: the ParaView of an up-to-date Debian 12 finds no data appended to the file, since its Expat defers parsing.
+    // Inline: an up-to-date Debian 12's ParaView finds no appended data, as its Expat defers parsing.
     writer->SetDataModeToBinary();
     writer->SetCompressorTypeToZLib();
     if (writer->Write() == 0 || errors.heard() || writer->GetErrorCode() != 0) {
