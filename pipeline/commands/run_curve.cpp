@@ -12,10 +12,11 @@
 namespace palpate::pipeline::commands {
 namespace {
 
-namespace fs = std::filesystem;
 using nlohmann::json;
 
+constexpr const char* curve_stage = "sphere_curve";
 constexpr const char* curve_file = "skeleton/sphere_curve.json";
+
 QualityOptions how_to_measure(const skeleton::Model& model, const Common& common) {
     const auto free = static_cast<int>(std::ranges::count(model.spheres, false, &skeleton::Sphere::held));
     QualityOptions options;
@@ -41,18 +42,18 @@ std::string in_words(const json& rungs) {
 void measure_sphere_curve(RunFolder& folder, const Subject& subject, const Body& body, const skeleton::Model& model,
                           const Common& common) {
     if (!subject.settings.sphere_curve || subject.settings.model) {
-        fs::remove(folder.path() / curve_file);
+        folder.drop(curve_stage, {curve_file});
         return;
     }
     try {
         const bool ran = folder.stage(
-            {"sphere_curve", {{"seed", subject.settings.identify.seed}}, {}, {"mesh", "skeleton"}, {curve_file}}, [&] {
+            {curve_stage, {{"seed", subject.settings.identify.seed}}, {}, {"mesh", "skeleton"}, {curve_file}}, [&] {
                 const Quality quality =
                     measure_quality(subject, body, model, how_to_measure(model, common), Console::progress());
                 mesh::write_text(folder.path() / curve_file, quality_json(quality).dump(1) + "\n");
                 return json{{"rungs", quality.rungs.size()}};
             });
-        tell_stage(folder, "sphere_curve", ran,
+        tell_stage(folder, curve_stage, ran,
                    in_words(json::parse(mesh::read_text(folder.path() / curve_file))["rungs"]));
         return;
     } catch (const InvalidInput& e) {
@@ -60,7 +61,7 @@ void measure_sphere_curve(RunFolder& folder, const Subject& subject, const Body&
     } catch (const SolverFailure& e) {
         Console::warning(std::string("What more spheres would do stays unknown: ") + e.what());
     }
-    fs::remove(folder.path() / curve_file);
+    folder.drop(curve_stage, {curve_file});
 }
 
 }  // namespace palpate::pipeline::commands

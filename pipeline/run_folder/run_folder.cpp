@@ -163,6 +163,11 @@ bool RunFolder::stage(const StagePlan& plan, const std::function<json()>& work) 
     return true;
 }
 
+void RunFolder::drop(const std::string& stage, const std::vector<fs::path>& outputs) {
+    if (record_["stages"].erase(stage) > 0) save();
+    for (const fs::path& output : outputs) fs::remove(folder_ / output);
+}
+
 void RunFolder::note(const std::string& key, const json& value) {
     record_[key] = value;
     save();

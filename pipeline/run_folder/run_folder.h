@@ -34,6 +34,9 @@ public:
     /// `work` returns figures to keep in run.json.
     bool stage(const StagePlan& plan, const std::function<nlohmann::json()>& work);
 
+    /// Takes back a stage that is no longer asked for, with its outputs (relative to the run folder).
+    void drop(const std::string& stage, const std::vector<std::filesystem::path>& outputs);
+
     const std::filesystem::path& path() const { return folder_; }
     /// What run.json holds: versions, seeds, stages.
     const nlohmann::json& record() const { return record_; }

@@ -28,7 +28,7 @@ FlagHelp flag_of(const CLI::Option& option) {
                   .what = option.get_description(),
                   .takes_value = option.get_expected_max() > 0,
                   .choices = {},
-                  .repeatable = option.get_expected_max() > 1};
+                  .repeatable = option.get_multi_option_policy() == CLI::MultiOptionPolicy::TakeAll};
     for (const std::string& name : option.get_snames()) flag.names.push_back("-" + name);
     for (const std::string& name : option.get_lnames()) flag.names.push_back("--" + name);
     flag.choices = choices_in(option.get_type_name());

@@ -104,6 +104,7 @@ TEST(SphereCurve, IsMeasuredWhereItIsAskedFor) {
     options.say.sphere_curve = false;
     commands::run(options, {});
     EXPECT_FALSE(std::filesystem::exists(scratch / "run/skeleton/sphere_curve.json"));
+    EXPECT_FALSE(json::parse(mesh::read_text(scratch / "run/run.json"))["stages"].contains("sphere_curve"));
     EXPECT_THAT(mesh::read_text(scratch / "run/report.html"),
                 AllOf(Not(HasSubstr("id=\"spheres\"")), HasSubstr("--sphere-curve")));
 }

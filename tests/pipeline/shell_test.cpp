@@ -10,6 +10,7 @@
 #include "pipeline/commands/common.h"
 #include "pipeline/info/describe.h"
 #include "pipeline/shell/command_tree.h"
+#include "pipeline/verbs/tree.h"
 #include "tests/temporary_folder.h"
 
 namespace palpate::pipeline {
@@ -107,6 +108,17 @@ zpty -d shell
     EXPECT_EQ(complete("palpate run --body skeleton --bo"), "palpate run --body skeleton --bo\n") << "said already";
     EXPECT_EQ(complete("palpate run --without contact --wi"), "palpate run --without contact --without=\n");
     EXPECT_EQ(complete("palpate run -o gr"), "palpate run -o gravel \n");
+}
+
+TEST(Completion, OffersOnceMoreWhatMayBeSaidAgain) {
+    CLI::App app;
+    CLI::App* probe = app.add_subcommand("probe", "Makes a set");
+    std::vector<std::string> hidden;
+    std::string law;
+    probe->add_option("--hide", hidden)->expected(1)->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+    probe->add_option("--law", law);
+    const CommandTree tree = tree_of(app);
+    EXPECT_THAT(zsh_completion(tree), AllOf(HasSubstr("'*'--hide="), HasSubstr("'(--law)'--law=")));
 }
 
 TEST(ManPage, TellsEveryVerbWithItsFlags) {
