@@ -21,6 +21,7 @@ class Box {
     });
     return this;
   }
+  middle() { return this.high.map((h, i) => (h + this.low[i]) / 2); }
   size() { return Math.hypot(...this.high.map((h, i) => h - this.low[i])) || 1; }
 }
 
@@ -32,7 +33,7 @@ class Camera {
   constructor(box, aspect, room = 1) {
     const {low, high} = box;
     this.size = box.size();
-    this.middle = high.map((h, i) => (h + low[i]) / 2);
+    this.middle = box.middle();
     const alongX = high[0] - low[0] >= high[1] - low[1];
     const right = alongX ? [1, 0, 0] : [0, 1, 0], up = [0, 0, 1], front = alongX ? [0, -1, 0] : [1, 0, 0];
     this.home = timesMatrix(aboutX(0.4), timesMatrix(aboutY(-0.5), [0, 1, 2].flatMap((k) => [right[k], up[k], front[k]])));

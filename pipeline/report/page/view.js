@@ -5,7 +5,7 @@ function startView() {
   const at = (id) => document.getElementById(id);
   const run = readRun(at('run-data').textContent);
   const rest = run.surface.points, body = rest.length ? rest : run.spheres.centers;
-  const size = new Box().hold(body).size(), reach = 0.25 * size;
+  const room = new Box().hold(body), size = room.size(), middle = room.middle(), reach = 0.25 * size;
   let scene;
   try {
     scene = new Scene(at('canvas'), run.surface.triangles);
@@ -50,8 +50,16 @@ function startView() {
   const round = (v) => +v.toPrecision(2);
   at('magnify').value = furthest > 0 && furthest < 0.03 * size ? round(0.1 * size / furthest) : 1;
   at('lengthen').value = worst > 0 ? Math.max(1, round(0.12 * size / worst)) : 1;
+  /// A load's arrow: it ends at the body where it pushes, and begins there where it pulls.
+  const arrowOf = ([x, y, z, ...force]) => {
+    const length = 0.22 * size * Math.hypot(...force) / strongest, unit = force.map((f) => f / (Math.hypot(...force) || 1));
+    const tip = [x, y, z], pushes = unit.reduce((sum, u, i) => sum + u * (tip[i] - middle[i]), 0) < 0;
+    const other = tip.map((v, i) => v + (pushes ? -1 : 1) * length * unit[i]);
+    return {start: pushes ? other : tip, end: pushes ? tip : other};
+  };
   // The picture holds the body at rest and, as far as it is magnified now, all that it does.
   const box = new Box().hold(body), moves = +at('magnify').value;
+  run.states.forEach((s) => s.loads.forEach((load) => { const {start, end} = arrowOf(load); box.hold(start).hold(end); }));
   box.hold(run.spheres.centers, null, 0, run.spheres.radii);
   run.states.forEach((s) => s.measured && box.hold(rest, s.measured, moves));
   run.steps[0].states.forEach((s) => { box.hold(rest, s.skin, moves); box.hold(run.spheres.centers, s.spheres, moves, run.spheres.radii); });
@@ -139,12 +147,7 @@ function startView() {
       scene.glyphs('arrow', arrows);
     }
     if (at('show-loads').checked) {
-      scene.glyphs('arrow', now.loads.map(([x, y, z, ...force]) => {
-        const length = 0.22 * size * Math.hypot(...force) / strongest, unit = force.map((f) => f / (Math.hypot(...force) || 1));
-        const pushes = unit.reduce((sum, u, i) => sum + u * ([x, y, z][i] - camera.middle[i]), 0) < 0;
-        const tip = [x, y, z], other = tip.map((v, i) => v + (pushes ? -1 : 1) * length * unit[i]);
-        return {start: pushes ? other : tip, end: pushes ? tip : other, radius: 0.009 * size, colour: loadColour};
-      }));
+      scene.glyphs('arrow', now.loads.map((load) => ({...arrowOf(load), radius: 0.009 * size, colour: loadColour})));
     }
     if (at('show-measured').checked && now.measured) scene.wires(added(rest, now.measured, magnify), wireColour);
     if (at('show-spheres').checked) {
