@@ -9,4 +9,17 @@ inline PositionDomain make_domain(const skeleton::Model& model, Scope scope, con
     return {model, model.law, group_stiffness(model, scope), collect_readings(model, set), 1};
 }
 
+/// Central differences of half the chi^2.
+inline Eigen::VectorXd numeric_gradient(const PositionDomain& domain, const Eigen::VectorXd& theta) {
+    constexpr double h = 1e-5;
+    Eigen::VectorXd gradient(theta.size());
+    for (Eigen::Index p = 0; p < theta.size(); ++p) {
+        const Eigen::VectorXd step = h * Eigen::VectorXd::Unit(theta.size(), p);
+        gradient[p] = (domain.chi_squared(domain.predict(theta + step, 1)) -
+                       domain.chi_squared(domain.predict(theta - step, 1))) /
+                      (4 * h);
+    }
+    return gradient;
+}
+
 }  // namespace palpate::identify

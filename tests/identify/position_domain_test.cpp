@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "domains.h"
 #include "identify/fit/fit.h"
 #include "lattice.h"
 
@@ -12,19 +13,6 @@ using skeleton::Law;
 
 PositionDomain make_domain(const skeleton::Model& model, Law law, Scope scope, const MeasurementSet& set) {
     return {model, law, group_stiffness(model, scope), collect_readings(model, set), 1};
-}
-
-/// Central differences of half the chi^2.
-Eigen::VectorXd numeric_gradient(const PositionDomain& domain, const Eigen::VectorXd& theta) {
-    constexpr double h = 1e-5;
-    Eigen::VectorXd gradient(theta.size());
-    for (Eigen::Index p = 0; p < theta.size(); ++p) {
-        const Eigen::VectorXd step = h * Eigen::VectorXd::Unit(theta.size(), p);
-        gradient[p] = (domain.chi_squared(domain.predict(theta + step, 1)) -
-                       domain.chi_squared(domain.predict(theta - step, 1))) /
-                      (4 * h);
-    }
-    return gradient;
 }
 
 Eigen::MatrixXd curvature(const PositionDomain& domain, const Eigen::VectorXd& theta) {
