@@ -27,6 +27,34 @@ Eigen::MatrixXd sum_of_parts(int count, int threads, const std::function<Eigen::
     return sum;
 }
 
+/// An equilibrium of a prediction, whether somebody read it or not.
+struct Stage {
+    int state;  // the one that was read, here or next
+    const skeleton::Load* load;
+    const skeleton::Equilibrium* at;
+    bool is_read;
+    int before = -1;  // stage that went before; -1: the body was new
+};
+
+/// Of all states, unread ones before the one that was read next.
+std::vector<Stage> stages_of(const std::vector<StateReadings>& states, const Prediction& prediction) {
+    std::vector<Stage> stages;
+    std::vector<int> stage_of(states.size());
+    for (int s = 0; s < static_cast<int>(states.size()); ++s) {
+        int before = states[s].before >= 0 ? stage_of[states[s].before] : -1;
+        const auto append = [&](const skeleton::Load& load, const skeleton::Equilibrium& at, bool is_read) {
+            stages.push_back({s, &load, &at, is_read, before});
+            before = static_cast<int>(stages.size()) - 1;
+        };
+        for (std::size_t u = 0; u < prediction.unread[s].size(); ++u) {
+            append(states[s].unread[u], prediction.unread[s][u], false);
+        }
+        append(states[s].load, prediction.equilibria[s], true);
+        stage_of[s] = before;
+    }
+    return stages;
+}
+
 }  // namespace
 
 Slopes::Slopes(std::vector<State> states, const Eigen::SparseMatrix<double>& dk, std::vector<TangentSolve> tangents,
@@ -181,28 +209,7 @@ Slopes PositionDomain::slopes(const Eigen::VectorXd& theta, const Prediction& pr
     const Eigen::VectorXd k = parameters_.stiffness(theta);
     const bool linear = law() == skeleton::Law::linear;
 
-    // all equilibria, unread ones before the one that was read next
-    struct Stage {
-        int state;
-        const skeleton::Load* load;
-        const skeleton::Equilibrium* at;
-        bool is_read;
-        int before = -1;
-    };
-    std::vector<Stage> stages;
-    std::vector<int> stage_of(states_.size());
-    for (int s = 0; s < static_cast<int>(states_.size()); ++s) {
-        int before = states_[s].before >= 0 ? stage_of[states_[s].before] : -1;
-        const auto append = [&](const skeleton::Load& load, const skeleton::Equilibrium& at, bool is_read) {
-            stages.push_back({s, &load, &at, is_read, before});
-            before = static_cast<int>(stages.size()) - 1;
-        };
-        for (std::size_t u = 0; u < prediction.unread[s].size(); ++u) {
-            append(states_[s].unread[u], prediction.unread[s][u], false);
-        }
-        append(states_[s].load, prediction.equilibria[s], true);
-        stage_of[s] = before;
-    }
+    const std::vector<Stage> stages = stages_of(states_, prediction);
 
     // the linear law has one tangent for all states
     const int count = static_cast<int>(stages.size());
