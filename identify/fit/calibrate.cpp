@@ -21,6 +21,8 @@ constexpr FitOptions settled{.tolerance = 1e-4}, nearly{.tolerance = 1e-2, .fina
 constexpr int patience_with_memory = 6;  // fibres that begin to yield are kinks
 constexpr int most_rounds = 6;           // of finer fits
 constexpr double falling = 0.8;          // of the model error, after a round
+constexpr int few_numbers = 4;           // of coordinates to one, so that a model cannot follow just anything
+constexpr double promising = 1.5;        // of chi^2 to coordinates, that a step down to the noise may promise to leave
 constexpr int states_at_first = 12;      // that choose the law, the most displaced ones
 
 LogNormalPrior prior_round(const Eigen::VectorXd& mean, double sd) {
@@ -116,6 +118,25 @@ public:
         return result;
     }
 
+    /// The fit that leaves nothing but the noise, from one under a larger model error, and the domain without any. None
+    /// where the model cannot follow so far, by what the slopes promise and then in truth, or where it has so many
+    /// numbers that it could follow anything.
+    std::optional<FitResult> fit_to_the_noise(PositionDomain& domain, const LogNormalPrior& prior,
+                                              const FitResult& coarse) {
+        if (few_numbers * domain.parameters().size() > domain.coordinates()) return std::nullopt;
+        const double before = domain.log_constant();
+        domain.set_model_error(least_error);
+        const double sharper = std::exp(2 * (domain.log_constant() - before) / domain.coordinates());
+        if (promised_chi_squared(domain, prior, coarse, sharper) > promising * domain.coordinates())
+            return std::nullopt;
+        const Spectrum near{sharper * coarse.spectrum.values, coarse.spectrum.vectors};
+        FitOptions how = settled;
+        how.near = &near;
+        FitResult found = fit(domain, prior, coarse.theta, how);
+        if (domain.estimate_model_error(found.prediction) > 0) return std::nullopt;
+        return found;
+    }
+
     /// Puts the highest of a fit and those from other starts, where these are cheap, in its place; returns the rest.
     template <typename Starts>
     std::vector<FitResult> other_modes(const PositionDomain& domain, const LogNormalPrior& prior, FitResult& fit,
@@ -193,6 +214,13 @@ Calibration calibrate(const skeleton::Model& model, const std::vector<StateReadi
             report(progress, "finer fit", 0.4 + 0.6 * round / most_rounds);
             const double before = std::exchange(model_error, std::min(model_error, model_error_after(domain, fit)));
             const bool last = round == most_rounds || model_error > falling * before;
+            if (last) {
+                if (std::optional<FitResult> exact = calibrator.fit_to_the_noise(domain, prior, fit)) {
+                    fit = std::move(*exact);
+                    model_error = least_error;
+                    break;
+                }
+            }
             domain.set_model_error(model_error);
             FitOptions from_there = last ? settled : nearly;
             const Spectrum spectrum = std::move(fit.spectrum);

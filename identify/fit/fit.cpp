@@ -4,6 +4,7 @@
 #include <cmath>
 #include <optional>
 
+#include "identify/fit/conjugate_gradients.h"
 #include "mesh/errors.h"
 
 namespace palpate::identify {
@@ -31,9 +32,13 @@ std::optional<Prediction> try_prediction(const PositionDomain& domain, int threa
     }
 }
 
-constexpr double most_numbers = 4e6;    // of a spectrum's vectors
-constexpr double forcing = 1e-3;        // of a step's equations, that may be left of the gradient
-constexpr int stale = 12;               // products, after which the spectrum is found anew
+constexpr double most_numbers = 4e6;  // of a spectrum's vectors
+constexpr double forcing = 3e-2;      // of a step's equations, that may be left of the gradient
+constexpr double roughly = 1e-2;      // the same, for a promise alone
+constexpr int products_of_a_promise = 60;
+constexpr int stale = 12;               // products of steps, after which the spectrum is found anew, at least
+constexpr double dear = 3;              // products with a column after another, to one of a spectrum's
+constexpr int on_the_way = 128;         // directions of a spectrum that is there to precondition
 constexpr double enough_fall = 0.05;    // of what a step promises
 constexpr double good_fall = 0.5;       // the same, to damp less from then on
 constexpr double first_damping = 1e-3;  // after a step that fell short, of the largest eigenvalue
@@ -46,30 +51,38 @@ struct Step {
 };
 
 /// As many directions as memory and time allow.
-SpectrumOptions spectrum_options(int P) {
+SpectrumOptions whole_spectrum(int P) {
     SpectrumOptions options;
     options.largest = std::min(options.largest, static_cast<int>(most_numbers / P));
     return options;
 }
 
+/// Fewer, which conjugate gradients make up for.
+SpectrumOptions leading_part(int P) {
+    SpectrumOptions options = whole_spectrum(P);
+    options.largest = std::min(options.largest, on_the_way);
+    return options;
+}
+
+/// Products of steps that are worth another spectrum.
+int worth_a_spectrum(const Spectrum& spectrum, Eigen::Index P) {
+    const int columns = std::max(stale, static_cast<int>(static_cast<double>(spectrum.values.size()) / dear));
+    return static_cast<int>(std::min<Eigen::Index>(columns, P / 8));
+}
+
+/// That the measurements tell of, at least one; a tenth of all numbers where a spectrum has no room for them.
+double directions(const Spectrum& spectrum, int P) {
+    const double found = std::max(1.0, spectrum.effective());
+    return spectrum.is_whole ? found : std::max(found, P / 10.0);
+}
+
 /// (1 + damping + A) dv = -g by conjugate gradients, preconditioned by the spectrum of an A nearby.
 Step damped_step(const SymmetricProduct& A, const Eigen::VectorXd& g, double damping, const Spectrum& near) {
-    Step step{Eigen::VectorXd::Zero(g.size())};
-    Eigen::VectorXd r = -g, z = near.inverse(1 + damping, r), p = z;
-    double rz = r.dot(z);
-    while (step.products < g.size() && r.norm() > forcing * g.norm()) {
-        const Eigen::VectorXd q = A(p) + (1 + damping) * p;
-        ++step.products;
-        const double length = rz / p.dot(q);
-        step.dv += length * p;
-        r -= length * q;
-        z = near.inverse(1 + damping, r);
-        const double rz_next = r.dot(z);
-        p = z + rz_next / rz * p;
-        rz = rz_next;
-    }
-    // -g dv - dv (1 + A) dv / 2, and (1 + A) dv = -g - r - damping dv
-    step.promised = (step.dv.dot(r - g) + damping * step.dv.squaredNorm()) / 2;
+    const ShiftedSolution solution =
+        solve_shifted(A, 1 + damping, -g, near, {.residual = forcing, .products = static_cast<int>(g.size())});
+    Step step{solution.X, 0, solution.products};
+    // -g dv - dv (1 + A) dv / 2, and (1 + A) dv = -g - left - damping dv
+    step.promised = (step.dv.dot(solution.left.col(0) - g) + damping * step.dv.squaredNorm()) / 2;
     return step;
 }
 
@@ -82,6 +95,19 @@ bool stalls(const std::vector<double>& trace, const FitOptions& options) {
 
 SymmetricProduct whitened_curvature(const Slopes& slopes, const LogNormalPrior& prior) {
     return [&](const Eigen::MatrixXd& V) { return prior.slopes_by_v(slopes.curvature_times(prior.coloured(V))); };
+}
+
+double promised_chi_squared(const PositionDomain& domain, const LogNormalPrior& prior, const FitResult& fit,
+                            double sharper) {
+    const Slopes slopes = domain.slopes(fit.theta, fit.prediction);
+    const SymmetricProduct A = whitened_curvature(slopes, prior);
+    const Eigen::VectorXd of_errors = prior.slopes_by_v(slopes.gradient()), g = of_errors + prior.whitened(fit.theta);
+    const Spectrum near{sharper * fit.spectrum.values, fit.spectrum.vectors};
+    const ShiftedSolution step =
+        solve_shifted(A, 1, -g, near, {.residual = roughly, .products = products_of_a_promise});
+    // A dv = -g - left - dv
+    const Eigen::VectorXd dv = step.X.col(0);
+    return domain.chi_squared(fit.prediction) + dv.dot(2 * of_errors - g - step.left.col(0) - dv);
 }
 
 FitResult fit_map(const PositionDomain& domain, const LogNormalPrior& prior, const Eigen::VectorXd& start, int threads,
@@ -101,6 +127,7 @@ FitResult fit_map(const PositionDomain& domain, const LogNormalPrior& prior, con
     bool moved = true;                     // or the slopes still hold
     bool known = options.near != nullptr;  // the spectrum, well enough
     if (known) fit.spectrum = *options.near;
+    int products = 0;  // of steps, since the spectrum was found
     Eigen::VectorXd g;
     while (fit.iterations < options.iterations) {
         // Gauss-Newton's quadratic of half of chi^2 and prior, in v
@@ -110,7 +137,10 @@ FitResult fit_map(const PositionDomain& domain, const LogNormalPrior& prior, con
             g = prior.slopes_by_v(slopes->gradient()) + prior.whitened(fit.theta);
         }
         const SymmetricProduct A = whitened_curvature(*slopes, prior);
-        if (!known) fit.spectrum = leading_spectrum(A, P, spectrum_options(P), fit.spectrum.vectors);
+        if (!known) {
+            fit.spectrum = leading_spectrum(A, P, leading_part(P), fit.spectrum.vectors);
+            products = 0;
+        }
         if (stalls(fit.trace, options)) {
             fit.converged = true;
             break;
@@ -120,8 +150,10 @@ FitResult fit_map(const PositionDomain& domain, const LogNormalPrior& prior, con
 
         // its least, damped; none left to gain without damping is the end
         const Step step = damped_step(A, g, damping, fit.spectrum);
-        known = step.products <= std::min<Eigen::Index>(stale, g.size() / 8);
-        if (g.dot(fit.spectrum.inverse(1, g).col(0)) / 2 < options.tolerance) {
+        products += step.products;
+        known = !fit.spectrum.is_whole || products <= worth_a_spectrum(fit.spectrum, P);
+        const double to_gain = damping == 0 ? step.promised : g.dot(fit.spectrum.inverse(1, g).col(0)) / 2;
+        if (to_gain < options.tolerance * directions(fit.spectrum, P)) {
             fit.converged = true;
             fit.trace.push_back(fit.trace.back());
             break;
@@ -159,13 +191,13 @@ FitResult fit_map(const PositionDomain& domain, const LogNormalPrior& prior, con
     }
 
     // what is known there
-    if (options.final_spectrum) {
+    const bool has_hope = fit.spectrum.is_whole || whole_spectrum(P).largest >= 2 * on_the_way;  // of a whole one
+    if (options.final_spectrum && has_hope) {
         if (moved && !fit.converged) {
             slopes.reset();
             slopes.emplace(domain.slopes(fit.theta, fit.prediction));
         }
-        fit.spectrum =
-            leading_spectrum(whitened_curvature(*slopes, prior), P, spectrum_options(P), fit.spectrum.vectors);
+        fit.spectrum = leading_spectrum(whitened_curvature(*slopes, prior), P, whole_spectrum(P), fit.spectrum.vectors);
     }
     fit.prediction.tangents.clear();
     return fit;

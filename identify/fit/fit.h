@@ -43,4 +43,10 @@ struct FitResult {
 FitResult fit_map(const PositionDomain& domain, const LogNormalPrior& prior, const Eigen::VectorXd& start, int threads,
                   const FitOptions& options = {});
 
+/// The chi^2 that would be left after Gauss-Newton's next step from a fit, if errors went straight, under the sigmas
+/// that the domain has now: those that the fit was made under were about sqrt(`sharper`) times as large. From above, as
+/// the equations of the step are solved roughly.
+double promised_chi_squared(const PositionDomain& domain, const LogNormalPrior& prior, const FitResult& fit,
+                            double sharper);
+
 }  // namespace palpate::identify

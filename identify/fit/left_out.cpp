@@ -38,11 +38,10 @@ Rows rows_of(const std::vector<int>& states, const Slopes& slopes, const Eigen::
     return rows;
 }
 
-/// Errors under a fit to all states but these [mm].
-Eigen::VectorXd unseen_errors(const Rows& rows, const Eigen::VectorXd& eigenvalues) {
+/// Errors under a fit to all states but these [mm]. `curvature`: of half of chi^2 and prior by the directions, of all.
+Eigen::VectorXd unseen_errors(const Rows& rows, const Eigen::MatrixXd& curvature) {
     const Eigen::VectorXd d = rows.error.cwiseQuotient(rows.sigma);
-    Eigen::MatrixXd H = -rows.J.transpose() * rows.J;
-    H.diagonal() += (1 + eigenvalues.array()).matrix();
+    const Eigen::MatrixXd H = curvature - rows.J.transpose() * rows.J;
     const Eigen::VectorXd step = H.ldlt().solve(rows.J.transpose() * d);
     return rows.error + rows.sigma.cwiseProduct(rows.J * step);
 }
@@ -59,7 +58,13 @@ ForecastError left_out_error(const PositionDomain& domain, const LogNormalPrior&
     for (const auto& [probe, states] : by_probe) groups.push_back(states);
 
     const Slopes slopes = domain.slopes(fit.theta, fit.prediction);
-    const Eigen::MatrixXd directions = prior.coloured(fit.spectrum.vectors);
+    const Eigen::MatrixXd& vectors = fit.spectrum.vectors;
+    const Eigen::MatrixXd directions = prior.coloured(vectors);
+    // a spectrum without room for all is one of the way there
+    Eigen::MatrixXd curvature = fit.spectrum.is_whole
+                                    ? Eigen::MatrixXd(fit.spectrum.values.asDiagonal())
+                                    : Eigen::MatrixXd(vectors.transpose() * whitened_curvature(slopes, prior)(vectors));
+    curvature.diagonal().array() += 1;
     Eigen::VectorXd relative(std::ssize(groups));  // squared
     for_each_in_parallel(static_cast<int>(groups.size()), threads, [&](int g) {
         const Rows rows = rows_of(groups[g], slopes, directions);
@@ -68,7 +73,7 @@ ForecastError left_out_error(const PositionDomain& domain, const LogNormalPrior&
             noise += domain.states()[s].coordinates * domain.squared_noise(s);
             scale += domain.states()[s].coordinates * domain.squared_scale(s);
         }
-        relative[g] = std::max(0.0, unseen_errors(rows, fit.spectrum.values).squaredNorm() - noise) / scale;
+        relative[g] = std::max(0.0, unseen_errors(rows, curvature).squaredNorm() - noise) / scale;
     });
     return {std::sqrt(relative.mean()), domain.least_displacement(), static_cast<int>(groups.size())};
 }

@@ -136,29 +136,31 @@ Eigen::MatrixXd Slopes::seen(const State& state, const Eigen::MatrixXd& X) {
     return state.P->transpose() * weighted;
 }
 
-Eigen::VectorXd Slopes::pull_of_errors(const State& state) {
-    if (!state.P) return Eigen::VectorXd::Zero(state.G.dofs());
-    return state.P->transpose() * state.weights.cwiseProduct(state.errors);
+Eigen::VectorXd Slopes::gradient() const {
+    std::vector<Eigen::MatrixXd> d;
+    d.reserve(read_.size());
+    for (int s = 0; s < count_read(); ++s) d.emplace_back(weights(s).cwiseSqrt().cwiseProduct(errors(s)));
+    return transposed_times(d);
 }
 
-Eigen::VectorXd Slopes::gradient() const {
-    // J^T d = -G^T T^-1 P^T W (measured - modelled)
-    if (remembers()) {
-        std::vector<Eigen::MatrixXd> F(states_.size());
-        std::ranges::transform(states_, F.begin(), &Slopes::pull_of_errors);
-        return -(dk_.transpose() * pulled_through(std::move(F)).col(0));
+Eigen::MatrixXd Slopes::transposed_times(const std::vector<Eigen::MatrixXd>& D) const {
+    // J = -W^(1/2) P T^-1 G dk/dtheta
+    const Eigen::Index n = D.front().cols();
+    std::vector<Eigen::MatrixXd> F(states_.size());
+    for (std::size_t s = 0; s < F.size(); ++s) F[s].setZero(states_[s].G.dofs(), n);
+    for (int s = 0; s < count_read(); ++s) {
+        F[read_[s]] = states_[read_[s]].P->transpose() * (weights(s).cwiseSqrt().asDiagonal() * D[s]).eval();
     }
-    const std::vector<States> parts = together(1);
+    if (remembers()) return -(dk_.transpose() * pulled_through(std::move(F)));
+    const std::vector<States> parts = together(n);
     const Eigen::MatrixXd sum = sum_of_parts(static_cast<int>(parts.size()), threads_, [&](int p) {
-        Eigen::MatrixXd F;
+        Eigen::MatrixXd own(F.front().rows(), n * std::ssize(parts[p]));
         for (std::size_t i = 0; i < parts[p].size(); ++i) {
-            const Eigen::VectorXd pull = pull_of_errors(states_[parts[p][i]]);
-            if (i == 0) F.resize(pull.size(), std::ssize(parts[p]));
-            F.col(static_cast<Eigen::Index>(i)) = pull;
+            own.middleCols(static_cast<Eigen::Index>(i) * n, n) = F[parts[p][i]];
         }
-        return pulled(parts[p], F);
+        return pulled(parts[p], own);
     });
-    return -(dk_.transpose() * sum.col(0));
+    return -(dk_.transpose() * sum);
 }
 
 Eigen::MatrixXd Slopes::curvature_times(const Eigen::MatrixXd& V) const {

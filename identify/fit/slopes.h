@@ -45,10 +45,13 @@ public:
 
     Eigen::VectorXd gradient() const;                                 // of half the chi^2, J^T d (P)
     Eigen::MatrixXd curvature_times(const Eigen::MatrixXd& V) const;  // J^T J V, of V (P x n)
+    /// J^T D (P x n), of what the errors of each state that was read may be (3m x n), over sigma.
+    Eigen::MatrixXd transposed_times(const std::vector<Eigen::MatrixXd>& D) const;
     /// How the states follow a step of theta, to first order: T^-1 G dk/dtheta step, a column each, unread ones too
     /// (6N x states).
     Eigen::MatrixXd steps(const Eigen::VectorXd& step) const;
     // Of the states that were read, numbered without the others.
+    int count_read() const { return static_cast<int>(read_.size()); }
     /// How a state's markers follow steps of theta, V (P x n), to first order (3m x n).
     Eigen::MatrixXd moved_markers(int state, const Eigen::MatrixXd& V) const;
     const Eigen::VectorXd& weights(int state) const { return states_[read_[state]].weights; }
@@ -67,7 +70,6 @@ private:
     bool remembers() const { return states_.front().life.has_value(); }
     /// P^T W P X of a state, zero for one that nobody read.
     static Eigen::MatrixXd seen(const State& state, const Eigen::MatrixXd& X);
-    static Eigen::VectorXd pull_of_errors(const State& state);  // P^T W (measured - modelled)
 
     std::vector<State> states_;
     std::vector<int> read_;

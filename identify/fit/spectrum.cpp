@@ -23,9 +23,9 @@ Eigen::MatrixXd beside(const Eigen::MatrixXd& Q, Eigen::MatrixXd X) {
     return basis.colwise().normalized();
 }
 
-Spectrum above(double least, const Eigen::VectorXd& ascending, const Eigen::MatrixXd& vectors) {
+Spectrum above(double least, const Eigen::VectorXd& ascending, const Eigen::MatrixXd& vectors, bool is_whole = true) {
     const auto count = (ascending.array() >= least).count();
-    return {ascending.tail(count).reverse(), vectors.rightCols(count).rowwise().reverse()};
+    return {ascending.tail(count).reverse(), vectors.rightCols(count).rowwise().reverse(), is_whole};
 }
 
 Eigen::MatrixXd random_columns(int P) {
@@ -49,7 +49,8 @@ Spectrum leading_spectrum(const SymmetricProduct& A, int P, const SpectrumOption
         return above(0, whole.eigenvalues(), whole.eigenvectors());
     }
 
-    Eigen::MatrixXd Q = beside({}, start.cols() > 0 ? start : random_columns(P)), AQ = A(Q);
+    const Eigen::Index begun = std::min<Eigen::Index>(start.cols(), options.largest);
+    Eigen::MatrixXd Q = beside({}, begun > 0 ? Eigen::MatrixXd(start.leftCols(begun)) : random_columns(P)), AQ = A(Q);
     for (;;) {
         // Rayleigh and Ritz
         const Eigen::MatrixXd projected = Q.transpose() * AQ;
@@ -62,7 +63,7 @@ Spectrum leading_spectrum(const SymmetricProduct& A, int P, const SpectrumOption
         const Eigen::ArrayXd off = left.colwise().norm().transpose().array();
         const Eigen::ArrayXd allowed = options.residual * values.array().max(options.least);
         const bool found = (values.array() + off < options.least || off <= allowed).all();
-        if (found || Q.cols() >= std::min(P, options.largest)) return above(options.least, values, Q * Y);
+        if (found || Q.cols() >= std::min(P, options.largest)) return above(options.least, values, Q * Y, found);
 
         // on from the worst
         std::vector<Eigen::Index> order(static_cast<std::size_t>(Q.cols()));

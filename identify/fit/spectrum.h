@@ -9,6 +9,7 @@ namespace palpate::identify {
 struct Spectrum {
     Eigen::VectorXd values;   // (r), largest first
     Eigen::MatrixXd vectors;  // orthonormal (P x r)
+    bool is_whole = true;     // false: the room for it ran out, with eigenvalues left that matter
 
     /// (shift + V diag(values) V^T)^-1 X: the inverse of the matrix plus a shift > 0, but for the values left out.
     Eigen::MatrixXd inverse(double shift, const Eigen::MatrixXd& X) const;

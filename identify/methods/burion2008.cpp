@@ -8,6 +8,7 @@
 #include "identify/methods/methods.h"
 #include "identify/parallel.h"
 #include "identify/particles/posterior.h"
+#include "identify/particles/resampling.h"
 #include "identify/set/readings.h"
 #include "mesh/errors.h"
 #include "skeleton/statics.h"
@@ -72,9 +73,10 @@ IdentifyResult identify_burion2008(const skeleton::Model& model, const Measureme
 
     const Eigen::VectorXd units = parameters.units();
     const Eigen::MatrixXd stiffness = filter.particles * units.asDiagonal();
-    result.posterior = posterior_rows(parameters, stiffness, filter.log_weights,
-                                      stiffness_prior(parameters, options.search_low, options.search_high));
-    result.correlations = strong_correlations(stiffness, filter.log_weights);
+    const StiffnessPrior prior = stiffness_prior(parameters, options.search_low, options.search_high);
+    result.posterior = posterior_rows(parameters, stiffness, filter.log_weights, prior);
+    result.correlations =
+        strong_correlations(stiffness, filter.log_weights, prior.log_sd, effective_samples(filter.log_weights));
     result.best = filter.best.cwiseProduct(units);
     result.model = model;
     set_stiffness(result.model, parameters.stiffness(filter.mean.array().log()));

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "identify/fit/calibrate.h"
+#include "identify/fit/conjugate_gradients.h"
 #include "identify/fit/left_out.h"
 #include "identify/methods/methods.h"
 #include "identify/particles/drawn.h"
@@ -43,6 +44,24 @@ std::vector<int> probes_of(const PositionDomain& domain, const MeasurementSet& s
     std::vector<int> probes;
     for (const StateReadings& state : domain.states()) probes.push_back(set.states[state.state].probe);
     return probes;
+}
+
+/// Particles where a spectrum has no room for all that the measurements tell of.
+TemperedResult perturbed(const PositionDomain& domain, const LogNormalPrior& prior, const FitResult& fit,
+                         const LogDensity& log_density, const GaussianProposal& proposal, const TemperedOptions& how,
+                         int& evaluations) {
+    const Slopes slopes = domain.slopes(fit.theta, domain.predict(fit.theta, how.threads, &fit.prediction, true));
+    const PerturbedSteps steps = perturbed_steps(
+        slopes, prior, fit.spectrum, independent_draws(domain.parameters().size(), how.particles), how.seed);
+    Eigen::VectorXd mean = fit.theta;
+    const SymmetricProduct A = whitened_curvature(slopes, prior);
+    evaluations += centre(
+        mean, prior.coloured(steps.v.leftCols(few_pairs)),
+        [&](const Eigen::VectorXd& downhill) -> Eigen::VectorXd {
+            return solve_shifted(A, 1, downhill, fit.spectrum, {.residual = 0.1}).X;
+        },
+        domain, prior, fit.prediction, how.threads);
+    return perturbed_particles(log_density, mean, steps, proposal, how);
 }
 
 }  // namespace
@@ -88,29 +107,35 @@ IdentifyResult identify_tempered(const skeleton::Model& model, const Measurement
     };
     propose(calibration.fit);
     std::ranges::for_each(calibration.others, propose);
-    int evaluations = 0;  // of all equilibria
-    const bool too_dear = is_too_dear(domain, particles);
-    if (parameters.size() > many_parameters) {
-        evaluations += centre(proposals.front(), domain, prior, calibration.fit.prediction,
-                              too_dear ? few_pairs : pairs, options.seed, options.threads);
-    }
     const TemperedOptions how{.particles = particles, .seed = options.seed, .threads = options.threads};
-    TemperedResult filter =
-        too_dear ? drawn_particles(log_density, proposals.front(), how)
-                 : tempered_filter(log_density, proposals, how, [&](std::string_view what, double fraction) {
-                       report(progress, what, calibration_share + (1 - calibration_share) * fraction);
-                   });
-    evaluations += filter.evaluations;
-    if (too_dear) {
+    const bool too_dear = is_too_dear(domain, particles);
+    int evaluations = 0;  // of all equilibria
+    TemperedResult filter;
+    if (!calibration.fit.spectrum.is_whole) {
+        filter = perturbed(domain, prior, calibration.fit, log_density, proposals.front(), how, evaluations);
         result.notes.emplace_back(
-            "particles: too large a body to weigh them; they are drawn from the fit's own covariance, by the "
-            "directions that the measurements tell most of: intervals are wide rather than narrow, and the "
-            "evidence is Laplace's");
-    } else if (!filter.weighed) {
-        result.notes.emplace_back(
-            "particles: too many parameters to weigh them; they are drawn from the fit's own "
-            "covariance and moved towards the posterior, and the evidence is Laplace's");
+            "particles: too many directions that the measurements tell of to weigh them; they are fits to readings "
+            "with other noise and a prior with another centre, by the slopes at the fit, and the evidence is rough");
+    } else {
+        if (parameters.size() > many_parameters) {
+            evaluations += centre(proposals.front(), domain, prior, calibration.fit.prediction,
+                                  too_dear ? few_pairs : pairs, options.seed, options.threads);
+        }
+        filter = too_dear ? drawn_particles(log_density, proposals.front(), how)
+                          : tempered_filter(log_density, proposals, how, [&](std::string_view what, double fraction) {
+                                report(progress, what, calibration_share + (1 - calibration_share) * fraction);
+                            });
+        if (too_dear) {
+            result.notes.emplace_back(
+                "particles: too large a body to weigh them; they are drawn from the fit's own covariance, and the "
+                "evidence is Laplace's");
+        } else if (!filter.weighed) {
+            result.notes.emplace_back(
+                "particles: too many parameters to weigh them; they are drawn from the fit's own "
+                "covariance and moved towards the posterior, and the evidence is Laplace's");
+        }
     }
+    evaluations += filter.evaluations;
 
     tell_particles(parameters, prior, tops, filter, result);
     if (result.modes.size() > 1) {
@@ -120,7 +145,8 @@ IdentifyResult identify_tempered(const skeleton::Model& model, const Measurement
             result.modes.size()));
     }
     if (!std::isnan(result.forecast_error.relative)) {
-        result.notes.push_back(fmt::format("a probe that is left out of the fit: off by {:.2g} % of its displacement",
+        result.notes.push_back(fmt::format("a probe that is left out of the fit: off by {}{:.2g} % of its displacement",
+                                           calibration.fit.spectrum.is_whole ? "" : "at least ",
                                            100 * result.forecast_error.relative));
     }
     result.fit_trace = calibration.fit.trace;

@@ -13,6 +13,7 @@ namespace {
 constexpr double informed_share = 0.7;  // of the prior's sd
 constexpr double worth_knowing = 0.7;   // correlation
 constexpr std::size_t most_correlations = 100;
+constexpr double hardly_informed = 0.9;  // of the prior's sd: what hangs together is known in part
 
 struct Moments {
     double mean, sd;
@@ -39,13 +40,23 @@ StiffnessPrior stiffness_prior(const Parameters& parameters, double low, double 
             Eigen::VectorXd::Constant(parameters.size(), std::numeric_limits<double>::infinity())};
 }
 
-std::vector<Correlation> strong_correlations(const Eigen::MatrixXd& particles, const Eigen::VectorXd& log_weights) {
+std::vector<Correlation> strong_correlations(const Eigen::MatrixXd& particles, const Eigen::VectorXd& log_weights,
+                                             const Eigen::VectorXd& prior_log_sd, double independent) {
     // standardised logarithms, weights taken in: S^T S is the matrix of correlations, taken a strip at a time
     const Eigen::VectorXd weights = log_weights.array().exp();
     Eigen::MatrixXd S = particles.array().max(std::numeric_limits<double>::min()).log();
     S.rowwise() -= (weights.transpose() * S).eval();
     S = weights.cwiseSqrt().asDiagonal() * S;
+    std::vector<int> known;
+    for (int p = 0; p < static_cast<int>(S.cols()); ++p) {
+        if (S.col(p).norm() <= hardly_informed * prior_log_sd[p]) known.push_back(p);
+    }
+    S = S(Eigen::all, known).eval();
     S.colwise().normalize();
+    const double pairs = 0.5 * static_cast<double>(S.cols() * S.cols());
+    const double by_chance = std::tanh(std::sqrt(2 * std::log(std::max(1.0, pairs)) / std::max(1.0, independent - 3)));
+    const double least = std::max(worth_knowing, by_chance);
+
     std::vector<Correlation> result;
     constexpr Eigen::Index strip = 256;
     for (Eigen::Index first = 0; first < S.cols(); first += strip) {
@@ -53,9 +64,7 @@ std::vector<Correlation> strong_correlations(const Eigen::MatrixXd& particles, c
         const Eigen::MatrixXd R = S.middleCols(first, count).transpose() * S;
         for (Eigen::Index a = 0; a < count; ++a) {
             for (Eigen::Index b = first + a + 1; b < S.cols(); ++b) {
-                if (std::abs(R(a, b)) >= worth_knowing) {
-                    result.push_back({static_cast<int>(first + a), static_cast<int>(b), R(a, b)});
-                }
+                if (std::abs(R(a, b)) >= least) result.push_back({known[first + a], known[b], R(a, b)});
             }
         }
     }
@@ -96,8 +105,9 @@ std::vector<PosteriorRow> posterior_rows(const Parameters& parameters, const Eig
 void tell_particles(const Parameters& parameters, const LogNormalPrior& prior, const std::vector<Eigen::VectorXd>& tops,
                     TemperedResult& filter, IdentifyResult& result) {
     const Eigen::MatrixXd stiffness = stiffness_of(parameters, filter.particles);
+    const double independent = filter.independent > 0 ? filter.independent : effective_samples(filter.log_weights);
     result.posterior = posterior_rows(parameters, stiffness, filter.log_weights, stiffness_prior(parameters, prior));
-    result.correlations = strong_correlations(stiffness, filter.log_weights);
+    result.correlations = strong_correlations(stiffness, filter.log_weights, prior.sd, independent);
     Eigen::Index best = 0;
     filter.log_density.maxCoeff(&best);
     result.best = stiffness.row(best);

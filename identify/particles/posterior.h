@@ -26,8 +26,11 @@ std::vector<PosteriorRow> posterior_rows(const Parameters& parameters, const Eig
                                          const Eigen::VectorXd& log_weights, const StiffnessPrior& prior);
 
 /// Pairs of parameters whose logarithms hang together by 0.7 or more among weighted particles (N x P) of stiffnesses,
-/// the strongest first, at most 100.
-std::vector<Correlation> strong_correlations(const Eigen::MatrixXd& particles, const Eigen::VectorXd& log_weights);
+/// the strongest first, at most 100: of parameters of which something is known, with an sd of at most 0.9 of the
+/// prior's logarithm (P), as what the measurements tie together they narrow. Of few draws, `independent`, some hang
+/// together by chance: then by so much that of all pairs not one is expected to. [Fisher 1915]
+std::vector<Correlation> strong_correlations(const Eigen::MatrixXd& particles, const Eigen::VectorXd& log_weights,
+                                             const Eigen::VectorXd& prior_log_sd, double independent);
 
 /// Stiffnesses of particles of log multipliers (N x P).
 Eigen::MatrixXd stiffness_of(const Parameters& parameters, const Eigen::MatrixXd& theta);

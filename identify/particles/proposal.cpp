@@ -21,9 +21,8 @@ struct Look {
     Eigen::VectorXd downhill;  // (P)
 };
 
-Look look_round(const GaussianProposal& proposal, const Eigen::MatrixXd& z, const PositionDomain& domain,
-                const LogNormalPrior& prior, const Prediction& near, int threads) {
-    const Eigen::MatrixXd theta = proposal.parameters(z);
+Look look_round(const Eigen::MatrixXd& theta, const PositionDomain& domain, const LogNormalPrior& prior,
+                const Prediction& near, int threads) {
     Eigen::MatrixXd slopes = Eigen::MatrixXd::Zero(theta.rows(), theta.cols());
     Eigen::ArrayXd log_density = Eigen::ArrayXd::Zero(theta.cols());
     Eigen::ArrayXi stands = Eigen::ArrayXi::Zero(theta.cols());
@@ -78,32 +77,46 @@ GaussianProposal laplace_proposal(const FitResult& fit, const LogNormalPrior& pr
     return {fit.theta, prior, fit.spectrum, 1 + 1 / static_cast<double>(fit.theta.size())};
 }
 
-int centre(GaussianProposal& proposal, const PositionDomain& domain, const LogNormalPrior& prior,
-           const Prediction& near, int pairs, std::uint64_t seed, int threads) {
-    const auto P = static_cast<int>(proposal.mean.size());
-    Eigen::MatrixXd z(P, 2 * pairs);
-    for (int i = 0; i < pairs; ++i) {
-        z.col(2 * i) = RandomStream(seed, centring_round, i).normals(P);
-        z.col(2 * i + 1) = -z.col(2 * i);
+int centre(Eigen::VectorXd& mean, const Eigen::MatrixXd& offsets,
+           const std::function<Eigen::VectorXd(const Eigen::VectorXd&)>& covariance, const PositionDomain& domain,
+           const LogNormalPrior& prior, const Prediction& near, int threads) {
+    Eigen::MatrixXd both(offsets.rows(), 2 * offsets.cols());
+    for (Eigen::Index i = 0; i < offsets.cols(); ++i) {
+        both.col(2 * i) = offsets.col(i);
+        both.col(2 * i + 1) = -offsets.col(i);
     }
-    Look here = look_round(proposal, z, domain, prior, near, threads);
+    const auto look_from = [&](const Eigen::VectorXd& middle) {
+        return look_round(both.colwise() + middle, domain, prior, near, threads);
+    };
+    Look here = look_from(mean);
     int looks = 1;
     double share = 1;
     while (here.stands > 0 && looks < centring_looks) {
-        const Eigen::VectorXd step = proposal.spectrum.inverse(1, here.downhill);
+        const Eigen::VectorXd step = covariance(here.downhill);
         if (share * here.downhill.dot(step) < centred) break;
-        GaussianProposal there = proposal;
-        there.mean -= share * prior.coloured(step);
-        Look look = look_round(there, z, domain, prior, near, threads);
+        const Eigen::VectorXd there = mean - share * prior.coloured(step);
+        Look look = look_from(there);
         ++looks;
         if (look.stands >= here.stands && look.log_density > here.log_density) {
-            proposal = std::move(there);
+            mean = there;
             here = std::move(look);
         } else {
             share /= 4;
         }
     }
-    return looks * 2 * pairs;
+    return looks * static_cast<int>(both.cols());
+}
+
+int centre(GaussianProposal& proposal, const PositionDomain& domain, const LogNormalPrior& prior,
+           const Prediction& near, int pairs, std::uint64_t seed, int threads) {
+    const auto P = static_cast<int>(proposal.mean.size());
+    Eigen::MatrixXd z(P, pairs);
+    for (int i = 0; i < pairs; ++i) z.col(i) = RandomStream(seed, centring_round, i).normals(P);
+    const Eigen::MatrixXd offsets = proposal.parameters(z).colwise() - proposal.mean;
+    return centre(
+        proposal.mean, offsets,
+        [&](const Eigen::VectorXd& downhill) -> Eigen::VectorXd { return proposal.spectrum.inverse(1, downhill); },
+        domain, prior, near, threads);
 }
 
 }  // namespace palpate::identify

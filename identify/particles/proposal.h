@@ -33,4 +33,10 @@ GaussianProposal laplace_proposal(const FitResult& fit, const LogNormalPrior& pr
 int centre(GaussianProposal& proposal, const PositionDomain& domain, const LogNormalPrior& prior,
            const Prediction& near, int pairs, std::uint64_t seed, int threads);
 
+/// The same for a mean of draws that lie +-offsets from it (P x pairs); `covariance`: theirs, times a vector, both in
+/// coordinates in which the prior is N(0, 1).
+int centre(Eigen::VectorXd& mean, const Eigen::MatrixXd& offsets,
+           const std::function<Eigen::VectorXd(const Eigen::VectorXd&)>& covariance, const PositionDomain& domain,
+           const LogNormalPrior& prior, const Prediction& near, int threads);
+
 }  // namespace palpate::identify

@@ -157,21 +157,27 @@ class Mover {
 public:
     Mover(const Filter& filter, int moves) : filter_(filter), moves_(moves) {}
 
-    /// One move of all particles; returns the mean square of the way that they went.
-    double once(Cloud& cloud, double b) {
+    /// One move of all particles.
+    Filter::Moved once(Cloud& cloud, double b) {
         const Filter::Moved moved = filter_.move(cloud, b, step_, ++round_);
         accepted_ += moved.accepted;
         ++made_;
-        if (moved.accepted < 0.2) step_ *= 0.6;
-        if (moved.accepted > 0.4) step_ = std::min(1.0, step_ * 1.5);
-        return moved.distance;
+        if (moved.accepted < few) step_ *= 0.6;
+        if (moved.accepted > many) step_ = std::min(1.0, step_ * 1.5);
+        return moved;
     }
 
     /// Moves until copies have parted: until the squares of their ways add up to half of that between two
-    /// particles, each of which lies `spread` from the middle in mean square. False when they did not.
-    bool part(Cloud& cloud, double b, double spread) {
+    /// particles, each of which lies `spread` from the middle in mean square. False when they did not; where they have
+    /// to, no more moves are made than show that they will not.
+    bool part(Cloud& cloud, double b, double spread, bool have_to) {
         double way = 0;
-        for (int i = 0; i < moves_ && way < spread; ++i) way += once(cloud, b);
+        for (int left = moves_ - 1; left >= 0 && way < spread; --left) {
+            const Filter::Moved moved = once(cloud, b);
+            way += moved.distance;
+            const bool step_has_grown = moved.accepted <= many;
+            if (have_to && step_has_grown && way + hopeful * left * moved.distance < spread) return false;
+        }
         return way >= spread;
     }
 
@@ -180,6 +186,9 @@ public:
     int made() const { return made_; }
 
 private:
+    static constexpr double few = 0.2, many = 0.4;  // of moves accepted
+    static constexpr double hopeful = 1.5;          // the way of later moves, to that of the last one
+
     const Filter& filter_;
     int moves_;
     double step_ = 0.5, accepted_ = 0;
@@ -255,9 +264,9 @@ bool temper(const Filter& filter, const TemperedOptions& options, Mover& mover, 
         if (b < 1) {
             resample(cloud, result.log_weights, RandomStream(options.seed, mover.next_round(), cloud.size()).uniform());
         }
-        const bool parted = mover.part(cloud, b, spread);
-        if (!parted && particles_per_parameter * static_cast<double>(cloud.z.rows()) > cloud.size()) return false;
-        if (b == 1) mover.part(cloud, b, further_at_the_end * spread);
+        const bool have_to = particles_per_parameter * static_cast<double>(cloud.z.rows()) > cloud.size();
+        if (!mover.part(cloud, b, spread, have_to) && have_to) return false;
+        if (b == 1) mover.part(cloud, b, further_at_the_end * spread, false);
         report(progress, "particles", b);
     }
     return true;

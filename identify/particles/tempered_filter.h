@@ -30,6 +30,7 @@ struct TemperedResult {
     std::vector<int> mode;            // of each particle: the Gaussian of q that is densest there (N)
     double log_evidence = 0;          // ln of the integral of the density
     bool weighed = true;              // false: too many parameters for that, see below
+    int independent = 0;              // draws that the particles mix; 0: each is its own
     double acceptance = 0;            // of all moves
     int evaluations = 0;              // of the density
     std::vector<FilterStep> history;  // a step per temperature, the proposal's particles first

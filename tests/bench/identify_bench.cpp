@@ -365,13 +365,13 @@ void particles() {
     line(domain.forces, "of a lattice");
 }
 
-void scaling(int largest, int threads) {
+void scaling(const std::vector<int>& sides, const std::vector<std::string>& laws, int threads) {
     fmt::print(
         "| law | links | numbers | markers | seconds | peak memory, GB | median error of ln k: informed % | and prior "
         "% | informed, % |\n|---|---|---|---|---|---|---|---|---|\n");
     for (const skeleton::Law law : {skeleton::Law::linear, skeleton::Law::large_rotation}) {
-        for (const int n : {4, 8, 15}) {
-            if (3 * n * n * (n - 1) > largest) continue;
+        if (std::ranges::find(laws, skeleton::law_names[static_cast<std::size_t>(law)]) == laws.end()) continue;
+        for (const int n : sides) {
             const Block block(n, law);
             IdentifyOptions how;
             how.law = law == skeleton::Law::linear ? LawChoice::linear : LawChoice::large_rotation;
@@ -408,7 +408,9 @@ void scaling(int largest, int threads) {
 
 int main(int argc, char** argv) {
     CLI::App app{"How well and how fast stiffness is identified"};
-    int repeats = 20, largest = 10000, threads = 2;
+    int repeats = 20, threads = 2;
+    std::vector<int> sides{4, 8, 15};
+    std::vector<std::string> laws(skeleton::law_names.begin(), skeleton::law_names.end());
     app.require_subcommand(1);
     auto* e = app.add_subcommand("experiments", "The paper's two, beside other methods");
     e->add_option("--repeats", repeats, "Sets a row");
@@ -418,8 +420,9 @@ int main(int argc, char** argv) {
     c->callback([&] { coverage(repeats); });
     app.add_subcommand("particles", "A second")->callback([] { particles(); });
     auto* s = app.add_subcommand("scaling", "Up to 10^4 links");
-    s->add_option("--largest", largest, "Links at most");
+    s->add_option("--sides", sides, "Spheres along a side of each block");
+    s->add_option("--laws", laws, "Each with every block");
     s->add_option("--threads", threads, "");
-    s->callback([&] { scaling(largest, threads); });
+    s->callback([&] { scaling(sides, laws, threads); });
     CLI11_PARSE(app, argc, argv);
 }

@@ -67,6 +67,32 @@ TEST(Identify, EveryLinkHasItsRows) {
     EXPECT_NEAR(result.posterior[3].sd / result.posterior[3].prior_sd, 1, 0.5);  // 50 draws of a log-normal
 }
 
+TEST(Identify, AModelThatCanFollowDownToTheNoiseDoes) {
+    // links that differ by a third, from many readings
+    const skeleton::Model start = with_law(make_lattice({4, 3, 3}), skeleton::Law::linear);
+    skeleton::Model truth = start;
+    for (std::size_t l = 0; l < truth.links.size(); ++l) {
+        truth.links[l].stiffness.head<3>() *= std::exp(0.3 * std::sin(static_cast<double>(l)));
+    }
+    std::vector<LoadState> states = push_spheres(truth, six_forces(1, 5));
+    for (LoadState& more : push_spheres(truth, six_forces(-2, 3))) states.push_back(std::move(more));
+    const MeasurementSet set = simulate_measurements(truth, states, markers_on_spheres(truth), 0.01);
+    IdentifyOptions options;
+    options.particles = 20;
+    options.law = LawChoice::linear;
+    const IdentifyResult follows = identify(start, set, options);
+    EXPECT_LT(follows.model_error, 1e-5);
+    // a state's rms of readings that are all noise, less what was fitted
+    EXPECT_LT(compare(follows.model, set).relative, 0.02);
+
+    // other physics than the truth's: it cannot
+    skeleton::Model bent = with_law(truth, skeleton::Law::large_rotation);
+    std::vector<LoadState> far = push_spheres(bent, six_forces(8, 30));
+    const MeasurementSet of_bent = simulate_measurements(bent, far, markers_on_spheres(bent), 0.01);
+    const IdentifyResult cannot = identify(start, of_bent, options);
+    EXPECT_GT(cannot.model_error, 1e-3);
+}
+
 TEST(Identify, NoiseOfAStateNarrowsAsMoreStatesAreMeasured) {
     const skeleton::Model truth = with_truth(make_lattice({4, 2, 1}), {1.2}, {400});
     const auto sd = [&](int repeats) {
