@@ -55,6 +55,7 @@ Solver::Solver(ForceField& field, int contacts) : field_(field), matrix_(0, {}) 
         if (coupled) couplings.push_back({block_of_[a], block_of_[b]});
     }
     matrix_ = skeleton::BlockCholesky(static_cast<int>(free_.size()), couplings);
+    branches_ = skeleton::Branches(model.links, field.moves());
 
     const auto size = static_cast<Eigen::Index>(6 * free_.size());
     for (Vector* v : {&net_, &way_, &there_}) v->setZero(size);
@@ -210,19 +211,26 @@ void Solver::correct() {
 }
 
 // No sphere turns by more than half a radian at once, no link's ends part by more than half its length.
-double Solver::step_limit() const {
+double Solver::step_limit(const double* from) const {
     double times_too_long = 1;
-    const auto moved = [&](int sphere) -> Vec3 {
-        if (block_of_[sphere] < 0) return Vec3::Zero();
-        return way_.segment<3>(6L * block_of_[sphere]);
-    };
     for (std::size_t f = 0; f < free_.size(); ++f) {
         times_too_long = std::max(times_too_long, way_.segment<3>(static_cast<Eigen::Index>(6 * f + 3)).norm() / 0.5);
     }
     for (const skeleton::Link& link : field_.model().links) {
-        times_too_long = std::max(times_too_long, (moved(link.b) - moved(link.a)).norm() / (0.5 * link.length));
+        const Eigen::Matrix<double, 6, 1> own = way_of(link.b), near = way_of(link.a);
+        Vec3 apart = own.head<3>() - near.head<3>();
+        if (!branches_.empty()) {
+            const Vec3 arm = place(from, link.b) - place(from, link.a);
+            apart = skeleton::Branches::stretch(arm, apart, (own.tail<3>() + near.tail<3>()) / 2);
+        }
+        times_too_long = std::max(times_too_long, apart.norm() / (0.5 * link.length));
     }
     return 1 / times_too_long;
+}
+
+Eigen::Matrix<double, 6, 1> Solver::way_of(int sphere) const {
+    if (block_of_[sphere] < 0) return Eigen::Matrix<double, 6, 1>::Zero();
+    return way_.segment<6>(6L * block_of_[sphere]);
 }
 
 void Solver::move(const double* from, double share, double* to) const {
@@ -234,6 +242,13 @@ void Solver::move(const double* from, double share, double* to) const {
         Eigen::Map<Eigen::Vector4d> q(to + row_length * i + 4);
         x = place(from, i) + share * step.head<3>();
         q = turned.coeffs().normalized();
+    }
+    for (const auto& [sphere, near] : branches_.twigs()) {
+        const Eigen::Matrix<double, 6, 1> own = way_of(sphere), inner = way_of(near);
+        const Vec3 arm = place(from, sphere) - place(from, near);
+        Eigen::Map<Vec3>(to + row_length * sphere) =
+            place(to, near) + skeleton::Branches::carried(arm, own.head<3>() - inner.head<3>(),
+                                                          (own.tail<3>() + inner.tail<3>()) / 2, share);
     }
 }
 
@@ -278,7 +293,7 @@ Solver::Report Solver::solve(const Step& step, const std::vector<Contact*>& cont
         // The slope of the potential along the step is to fall by half at least, or go on falling.
         const double slope = net_.dot(way_);
         const bool small = size <= 1e-7 * length_;
-        double share = step_limit();
+        double share = step_limit(pose.data());
         bool falls = false;
         for (int halving = 0; halving < 12 && !falls; ++halving, share /= 2) {
             move(pose.data(), share, trial_.data());

@@ -3,6 +3,7 @@
 #include "skeleton/runtime/contacts.h"
 #include "skeleton/runtime/force_field.h"
 #include "skeleton/solve/block_cholesky.h"
+#include "skeleton/solve/branches.h"
 
 namespace palpate::runtime {
 
@@ -49,7 +50,8 @@ private:
     void assemble(double share, const double* pose);
     void couple_contacts(const std::vector<Contact*>& contacts, const double* pose);
     void correct();
-    double step_limit() const;
+    double step_limit(const double* from) const;
+    Eigen::Matrix<double, 6, 1> way_of(int sphere) const;  // zero for one that is held
     void move(const double* from, double share, double* to) const;
     double largest(const Vector& v, double of_turns) const;
     Vector curvature_times(const std::vector<ForceField::Block>& K, const Vector& v) const;
@@ -60,6 +62,7 @@ private:
     std::vector<int> free_, block_of_;
     std::vector<int> coupling_of_;  // of each pair of the field, -1: none
     skeleton::BlockCholesky matrix_;
+    skeleton::Branches branches_;
     skeleton::BlockCholesky::Vec6 metric_;
     double stiffest_ = 0;    // entry of the matrix [N/mm]
     bool factored_ = false;  // for:

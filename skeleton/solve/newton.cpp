@@ -33,9 +33,9 @@ bool factor_shifted(const Problem& problem, double& shift) {
 // a link cancel, the slopes at both ends tell its fall. [Hager & Zhang 2005]
 bool descend(const Problem& problem, const Eigen::VectorXd& step, State& state, Balance& here) {
     const double slope = here.net.dot(step);
-    double share = problem.system.step_limit(step);
+    double share = problem.system.step_limit(state, step);
     for (int halving = 0; halving < 27; ++halving, share /= 2) {
-        const State trial = advance(state, share * step);
+        const State trial = problem.system.advance(state, step, share);
         const Balance there = problem.balance(trial);
         const double fall = here.potential - there.potential, left = there.net.dot(step);
         const bool falls = fall >= enough_fall * share * slope - here.rounding;
@@ -58,11 +58,11 @@ bool leave_saddle(const Problem& problem, State& state, Balance& here) {
     for (int iteration = 0; iteration < 10; ++iteration)
         way = problem.system.solve(problem.system.metric_times(way)).normalized();
     way *= 1e3 * problem.system.length();  // beyond the limit
-    way *= problem.system.step_limit(way);
+    way *= problem.system.step_limit(state, way);
     double share = 0.2;
     for (int halving = 0; halving < 18; ++halving, share /= 2)
         for (const double sign : {1.0, -1.0}) {
-            const State trial = advance(state, sign * share * way);
+            const State trial = problem.system.advance(state, way, sign * share);
             const Balance there = problem.balance(trial);
             if (there.potential < here.potential - here.rounding) {
                 state = trial;

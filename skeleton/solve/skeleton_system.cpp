@@ -83,6 +83,10 @@ SkeletonSystem::SkeletonSystem(const Model& model, const fem::Effects& effects)
     metric_ << 1, 1, 1, length_ * length_, length_ * length_, length_ * length_;
     matrix_ = BlockCholesky(static_cast<int>(free_.size()), couplings_);
 
+    std::vector<char> moves;
+    for (const Sphere& sphere : body_.spheres) moves.push_back(sphere.held ? 0 : 1);
+    branches_ = Branches(body_.links, moves);
+
     effect_load_ = largest_force(effects_.force(effects_.rest()));
     for (const BlockCholesky::Block& block : effects_.curvature(effects_.rest()))
         effect_stiffness_ = std::max(effect_stiffness_, block.diagonal().cwiseAbs().cwiseQuotient(metric_).maxCoeff());
@@ -171,16 +175,32 @@ double SkeletonSystem::force_rounding(const Eigen::VectorXd& k) const {
     return 1e-14 * stiffest(k) * (reach_ + 10 * length_);
 }
 
-double SkeletonSystem::step_limit(const Eigen::VectorXd& step) const {
+double SkeletonSystem::step_limit(const State& state, const Eigen::VectorXd& step) const {
     double times_too_long = 1;
     for (const Eigen::Index i : free_)
         times_too_long = std::max(times_too_long, step.segment<3>(6 * i + 3).norm() / 0.5);
     for (const Link& link : body_.links) {
-        const double apart =
-            (step.segment<3>(Eigen::Index{6} * link.b) - step.segment<3>(Eigen::Index{6} * link.a)).norm();
-        times_too_long = std::max(times_too_long, apart / (0.5 * link.length));
+        const auto own = step.segment<6>(Eigen::Index{6} * link.b), near = step.segment<6>(Eigen::Index{6} * link.a);
+        Vec3 apart = own.head<3>() - near.head<3>();
+        if (!branches_.empty()) {
+            const Vec3 arm = state.x.row(link.b) - state.x.row(link.a);
+            apart = Branches::stretch(arm, apart, (own.tail<3>() + near.tail<3>()) / 2);
+        }
+        times_too_long = std::max(times_too_long, apart.norm() / (0.5 * link.length));
     }
     return 1 / times_too_long;
+}
+
+State SkeletonSystem::advance(const State& state, const Eigen::VectorXd& step, double share) const {
+    State next = skeleton::advance(state, share * step);
+    for (const auto& [sphere, near] : branches_.twigs()) {
+        const auto own = step.segment<6>(Eigen::Index{6} * sphere), inner = step.segment<6>(Eigen::Index{6} * near);
+        const Vec3 arm = state.x.row(sphere) - state.x.row(near);
+        next.x.row(sphere) = next.x.row(near) + Branches::carried(arm, own.head<3>() - inner.head<3>(),
+                                                                  (own.tail<3>() + inner.tail<3>()) / 2, share)
+                                                    .transpose();
+    }
+    return next;
 }
 
 void SkeletonSystem::assemble(const Eigen::VectorXd& k, const State& state, const Load* load) {

@@ -8,6 +8,7 @@
 #include "skeleton/links/placed_links.h"
 #include "skeleton/load.h"
 #include "skeleton/solve/block_cholesky.h"
+#include "skeleton/solve/branches.h"
 
 namespace palpate::skeleton {
 
@@ -49,7 +50,9 @@ public:
     double stiffest(const Eigen::VectorXd& k) const;
     /// How much of a step can be made at once, (0, 1]: no sphere turns by more than half a radian, no link's ends part
     /// by more than half its length.
-    double step_limit(const Eigen::VectorXd& step) const;
+    double step_limit(const State& state, const Eigen::VectorXd& step) const;
+    /// A state after a share of a step; along branches where there are some.
+    State advance(const State& state, const Eigen::VectorXd& step, double share) const;
 
     /// Assembles the tangent; without a load the links' and effects' alone.
     void assemble(const Eigen::VectorXd& k, const State& state, const Load* load = nullptr);
@@ -86,6 +89,7 @@ private:
     double length_ = 1, reach_ = 0;                        // largest coordinate [mm]
     BlockCholesky::Vec6 metric_;
     BlockCholesky matrix_;
+    Branches branches_;
 };
 
 }  // namespace palpate::skeleton

@@ -368,7 +368,7 @@ void particles() {
 void scaling(const std::vector<int>& sides, const std::vector<std::string>& laws, int threads) {
     fmt::print(
         "| law | links | numbers | markers | seconds | peak memory, GB | median error of ln k: informed % | and prior "
-        "% | informed, % |\n|---|---|---|---|---|---|---|---|---|\n");
+        "% | informed, % | in their 95 % intervals, % |\n|---|---|---|---|---|---|---|---|---|---|\n");
     for (const skeleton::Law law : {skeleton::Law::linear, skeleton::Law::large_rotation}) {
         if (std::ranges::find(laws, skeleton::law_names[static_cast<std::size_t>(law)]) == laws.end()) continue;
         for (const int n : sides) {
@@ -381,11 +381,13 @@ void scaling(const std::vector<int>& sides, const std::vector<std::string>& laws
             const IdentifyResult result = identify::identify(block.start, block.set, how);
             const double seconds = watch.seconds();
             std::vector<double> errors, all;
+            int inside = 0;
             for (const PosteriorRow& row : result.posterior) {
                 const int kind = row.parameter.starts_with("elongation") ? 0 : 1;
                 const double truth = block.truth.links[row.link].stiffness[kind];
                 const double error = std::abs(std::log(row.q50 / truth));
                 if (row.informed) errors.push_back(error);
+                inside += row.q025 <= truth && truth <= row.q975 ? 1 : 0;
                 all.push_back(std::abs(std::log(block.start.links[row.link].stiffness[kind] / truth)));
             }
             const auto median = [](std::vector<double> v) {
@@ -393,11 +395,12 @@ void scaling(const std::vector<int>& sides, const std::vector<std::string>& laws
                 std::ranges::nth_element(v, v.begin() + static_cast<std::ptrdiff_t>(v.size() / 2));
                 return v[v.size() / 2];
             };
-            fmt::print("| {} | {} | {} | {} | {:.1f} | {:.2g} | {:.2g} | {:.2g} | {:.0f} |\n",
+            fmt::print("| {} | {} | {} | {} | {:.1f} | {:.2g} | {:.2g} | {:.2g} | {:.0f} | {:.0f} |\n",
                        skeleton::law_names[static_cast<std::size_t>(law)], block.start.links.size(),
                        result.posterior.size(), block.set.markers.size(), seconds, pipeline::peak_memory_mb() / 1e3,
                        100 * median(errors), 100 * median(all),
-                       100.0 * static_cast<double>(errors.size()) / static_cast<double>(result.posterior.size()));
+                       100.0 * static_cast<double>(errors.size()) / static_cast<double>(result.posterior.size()),
+                       100.0 * inside / static_cast<double>(result.posterior.size()));
             for (const std::string& note : result.notes) fmt::print(stderr, "  {}\n", note);
             std::fflush(stdout);
         }
