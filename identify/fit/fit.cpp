@@ -70,11 +70,9 @@ int worth_a_spectrum(const Spectrum& spectrum, Eigen::Index P) {
     return static_cast<int>(std::min<Eigen::Index>(columns, P / 8));
 }
 
-/// That the measurements tell of, at least one; a tenth of all numbers where a spectrum has no room for them.
-double directions(const Spectrum& spectrum, int P) {
-    const double found = std::max(1.0, spectrum.effective());
-    return spectrum.is_whole ? found : std::max(found, P / 10.0);
-}
+/// That the measurements tell of, where a spectrum has no room for them: a tenth of all numbers, say. One where it has,
+/// so that each settles.
+double directions(const Spectrum& spectrum, int P) { return spectrum.is_whole ? 1 : std::max(1.0, P / 10.0); }
 
 /// (1 + damping + A) dv = -g by conjugate gradients, preconditioned by the spectrum of an A nearby.
 Step damped_step(const SymmetricProduct& A, const Eigen::VectorXd& g, double damping, const Spectrum& near) {

@@ -12,7 +12,7 @@ SymmetricProduct whitened_curvature(const Slopes& slopes, const LogNormalPrior& 
 
 struct FitOptions {
     int iterations = 60;
-    double tolerance = 1e-8;  // stop when the next step promises to lower half the chi^2 by less
+    double tolerance = 1e-8;  // stop when a step promises less of half the chi^2; more where directions are many
     /// Or when so many iterations lowered it by less than a hundred times that, where kinks keep the promise from
     /// coming true; 0: never.
     int patience = 0;
@@ -37,8 +37,9 @@ struct FitResult {
 ///
 /// In coordinates in which the prior is N(0, 1) the equations of a step are (1 + A) dv = -g, A = J^T J. Measurements
 /// tell about few directions, so A has few eigenvalues that matter beside 1: these are found once [Spectrum], and
-/// precondition conjugate gradients from then on, which end after a few products, however many parameters there are. A
-/// step that falls short is damped [Levenberg 1944], and one that fell less than slopes promise shortens the next.
+/// precondition conjugate gradients from then on, which end after a few products, however many parameters there are;
+/// where there are more than 128, the first of them do, and more products. A step that falls short is damped
+/// [Levenberg 1944], and one that fell less than slopes promise shortens the next.
 /// @throws SolverFailure when there is no equilibrium at the start, not even with stiffnesses hundreds of times larger.
 FitResult fit_map(const PositionDomain& domain, const LogNormalPrior& prior, const Eigen::VectorXd& start, int threads,
                   const FitOptions& options = {});

@@ -15,7 +15,8 @@ namespace palpate::identify {
 /// there is their -J_p^T d_p, so that the errors grow from d_p to
 ///   d_p + J_p (1 + A - J_p^T J_p)^-1 J_p^T d_p,    A = J^T J by v,
 /// the predicted residual of [Allen 1974], by groups; exact where markers go linearly with v. Directions of which the
-/// measurements tell next to nothing, those without an eigenpair, are left as they are, and so are the dents.
+/// measurements tell next to nothing, those without an eigenpair, are left as they are, and so are the dents. Where the
+/// spectrum is not whole, others are too, and the error is told from below.
 /// @param probes of each state of the domain
 /// @param fit with its final spectrum
 ForecastError left_out_error(const PositionDomain& domain, const LogNormalPrior& prior, const FitResult& fit,

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <string>
 
 #include "identify/fit/calibrate.h"
 #include "identify/fit/conjugate_gradients.h"
@@ -46,22 +47,56 @@ std::vector<int> probes_of(const PositionDomain& domain, const MeasurementSet& s
     return probes;
 }
 
+struct Sampled {
+    TemperedResult filter;
+    int evaluations = 0;    // of all equilibria
+    std::string note = {};  // on what the particles are, where they are not weighed
+};
+
 /// Particles where a spectrum has no room for all that the measurements tell of.
-TemperedResult perturbed(const PositionDomain& domain, const LogNormalPrior& prior, const FitResult& fit,
-                         const LogDensity& log_density, const GaussianProposal& proposal, const TemperedOptions& how,
-                         int& evaluations) {
+Sampled perturbed(const PositionDomain& domain, const LogNormalPrior& prior, const FitResult& fit,
+                  const LogDensity& log_density, const GaussianProposal& proposal, const TemperedOptions& how) {
     const Slopes slopes = domain.slopes(fit.theta, domain.predict(fit.theta, how.threads, &fit.prediction, true));
     const PerturbedSteps steps = perturbed_steps(
         slopes, prior, fit.spectrum, independent_draws(domain.parameters().size(), how.particles), how.seed);
     Eigen::VectorXd mean = fit.theta;
     const SymmetricProduct A = whitened_curvature(slopes, prior);
-    evaluations += centre(
+    const int evaluations = centre(
         mean, prior.coloured(steps.v.leftCols(few_pairs)),
         [&](const Eigen::VectorXd& downhill) -> Eigen::VectorXd {
             return solve_shifted(A, 1, downhill, fit.spectrum, {.residual = 0.1}).X;
         },
         domain, prior, fit.prediction, how.threads);
-    return perturbed_particles(log_density, mean, steps, proposal, how);
+    return {perturbed_particles(log_density, mean, steps, proposal, how), evaluations,
+            "particles: too many directions that the measurements tell of to weigh them; they are fits to readings "
+            "with other noise and a prior with another centre, by the slopes at the fit, and the evidence is rough"};
+}
+
+/// Particles from the fits' neighbourhoods to the posterior.
+Sampled sample(const PositionDomain& domain, const LogNormalPrior& prior, const FitResult& fit,
+               const LogDensity& log_density, std::vector<GaussianProposal> proposals, const TemperedOptions& how,
+               const Progress& progress) {
+    if (!fit.spectrum.is_whole) return perturbed(domain, prior, fit, log_density, proposals.front(), how);
+    const bool too_dear = is_too_dear(domain, how.particles);
+    Sampled sampled;
+    if (domain.parameters().size() > many_parameters) {
+        sampled.evaluations = centre(proposals.front(), domain, prior, fit.prediction, too_dear ? few_pairs : pairs,
+                                     how.seed, how.threads);
+    }
+    if (too_dear) {
+        sampled.filter = drawn_particles(log_density, proposals.front(), how);
+        sampled.note =
+            "particles: too large a body to weigh them; they are drawn from the fit's own covariance, and the "
+            "evidence is Laplace's";
+        return sampled;
+    }
+    sampled.filter = tempered_filter(log_density, proposals, how, progress);
+    if (!sampled.filter.weighed) {
+        sampled.note =
+            "particles: too many parameters to weigh them; they are drawn from the fit's own covariance and moved "
+            "towards the posterior, and the evidence is Laplace's";
+    }
+    return sampled;
 }
 
 }  // namespace
@@ -98,7 +133,6 @@ IdentifyResult identify_tempered(const skeleton::Model& model, const Measurement
         }
     };
 
-    // particles from the fits' neighbourhoods to the posterior
     std::vector<GaussianProposal> proposals;
     std::vector<Eigen::VectorXd> tops;
     const auto propose = [&](const FitResult& mode) {
@@ -107,37 +141,14 @@ IdentifyResult identify_tempered(const skeleton::Model& model, const Measurement
     };
     propose(calibration.fit);
     std::ranges::for_each(calibration.others, propose);
-    const TemperedOptions how{.particles = particles, .seed = options.seed, .threads = options.threads};
-    const bool too_dear = is_too_dear(domain, particles);
-    int evaluations = 0;  // of all equilibria
-    TemperedResult filter;
-    if (!calibration.fit.spectrum.is_whole) {
-        filter = perturbed(domain, prior, calibration.fit, log_density, proposals.front(), how, evaluations);
-        result.notes.emplace_back(
-            "particles: too many directions that the measurements tell of to weigh them; they are fits to readings "
-            "with other noise and a prior with another centre, by the slopes at the fit, and the evidence is rough");
-    } else {
-        if (parameters.size() > many_parameters) {
-            evaluations += centre(proposals.front(), domain, prior, calibration.fit.prediction,
-                                  too_dear ? few_pairs : pairs, options.seed, options.threads);
-        }
-        filter = too_dear ? drawn_particles(log_density, proposals.front(), how)
-                          : tempered_filter(log_density, proposals, how, [&](std::string_view what, double fraction) {
-                                report(progress, what, calibration_share + (1 - calibration_share) * fraction);
-                            });
-        if (too_dear) {
-            result.notes.emplace_back(
-                "particles: too large a body to weigh them; they are drawn from the fit's own covariance, and the "
-                "evidence is Laplace's");
-        } else if (!filter.weighed) {
-            result.notes.emplace_back(
-                "particles: too many parameters to weigh them; they are drawn from the fit's own "
-                "covariance and moved towards the posterior, and the evidence is Laplace's");
-        }
-    }
-    evaluations += filter.evaluations;
+    Sampled sampled = sample(domain, prior, calibration.fit, log_density, std::move(proposals),
+                             {.particles = particles, .seed = options.seed, .threads = options.threads},
+                             [&](std::string_view what, double fraction) {
+                                 report(progress, what, calibration_share + (1 - calibration_share) * fraction);
+                             });
+    if (!sampled.note.empty()) result.notes.push_back(std::move(sampled.note));
 
-    tell_particles(parameters, prior, tops, filter, result);
+    tell_particles(parameters, prior, tops, sampled.filter, result);
     if (result.modes.size() > 1) {
         result.notes.push_back(fmt::format(
             "{} different stiffnesses explain the measurements, of which the model holds one: the particles "
@@ -154,7 +165,7 @@ IdentifyResult identify_tempered(const skeleton::Model& model, const Measurement
     result.states = static_cast<int>(domain.states().size());
     result.coordinates = domain.coordinates();
     result.model = calibrated(model, calibration);
-    result.equilibria = calibration.equilibria + evaluations * result.states;
+    result.equilibria = calibration.equilibria + (sampled.evaluations + sampled.filter.evaluations) * result.states;
     return result;
 }
 
