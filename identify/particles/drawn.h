@@ -16,9 +16,9 @@ TemperedResult drawn_particles(const LogDensity& log_density, const GaussianProp
                                const TemperedOptions& options);
 
 /// The same where the measurements tell about more directions than a spectrum has room for: round `mean`, by
-/// perturbed steps of the fit. As many of these are made as 2e5 numbers hold, and no fewer than 32; where more
+/// perturbed steps of the fit. As many of these are made as 2e5 numbers hold, and no fewer than 24; where more
 /// particles are wanted, each is a mixture of all of them with weights of squares that add up to 1, so that each is as
-/// wide as the posterior, and together they tell its covariance as well as the 32 do: an sd to 12 %. The evidence
+/// wide as the posterior, and together they tell its covariance as well as the 24 do: an sd to 14 %. The evidence
 /// counts the spectrum's directions alone: it is too large.
 TemperedResult perturbed_particles(const LogDensity& log_density, const Eigen::VectorXd& mean,
                                    const PerturbedSteps& steps, const GaussianProposal& proposal,
