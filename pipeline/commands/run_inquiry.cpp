@@ -54,12 +54,10 @@ const identify::ReferenceBody& RunInquiry::reference() {
     return *reference_;
 }
 
-const identify::Diagnosis& RunInquiry::diagnosed(const skeleton::Model& model, bool screen) {
+const identify::Diagnosis& RunInquiry::diagnosed(const skeleton::Model& model) {
     if (!diagnosis_) {
         identify::DiagnoseOptions how = diagnose_options(model, common_);
         how.without = subject_.settings.diagnose.without;
-        how.screen = screen;
-        screened_ = screen;
         diagnosis_ = identify::diagnose(reference(), set_, how, Console::progress());
     }
     return *diagnosis_;
@@ -73,7 +71,7 @@ json RunInquiry::diagnose(const skeleton::Model& model) {
         why_none_ = reason_of_failure([&] {
             const bool ran =
                 folder_.stage({"diagnose", settings, subject_.files, {"skeleton"}, {"diagnose/diagnosis.json"}}, [&] {
-                    result = to_json(diagnosed(model, true), reference(), set_);
+                    result = to_json(diagnosed(model), reference(), set_);
                     mesh::write_text(folder_.path() / "diagnose/diagnosis.json", result.dump(2) + "\n");
                     return json{{"verdict", result["verdict"]}};
                 });
@@ -94,7 +92,7 @@ void RunInquiry::compare_reference(json& compare, const skeleton::Model& model,
                                    const identify::Comparison& comparison) {
     if (why_none_.empty()) {
         why_none_ = reason_of_failure([&] {
-            const identify::Diagnosis& diagnosis = diagnosed(model, false);
+            const identify::Diagnosis& diagnosis = diagnosed(model);
             add_reference(compare, reference(), diagnosis, set_, comparison);
             warn_of_modulus(compare, *subject_.set);  // with what the set itself says of its material
         });
@@ -114,8 +112,7 @@ json RunInquiry::improve(const skeleton::Model& model, const json& diagnosis) {
     const fs::path folder = folder_.path() / "improve";
     const bool ran = folder_.stage({"improve", settings, subject_.files, {"skeleton", "diagnose"}, {"improve"}}, [&] {
         identify::Ladder ladder =
-            identify::climb(model, &reference(), set_, effects, how, diagnosis_ && screened_ ? &*diagnosis_ : nullptr,
-                            Console::progress());
+            identify::climb(model, &reference(), set_, effects, how, &diagnosed(model), Console::progress());
         ladder.identified.damping = damping_of(ladder.steps.back().model, set_, how.identify.seed, common_);
         write_ladder(folder, ladder);
         return json{{"steps", ladder.steps.size()}, {"rms_mm", ladder.steps.back().skeleton.rms_mm}};

@@ -9,7 +9,8 @@ namespace palpate::pipeline::commands {
 
 /// The stages of a run on measurements that ask what the model lacks: diagnose, compare, improve. A stage that was
 /// finished before is read back instead; the body in finite elements is made only when a stage needs it, and diagnosed
-/// once for all of them.
+/// once for all of them: anew for a stage that comes after one that was read back, as its fits start from what the
+/// diagnosis found, and no file holds that to the last digit.
 class RunInquiry {
 public:
     /// @param set the measurements as the run takes them: its supports, its material
@@ -29,7 +30,7 @@ public:
 
 private:
     const identify::ReferenceBody& reference();
-    const identify::Diagnosis& diagnosed(const skeleton::Model& model, bool screen);
+    const identify::Diagnosis& diagnosed(const skeleton::Model& model);
 
     RunFolder& folder_;
     const Subject& subject_;
@@ -37,7 +38,6 @@ private:
     const Common& common_;
     std::unique_ptr<identify::ReferenceBody> reference_;
     std::optional<identify::Diagnosis> diagnosis_;
-    bool screened_ = false;  // is it more than a baseline?
     std::string why_none_;
 };
 

@@ -136,6 +136,24 @@ TEST_F(HeavyBeam, RepeatsNothingWhoseInputsAreUnchanged) {
     EXPECT_EQ(before, read(path("run/run.json"))["stages"]);
 }
 
+/// As after a kill: what went before is read back, and the stage's fits have to start from the same.
+TEST_F(HeavyBeam, AStageThatIsDoneAgainAloneEndsTheSame) {
+    for (const char* stage : {"improve", "compare", "diagnose"}) {
+        const std::filesystem::path again = path(std::string("without-") + stage);
+        std::filesystem::copy(path("run"), again, std::filesystem::copy_options::recursive);
+        std::filesystem::remove_all(again / stage);
+        commands::run({.input = path("set"), .output = again, .say = coarse()}, {});
+        int files = 0;
+        for (const auto& entry : std::filesystem::recursive_directory_iterator(path("run"))) {
+            const std::filesystem::path file = std::filesystem::relative(entry.path(), path("run"));
+            if (!entry.is_regular_file() || file == "run.json" || file == "report.html") continue;  // they tell times
+            EXPECT_EQ(mesh::read_text(entry.path()), mesh::read_text(again / file)) << stage << ": " << file;
+            ++files;
+        }
+        EXPECT_GT(files, 20);
+    }
+}
+
 /// The model that was improved has gravity in it: a comparison with it finds no more physics missing.
 TEST_F(HeavyBeam, TheBetterModelLacksNothing) {
     commands::CompareOptions options{
