@@ -17,10 +17,8 @@ skeleton::Model as_played(skeleton::Model model, double pressure) {
     return model;
 }
 
-// Steps that are shown may leave a micrometre, and a browser is slower at factors than at anything else: an old one
-// serves on for as long as corrections become smaller.
-const runtime::BodyOptions for_display{
-    .contacts = TouchedModel::most_touches, .step_tolerance = 1e-4, .step_slower = 0.99};
+// Steps that are shown may leave a micrometre.
+const runtime::BodyOptions for_display{.contacts = TouchedModel::most_touches, .step_tolerance = 1e-4};
 
 }  // namespace
 

@@ -44,12 +44,8 @@ void BodyOptions::validate() const {
         throw InvalidInput(fmt::format("damping_ratio is {}; it must be at least 0", *damping_ratio));
     if (contacts < 0 || contacts > 64)
         throw InvalidInput(fmt::format("contacts is {}; it must lie in 0 to 64", contacts));
-    const auto require_share = [](const char* what, double value) {
-        if (!(value > 0 && value < 1))
-            throw InvalidInput(fmt::format("{} is {}; it must lie between 0 and 1", what, value));
-    };
-    require_share("step_tolerance", step_tolerance);
-    require_share("step_slower", step_slower);
+    if (!(step_tolerance > 0 && step_tolerance < 1))
+        throw InvalidInput(fmt::format("step_tolerance is {}; it must lie between 0 and 1", step_tolerance));
 }
 
 struct Body::Impl {
@@ -63,7 +59,7 @@ struct Body::Impl {
     SphereRows rest, pose, start, momentum, velocity, force;
     std::vector<Contact> contacts;
     std::vector<Contact*> in_use;   // all contacts, as the solver wants them
-    std::vector<float> skin, bare;  // with the dents, and without
+    std::vector<float> skin;
     std::vector<int> triangles;
     Damping damping;
     double stable = 0;  // [s]; 0: not known yet
@@ -83,8 +79,7 @@ struct Body::Impl {
         pose = start = rest;
         for (SphereRows* rows : {&momentum, &velocity, &force}) rows->assign(rest.size(), 0.0);
         for (Contact& contact : contacts) in_use.push_back(&contact);
-        bare.resize(3 * walked.model.skin.size());
-        skin = bare;
+        skin.resize(3 * walked.model.skin.size());
         triangles.assign(model.surface.triangles.data(),
                          model.surface.triangles.data() + model.surface.triangles.size());
         for (std::size_t i = 0; i < model.spheres.size(); ++i) {
@@ -236,8 +231,7 @@ Momenta Body::momenta() const {
 
 const std::vector<float>& Body::skin() {
     Impl& own = *impl_;
-    own.skinning.follow(own.pose.data(), own.bare.data());
-    std::ranges::copy(own.bare, own.skin.begin());
+    own.skinning.follow(own.pose.data(), own.skin.data());
     for (Contact& contact : own.contacts) {
         if (!contact.used || contact.dented.empty()) continue;
         contact.at.place(own.pose.data());
@@ -252,14 +246,15 @@ void Body::set_gravity(const Eigen::Vector3d& g) { impl_->field.set_gravity(g); 
 
 int Body::touch(const Eigen::Vector3d& point, double radius) {
     Impl& own = *impl_;
-    if (own.triangles.empty() || own.bare.empty())
+    if (own.triangles.empty() || own.skin.empty())
         throw InvalidInput("the model has no skin that could be touched: give it one");
     const auto free = std::ranges::find(own.contacts, false, &Contact::used);
     if (free == own.contacts.end())
         throw InvalidInput(
             fmt::format("all {} contacts are in use; release one, or make the body with more", own.contacts.size()));
-    own.skinning.follow(own.pose.data(), own.bare.data());
-    place_contact(own.walked.model, own.bare, own.pose.data(), point, radius, *free);
+    std::vector<float> bare(own.skin.size());  // without dents
+    own.skinning.follow(own.pose.data(), bare.data());
+    place_contact(own.walked.model, bare, own.pose.data(), point, radius, *free);
     return static_cast<int>(free - own.contacts.begin());
 }
 
@@ -317,11 +312,8 @@ void Body::step_explicit(double h, int steps) {
     drift(own.masses, 0.5 * h, own.momentum.data(), own.pose.data());
     for (int i = 0; i < steps; ++i) {
         own.evaluate();
-        kick(h, own.force, own.momentum.data());
-        if (own.damping.alpha > 0) {
-            for (double& p : own.momentum) p *= dies;
-        }
-        drift(own.masses, i + 1 < steps ? h : 0.5 * h, own.momentum.data(), own.pose.data());
+        kick_and_drift(own.masses, h, dies, own.force.data(), i + 1 < steps ? h : 0.5 * h, own.momentum.data(),
+                       own.pose.data());
         own.field.settle(own.pose.data());
     }
 }
@@ -336,7 +328,6 @@ void Body::step_implicit(double h) {
     step.alpha = own.damping.alpha;
     step.beta = own.damping.beta;
     step.tolerance = own.options.step_tolerance;
-    step.slower = own.options.step_slower;
     step.reuse = true;
     const Solver::Report report = own.solver.solve(step, own.in_use, own.start.data(), own.velocity.data(), own.pose);
     if (!report.found) {
@@ -354,7 +345,7 @@ EquilibriumReport Body::equilibrium() {
     std::ranges::copy(own.pose, own.start.begin());
     Solver::Step step;
     step.iterations = 200;
-    step.reuse = true;
+    step.reuse = own.solver.factor_is_dear();
     const Solver::Report report = own.solver.solve(step, own.in_use, nullptr, nullptr, own.pose);
     if (!report.found) {
         std::ranges::copy(own.start, own.pose.begin());

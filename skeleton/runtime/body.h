@@ -27,9 +27,8 @@ struct [[gnu::visibility("default")]] BodyOptions {
     // model has it, or else a ratio of 0.1.
     std::optional<double> damping_ratio = {};
     int contacts = 8;  // most at a time, in [0, 64]
-    // Of implicit steps: how far off the last correction of a sphere may be, as a share of the mean link length, and to
-    // what share of the one before a correction must come for an old factor to serve on. Both in (0, 1).
-    double step_tolerance = 1e-6, step_slower = 0.3;
+    // Of implicit steps: how far off a sphere may be, as a share of the mean link length, in (0, 1).
+    double step_tolerance = 1e-6;
     void validate() const;  // @throws InvalidInput naming option, value and bound
 };
 

@@ -5,6 +5,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "skeleton/links/turning_curvature.h"
 #include "skeleton/state.h"
@@ -12,6 +13,13 @@
 namespace palpate::runtime {
 
 namespace {
+
+constexpr double never = std::numeric_limits<double>::infinity();
+// An old factor serves on for as long as two corrections, with what is learnt on the way, shrink to this.
+constexpr double slow = 0.8;
+// Factors that cost as much as so many solutions are dear: old ones are kept in equilibria too, whose corrections are
+// large.
+constexpr double dear = 10;
 
 Eigen::Map<const Vec3> place(const double* rows, int sphere) {
     return Eigen::Map<const Vec3>(rows + row_length * sphere);
@@ -59,6 +67,9 @@ Solver::Solver(ForceField& field, int contacts) : field_(field), matrix_(0, {}) 
 
     const auto size = static_cast<Eigen::Index>(6 * free_.size());
     for (Vector* v : {&net_, &way_, &there_}) v->setZero(size);
+    for (Known& pair : pairs_) {
+        for (Vector* v : {&pair.way, &pair.change}) v->setZero(size);
+    }
     const std::size_t rows = static_cast<std::size_t>(row_length) * row_count(model);
     for (SphereRows* r : {&force_, &velocity_, &trial_}) r->assign(rows, 0.0);
     x_predicted_.resize(n);
@@ -69,12 +80,15 @@ Solver::Solver(ForceField& field, int contacts) : field_(field), matrix_(0, {}) 
     Pz_.setZero(Eigen::Index{3} * contacts);
 }
 
-// Where the spheres would be without forces. The drag alpha divides velocities by 1 + alpha h, and multiplies masses.
-void Solver::predict(const Step& step, const double* start, const double* velocity) {
+// Where the spheres would be without forces, which is where the search starts. The drag alpha divides velocities by
+// 1 + alpha h, and multiplies masses.
+void Solver::predict(const Step& step, const double* start, const double* velocity, double* pose) {
     const double share = step.h / (1 + step.alpha * step.h);
     for (const int i : free_) {
-        x_predicted_[i] = place(start, i) + share * place(velocity, i);
-        R_predicted_[i] = (turn_of(share * turning(velocity, i)) * orientation(start, i)).toRotationMatrix();
+        const Eigen::Quaterniond q = turn_of(share * turning(velocity, i)) * orientation(start, i);
+        Eigen::Map<Vec3>(pose + row_length * i) = x_predicted_[i] = place(start, i) + share * place(velocity, i);
+        Eigen::Map<Eigen::Vector4d>(pose + row_length * i + 4) = q.coeffs().normalized();
+        R_predicted_[i] = turned_by(pose, i);
     }
 }
 
@@ -150,12 +164,15 @@ bool Solver::factor(const Step& step, const double* pose, double& shift) {
         if (!(shift < 1e8 * stiffest_)) return false;
     }
     factored_ = true;
+    known_ = 0;
     factored_h_ = step.h;
     factored_alpha_ = step.alpha;
     factored_beta_ = step.beta;
     contacts_known_ = false;
     return true;
 }
+
+bool Solver::factor_is_dear() const { return matrix_.cost_in_solutions() > dear; }
 
 Vec3 Solver::along(const Spring& spring, const double* z) const {
     Vec3 sum = Vec3::Zero();
@@ -196,18 +213,44 @@ void Solver::couple_contacts(const std::vector<Contact*>& contacts, const double
     Eigen::LLT<Eigen::Ref<Eigen::MatrixXd>> in_place(S);
 }
 
-// way_ <- (A + P^T k P)^-1 net_ = z - Y (k^-1 + P Y)^-1 P z,  z = A^-1 net_.
-void Solver::correct() {
-    way_ = net_;
-    matrix_.solve(way_.data());
+// way <- (A + P^T k P)^-1 way = z - Y (k^-1 + P Y)^-1 P z,  z = A^-1 way.
+void Solver::solve_factored(Vector& way) {
+    matrix_.solve(way.data());
     const Eigen::Index size = 3L * sprung_;
     if (size == 0) return;
-    for (int s = 0; s < sprung_; ++s) Pz_.segment<3>(3L * s) = along(springs_[s], way_.data());
+    for (int s = 0; s < sprung_; ++s) Pz_.segment<3>(3L * s) = along(springs_[s], way.data());
     const auto L = S_.topLeftCorner(size, size);
     auto z = Pz_.head(size);
     L.triangularView<Eigen::Lower>().solveInPlace(z);
     L.transpose().triangularView<Eigen::Upper>().solveInPlace(z);
-    for (Eigen::Index c = 0; c < size; ++c) way_ -= z[c] * Y_.col(c);
+    for (Eigen::Index c = 0; c < size; ++c) way -= z[c] * Y_.col(c);
+}
+
+// way_ <- H net_, H the factored inverse with what the steps since have told of the curvature (limited-memory BFGS,
+// the two loops of Nocedal, Math. Comp. 35, 1980).
+void Solver::correct() {
+    way_ = net_;
+    for (int i = known_ - 1; i >= 0; --i) {
+        Known& pair = pairs_[i];
+        pair.share = pair.way.dot(way_) / pair.curvature;
+        way_ -= pair.share * pair.change;
+    }
+    solve_factored(way_);
+    for (int i = 0; i < known_; ++i) {
+        const Known& pair = pairs_[i];
+        way_ += (pair.share - pair.change.dot(way_) / pair.curvature) * pair.way;
+    }
+}
+
+// That a step along way_ changed the net force from net_ to there_.
+void Solver::learn(double share) {
+    if (known_ == static_cast<int>(pairs_.size())) std::rotate(pairs_.begin(), pairs_.begin() + 1, pairs_.end());
+    else ++known_;
+    Known& pair = pairs_[known_ - 1];
+    pair.way = share * way_;
+    pair.change = net_ - there_;
+    pair.curvature = pair.way.dot(pair.change);
+    if (!(pair.curvature > 0)) --known_;
 }
 
 // No sphere turns by more than half a radian at once, no link's ends part by more than half its length.
@@ -264,13 +307,15 @@ double Solver::largest(const Vector& v, double of_turns) const {
 Solver::Report Solver::solve(const Step& step, const std::vector<Contact*>& contacts, const double* start,
                              const double* velocity, SphereRows& pose) {
     Report report;
-    if (step.h > 0) predict(step, start, velocity);
+    if (step.h > 0) predict(step, start, velocity, pose.data());
     trial_ = pose;
+    known_ = 0;
     balance(step, contacts, start, pose.data(), net_);
     bool fresh = false;
     bool due = !step.reuse || !factored_ || factored_h_ != step.h || factored_alpha_ != step.alpha ||
                factored_beta_ != step.beta;
-    double shift = 0, last = 0;
+    double shift = 0;
+    double last = never, before_last = never;  // corrections, the second by the same factor
     for (; report.iterations < step.iterations; ++report.iterations) {
         report.residual = largest(net_, 1 / length_);
         if (due) {
@@ -283,23 +328,22 @@ Solver::Report Solver::solve(const Step& step, const std::vector<Contact*>& cont
         correct();
         const double size = largest(way_, length_);
         if (!std::isfinite(size)) return report;
-        const bool slow = step.reuse && report.iterations > 0 && size > step.slower * last;
-        if (slow && !fresh) {
+        if (!fresh && size > slow * before_last) {
             due = true;
             continue;
         }
-        last = size;
 
-        // The slope of the potential along the step is to fall by half at least, or go on falling.
-        const double slope = net_.dot(way_);
+        // The slope of the potential along the step is to fall by half at least, or go on falling, but not off a cliff.
+        const double slope = std::abs(net_.dot(way_));
         const bool small = size <= 1e-7 * length_;
-        double share = step_limit(pose.data());
+        double share = 2 * step_limit(pose.data());
         bool falls = false;
-        for (int halving = 0; halving < 12 && !falls; ++halving, share /= 2) {
+        for (int halving = 0; halving < 12 && !falls; ++halving) {
+            share /= 2;
             move(pose.data(), share, trial_.data());
             balance(step, contacts, start, trial_.data(), there_);
             const double there = there_.dot(way_);
-            falls = small || there >= -0.5 * std::abs(slope);
+            falls = small || (there >= -0.5 * slope && there <= 10 * slope);
         }
         if (!falls) {
             if (fresh) shift = std::max(10 * shift, 1e-4 * stiffest_);
@@ -307,15 +351,21 @@ Solver::Report Solver::solve(const Step& step, const std::vector<Contact*>& cont
             due = true;
             continue;
         }
+        learn(share);
         pose.swap(trial_);
         trial_ = pose;
         net_.swap(there_);
-        if (size <= step.tolerance * length_ && shift == 0) {
+        // Corrections shrink by size / last: those to come add up to this.
+        const bool shrinks = share == 1 && last < never && size < last / 2;
+        const double left = shrinks ? size * size / (last - size) : size;
+        if (left <= step.tolerance * length_ && shift == 0) {
             report.found = true;
             ++report.iterations;
             report.residual = largest(net_, 1 / length_);
             return report;
         }
+        before_last = fresh ? never : last;
+        last = size;
         due = !step.reuse || shift > 0;
         shift = shift > 1e-3 * stiffest_ ? shift / 10 : 0;
     }

@@ -14,10 +14,9 @@ public:
     struct Step {
         double h = 0;                // [s]; 0: no inertia, an equilibrium is sought
         double alpha = 0, beta = 0;  // damping [1/s], [s]
-        double tolerance = 1e-9;     // of the last correction, as a share of the mean link length
+        double tolerance = 1e-9;     // how far off a sphere may be, as a share of the mean link length
         int iterations = 50;
-        bool reuse = false;   // an old factor, as long as it leads to the answer:
-        double slower = 0.3;  // until a correction is more than this share of the last
+        bool reuse = false;  // an old factor, as long as it leads to the answer
     };
     struct Report {
         bool found = false;
@@ -33,6 +32,9 @@ public:
     /// A contact was set, taken away or has another stiffness.
     void forget_contacts() { contacts_known_ = false; }
 
+    /// Whether reuse pays even where corrections are large.
+    bool factor_is_dear() const;
+
     /// Angular frequencies of the stiffest and the softest mode at a pose [1/s]; the softest is 0 where nothing holds
     /// the body. All spheres that move have masses.
     double stiffest_mode(const double* pose);
@@ -44,12 +46,14 @@ private:
     /// Net generalized force at a pose (6 free).
     void balance(const Step& step, const std::vector<Contact*>& contacts, const double* start, const double* pose,
                  Vector& net);
-    void predict(const Step& step, const double* start, const double* velocity);
+    void predict(const Step& step, const double* start, const double* velocity, double* pose);
     void set_rates(const Step& step, const double* start, const double* pose);
     bool factor(const Step& step, const double* pose, double& shift);
     void assemble(double share, const double* pose);
     void couple_contacts(const std::vector<Contact*>& contacts, const double* pose);
+    void solve_factored(Vector& way);
     void correct();
+    void learn(double share);
     double step_limit(const double* from) const;
     Eigen::Matrix<double, 6, 1> way_of(int sphere) const;  // zero for one that is held
     void move(const double* from, double share, double* to) const;
@@ -74,6 +78,15 @@ private:
     std::vector<Mat3> axes_;    // principal axes of inertia at rest, columns
     std::vector<Vec3> spread_;  // second moments of mass along them, half the trace less the inertia [tonne mm^2]
     Vector net_, way_, there_;  // (6 free)
+
+    // What steps told of the curvature since the matrix was factored: the latest, the oldest first.
+    struct Known {
+        Vector way, change;  // of the spheres, and of the net force, the other way
+        double curvature = 0;  // their product, > 0
+        double share = 0;      // work
+    };
+    std::array<Known, 12> pairs_;
+    int known_ = 0;
 
     // Springs of contacts as a low-rank change: (A + P^T k P)^-1 by A^-1 P^T. [Woodbury]
     bool contacts_known_ = false;

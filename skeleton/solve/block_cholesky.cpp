@@ -136,6 +136,16 @@ std::optional<BlockCholesky::BadPivot> BlockCholesky::factor(double shift, const
     return std::nullopt;
 }
 
+double BlockCholesky::cost_in_solutions() const {
+    double blocks = 0, products = 0;
+    for (const Column& column : columns_) {
+        const auto size = static_cast<double>(column.rows.size());
+        blocks += 1 + size;
+        products += 0.5 * size * (size + 1);
+    }
+    return n_ > 0 ? 6 * products / (2 * blocks) : 0;
+}
+
 void BlockCholesky::solve(double* b, double* work) const {
     for (int p = 0; p < n_; ++p) {
         std::copy_n(b + Eigen::Index{6} * block_at_[p], 6, work + Eigen::Index{8} * p);

@@ -35,6 +35,9 @@ public:
     /// Factors matrix + shift diag(scale, scale, ...). Nothing when it is positive definite. Allocates nothing.
     std::optional<BadPivot> factor(double shift, const Vec6& scale);
 
+    /// Multiplications that a factorisation takes, as a multiple of those of a solution for one column.
+    double cost_in_solutions() const;
+
     /// Solves in place for the columns of B (6n x p). @pre the last `factor` succeeded.
     void solve(Eigen::MatrixXd& B) const;
     /// The same for one column b (6n), without allocating.

@@ -37,34 +37,64 @@ PALPATE_INLINE void turn(Lanes t, Lanes& q_axis, Lanes& q_next, Lanes& q_last, L
     next = turned_next;
 }
 
-PALPATE_CLONES void drift_all(const Masses* masses, std::size_t n, double h, const double* momentum, double* pose) {
-    for (std::size_t i = 0; i < n; ++i, momentum += lanes * row_length, pose += lanes * row_length) {
-        const Masses& m = masses[i];
-        const Lanes4 p = row_of_four(momentum, 0), x = row_of_four(pose, 0);
-        const Lanes by = h * at(m.inverse_mass);
-        put_rows({x.x + by * p.x, x.y + by * p.y, x.z + by * p.z, x.w}, pose, 0);
-
-        const Lanes4 axes{at(m.q_axes[0]), at(m.q_axes[1]), at(m.q_axes[2]), at(m.q_axes[3])};
-        Lanes4 q = product(row_of_four(pose, 4), axes);
-        const Lanes3 L = turned(conjugate(q), row_of_four(momentum, 4).vector());
-        Lanes l0 = L.x, l1 = L.y, l2 = L.z;
-        const Lanes i0 = 0.25 * h * at(m.inverse_inertia[0]), i1 = 0.25 * h * at(m.inverse_inertia[1]);
-        const Lanes i2 = 0.5 * h * at(m.inverse_inertia[2]);
-        turn(i0 * l0, q.x, q.y, q.z, q.w, l1, l2);
-        turn(i1 * l1, q.y, q.z, q.x, q.w, l2, l0);
-        turn(i2 * l2, q.z, q.x, q.y, q.w, l0, l1);
-        turn(i1 * l1, q.y, q.z, q.x, q.w, l2, l0);
-        turn(i0 * l0, q.x, q.y, q.z, q.w, l1, l2);
-        q = product(q, conjugate(axes));
-        const Lanes scale = 1 / root(q.x * q.x + q.y * q.y + q.z * q.z + q.w * q.w);
-        put_rows({scale * q.x, scale * q.y, scale * q.z, scale * q.w}, pose, 4);
+// Four rows of momenta from `offset` on, after a kick.
+struct Kick {
+    double time = 0, kept = 1;
+    const double* force = nullptr;
+};
+template <bool kicked>
+PALPATE_INLINE void momenta_after(const Kick& kick, int offset, double* momentum, Lanes (&row)[lanes]) {
+    for (int i = 0; i < lanes; ++i) {
+        double* p = momentum + i * row_length + offset;
+        row[i] = at(p);
+        if constexpr (kicked) {
+            row[i] = kick.kept * (row[i] + kick.time * at(kick.force + i * row_length + offset));
+            put(p, row[i]);
+        }
     }
+}
+
+template <bool kicked>
+PALPATE_INLINE void move_four(const Masses& m, Kick kick, double h, double* momentum, double* pose) {
+    Lanes p[lanes], L[lanes];
+    momenta_after<kicked>(kick, 0, momentum, p);
+    momenta_after<kicked>(kick, 4, momentum, L);
+    for (int i = 0; i < lanes; ++i) {
+        double* x = pose + i * row_length;
+        put(x, at(x) + h * m.inverse_mass[i] * p[i]);
+    }
+    const Lanes4 axes{at(m.q_axes[0]), at(m.q_axes[1]), at(m.q_axes[2]), at(m.q_axes[3])};
+    Lanes4 q = product(row_of_four(pose, 4), axes);
+    const Lanes3 l = turned(conjugate(q), transposed(L[0], L[1], L[2], L[3]).vector());
+    Lanes l0 = l.x, l1 = l.y, l2 = l.z;
+    const Lanes i0 = 0.25 * h * at(m.inverse_inertia[0]), i1 = 0.25 * h * at(m.inverse_inertia[1]);
+    const Lanes i2 = 0.5 * h * at(m.inverse_inertia[2]);
+    turn(i0 * l0, q.x, q.y, q.z, q.w, l1, l2);
+    turn(i1 * l1, q.y, q.z, q.x, q.w, l2, l0);
+    turn(i2 * l2, q.z, q.x, q.y, q.w, l0, l1);
+    turn(i1 * l1, q.y, q.z, q.x, q.w, l2, l0);
+    turn(i0 * l0, q.x, q.y, q.z, q.w, l1, l2);
+    q = product(q, conjugate(axes));
+    const Lanes scale = 1 / root(q.x * q.x + q.y * q.y + q.z * q.z + q.w * q.w);
+    put_rows({scale * q.x, scale * q.y, scale * q.z, scale * q.w}, pose, 4);
+}
+
+constexpr long stride = static_cast<long>(lanes) * row_length;
+
+PALPATE_CLONES void drift_all(const Masses* masses, std::size_t n, double h, double* momentum, double* pose) {
+    for (std::size_t i = 0; i < n; ++i, momentum += stride, pose += stride)
+        move_four<false>(masses[i], {}, h, momentum, pose);
+}
+
+PALPATE_CLONES void kick_and_drift_all(const Masses* masses, std::size_t n, Kick kick, double h, double* momentum,
+                                       double* pose) {
+    for (std::size_t i = 0; i < n; ++i, momentum += stride, pose += stride, kick.force += stride)
+        move_four<true>(masses[i], kick, h, momentum, pose);
 }
 
 PALPATE_CLONES double all_velocities(const Masses* masses, std::size_t n, const double* momentum, const double* pose,
                                      double* velocity) {
     Lanes energy = all(0);
-    const long stride = lanes * row_length;
     for (std::size_t i = 0; i < n; ++i, momentum += stride, pose += stride, velocity += stride) {
         const Masses& m = masses[i];
         const Lanes3 p = row_of_four(momentum, 0).vector(), L = row_of_four(momentum, 4).vector();
@@ -81,18 +111,15 @@ PALPATE_CLONES double all_velocities(const Masses* masses, std::size_t n, const 
     return energy[0] + energy[1] + energy[2] + energy[3];
 }
 
-PALPATE_CLONES void kick_all(double h, const double* force, std::size_t n, double* momentum) {
-    for (std::size_t i = 0; i < n; i += lanes) put(momentum + i, at(momentum + i) + h * at(force + i));
-}
-
 }  // namespace
 
-void kick(double h, std::span<const double> force, double* momentum) {
-    kick_all(h, force.data(), force.size(), momentum);
+void drift(std::span<const Masses> masses, double h, double* momentum, double* pose) {
+    drift_all(masses.data(), masses.size(), h, momentum, pose);
 }
 
-void drift(std::span<const Masses> masses, double h, const double* momentum, double* pose) {
-    drift_all(masses.data(), masses.size(), h, momentum, pose);
+void kick_and_drift(std::span<const Masses> masses, double time, double kept, const double* force, double h,
+                    double* momentum, double* pose) {
+    kick_and_drift_all(masses.data(), masses.size(), {time, kept, force}, h, momentum, pose);
 }
 
 double velocities(std::span<const Masses> masses, const double* momentum, const double* pose, double* velocity) {

@@ -61,7 +61,8 @@ PALPATE_INLINE void add_product(const float (*M)[Skinning::width], const Eight3&
     sum.z += eight(M[6]) * v.x + eight(M[7]) * v.y + eight(M[8]) * v.z;
 }
 
-constexpr int most_kept = 8;  // poses of a batch's spheres that are gathered once, not twice
+constexpr int most_kept = 8;     // poses of a batch's spheres that are gathered once, not twice
+constexpr int shares_ahead = 4;  // fetched before they are needed: the table is larger than the caches near the core
 
 // p = x + R (c + sum_i A_i R^T (x_i - x) + 2 B_i vec(q^-1 q_i)), x and q the means.
 PALPATE_CLONES void follow_all(const Skinning::Batch* batches, std::size_t n, const Skinning::Shares* all_shares,
@@ -73,6 +74,8 @@ PALPATE_CLONES void follow_all(const Skinning::Batch* batches, std::size_t n, co
         Eight qx{}, qy{}, qz{}, qw{};
         EightPose first{}, kept[most_kept];
         for (int i = 0; i < batch.shares; ++i) {
+            const char* ahead = reinterpret_cast<const char*>(shares + i + shares_ahead);
+            for (std::size_t line = 0; line < sizeof(Skinning::Shares); line += 64) __builtin_prefetch(ahead + line);
             const EightPose p = poses_of(rows, shares[i].sphere);
             if (i == 0) first = p;
             if (i < most_kept) kept[i] = p;
