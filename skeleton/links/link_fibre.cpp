@@ -10,6 +10,12 @@
 
 namespace palpate::skeleton {
 
+namespace {
+
+const double ring_in_gyrations = std::sqrt(8.0 / 3);
+
+}  // namespace
+
 double radius_of_gyration(const Link& link) {
     if (link.gyration > 0) return link.gyration;
     const double kE = link.stiffness[0], kF = link.stiffness[1];
@@ -17,13 +23,40 @@ double radius_of_gyration(const Link& link) {
 }
 
 FibreOffsets fibre_offsets(const Link& link, const Vec3& direction) {
-    // Two of the six lie towards the coordinate axis that the link is least along.
-    Eigen::Index axis = 0;
-    direction.cwiseAbs().minCoeff(&axis);
-    const Vec3 e = (Vec3::Unit(axis) - direction[axis] * direction).normalized();
-    const double r = std::sqrt(8.0 / 3) * radius_of_gyration(link);
+    // Two of the six lie in the plane of flexion, or towards the coordinate axis that the link is least along.
+    Vec3 towards;
+    if (link.section) {
+        towards = link.section->axes.row(1).transpose();
+    } else {
+        Eigen::Index axis = 0;
+        direction.cwiseAbs().minCoeff(&axis);
+        towards = Vec3::Unit(axis);
+    }
+    const Vec3 e = (towards - towards.dot(direction) * direction).normalized();
+    const double r = ring_in_gyrations * radius_of_gyration(link);
     const Vec3 x = r * e, y = r * std::sqrt(0.75) * direction.cross(e);
     return {Vec3::Zero(), x, 0.5 * x + y, -0.5 * x + y, -x, -0.5 * x - y, 0.5 * x - y};
+}
+
+FibreShares fibre_shares(const Link& link) {
+    constexpr int elongation = 0, flexion = 1, flexion_2 = 3;
+    FibreShares shares = FibreShares::Zero(fibres_per_link, link.stiffness.size());
+    shares(0, elongation) = 1;
+    const double r = ring_in_gyrations * radius_of_gyration(link);
+    if (r == 0) return shares;
+    // With A = kF / r^2 of the two planes, the two fibres in the first have A_1 / 2 - A_2 / 6 each, the four others
+    // A_2 / 3, and the one on the axis what is left. Without a second plane each takes half of kF.
+    const bool full = link.stiffness.size() > 3;
+    const double by = (full ? 1 : 0.5) / (r * r);
+    const int second = full ? flexion_2 : flexion;
+    for (int j = 1; j < fibres_per_link; ++j) {
+        const bool in_first = j == 1 || j == 4;
+        if (in_first) shares(j, flexion) += by / 2;
+        shares(j, second) += in_first ? -by / 6 : by / 3;
+    }
+    shares(0, flexion) -= by;
+    shares(0, second) -= by;
+    return shares;
 }
 
 LinkFibre::LinkFibre(double length, const Vec3& offset, const Vec3& x_a, const Mat3& R_a, const Vec3& x_b,

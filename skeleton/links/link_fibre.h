@@ -22,8 +22,15 @@ using FibreOffsets = std::array<Vec3, fibres_per_link>;
 ///   I / A = kF / (2 kE).
 double radius_of_gyration(const Link& link);
 
-/// @pre `direction` is the link's unit direction at rest.
+/// The first of the six lies in the plane of the link's flexion. @pre `direction` is the link's unit direction at rest.
 FibreOffsets fibre_offsets(const Link& link, const Vec3& direction);
+
+/// Stiffnesses of the fibres, as kE is one, at a link's own k: K = shares k (7 x 3 or 6). In tension and in bending in
+/// either plane they come to the link's own, sum_j K_j = kE and sum_j K_j (r_j . f)^2 = kF (kF / 2 of the paper's
+/// link), so that what effects make of fibres never outweighs the link. Where k is that of the section they are weights
+/// times kE. A section without extent has the one on the axis alone.
+using FibreShares = Eigen::Matrix<double, fibres_per_link, Eigen::Dynamic, 0, fibres_per_link, 6>;
+FibreShares fibre_shares(const Link& link);
 
 /// A function of a stretch, and its derivatives.
 struct StretchTerms {

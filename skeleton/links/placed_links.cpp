@@ -33,7 +33,9 @@ PlacedLinks::PlacedLinks(const Model& model, const fem::Effects& effects)
     for (size_t l = 0; l < links_.size(); ++l) {
         const FibreOffsets offsets = fibre_offsets(links_[l], directions_[l]);
         scales_.push_back(scale_of(links_[l], offsets, effects));
-        if (has_fibres) offsets_.push_back(offsets);
+        if (!has_fibres) continue;
+        offsets_.push_back(offsets);
+        shares_.push_back(fibre_shares(links_[l]));
     }
 }
 
@@ -60,24 +62,19 @@ LinkFibre PlacedLinks::fibre(size_t link, int j, const State& state) const {
             state.R[a],          state.x.row(b).transpose(), state.R[b]};
 }
 
-// L^2 of one fibre's share of the link.
-double PlacedLinks::share(size_t link, int j) const {
-    return fibre_weights[j] * links_[link].length * links_[link].length;
-}
-
-// L^2 (w / 3 + p) of one fibre's share: its energy at unit kE.
+// L^2 (w / 3 + p) of one fibre: its energy at unit stiffness.
 StretchTerms PlacedLinks::fibre_terms(size_t link, int j, double stretch, bool with_second,
                                       const FibreStates& before) const {
     StretchTerms sum;
     for (const auto& effect : material_) {
         const Vec3 X = middle(links_[link], rest_);
-        sum += (share(link, j) / 3) * uniaxial(*effect, X, directions_[link], stretch, with_second);
+        sum += (1.0 / 3) * uniaxial(*effect, X, directions_[link], stretch, with_second);
     }
     if (plasticity_) {
         const FibreState had = before.empty() ? FibreState() : before[fibres_per_link * link + j];
-        sum += share(link, j) * plastic_terms(*plasticity_, had, stretch);
+        sum += plastic_terms(*plasticity_, had, stretch);
     }
-    return sum;
+    return links_[link].length * links_[link].length * sum;
 }
 
 void PlacedLinks::add_effects(size_t l, const State& state, const FibreStates& before, bool with_hessian,
@@ -99,9 +96,17 @@ void PlacedLinks::add_effects(size_t l, const State& state, const FibreStates& b
         for (int j = 0; j < fibres_per_link; ++j) {
             const LinkFibre one = fibre(l, j, state);
             const StretchTerms its = fibre_terms(l, j, one.stretch(), with_hessian, before);
-            terms.energy[0] += its.energy;
-            one.add_gradient(its, terms.gradient.col(0));
-            if (with_hessian) one.add_hessian(its, terms.hessian[0]);
+            Vec12 gradient = Vec12::Zero();
+            Mat12 hessian = Mat12::Zero();
+            one.add_gradient(its, gradient);
+            if (with_hessian) one.add_hessian(its, hessian);
+            for (Eigen::Index s = 0; s < terms.energy.size(); ++s) {
+                const double share = shares_[l](j, s);
+                if (share == 0) continue;
+                terms.energy[s] += share * its.energy;
+                terms.gradient.col(s) += share * gradient;
+                if (with_hessian) terms.hessian[s] += share * hessian;
+            }
         }
     terms.energy *= scales_[l];
     terms.gradient *= scales_[l];
@@ -135,7 +140,7 @@ Mat12 PlacedLinks::hessian(size_t l, const Stiffnesses& k, const State& state, c
     if (!offsets_.empty())
         for (int j = 0; j < fibres_per_link; ++j) {
             const LinkFibre one = fibre(l, j, state);
-            one.add_hessian(k[0] * fibre_terms(l, j, one.stretch(), true, before), H);
+            one.add_hessian(shares_[l].row(j).dot(k) * fibre_terms(l, j, one.stretch(), true, before), H);
         }
     return scales_[l] * H;
 }
@@ -195,7 +200,9 @@ FibreStates PlacedLinks::flowed(const State& state, const FibreStates& before) c
 
 FlowSlopes PlacedLinks::flow_slopes(const Eigen::VectorXd& k, const State& state, const FibreStates& before) const {
     std::vector<Eigen::Triplet<double>> pulls, follows, lasts;
-    for (size_t l = 0; l < links_.size(); ++l)
+    for (size_t l = 0; l < links_.size(); ++l) {
+        const Eigen::Matrix<double, fibres_per_link, 1> strengths =
+            shares_[l] * order_.link(k, static_cast<Eigen::Index>(l));
         for (int j = 0; j < fibres_per_link; ++j) {
             const int z = 2 * static_cast<int>(fibres_per_link * l + j);
             const FibreState had = before.empty() ? FibreState() : before[z / 2];
@@ -204,7 +211,7 @@ FlowSlopes PlacedLinks::flow_slopes(const Eigen::VectorXd& k, const State& state
             Vec12 stretches = Vec12::Zero();
             one.add_gradient({.energy = 0, .first = 1, .second = 0}, stretches);
             // The energy's derivative is -strain, so what has flowed pulls with it.
-            const double stiffness = scales_[l] * k[order_.of_link(static_cast<Eigen::Index>(l), 0)] * share(l, j);
+            const double stiffness = scales_[l] * strengths[j] * links_[l].length * links_[l].length;
             for (int c = 0; c < 2; ++c) {
                 for (int r = 0; r < 2; ++r)
                     if (slopes(r, 1 + c) != 0) lasts.emplace_back(z + r, z + c, slopes(r, 1 + c));
@@ -216,6 +223,7 @@ FlowSlopes PlacedLinks::flow_slopes(const Eigen::VectorXd& k, const State& state
                 }
             }
         }
+    }
     const Eigen::Index dofs = 6 * rest_.x.rows(), flows = 2 * fibres_per_link * std::ssize(links_);
     FlowSlopes result{Eigen::SparseMatrix<double>(dofs, flows), Eigen::SparseMatrix<double>(flows, dofs),
                       Eigen::SparseMatrix<double>(flows, flows)};
@@ -231,7 +239,7 @@ Stiffnesses PlacedLinks::rest_stiffness(size_t l, const Stiffnesses& k) const {
     double stiffer = 1;
     if (!material_.empty()) {
         const StretchTerms on_axis = fibre_terms(l, 0, fibre(l, 0, rest_).stretch(), true, {});
-        stiffer += std::max(0.0, on_axis.second / share(l, 0));
+        stiffer += std::max(0.0, on_axis.second / (links_[l].length * links_[l].length));
     }
     Stiffnesses own = k;
     own.head<3>() << (stiffer + shear_) * k[0], stiffer * k[1], k[2] + torsion_ * k[1];
@@ -244,7 +252,7 @@ double PlacedLinks::largest_rest_force(const Eigen::VectorXd& k, const FibreStat
     for (size_t l = 0; l < links_.size(); ++l)
         for (int j = 0; j < fibres_per_link; ++j) {
             const StretchTerms its = fibre_terms(l, j, fibre(l, j, rest_).stretch(), false, before);
-            const double force = std::abs(its.first) / (fibre_weights[j] * links_[l].length);
+            const double force = std::abs(its.first) / links_[l].length;
             most = std::max(most, scales_[l] * k[3 * static_cast<Eigen::Index>(l)] * force);
         }
     return most;

@@ -21,9 +21,9 @@ struct FlowSlopes {
 
 /// A model's links, with the effects in force that are in the material or in the links themselves. At stiffness
 /// (kE, kF, kT) a link's energy is
-///   s (kE e_E + kF e_F + kT e_T + torsion kF e_T + shear kE e_S + kE L^2 sum_j W_j (w(lambda_j) / 3 + p(lambda_j)))
+///   s (kE e_E + kF e_F + kT e_T + torsion kF e_T + shear kE e_S + L^2 sum_j K_j (w(lambda_j) / 3 + p(lambda_j)))
 /// with e_E, e_F, e_T as link_terms has them (a full link's as full_link_terms, with those of its other stiffnesses),
-/// e_S of Shear, and over the fibres, of weights W_j, w of the material
+/// e_S of Shear, and over the fibres, of stiffnesses K_j (fibre_shares), w of the material
 /// effects at the link's middle (uniaxial) and p of yielding (plastic_terms). The factor of w is mu V = kE L^2 / 3 for
 /// kE = E A / L, and E = 3 mu as the material keeps its volume. s is the material's scale: the mean over the fibres in
 /// each slice of the link, whose softnesses add up. So all is linear in the stiffnesses, conservative, and the same
@@ -59,7 +59,6 @@ public:
 private:
     double scale_of(const Link& link, const FibreOffsets& offsets, const fem::Effects& effects) const;
     LinkFibre fibre(size_t link, int j, const State& state) const;
-    double share(size_t link, int j) const;
     StretchTerms fibre_terms(size_t link, int j, double stretch, bool with_second, const FibreStates& before) const;
     void add_effects(size_t link, const State& state, const FibreStates& before, bool with_hessian,
                      LinkTerms& terms) const;
@@ -78,6 +77,7 @@ private:
     bool plain_;                         // no effect is in force
     std::vector<double> scales_;         // s (L); empty when plain
     std::vector<FibreOffsets> offsets_;  // (L); empty when no fibre has an energy
+    std::vector<FibreShares> shares_;    // the same
 };
 
 }  // namespace palpate::skeleton

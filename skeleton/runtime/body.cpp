@@ -7,7 +7,9 @@
 #include <cmath>
 
 #include "mesh/errors.h"
+#include "skeleton/effects/effect.h"
 #include "skeleton/model_io.h"
+#include "skeleton/runtime/creep.h"
 #include "skeleton/runtime/kernels/motion.h"
 #include "skeleton/runtime/kernels/skinning.h"
 #include "skeleton/runtime/solver.h"
@@ -24,8 +26,6 @@ std::vector<std::string> what_is_not_played(const skeleton::Model& model) {
     for (const skeleton::Effect& effect : model.effects) {
         if (!skeleton::is_body_effect(effect.name))
             words.push_back(fmt::format("effect '{}' is about the measurement, not the body", effect.name));
-        if (effect.name == "viscosity")
-            words.emplace_back("effect 'viscosity' is not played: the body answers as it does at once");
         if (effect.name == "volume")
             words.emplace_back(
                 "effect 'volume' acts on solids alone: a skeleton's volumes have stiffnesses of their own");
@@ -58,7 +58,8 @@ struct Body::Impl {
     std::vector<std::string> notices;
     SphereRows rest, pose, start, momentum, velocity, force;
     std::vector<Contact> contacts;
-    std::vector<Contact*> in_use;   // all contacts, as the solver wants them
+    std::vector<Contact*> in_use;  // all contacts, as the solver wants them
+    Creep creep;
     std::vector<float> skin;
     std::vector<int> triangles;
     Damping damping;
@@ -75,7 +76,8 @@ struct Body::Impl {
           masses(mass_table(walked.model, field.moves())),
           notices(what_is_not_played(model)),
           rest(rest_rows(walked.model)),
-          contacts(options.contacts) {
+          contacts(options.contacts),
+          creep(skeleton::physics_of(model.effects).creep) {
         pose = start = rest;
         for (SphereRows* rows : {&momentum, &velocity, &force}) rows->assign(rest.size(), 0.0);
         for (Contact& contact : contacts) in_use.push_back(&contact);
@@ -130,9 +132,9 @@ struct Body::Impl {
         }
         field.evaluate(pose.data(), rates, force.data());
         for (Contact& contact : contacts) {
-            if (!contact.used || contact.does == Contact::Does::nothing) continue;
+            if (!contact.acts()) continue;
             contact.at.place(pose.data());
-            contact.at.pull_back(contact.force(), [&](int sphere, const Vec3& f, const Vec3& t) {
+            contact.at.pull_back(contact.borne(), [&](int sphere, const Vec3& f, const Vec3& t) {
                 Eigen::Map<Vec3>(force.data() + row_length * sphere) += f;
                 Eigen::Map<Vec3>(force.data() + row_length * sphere + 4) += t;
             });
@@ -161,6 +163,17 @@ struct Body::Impl {
         }
     }
 
+    void begin_step(double h) {
+        if (creep.begin(h, contacts)) solver.forget_contacts();
+    }
+    void end_step(double h) {
+        for (Contact& contact : contacts) {
+            if (contact.acts()) contact.at.place(pose.data());
+        }
+        creep.end(h, contacts);
+        field.settle(pose.data());
+    }
+
     [[noreturn]] void fail(const char* what, const Solver::Report& report) const {
         throw SolverFailure(
             fmt::format("no {} found in {} Newton steps: {:.3g} N were left; lower the forces or raise the stiffness",
@@ -186,7 +199,10 @@ int Body::vertex_count() const { return static_cast<int>(impl_->walked.model.ski
 void Body::reset() {
     impl_->pose = impl_->rest;
     std::ranges::fill(impl_->momentum, 0.0);
-    for (Contact& contact : impl_->contacts) contact.used = false;
+    for (Contact& contact : impl_->contacts) {
+        contact.used = false;
+        contact.late.setZero();
+    }
     impl_->solver.forget_contacts();
     impl_->field.forget_flow();
 }
@@ -233,7 +249,7 @@ const std::vector<float>& Body::skin() {
     Impl& own = *impl_;
     own.skinning.follow(own.pose.data(), own.skin.data());
     for (Contact& contact : own.contacts) {
-        if (!contact.used || contact.dented.empty()) continue;
+        if (!contact.acts() || contact.dented.empty()) continue;
         contact.at.place(own.pose.data());
         add_dent(own.walked.model, contact, own.skin);
     }
@@ -248,8 +264,10 @@ int Body::touch(const Eigen::Vector3d& point, double radius) {
     Impl& own = *impl_;
     if (own.triangles.empty() || own.skin.empty())
         throw InvalidInput("the model has no skin that could be touched: give it one");
-    const auto free = std::ranges::find(own.contacts, false, &Contact::used);
-    if (free == own.contacts.end())
+    // Of those that are free the one of which least is left.
+    const auto free = std::ranges::min_element(
+        own.contacts, {}, [](const Contact& contact) { return std::pair(contact.used, contact.late.squaredNorm()); });
+    if (free == own.contacts.end() || free->used)
         throw InvalidInput(
             fmt::format("all {} contacts are in use; release one, or make the body with more", own.contacts.size()));
     std::vector<float> bare(own.skin.size());  // without dents
@@ -259,7 +277,7 @@ int Body::touch(const Eigen::Vector3d& point, double radius) {
 }
 
 void Body::release(int contact) {
-    impl_->contact(contact).used = false;
+    impl_->creep.release(impl_->contact(contact));
     impl_->solver.forget_contacts();
 }
 
@@ -268,6 +286,16 @@ void Body::push(int contact, const Eigen::Vector3d& force) {
     if (own.does == Contact::Does::drag) impl_->solver.forget_contacts();
     own.does = Contact::Does::push;
     own.dead = force;
+    own.creeps = true;
+}
+
+void Body::bear(int contact, const Eigen::Vector3d& force) {
+    push(contact, force);
+    Contact& own = impl_->contact(contact);
+    own.creeps = false;
+    own.gain = 1;
+    own.crept.setZero();
+    own.late.setZero();
 }
 
 void Body::drag(int contact, const Eigen::Vector3d& to, double stiffness) {
@@ -275,11 +303,13 @@ void Body::drag(int contact, const Eigen::Vector3d& to, double stiffness) {
     Contact& own = impl_->contact(contact);
     if (own.does != Contact::Does::drag || own.stiffness != stiffness) impl_->solver.forget_contacts();
     own.does = Contact::Does::drag;
+    own.creeps = true;
     own.target = to;
     own.stiffness = stiffness;
 }
 
 Eigen::Vector3d Body::force(int contact) { return impl_->contact(contact).force(); }
+Eigen::Vector3d Body::borne(int contact) { return impl_->contact(contact).borne(); }
 Eigen::Vector3d Body::place(int contact) { return impl_->contact(contact).at.x(); }
 
 void Body::set_damping(const Damping& damping) {
@@ -311,10 +341,11 @@ void Body::step_explicit(double h, int steps) {
     const double dies = std::exp(-own.damping.alpha * h);
     drift(own.masses, 0.5 * h, own.momentum.data(), own.pose.data());
     for (int i = 0; i < steps; ++i) {
+        own.begin_step(h);
         own.evaluate();
         kick_and_drift(own.masses, h, dies, own.force.data(), i + 1 < steps ? h : 0.5 * h, own.momentum.data(),
                        own.pose.data());
-        own.field.settle(own.pose.data());
+        own.end_step(h);
     }
 }
 
@@ -329,13 +360,14 @@ void Body::step_implicit(double h) {
     step.beta = own.damping.beta;
     step.tolerance = own.options.step_tolerance;
     step.reuse = true;
+    own.begin_step(h);
     const Solver::Report report = own.solver.solve(step, own.in_use, own.start.data(), own.velocity.data(), own.pose);
     if (!report.found) {
         std::ranges::copy(own.start, own.pose.begin());
         own.fail("state at the end of the step", report);
     }
     own.set_momenta(h);
-    own.field.settle(own.pose.data());
+    own.end_step(h);
 }
 
 EquilibriumReport Body::equilibrium() {
@@ -346,6 +378,7 @@ EquilibriumReport Body::equilibrium() {
     Solver::Step step;
     step.iterations = 200;
     step.reuse = own.solver.factor_is_dear();
+    own.begin_step(0);
     const Solver::Report report = own.solver.solve(step, own.in_use, nullptr, nullptr, own.pose);
     if (!report.found) {
         std::ranges::copy(own.start, own.pose.begin());

@@ -87,10 +87,14 @@ public:
     void release(int contact);
     /// Force in: a dead force on the contact [N].
     void push(int contact, const Eigen::Vector3d& force);
+    /// The same on a body that creeps, which bears just that however long it acts.
+    void bear(int contact, const Eigen::Vector3d& force);
     /// Position in: a spring from the contact to where it shall be; stiffness > 0 [N/mm].
     void drag(int contact, const Eigen::Vector3d& to, double stiffness);
     /// Force out: what acts on the body there, as it stands [N]; on a hand that drags it, minus that.
     Eigen::Vector3d force(int contact);
+    /// What the body bears there [N]: where it creeps, what force of this instant would hold it as it stands.
+    Eigen::Vector3d borne(int contact);
     Eigen::Vector3d place(int contact);  // [mm]
 
     // --- In time -------------------------------------------------------------------------------------------------
@@ -104,8 +108,8 @@ public:
     /// One step of h by the implicit Euler rule, stable at any h. Factorisations serve on for as long as they lead to
     /// the answer. @throws SolverFailure when Newton's method does not end; the body stays as it was.
     void step_implicit(double h);
-    /// To where all forces vanish, from where it is; at rest then. @throws SolverFailure when there is no such place,
-    /// or nothing holds the body.
+    /// To where all forces vanish, from where it is; at rest then. At once: nothing creeps
+    /// meanwhile. @throws SolverFailure when there is no such place, or nothing holds the body.
     EquilibriumReport equilibrium();
 
 private:

@@ -150,8 +150,11 @@ void place_contact(const skeleton::Model& model, const std::vector<float>& skin,
                                &model.skin[model.surface.triangles(one.on.triangle, c)]);
         }
     }
-    contact.used = true;
+    contact.used = contact.creeps = true;
     contact.does = Contact::Does::nothing;
+    contact.gain = 1;
+    contact.crept.setZero();
+    contact.late.setZero();
     contact.at.assign(skeleton::blend(parts), model.spheres);
     contact.dented.clear();
     contact.kernels.clear();
@@ -162,7 +165,7 @@ void place_contact(const skeleton::Model& model, const std::vector<float>& skin,
 
 void add_dent(const skeleton::Model& model, const Contact& contact, std::vector<float>& skin) {
     if (contact.dented.empty()) return;
-    const Vec3 f = contact.force(), along = f.dot(contact.normal) * contact.normal, across = f - along;
+    const Vec3 f = contact.borne(), along = f.dot(contact.normal) * contact.normal, across = f - along;
     Eigen::Matrix3f motions;  // a column a reach
     for (int R = 0; R < 3; ++R) {
         motions.col(R) = (model.dent[2 * R] * along + model.dent[2 * R + 1] * across).cast<float>();

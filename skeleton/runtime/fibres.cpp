@@ -19,11 +19,11 @@ Fibres::Fibres(const skeleton::Model& model, const fem::Effects& effects, const 
         own.a = link.a;
         own.b = link.b;
         own.length = link.length;
-        own.kE = k[l][0];
-        own.shear = effects.shear * own.kE;
+        own.shear = effects.shear * k[l][0];
         own.direction = skeleton::rest_direction(model, link);
         own.middle = 0.5 * (model.spheres[link.a].center + model.spheres[link.b].center);
         own.offsets = skeleton::fibre_offsets(link, own.direction);
+        own.strengths = skeleton::fibre_shares(link) * k[l];
         links_.push_back(own);
     }
     if (plasticity_) flowed_.resize(skeleton::fibres_per_link * links_.size());
@@ -38,10 +38,10 @@ skeleton::LinkFibre Fibres::fibre(const OfLink& link, int j, const Poses& poses)
     return {link.length, link.offsets[j], poses.x[link.a], poses.R[link.a], poses.x[link.b], poses.R[link.b]};
 }
 
-// kE L^2 (w / 3 + p) of one fibre's share.
+// K L^2 (w / 3 + p) of one fibre.
 skeleton::StretchTerms Fibres::terms(std::size_t l, int j, double stretch, bool with_second) const {
     const OfLink& link = links_[l];
-    const double share = skeleton::fibre_weights[j] * link.kE * link.length * link.length;
+    const double share = link.strengths[j] * link.length * link.length;
     skeleton::StretchTerms sum;
     for (const auto& effect : material_) {
         sum += (share / 3) * skeleton::uniaxial(*effect, link.middle, link.direction, stretch, with_second);

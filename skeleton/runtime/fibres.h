@@ -26,9 +26,10 @@ public:
 private:
     struct OfLink {
         int a = 0, b = 0;
-        double length = 0, kE = 0, shear = 0;  // [mm], [N/mm], [N/mm]
-        Vec3 direction, middle;                // at rest
+        double length = 0, shear = 0;  // [mm], [N/mm]
+        Vec3 direction, middle;        // at rest
         skeleton::FibreOffsets offsets;
+        Eigen::Matrix<double, skeleton::fibres_per_link, 1> strengths;  // [N/mm]
     };
     skeleton::LinkFibre fibre(const OfLink& link, int j, const Poses& poses) const;
     skeleton::StretchTerms terms(std::size_t link, int j, double stretch, bool with_second) const;

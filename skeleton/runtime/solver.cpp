@@ -112,9 +112,9 @@ void Solver::balance(const Step& step, const std::vector<Contact*>& contacts, co
     }
     field_.evaluate(pose, rates, force_.data());
     for (Contact* contact : contacts) {
-        if (!contact->used) continue;
+        if (!contact->acts()) continue;
         contact->at.place(pose);
-        contact->at.pull_back(contact->force(), [&](int sphere, const Vec3& force, const Vec3& torque) {
+        contact->at.pull_back(contact->borne(), [&](int sphere, const Vec3& force, const Vec3& torque) {
             Eigen::Map<Vec3>(force_.data() + row_length * sphere) += force;
             Eigen::Map<Vec3>(force_.data() + row_length * sphere + 4) += torque;
         });
@@ -208,7 +208,7 @@ void Solver::couple_contacts(const std::vector<Contact*>& contacts, const double
     auto S = S_.topLeftCorner(size, size);
     for (int s = 0; s < sprung_; ++s) {
         for (Eigen::Index c = 0; c < size; ++c) S.col(c).segment<3>(3L * s) = along(springs_[s], Y_.col(c).data());
-        S.diagonal().segment<3>(3L * s).array() += 1 / springs_[s].contact->stiffness;
+        S.diagonal().segment<3>(3L * s).array() += 1 / (springs_[s].contact->gain * springs_[s].contact->stiffness);
     }
     Eigen::LLT<Eigen::Ref<Eigen::MatrixXd>> in_place(S);
 }
@@ -244,8 +244,10 @@ void Solver::correct() {
 
 // That a step along way_ changed the net force from net_ to there_.
 void Solver::learn(double share) {
-    if (known_ == static_cast<int>(pairs_.size())) std::rotate(pairs_.begin(), pairs_.begin() + 1, pairs_.end());
-    else ++known_;
+    if (known_ == static_cast<int>(pairs_.size()))
+        std::rotate(pairs_.begin(), pairs_.begin() + 1, pairs_.end());
+    else
+        ++known_;
     Known& pair = pairs_[known_ - 1];
     pair.way = share * way_;
     pair.change = net_ - there_;

@@ -81,7 +81,7 @@ private:
 
     // What steps told of the curvature since the matrix was factored: the latest, the oldest first.
     struct Known {
-        Vector way, change;  // of the spheres, and of the net force, the other way
+        Vector way, change;    // of the spheres, and of the net force, the other way
         double curvature = 0;  // their product, > 0
         double share = 0;      // work
     };

@@ -78,6 +78,51 @@ TEST(FibreOffsets, KeepTheirSectionWhenTheStiffnessIsIdentified) {
     EXPECT_EQ(radius_of_gyration(slack), 0);
 }
 
+TEST(FibreShares, ResistTensionAndBendingAsTheLinkDoes) {
+    // of the paper's link: a half of kF in each plane
+    Link plain;
+    plain.gyration = 2;
+    plain.stiffness = Vec3(3, 20, 5);
+    // a full one, three times as stiff in one plane as in the other
+    Link full = plain;
+    full.section = LinkSection{Vec3::Zero(), rotation({0.3, -0.2, 0.5}), 10};
+    full.stiffness.resize(6);
+    full.stiffness << 3, 18, 5, 6, 1, 1;
+    for (const Link& link : {plain, full}) {
+        const Vec3 direction = link.section ? Vec3(link.section->axes.row(0).transpose()) : Vec3(1, 0, 0);
+        const FibreOffsets offsets = fibre_offsets(link, direction);
+        const Eigen::VectorXd K = fibre_shares(link) * link.stiffness;
+        EXPECT_NEAR(K.sum(), 3, 1e-14);
+        Vec3 first = Vec3::Zero();
+        Mat3 second = Mat3::Zero();
+        for (int j = 0; j < fibres_per_link; ++j) {
+            EXPECT_GT(K[j], 0);
+            first += K[j] * offsets[j];
+            second += K[j] * offsets[j] * offsets[j].transpose();
+        }
+        EXPECT_LT(first.norm(), 1e-14);
+        Mat3 expected = 10 * (Mat3::Identity() - direction * direction.transpose());
+        if (link.section) {
+            const Mat3& f = link.section->axes;
+            expected = 18 * f.row(1).transpose() * f.row(1) + 6 * f.row(2).transpose() * f.row(2);
+        }
+        EXPECT_LT((second - expected).norm(), 1e-13);
+    }
+    // where k is that of the section, weights times kE
+    Link own;
+    own.stiffness = stiffness;
+    const Eigen::VectorXd K = fibre_shares(own) * own.stiffness;
+    for (int j = 0; j < fibres_per_link; ++j) EXPECT_NEAR(K[j], fibre_weights[j] * stiffness[0], 1e-13);
+}
+
+TEST(FibreShares, AreThatOnTheAxisAloneWithoutASection) {
+    Link slack;
+    slack.stiffness = Vec3(2, 0, 0);
+    const Eigen::VectorXd K = fibre_shares(slack) * slack.stiffness;
+    EXPECT_EQ(K[0], 2);
+    EXPECT_EQ(K.sum(), 2);
+}
+
 // --- Stiffening ---------------------------------------------------------------------------------------------------
 
 TEST(StiffeningBar, FollowsYeohsUniaxialCurve) {
@@ -125,8 +170,8 @@ TEST(StiffeningBar, StiffensInBending) {
     }
     const Vec3 stiffened = PlacedLinks(link, effects).terms(0, bent, false).energy;
     const Vec3 plain = PlacedLinks(link, {}).terms(0, bent, false).energy;
-    EXPECT_NEAR(stiffened[0] - plain[0], L * L / 3 * w, 1e-12);
-    EXPECT_EQ(stiffened[1], plain[1]);
+    EXPECT_NEAR((stiffened - plain).dot(stiffness), stiffness[0] * L * L / 3 * w, 1e-12 * stiffness[0]);
+    EXPECT_EQ(stiffened[2], plain[2]);
 
     // So twice the couple turns the end by less than twice as much; without the effect it does exactly.
     const Model bar = make_bar();

@@ -12,8 +12,8 @@ namespace palpate::runtime {
 /// kept. `n` spheres, the last batch filled up. [Reich 1994; McLachlan 1993]
 void drift(std::span<const Masses> masses, double h, double* momentum, double* pose);
 
-/// The same after forces changed momenta over a time, of which drag leaves a share: p <- kept (p + time f), and L by the
-/// torques; of held spheres too, which do not heed it.
+/// The same after forces changed momenta over a time, of which drag leaves a share: p <- kept (p + time f), and L by
+/// the torques; of held spheres too, which do not heed it.
 void kick_and_drift(std::span<const Masses> masses, double time, double kept, const double* force, double h,
                     double* momentum, double* pose);
 
