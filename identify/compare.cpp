@@ -32,9 +32,9 @@ std::vector<Points> predict(const skeleton::Model& model, const std::vector<Stat
     std::vector<skeleton::Equilibrium> equilibria(states.size());
     for_each_in_parallel(static_cast<int>(states.size()), remembers(states) ? 1 : threads, [&](int s) {
         const SolverPool::Loan solver(solvers);
-        const skeleton::FibreStates before = lived_before(model, *solver, k, states, s, equilibria).flowed;
-        Borne found = solve_as_far_as_it_bears(*solver, k, states[s].load, before);
-        borne[s] = found.whole;
+        const Lived before = lived_as_far_as_it_bears(model, *solver, k, states, s, equilibria);
+        Borne found = solve_as_far_as_it_bears(*solver, k, states[s].load, before.flowed);
+        borne[s] = before.whole && found.whole;
         predicted[s] = observed(model, found.equilibrium, found.load, states[s].points);
         equilibria[s] = std::move(found.equilibrium);
     });

@@ -6,6 +6,7 @@
 #include <map>
 
 #include "identify/effects/catalogue.h"
+#include "identify/set/creep.h"
 #include "mesh/errors.h"
 #include "mesh/io/atomic_file.h"
 #include "pipeline/case/subject.h"
@@ -99,21 +100,26 @@ std::optional<identify::MeasurementSet> measurements_of(const fs::path& run, std
 
 bool is_of_measurement(const skeleton::Effect& effect) { return !skeleton::is_body_effect(effect.name); }
 
-/// Sets as they are understood with each choice of a model's faults of the measurement: their numbers in `sets`, by the
-/// faults' names joined by commas. Outliers that were set aside are not recorded: those readings stay.
+bool creeps(const skeleton::Effect& effect) { return effect.name == "viscosity"; }
+
+/// Sets as they are understood with each choice of a model's faults of the measurement, and with loads as they have
+/// crept where it creeps: their numbers in `sets`, by the effects' names joined by commas. Outliers that were set aside
+/// are not recorded: those readings stay.
 json understood_sets(const skeleton::Model& model, const identify::MeasurementSet& set, json& sets) {
-    std::vector<skeleton::Effect> faults;
+    std::vector<skeleton::Effect> effects;
     for (const skeleton::Effect& effect : model.effects) {
-        if (is_of_measurement(effect) && effect.name != "outliers") faults.push_back(effect);
+        if (creeps(effect) || (is_of_measurement(effect) && effect.name != "outliers")) effects.push_back(effect);
     }
     json numbers = json::object();
-    for (unsigned chosen = 0; chosen < 1U << faults.size(); ++chosen) {
+    for (unsigned chosen = 0; chosen < 1U << effects.size(); ++chosen) {
         identify::MeasurementSet understood = set;
         std::string names;
-        for (std::size_t f = 0; f < faults.size(); ++f) {
-            if (!(chosen >> f & 1U)) continue;
-            understood = identify::find_effect(faults[f].name)->corrected(understood, faults[f]);
-            names += (names.empty() ? "" : ",") + faults[f].name;
+        for (std::size_t e = 0; e < effects.size(); ++e) {
+            if (!(chosen >> e & 1U)) continue;
+            understood = creeps(effects[e])
+                             ? identify::as_elastic(understood, *skeleton::physics_of({effects[e]}).creep)
+                             : identify::find_effect(effects[e].name)->corrected(understood, effects[e]);
+            names += (names.empty() ? "" : ",") + effects[e].name;
         }
         json text = set_as_text(understood);
         const auto same = std::ranges::find(sets, text);
@@ -133,11 +139,9 @@ ordered_json effect_json(const skeleton::Effect& effect) {
         numbers.push_back(fmt::format("{} = {:.4g}{}", parameter.name, parameter.value,
                                       parameter.unit == "1" || parameter.unit.empty() ? "" : " " + parameter.unit));
     }
-    return {{"name", effect.name},
-            {"meaning", known == all.end() ? "" : (*known)->description().meaning},
-            {"numbers", numbers},
-            {"fault", is_of_measurement(effect)},
-            {"played", effect.name != "outliers" && effect.name != "viscosity" && effect.name != "volume"}};
+    return {{"name", effect.name},      {"meaning", known == all.end() ? "" : (*known)->description().meaning},
+            {"numbers", numbers},       {"fault", is_of_measurement(effect)},
+            {"creeps", creeps(effect)}, {"played", effect.name != "outliers" && effect.name != "volume"}};
 }
 
 /// Fields of a model's file that differ from those of the first.

@@ -51,7 +51,7 @@ void TouchedModel::take_over(const TouchedModel& other) {
         if (was.drags) {
             drag(t, was.vector, was.stiffness);
         } else {
-            push(t, was.vector);
+            was.creeps ? push(t, was.vector) : bear(t, was.vector);
         }
     }
     stand_as(other.state());
@@ -86,19 +86,27 @@ void TouchedModel::release(int touch) {
 void TouchedModel::push(int touch, const Vec3& force) {
     Touch& own = at(touch);
     own.drags = false;
+    own.creeps = true;
     own.vector = force;
     body_.push(own.contact, force);
 }
 
+void TouchedModel::bear(int touch, const Vec3& force) {
+    push(touch, force);
+    at(touch).creeps = false;
+    body_.bear(at(touch).contact, force);
+}
+
 void TouchedModel::drag(int touch, const Vec3& to, double stiffness) {
     Touch& own = at(touch);
-    own.drags = true;
+    own.drags = own.creeps = true;
     own.vector = to;
     own.stiffness = stiffness;
     body_.drag(own.contact, to, stiffness);
 }
 
 Vec3 TouchedModel::force(int touch) { return body_.force(at(touch).contact); }
+Vec3 TouchedModel::borne(int touch) { return body_.borne(at(touch).contact); }
 Vec3 TouchedModel::place(int touch) { return body_.place(at(touch).contact); }
 
 void TouchedModel::advance(double h) {
@@ -149,7 +157,7 @@ skeleton::Load TouchedModel::load() {
     load.gravity = gravity_;
     for (int t = 0; t < most_touches; ++t) {
         if (touches_[t].contact < 0) continue;
-        const Vec3 now = force(t);
+        const Vec3 now = borne(t);
         for (const skeleton::PointForce& one : unit_loads_[t].forces) load.forces.push_back({one.at, now});
         for (skeleton::Press press : unit_loads_[t].presses) {
             press.force = now;

@@ -18,6 +18,7 @@ public:
         Vec3 rest = Vec3::Zero();    // [mm]
         double radius = 0;           // [mm]
         bool drags = false;          // a spring; else a dead force
+        bool creeps = true;          // the body under it, if it can
         Vec3 vector = Vec3::Zero();  // where the spring leads [mm], or the force [N]
         double stiffness = 0;        // of the spring [N/mm]
     };
@@ -40,8 +41,10 @@ public:
     int touch(const Vec3& rest, double radius);
     void release(int touch);
     void push(int touch, const Vec3& force);
+    void bear(int touch, const Vec3& force);  // without creep
     void drag(int touch, const Vec3& to, double stiffness);
     Vec3 force(int touch);  // on the body [N]
+    Vec3 borne(int touch);  // as runtime::Body has it [N]
     Vec3 place(int touch);  // [mm]
 
     /// h seconds on; in smaller steps where one does not end. @throws SolverFailure when these do not either.

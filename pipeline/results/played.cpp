@@ -25,8 +25,8 @@ std::vector<identify::Borne> play(const skeleton::Model& model, const identify::
             continue;
         }
         const int r = found->second;
-        const skeleton::FibreStates before = identify::lived_before(model, solver, k, read, r, so_far).flowed;
-        played.push_back(identify::solve_as_far_as_it_bears(solver, k, read[r].load, before));
+        const identify::Lived before = identify::lived_as_far_as_it_bears(model, solver, k, read, r, so_far);
+        played.push_back(identify::solve_as_far_as_it_bears(solver, k, read[r].load, before.flowed));
         so_far[r] = played.back().equilibrium;
     }
     return played;

@@ -140,7 +140,6 @@ TEST(LiveNotices, TellWhatIsNotPlayed) {
     EXPECT_EQ(Body(model).notices(),
               (std::vector<std::string>{
                   "the model follows the linear law; it is played in large rotation",
-                  "effect 'viscosity' is not played: the body answers as it does at once",
                   "effect 'volume' acts on solids alone: a skeleton's volumes have stiffnesses of their own",
                   "effect 'outliers' is about the measurement, not the body"}));
 }

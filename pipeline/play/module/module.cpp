@@ -154,15 +154,20 @@ EMSCRIPTEN_KEEPALIVE int play_release(int touch) {
 EMSCRIPTEN_KEEPALIVE int play_push(int touch, double x, double y, double z) {
     return guarded(-1, [&] { return touched().push(touch, {x, y, z}), 0; });
 }
+/// A force that has crept already.
+EMSCRIPTEN_KEEPALIVE int play_bear(int touch, double x, double y, double z) {
+    return guarded(-1, [&] { return touched().bear(touch, {x, y, z}), 0; });
+}
 EMSCRIPTEN_KEEPALIVE int play_drag(int touch, double x, double y, double z, double stiffness) {
     return guarded(-1, [&] { return touched().drag(touch, {x, y, z}, stiffness), 0; });
 }
-/// Force on the body [N], place, place at rest [mm], radius [mm]: 10 numbers.
+/// Force on the body [N], place, place at rest [mm], radius [mm], what the body bears [N]: 13 numbers.
 EMSCRIPTEN_KEEPALIVE const double* play_at(int touch) {
     return guarded(static_cast<const double*>(nullptr), [&] {
-        const Vec3 f = touched().force(touch), x = touched().place(touch);
+        const Vec3 f = touched().force(touch), x = touched().place(touch), b = touched().borne(touch);
         const TouchedModel::Touch& own = touched().touches()[touch];
-        return handed_out({f[0], f[1], f[2], x[0], x[1], x[2], own.rest[0], own.rest[1], own.rest[2], own.radius});
+        return handed_out(
+            {f[0], f[1], f[2], x[0], x[1], x[2], own.rest[0], own.rest[1], own.rest[2], own.radius, b[0], b[1], b[2]});
     });
 }
 /// d place / d force at a touch (3 x 3) [mm/N]; null where the body is not stable as it stands.

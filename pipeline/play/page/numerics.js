@@ -57,10 +57,11 @@ class Numerics {
   touch(rest, radius) { return this.told(this.wasm._play_touch(...rest, radius)); }
   release(touch) { this.told(this.wasm._play_release(touch)); }
   push(touch, force) { this.told(this.wasm._play_push(touch, ...force)); }
+  bear(touch, force) { this.told(this.wasm._play_bear(touch, ...force)); }
   drag(touch, to, stiffness) { this.told(this.wasm._play_drag(touch, ...to, stiffness)); }
   at(touch) {
-    const n = this.doubles(this.wasm._play_at(touch), 10);
-    return {force: [...n.slice(0, 3)], place: [...n.slice(3, 6)], rest: [...n.slice(6, 9)], radius: n[9]};
+    const n = this.doubles(this.wasm._play_at(touch), 13);
+    return {force: [...n.slice(0, 3)], place: [...n.slice(3, 6)], rest: [...n.slice(6, 9)], radius: n[9], borne: [...n.slice(10)]};
   }
   /// d place / d force (3 x 3, symmetric) [mm/N], or null where the body is not stable as it stands.
   compliance(touch) {

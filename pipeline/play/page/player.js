@@ -40,27 +40,30 @@ class Player {
   isOn(effect) { return effect.played && !this.chosen.off.has(effect.name); }
   /// A bit for each effect that is on.
   get effects() { return this.model.effects.reduce((bits, e, i) => bits + (this.isOn(e) ? 2 ** i : 0), 0); }
-  /// The number of the set as it is understood with the faults of the measurement that are on.
-  get set() {
-    const faults = this.model.effects.filter((e) => e.fault && this.isOn(e)).map((e) => e.name);
-    return this.model.sets ? this.model.sets[faults.join(',')] : -1;
+  /// The number of the set as it is understood with those effects that are on.
+  setWith(effects) {
+    return this.model.sets ? this.model.sets[effects.filter((e) => this.isOn(e)).map((e) => e.name).join(',')] : -1;
   }
-  get state() { return this.chosen.probe < 0 ? null : this.data.sets[this.set].states[this.chosen.probe]; }
+  /// With the faults of the measurement.
+  get set() { return this.setWith(this.model.effects.filter((e) => e.fault)); }
+  /// With loads that have crept until they were read.
+  get state() {
+    const set = this.setWith(this.model.effects.filter((e) => e.fault || e.creeps));
+    return this.chosen.probe < 0 ? null : this.data.sets[set].states[this.chosen.probe];
+  }
 
   /// Takes up what is chosen; `anew`: from rest, with the probe's loads, else from where the body stands.
   restart(anew) {
     const set = this.set < 0 ? null : this.data.sets[this.set], state = this.state;
     const known = [state?.gravity, set?.gravity].find((g) => g && g.every((v) => v !== null));
     this.numerics.start(this.chosen.model, this.effects, known ?? [0, 0, 0], state?.pressure ?? 0, anew);
-    if (anew) {
-      Object.assign(this, {hand: null, pinned: [], loads: [], motionless: false});
-      for (const [x, y, z, fx, fy, fz, radius] of state?.contacts ?? []) {
-        if (fx === 0 && fy === 0 && fz === 0) continue;
-        const touch = this.numerics.touch([x, y, z], radius);
-        this.numerics.push(touch, [fx, fy, fz]);
-        this.loads.push(touch);
-      }
+    if (anew) Object.assign(this, {hand: null, pinned: [], loads: [], motionless: false});
+    const acting = (state?.contacts ?? []).filter((contact) => contact.slice(3, 6).some((f) => f !== 0));
+    if (acting.length !== this.loads.length) {
+      for (const touch of this.loads) this.numerics.release(touch);
+      this.loads = acting.map(([x, y, z, , , , radius]) => this.numerics.touch([x, y, z], radius));
     }
+    acting.forEach((contact, i) => this.numerics.bear(this.loads[i], contact.slice(3, 6)));
     if (anew) this.high = 0;
     if (this.set >= 0) this.verdict = this.judge.begin(this.chosen.model, this.effects, this.set);
     this.wake();
@@ -127,7 +130,7 @@ class Player {
   /// What acts now, as `palpate simulate` takes it.
   probesTable() {
     const rows = this.touches.map((t) => this.numerics.at(t))
-      .map(({force, rest, radius}) => ['1', '0', ...rest, ...force, radius].join(','));
+      .map(({borne, rest, radius}) => ['1', '0', ...rest, ...borne, radius].join(','));
     return ['probe,time,x,y,z,fx,fy,fz,radius', ...rows].join('\n') + '\n';
   }
 
