@@ -1,6 +1,5 @@
 #include "skeleton/runtime/solver.h"
 
-#include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -67,17 +66,12 @@ Solver::Solver(ForceField& field, int contacts) : field_(field), matrix_(0, {}) 
 
     const auto size = static_cast<Eigen::Index>(6 * free_.size());
     for (Vector* v : {&net_, &way_, &there_}) v->setZero(size);
-    for (Known& pair : pairs_) {
-        for (Vector* v : {&pair.way, &pair.change}) v->setZero(size);
-    }
+    learnt_ = LearntCurvature(size);
+    springs_ = Springs(block_of_, size, contacts);
     const std::size_t rows = static_cast<std::size_t>(row_length) * row_count(model);
     for (SphereRows* r : {&force_, &velocity_, &trial_}) r->assign(rows, 0.0);
     x_predicted_.resize(n);
     R_predicted_.resize(n);
-    springs_.resize(contacts);
-    Y_.setZero(size, Eigen::Index{3} * contacts);
-    S_.setZero(Eigen::Index{3} * contacts, Eigen::Index{3} * contacts);
-    Pz_.setZero(Eigen::Index{3} * contacts);
 }
 
 // Where the spheres would be without forces, which is where the search starts. The drag alpha divides velocities by
@@ -164,95 +158,20 @@ bool Solver::factor(const Step& step, const double* pose, double& shift) {
         if (!(shift < 1e8 * stiffest_)) return false;
     }
     factored_ = true;
-    known_ = 0;
+    learnt_.forget();
     factored_h_ = step.h;
     factored_alpha_ = step.alpha;
     factored_beta_ = step.beta;
-    contacts_known_ = false;
+    springs_.forget();
     return true;
 }
 
 bool Solver::factor_is_dear() const { return matrix_.cost_in_solutions() > dear; }
 
-Vec3 Solver::along(const Spring& spring, const double* z) const {
-    Vec3 sum = Vec3::Zero();
-    for (int s = 0; s < spring.contact->at.shares(); ++s) {
-        const int block = block_of_[spring.contact->at.sphere(s)];
-        if (block >= 0) sum += spring.by_share[s] * Eigen::Map<const Eigen::Matrix<double, 6, 1>>(z + 6L * block);
-    }
-    return sum;
-}
-
-void Solver::couple_contacts(const std::vector<Contact*>& contacts, const double* pose) {
-    contacts_known_ = true;
-    sprung_ = 0;
-    for (Contact* contact : contacts) {
-        if (!contact->used || contact->does != Contact::Does::drag) continue;
-        Spring& spring = springs_[sprung_];
-        spring.contact = contact;
-        contact->at.place(pose);
-        contact->at.jacobians(spring.by_share);
-        for (int axis = 0; axis < 3; ++axis) {
-            auto column = Y_.col(3 * sprung_ + axis);
-            column.setZero();
-            for (int s = 0; s < contact->at.shares(); ++s) {
-                const int block = block_of_[contact->at.sphere(s)];
-                if (block >= 0) column.segment<6>(6L * block) += spring.by_share[s].row(axis).transpose();
-            }
-            matrix_.solve(column.data());
-        }
-        ++sprung_;
-    }
-    const Eigen::Index size = 3L * sprung_;
-    if (size == 0) return;
-    auto S = S_.topLeftCorner(size, size);
-    for (int s = 0; s < sprung_; ++s) {
-        for (Eigen::Index c = 0; c < size; ++c) S.col(c).segment<3>(3L * s) = along(springs_[s], Y_.col(c).data());
-        S.diagonal().segment<3>(3L * s).array() += 1 / (springs_[s].contact->gain * springs_[s].contact->stiffness);
-    }
-    Eigen::LLT<Eigen::Ref<Eigen::MatrixXd>> in_place(S);
-}
-
-// way <- (A + P^T k P)^-1 way = z - Y (k^-1 + P Y)^-1 P z,  z = A^-1 way.
-void Solver::solve_factored(Vector& way) {
-    matrix_.solve(way.data());
-    const Eigen::Index size = 3L * sprung_;
-    if (size == 0) return;
-    for (int s = 0; s < sprung_; ++s) Pz_.segment<3>(3L * s) = along(springs_[s], way.data());
-    const auto L = S_.topLeftCorner(size, size);
-    auto z = Pz_.head(size);
-    L.triangularView<Eigen::Lower>().solveInPlace(z);
-    L.transpose().triangularView<Eigen::Upper>().solveInPlace(z);
-    for (Eigen::Index c = 0; c < size; ++c) way -= z[c] * Y_.col(c);
-}
-
-// way_ <- H net_, H the factored inverse with what the steps since have told of the curvature (limited-memory BFGS,
-// the two loops of Nocedal, Math. Comp. 35, 1980).
+// way_ <- H net_, H the factored inverse with the springs of contacts, and what steps have told since.
 void Solver::correct() {
     way_ = net_;
-    for (int i = known_ - 1; i >= 0; --i) {
-        Known& pair = pairs_[i];
-        pair.share = pair.way.dot(way_) / pair.curvature;
-        way_ -= pair.share * pair.change;
-    }
-    solve_factored(way_);
-    for (int i = 0; i < known_; ++i) {
-        const Known& pair = pairs_[i];
-        way_ += (pair.share - pair.change.dot(way_) / pair.curvature) * pair.way;
-    }
-}
-
-// That a step along way_ changed the net force from net_ to there_.
-void Solver::learn(double share) {
-    if (known_ == static_cast<int>(pairs_.size()))
-        std::rotate(pairs_.begin(), pairs_.begin() + 1, pairs_.end());
-    else
-        ++known_;
-    Known& pair = pairs_[known_ - 1];
-    pair.way = share * way_;
-    pair.change = net_ - there_;
-    pair.curvature = pair.way.dot(pair.change);
-    if (!(pair.curvature > 0)) --known_;
+    learnt_.solve(way_, [&](Vector& v) { springs_.solve(matrix_, v); });
 }
 
 // No sphere turns by more than half a radian at once, no link's ends part by more than half its length.
@@ -311,7 +230,7 @@ Solver::Report Solver::solve(const Step& step, const std::vector<Contact*>& cont
     Report report;
     if (step.h > 0) predict(step, start, velocity, pose.data());
     trial_ = pose;
-    known_ = 0;
+    learnt_.forget();
     balance(step, contacts, start, pose.data(), net_);
     bool fresh = false;
     bool due = !step.reuse || !factored_ || factored_h_ != step.h || factored_alpha_ != step.alpha ||
@@ -326,7 +245,7 @@ Solver::Report Solver::solve(const Step& step, const std::vector<Contact*>& cont
         }
         fresh = due;
         due = false;
-        if (!contacts_known_) couple_contacts(contacts, pose.data());
+        if (!springs_.known()) springs_.take(matrix_, contacts, pose.data());
         correct();
         const double size = largest(way_, length_);
         if (!std::isfinite(size)) return report;
@@ -353,7 +272,7 @@ Solver::Report Solver::solve(const Step& step, const std::vector<Contact*>& cont
             due = true;
             continue;
         }
-        learn(share);
+        learnt_.learn(share, way_, net_, there_);
         pose.swap(trial_);
         trial_ = pose;
         net_.swap(there_);
@@ -415,7 +334,7 @@ double Solver::stiffest_mode(const double* pose) {
 double Solver::softest_mode(const double* pose) {
     assemble(1, pose);
     factored_ = false;
-    contacts_known_ = false;
+    springs_.forget();
     if (net_.size() == 0 || matrix_.factor(0, metric_)) return 0;
     Vector v(net_.size());
     for (Eigen::Index i = 0; i < v.size(); ++i) v[i] = std::sin(1.0 + static_cast<double>(i));

@@ -2,6 +2,8 @@
 
 #include "skeleton/runtime/contacts.h"
 #include "skeleton/runtime/force_field.h"
+#include "skeleton/runtime/learnt_curvature.h"
+#include "skeleton/runtime/springs.h"
 #include "skeleton/solve/block_cholesky.h"
 #include "skeleton/solve/branches.h"
 
@@ -30,7 +32,7 @@ public:
     Report solve(const Step& step, const std::vector<Contact*>& contacts, const double* start, const double* velocity,
                  SphereRows& pose);
     /// A contact was set, taken away or has another stiffness.
-    void forget_contacts() { contacts_known_ = false; }
+    void forget_contacts() { springs_.forget(); }
 
     /// Whether reuse pays even where corrections are large.
     bool factor_is_dear() const;
@@ -50,10 +52,7 @@ private:
     void set_rates(const Step& step, const double* start, const double* pose);
     bool factor(const Step& step, const double* pose, double& shift);
     void assemble(double share, const double* pose);
-    void couple_contacts(const std::vector<Contact*>& contacts, const double* pose);
-    void solve_factored(Vector& way);
     void correct();
-    void learn(double share);
     double step_limit(const double* from) const;
     Eigen::Matrix<double, 6, 1> way_of(int sphere) const;  // zero for one that is held
     void move(const double* from, double share, double* to) const;
@@ -79,27 +78,8 @@ private:
     std::vector<Vec3> spread_;  // second moments of mass along them, half the trace less the inertia [tonne mm^2]
     Vector net_, way_, there_;  // (6 free)
 
-    // What steps told of the curvature since the matrix was factored: the latest, the oldest first.
-    struct Known {
-        Vector way, change;    // of the spheres, and of the net force, the other way
-        double curvature = 0;  // their product, > 0
-        double share = 0;      // work
-    };
-    std::array<Known, 12> pairs_;
-    int known_ = 0;
-
-    // Springs of contacts as a low-rank change: (A + P^T k P)^-1 by A^-1 P^T. [Woodbury]
-    bool contacts_known_ = false;
-    int sprung_ = 0;
-    struct Spring {
-        const Contact* contact = nullptr;
-        std::vector<Eigen::Matrix<double, 3, 6>> by_share;
-    };
-    Vec3 along(const Spring& spring, const double* z) const;  // P z
-    std::vector<Spring> springs_;                             // those in use first
-    Eigen::MatrixXd Y_;                                       // (6 free x 3 contacts)
-    Eigen::MatrixXd S_;  // k^-1 + P Y, or its Cholesky factor (3 contacts x 3 contacts)
-    Vector Pz_;
+    Springs springs_;
+    LearntCurvature learnt_{0};
 };
 
 }  // namespace palpate::runtime

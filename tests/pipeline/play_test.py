@@ -307,6 +307,37 @@ def check_ladder(browser, run, page):
     expect(worst < 0.5, f"a replayed probe is {worst} mm off")
 
 
+def check_creep(browser, run, page):
+    """A replayed state has crept until it was read; what the hand does creeps as one looks on."""
+    ladder = json.loads((run / "improve/ladder.json").read_text())
+    expect(ladder["steps"][-1]["effects"] == ["viscosity"], f"the ladder adds {ladder['steps'][-1]['effects']}")
+    browser.open(page.as_uri(), 1366, 900)
+    steps = len(ladder["steps"])
+    browser.run(f"p.chooseModel({steps - 1});")
+    verdict, told = wait_for_verdict(browser), ladder["steps"][-1]["rms_mm"]
+    print(f"with viscosity: {verdict['rms']:.6g} mm rms, {told:.6g} by ladder.json")
+    expect(abs(verdict["rms"] - told) < 1e-5 * told + 1e-6, f"with viscosity it comes to {verdict['rms']} mm, not {told}")
+    late = browser.run("""const {states} = p.data.sets[p.set];
+      return states.reduce((last, s, i) => s.contacts.some((c) => c[5] !== 0) && s.time > (states[last]?.time ?? 0) ? i : last, -1);""")
+    crept = browser.run(f"p.chooseProbe({late}); p.settle(); return p.markerErrors().rms;")
+    at_once = browser.run("p.at('effect-viscosity').click(); p.settle(); return p.markerErrors().rms;")
+    print(f"a state held for long: {crept:.3g} mm off, {at_once:.3g} mm without viscosity")
+    expect(at_once > 3 * crept, f"viscosity takes the error of a state from {at_once} to {crept} mm only")
+    before, after, back = browser.run("""
+      p.at('effect-viscosity').click(); p.chooseProbe(-1); p.frame = () => {};
+      const {contacts} = p.data.sets[p.set].states[%d], [x, y, z, ...force] = contacts.find((c) => c[5] !== 0);
+      p.press([x, y, z], [0, 0, 1], force.slice(0, 3), 0);
+      const touch = p.hand.touch, rest = p.numerics.at(touch).place;
+      const away = () => length3(minus3(p.numerics.at(touch).place, rest));
+      p.settle(); const before = away();
+      for (let i = 0; i < 600; ++i) p.numerics.advance(0.1);
+      p.settle(); const after = away();
+      p.numerics.push(touch, [0, 0, 0]); p.settle();
+      return [before, after, away()];""" % late)
+    print(f"the hand's push: {before:.3g} mm at once, {after:.3g} mm in a minute, {back:.3g} mm when it is taken away")
+    expect(after > 1.1 * before and 0 < back < after - 0.9 * before, "a push does not creep, or leaves nothing behind")
+
+
 def check_phone(browser, page):
     browser.open(page.as_uri(), 390, 844, mobile=True)
     wait_for_verdict(browser)
@@ -388,11 +419,16 @@ with tempfile.TemporaryDirectory() as folder:
     size = page.stat().st_size
     print(f"{size} bytes")
     expect(size < 5_000_000, f"{size} bytes are more than 5 MB")
+    palpate("probe", at / "case/case.yaml", "-o", at / "slow", "--hide", "viscosity", "--dwell", "0.1,2,10", "--probes", 5,
+            "--edge-length", 10)
+    palpate("run", at / "slow", "-o", at / "crept", "--parameters", "uniform", "--particles", 40, "--edge-length", 10)
+    palpate("play", at / "crept", "-o", at / "crept.html")
     check_server(at / "measured")
     browser = Browser(at / "profile")
     try:
         check_model(browser, at / "measured", page, at)
         check_ladder(browser, at / "measured", page)
+        check_creep(browser, at / "crept", at / "crept.html")
         check_phone(browser, page)
         tell_time(browser, page)
         for error in browser.errors():
