@@ -70,6 +70,29 @@ TEST(LiveEquilibrium, HoldsUnderPressure) {
     EXPECT_LT(apart.most, as_good * apart.moved);
 }
 
+TEST(LiveEquilibrium, IsFoundAgainAndAgain) {
+    skeleton::Model chain = make_chain(200), lattice = make_full_lattice({9, 4, 3});
+    for (skeleton::Model* model : {&chain, &lattice}) {
+        give_skin(*model);
+        Body body(*model);
+        const auto last = static_cast<int>(model->spheres.size()) - 1;
+        const Vec3 tip = model->spheres[last].center;
+        const int contact = body.touch(tip);
+        body.push(contact, model == &chain ? Vec3(0, 1e-3, 0) : Vec3(0, 0, -1));
+        body.equilibrium();
+        const Vec3 force = body.force(contact), bent = body.position(last);
+        EXPECT_GT((bent - tip).norm(), 1);
+        for (int i = 0; i < 8; ++i) {
+            body.push(contact, Vec3::Zero());
+            body.equilibrium();
+            EXPECT_LT((body.position(last) - tip).norm(), 1e-6);
+            body.push(contact, force);
+            body.equilibrium();
+            EXPECT_LT((body.position(last) - bent).norm(), 1e-6);
+        }
+    }
+}
+
 TEST(LiveEquilibrium, ADragPullsAsItsSpringIsLong) {
     skeleton::Model model = make_full_lattice({4, 3, 2});
     give_skin(model);
