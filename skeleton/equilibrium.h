@@ -20,7 +20,7 @@ struct Equilibrium {
     int iterations = 0;
     double residual = 0;   // largest force left [N], torques over the mean link length
     Eigen::VectorXd step;  // from rest (6N); law linear: the answer itself, linear in the load
-    FibreStates before{};  // how far the links' fibres had flowed in the states before (7L); empty: not at all
+    FibreStates before{};  // how far the links' fibres had flowed in the states before (12L); empty: not at all
 };
 
 /// The configuration in which all net forces vanish, by the model's law: one linear step from rest, or Newton on the
@@ -32,7 +32,7 @@ struct Equilibrium {
 Equilibrium equilibrium(const Model& model, const Load& load, const EquilibriumOptions& options = {},
                         const State* start = nullptr, const FibreStates& before = {});
 
-/// How far the fibres of the links have flowed after an equilibrium, `before` the next one (7L). The linear law takes
+/// How far the fibres of the links have flowed after an equilibrium, `before` the next one (12L). The linear law takes
 /// the material as it is at rest: in it nothing flows. Empty when nothing yields. `extra`, here and below: effects in
 /// force beyond the model's own.
 FibreStates flowed(const Model& model, const Equilibrium& equilibrium, const fem::Effects& extra = {});

@@ -101,7 +101,7 @@ Eigen::MatrixXd Slopes::pulled(const States& states, const Eigen::MatrixXd& F) c
 }
 
 std::vector<Eigen::MatrixXd> Slopes::lived(int last, const Eigen::MatrixXd& K) const {
-    std::vector<Eigen::MatrixXd> X(last + 1), Z(last + 1);  // Z: of what has flowed (14L x n)
+    std::vector<Eigen::MatrixXd> X(last + 1), Z(last + 1);  // Z: of what has flowed (24L x n)
     for (int s = 0; s <= last; ++s) {
         const Life& life = *states_[s].life;
         Eigen::MatrixXd F = states_[s].G.times(K);
@@ -114,7 +114,7 @@ std::vector<Eigen::MatrixXd> Slopes::lived(int last, const Eigen::MatrixXd& K) c
 }
 
 Eigen::MatrixXd Slopes::pulled_through(std::vector<Eigen::MatrixXd> F) const {
-    std::vector<Eigen::MatrixXd> Z(F.size());  // what the states after it make of what has flowed (14L x n)
+    std::vector<Eigen::MatrixXd> Z(F.size());  // what the states after it make of what has flowed (24L x n)
     Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(dk_.rows(), F.front().cols());
     for (int s = static_cast<int>(F.size()) - 1; s >= 0; --s) {
         const Life& life = *states_[s].life;

@@ -4,6 +4,7 @@
 
 #include <Eigen/Geometry>
 #include <cmath>
+#include <numbers>
 
 #include "mesh/errors.h"
 #include "skeleton/links/turning_curvature.h"
@@ -12,7 +13,14 @@ namespace palpate::skeleton {
 
 namespace {
 
-const double ring_in_gyrations = std::sqrt(8.0 / 3);
+constexpr int in_hexagon = 6;
+// Radii of the hexagons, in radii of gyration.
+const double outer = 2 * std::sqrt((3 + std::sqrt(3.0)) / 6), inner = 2 * std::sqrt((3 - std::sqrt(3.0)) / 6);
+
+double angle_of(int fibre) {
+    const double sixth = std::numbers::pi / 3;
+    return fibre < in_hexagon ? fibre * sixth : (fibre - in_hexagon + 0.5) * sixth;
+}
 
 }  // namespace
 
@@ -23,8 +31,7 @@ double radius_of_gyration(const Link& link) {
 }
 
 FibreOffsets fibre_offsets(const Link& link, const Vec3& direction) {
-    // Two of the six lie in the plane of flexion, or towards the coordinate axis that the link is least along.
-    Vec3 towards;
+    Vec3 towards;  // the plane of flexion, or else the coordinate axis that the link is least along
     if (link.section) {
         towards = link.section->axes.row(1).transpose();
     } else {
@@ -32,30 +39,34 @@ FibreOffsets fibre_offsets(const Link& link, const Vec3& direction) {
         direction.cwiseAbs().minCoeff(&axis);
         towards = Vec3::Unit(axis);
     }
-    const Vec3 e = (towards - towards.dot(direction) * direction).normalized();
-    const double r = ring_in_gyrations * radius_of_gyration(link);
-    const Vec3 x = r * e, y = r * std::sqrt(0.75) * direction.cross(e);
-    return {Vec3::Zero(), x, 0.5 * x + y, -0.5 * x + y, -x, -0.5 * x - y, 0.5 * x - y};
+    const Vec3 e = (towards - towards.dot(direction) * direction).normalized(), across = direction.cross(e);
+    const double gyration = radius_of_gyration(link);
+    FibreOffsets offsets;
+    for (int j = 0; j < fibres_per_link; ++j) {
+        const double r = gyration * (j < in_hexagon ? outer : inner), angle = angle_of(j);
+        offsets[j] = r * (std::cos(angle) * e + std::sin(angle) * across);
+    }
+    return offsets;
 }
 
 FibreShares fibre_shares(const Link& link) {
     constexpr int elongation = 0, flexion = 1, flexion_2 = 3;
     FibreShares shares = FibreShares::Zero(fibres_per_link, link.stiffness.size());
-    shares(0, elongation) = 1;
-    const double r = ring_in_gyrations * radius_of_gyration(link);
-    if (r == 0) return shares;
-    // With A = kF / r^2 of the two planes, the two fibres in the first have A_1 / 2 - A_2 / 6 each, the four others
-    // A_2 / 3, and the one on the axis what is left. Without a second plane each takes half of kF.
+    shares.col(elongation).setConstant(fibre_weight);
+    const double gyration = radius_of_gyration(link);
+    if (gyration == 0) return shares;
+    // What the two kF have beyond kE r_g^2: their mean by weight that goes from the inner hexagon to the outer one,
+    // their difference by cos 2 phi round the outer one. Without a second plane each has half of kF.
     const bool full = link.stiffness.size() > 3;
-    const double by = (full ? 1 : 0.5) / (r * r);
-    const int second = full ? flexion_2 : flexion;
-    for (int j = 1; j < fibres_per_link; ++j) {
-        const bool in_first = j == 1 || j == 4;
-        if (in_first) shares(j, flexion) += by / 2;
-        shares(j, second) += in_first ? -by / 6 : by / 3;
+    const double square = gyration * gyration, part = full ? 1 : 0.5;
+    for (int j = 0; j < fibres_per_link; ++j) {
+        const bool is_outer = j < in_hexagon;
+        const double mean = (is_outer ? 1 : -1) / (3 * square * (outer * outer - inner * inner));
+        const double difference = is_outer ? std::cos(2 * angle_of(j)) / (1.5 * square * outer * outer) : 0;
+        shares(j, elongation) -= mean * square;
+        shares(j, flexion) += part * (mean + difference) / 2;
+        shares(j, full ? flexion_2 : flexion) += part * (mean - difference) / 2;
     }
-    shares(0, flexion) -= by;
-    shares(0, second) -= by;
     return shares;
 }
 

@@ -10,11 +10,12 @@ namespace palpate::skeleton {
 /// A link's material as fibres along it. At rest fibre j spans from X_a + r_j to X_b + r_j; its ends are carried
 /// rigidly by the spheres, so it stretches in tension and in bending:
 ///   lambda_j = |x_b + R_b r_j - x_a - R_a r_j| / L.
-/// Offsets and weights (shares of the link's volume) are a rule of degree 5 on a disc of radius 2 r_g, which has the
-/// radius of gyration r_g: one fibre on the axis, six round it at sqrt(8/3) r_g. So second and fourth moments are those
-/// of a round section, about every axis. [Abramowitz & Stegun 1964, 25.4.61]
-inline constexpr int fibres_per_link = 7;
-inline constexpr std::array<double, fibres_per_link> fibre_weights{0.25, 0.125, 0.125, 0.125, 0.125, 0.125, 0.125};
+/// Offsets: two hexagons, turned by 30 degrees against each other, at sqrt((3 +- sqrt 3) / 6) of the radius 2 r_g of
+/// the disc that has the radius of gyration r_g; each fibre has the same share of the link's volume. A rule of degree
+/// 5, so that second and fourth moments are those of a round section about every axis, and a section that has yielded
+/// throughout bears a moment within 3 % of its own, whichever way it is bent.
+inline constexpr int fibres_per_link = 12;
+inline constexpr double fibre_weight = 1.0 / fibres_per_link;
 using FibreOffsets = std::array<Vec3, fibres_per_link>;
 
 /// r_g of the section that a link stands for [mm]: its own, or where it tells none what its stiffnesses amount to.
@@ -22,13 +23,14 @@ using FibreOffsets = std::array<Vec3, fibres_per_link>;
 ///   I / A = kF / (2 kE).
 double radius_of_gyration(const Link& link);
 
-/// The first of the six lies in the plane of the link's flexion. @pre `direction` is the link's unit direction at rest.
+/// Outer ones first, the first of them in the plane of the link's flexion. @pre `direction` is the link's unit
+/// direction at rest.
 FibreOffsets fibre_offsets(const Link& link, const Vec3& direction);
 
-/// Stiffnesses of the fibres, as kE is one, at a link's own k: K = shares k (7 x 3 or 6). In tension and in bending in
+/// Stiffnesses of the fibres, as kE is one, at a link's own k: K = shares k (12 x 3 or 6). In tension and in bending in
 /// either plane they come to the link's own, sum_j K_j = kE and sum_j K_j (r_j . f)^2 = kF (kF / 2 of the paper's
-/// link), so that what effects make of fibres never outweighs the link. Where k is that of the section they are weights
-/// times kE. A section without extent has the one on the axis alone.
+/// link), so that what effects make of fibres never outweighs the link. Where k is that of the section, all are the
+/// same.
 using FibreShares = Eigen::Matrix<double, fibres_per_link, Eigen::Dynamic, 0, fibres_per_link, 6>;
 FibreShares fibre_shares(const Link& link);
 

@@ -49,7 +49,7 @@ double PlacedLinks::scale_of(const Link& link, const FibreOffsets& offsets, cons
         for (int j = 0; j < fibres_per_link; ++j) {
             double scale = 1;
             for (const auto& effect : effects.material) scale *= effect->stiffness(X + offsets[j]);
-            of_slice += fibre_weights[j] * scale;
+            of_slice += fibre_weight * scale;
         }
         softness += 1 / (of_slice * slices);
     }

@@ -11,12 +11,12 @@
 namespace palpate::skeleton {
 
 /// How what has flowed goes on from one state to the next, to first order. With z the strain and the sum of each fibre
-/// (14L), as FibreState orders them,
+/// (24L), as FibreState orders them,
 ///   d net force = pulls dz_before,   dz = follows step + lasts dz_before.
 struct FlowSlopes {
-    Eigen::SparseMatrix<double> pulls;    // [N] (6N x 14L)
-    Eigen::SparseMatrix<double> follows;  // (14L x 6N)
-    Eigen::SparseMatrix<double> lasts;    // (14L x 14L)
+    Eigen::SparseMatrix<double> pulls;    // [N] (6N x 24L)
+    Eigen::SparseMatrix<double> follows;  // (24L x 6N)
+    Eigen::SparseMatrix<double> lasts;    // (24L x 24L)
 };
 
 /// A model's links, with the effects in force that are in the material or in the links themselves. At stiffness
@@ -46,7 +46,7 @@ public:
     /// The same after a step from rest (6N), to first order.
     Eigen::SparseMatrix<double> linear_forces(const Eigen::VectorXd& step, const FibreStates& before = {}) const;
 
-    /// How far the fibres have flowed once they stood in a state (7L); empty when nothing yields.
+    /// How far the fibres have flowed once they stood in a state (12L); empty when nothing yields.
     FibreStates flowed(const State& state, const FibreStates& before = {}) const;
     /// Its derivatives in a state at stiffnesses k. @pre the material yields.
     FlowSlopes flow_slopes(const Eigen::VectorXd& k, const State& state, const FibreStates& before = {}) const;

@@ -13,7 +13,7 @@ struct FibreState {
     double accumulated = 0;  // sum of its changes' magnitudes [-]
 };
 
-/// Of all fibres of all links (7L), link by link; empty: none has flowed.
+/// Of all fibres of all links (12L), link by link; empty: none has flowed.
 using FibreStates = std::vector<FibreState>;
 
 /// What a fibre has flowed to once its strain was lambda - 1: the return mapping of one dimension.
