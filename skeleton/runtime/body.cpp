@@ -361,7 +361,12 @@ void Body::step_implicit(double h) {
     step.tolerance = own.options.step_tolerance;
     step.reuse = true;
     own.begin_step(h);
-    const Solver::Report report = own.solver.solve(step, own.in_use, own.start.data(), own.velocity.data(), own.pose);
+    Solver::Report report = own.solver.solve(step, own.in_use, own.start.data(), own.velocity.data(), own.pose);
+    if (!report.found) {
+        std::ranges::copy(own.start, own.pose.begin());
+        step.coast = false;
+        report = own.solver.solve(step, own.in_use, own.start.data(), own.velocity.data(), own.pose);
+    }
     if (!report.found) {
         std::ranges::copy(own.start, own.pose.begin());
         own.fail("state at the end of the step", report);

@@ -74,15 +74,16 @@ Solver::Solver(ForceField& field, int contacts) : field_(field), matrix_(0, {}) 
     R_predicted_.resize(n);
 }
 
-// Where the spheres would be without forces, which is where the search starts. The drag alpha divides velocities by
-// 1 + alpha h, and multiplies masses.
+// Where the spheres would be without forces. The drag alpha divides velocities by 1 + alpha h, and multiplies masses.
 void Solver::predict(const Step& step, const double* start, const double* velocity, double* pose) {
     const double share = step.h / (1 + step.alpha * step.h);
     for (const int i : free_) {
         const Eigen::Quaterniond q = turn_of(share * turning(velocity, i)) * orientation(start, i);
-        Eigen::Map<Vec3>(pose + row_length * i) = x_predicted_[i] = place(start, i) + share * place(velocity, i);
+        x_predicted_[i] = place(start, i) + share * place(velocity, i);
+        R_predicted_[i] = q.toRotationMatrix();
+        if (!step.coast) continue;
+        Eigen::Map<Vec3>(pose + row_length * i) = x_predicted_[i];
         Eigen::Map<Eigen::Vector4d>(pose + row_length * i + 4) = q.coeffs().normalized();
-        R_predicted_[i] = turned_by(pose, i);
     }
 }
 

@@ -19,6 +19,7 @@ public:
         double tolerance = 1e-9;     // how far off a sphere may be, as a share of the mean link length
         int iterations = 50;
         bool reuse = false;  // an old factor, as long as it leads to the answer
+        bool coast = true;   // the search starts where the spheres would be without forces, else where they are
     };
     struct Report {
         bool found = false;
