@@ -51,6 +51,7 @@ public:
 
     nlohmann::json play(const Probe& probe) {
         body_.reset();
+        pressed_.clear();
         const identify::LoadState* acting = identify::acting_before(probe);
         if (acting) press(*acting);
         if (std::ranges::any_of(model_.spheres, &skeleton::Sphere::held)) body_.equilibrium();
@@ -72,14 +73,24 @@ public:
     void write_series() const { mesh::write_pvd(output_ / "simulation.pvd", series_); }
 
 private:
+    // A contact that goes on is held, as what it does creeps; one that does not fades.
     void press(const identify::LoadState& state) {
-        for (const int contact : pressed_) body_.release(contact);
-        pressed_.clear();
+        std::vector<Pressed> before;
+        before.swap(pressed_);
         for (const mesh::Contact& contact : state.contacts) {
             if (contact.force.isZero(0)) continue;
-            pressed_.push_back(body_.touch(contact.point, contact.radius));
-            body_.push(pressed_.back(), contact.force);
+            const auto goes_on = std::ranges::find_if(before, [&](const Pressed& was) {
+                return was.at.point == contact.point && was.at.radius == contact.radius;
+            });
+            if (goes_on != before.end()) {
+                pressed_.push_back(*goes_on);
+                before.erase(goes_on);
+            } else {
+                pressed_.push_back({contact, body_.touch(contact.point, contact.radius)});
+            }
+            body_.push(pressed_.back().contact, contact.force);
         }
+        for (const Pressed& was : before) body_.release(was.contact);
     }
 
     /// The largest displacement [mm].
@@ -102,7 +113,11 @@ private:
     fs::path output_;
     const skeleton::Model& model_;
     runtime::Body body_;
-    std::vector<int> pressed_;
+    struct Pressed {
+        mesh::Contact at;
+        int contact = 0;  // of the body
+    };
+    std::vector<Pressed> pressed_;
     std::vector<mesh::SeriesStep> series_;
 };
 
@@ -113,7 +128,8 @@ Outcome simulate_motion(const SimulateOptions& options, const fs::path& output) 
     const std::vector<identify::LoadState> states = identify::read_probes(options.probes);
     std::size_t contacts = 1;
     for (const identify::LoadState& state : states) contacts = std::max(contacts, state.contacts.size());
-    Motion motion(options, output, model, static_cast<int>(contacts));
+    constexpr std::size_t most = 64;
+    Motion motion(options, output, model, static_cast<int>(std::min(most, 2 * contacts + 2)));  // some of them fading
     Console::notice(fmt::format("Motion by {}; damping {}: {:.3g} 1/s times mass and {:.3g} s times stiffness.",
                                 options.implicit ? fmt::format("implicit steps of {:g} s", *options.dt)
                                                  : fmt::format("{} explicit steps a frame", motion.steps()),
@@ -159,15 +175,11 @@ Outcome simulate(const SimulateOptions& options, const Common& common) {
     if (options.dt) return simulate_motion(options, output);
     const skeleton::Model model = skeleton::read_model(options.model);
     const std::vector<identify::LoadState> states = identify::read_probes(options.probes);
-    const identify::ContactLoads to_load(model);
-    std::vector<skeleton::Load> loads;
-    loads.reserve(states.size());
-    for (const identify::LoadState& state : states) loads.push_back(to_load(state.contacts));
     const fs::path posterior = options.posterior.empty() ? options.model.parent_path() : options.posterior;
     const std::optional<Doubts> doubts = read_doubts(model, posterior, options.draws);
     if (!doubts && !options.posterior.empty() && options.draws > 0)
         throw InvalidInput(posterior.string() + ": holds no particles.csv with particles; identify writes it");
-    const std::vector<Forecast> forecasts = forecast(model, loads, doubts, common.threads);
+    const std::vector<Forecast> forecasts = forecast(model, states, doubts, common.threads);
 
     std::vector<mesh::SeriesStep> steps;
     nlohmann::json results = nlohmann::json::array();

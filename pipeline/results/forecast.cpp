@@ -11,10 +11,13 @@
 #include "identify/fit/solver_pool.h"
 #include "identify/parallel.h"
 #include "identify/particles/resampling.h"
+#include "identify/set/creep.h"
+#include "identify/set/loads.h"
 #include "mesh/errors.h"
 #include "mesh/io/atomic_file.h"
 #include "pipeline/results/particles_file.h"
 #include "pipeline/results/series.h"
+#include "skeleton/effects/effect.h"
 #include "skeleton/statics.h"
 
 namespace palpate::pipeline {
@@ -134,6 +137,25 @@ double share_of_force(const skeleton::Load& load, const identify::MeasuredRange&
     return measured.force > 0 ? force / measured.force : 1;
 }
 
+/// Loads that one body bears one after another.
+using Life = std::vector<skeleton::Load>;
+
+/// Where nothing is kept from state to state, each is a life of its own.
+std::vector<Life> lives_of(const skeleton::Model& model, const std::vector<identify::LoadState>& states) {
+    const fem::Effects physics = skeleton::physics_of(model.effects);
+    identify::MeasurementSet set;
+    set.states = states;
+    if (physics.creep) set = identify::as_elastic(set, *physics.creep);
+    const identify::ContactLoads to_load(model);
+    std::vector<Life> lives;
+    for (std::size_t s = 0; s < states.size(); ++s) {
+        const bool goes_on = physics.plasticity && s > 0 && states[s].probe == states[s - 1].probe;
+        if (!goes_on) lives.emplace_back();
+        lives.back().push_back(to_load(set.states[s].contacts));
+    }
+    return lives;
+}
+
 std::string probes_in_words(std::vector<int> probes) {
     probes.erase(std::unique(probes.begin(), probes.end()), probes.end());
     constexpr std::size_t most = 8;
@@ -164,34 +186,42 @@ std::optional<Doubts> read_doubts(const skeleton::Model& model, const fs::path& 
     return doubts;
 }
 
-std::vector<Forecast> forecast(const skeleton::Model& model, const std::vector<skeleton::Load>& loads,
+std::vector<Forecast> forecast(const skeleton::Model& model, const std::vector<identify::LoadState>& states,
                                const std::optional<Doubts>& doubts, int threads) {
-    std::vector<Forecast> forecasts(loads.size());
+    const std::vector<Life> lives = lives_of(model, states);
+    std::vector<std::vector<Forecast>> of_lives(lives.size());
     identify::SolverPool solvers(model);
     const Eigen::VectorXd k = skeleton::stiffness_vector(model);
-    identify::for_each_in_parallel(static_cast<int>(loads.size()), threads, [&](int i) {
+    identify::for_each_in_parallel(static_cast<int>(lives.size()), threads, [&](int l) {
         const identify::SolverPool::Loan solver(solvers);
-        const skeleton::Load& load = loads[static_cast<std::size_t>(i)];
-        Forecast& here = forecasts[static_cast<std::size_t>(i)];
-        here.equilibrium = solver->solve(k, load);
-        here.displacement = skin_displacement(model, here.equilibrium, load);
-        here.largest = here.displacement.rows() > 0 ? here.displacement.rowwise().norm().maxCoeff() : 0;
-        here.low = here.high = here.largest;
-        if (!doubts || here.displacement.rows() == 0) return;
-        std::vector<Points> drawn;
-        for (const Eigen::VectorXd& draw : doubts->draws) {
-            try {
-                const skeleton::Equilibrium found = solver->solve(draw, load, {}, &here.equilibrium.state);
-                drawn.push_back(skin_displacement(model, found, load));
-            } catch (const SolverFailure&) {
+        skeleton::FibreStates before;
+        std::vector<skeleton::FibreStates> before_by_draws(doubts ? doubts->draws.size() : 0);
+        for (const skeleton::Load& load : lives[l]) {
+            Forecast& here = of_lives[l].emplace_back();
+            here.equilibrium = solver->solve(k, load, {}, nullptr, before);
+            before = skeleton::flowed(model, here.equilibrium);
+            here.displacement = skin_displacement(model, here.equilibrium, load);
+            here.largest = here.displacement.rows() > 0 ? here.displacement.rowwise().norm().maxCoeff() : 0;
+            here.low = here.high = here.largest;
+            if (!doubts || here.displacement.rows() == 0) continue;
+            std::vector<Points> drawn;
+            for (std::size_t d = 0; d < doubts->draws.size(); ++d) {
+                try {
+                    const skeleton::Equilibrium found =
+                        solver->solve(doubts->draws[d], load, {}, &here.equilibrium.state, before_by_draws[d]);
+                    before_by_draws[d] = skeleton::flowed(model, found);
+                    drawn.push_back(skin_displacement(model, found, load));
+                } catch (const SolverFailure&) {
+                }
             }
+            if (drawn.empty()) continue;
+            const double share = share_of_force(load, doubts->measured);
+            tell_spread(drawn, mean_square_error(here.displacement, share, doubts->forecast_error), here);
         }
-        if (drawn.empty()) return;
-        tell_spread(
-            drawn, mean_square_error(here.displacement, share_of_force(load, doubts->measured), doubts->forecast_error),
-            here);
     });
-    return forecasts;
+    std::vector<Forecast> all;
+    for (std::vector<Forecast>& life : of_lives) std::ranges::move(life, std::back_inserter(all));
+    return all;
 }
 
 std::vector<std::string> extrapolations(const identify::MeasuredRange& measured,

@@ -21,7 +21,7 @@ struct Doubts {
 /// same ones each time. @throws IoError, InvalidInput naming the file, also where it belongs to another model.
 std::optional<Doubts> read_doubts(const skeleton::Model& model, const std::filesystem::path& folder, int count);
 
-/// The skin's displacement under a load.
+/// The skin's displacement in a state.
 struct Forecast {
     skeleton::Equilibrium equilibrium;
     Points displacement;       // (vertices x 3) [mm]
@@ -30,7 +30,8 @@ struct Forecast {
     double low = 0, high = 0;  // where it lies with 95 % [mm]
 };
 
-/// Under each load, with what is in doubt where that is told. Draws that do not bear a load are left out.
+/// In each state of probes, which creep until its time and keep what has flowed within a probe, with what is in doubt
+/// where that is told. Draws that do not bear a load are left out.
 ///
 /// Why 95 % of what is measured later lie within. The draws tell what stiffness leaves open, which is little: most of
 /// what a coarse model errs by, no stiffness mends. How large that is, probes tell that the fit had not seen
@@ -39,7 +40,7 @@ struct Forecast {
 /// probes: an error over its root is Student's t with n degrees of freedom [Gelman et al., Bayesian Data
 /// Analysis, 3.2].
 /// @throws SolverFailure where the model itself does not.
-std::vector<Forecast> forecast(const skeleton::Model& model, const std::vector<skeleton::Load>& loads,
+std::vector<Forecast> forecast(const skeleton::Model& model, const std::vector<identify::LoadState>& states,
                                const std::optional<Doubts>& doubts, int threads);
 
 /// Where forecasts go beyond what was measured, in words.

@@ -71,18 +71,15 @@ struct Forecasts : testing::Test {
 };
 
 TEST_F(Forecasts, IntervalsHoldTheTruth) {
-    const identify::ContactLoads to_load(truth);
     int held = 0, all = 0;
     for (std::uint64_t seed = 1; seed <= 6; ++seed) {
         const skeleton::Model model = identified(seed).model;
-        std::vector<skeleton::Load> loads;
-        for (const identify::LoadState& state : random_pushes(truth, 6, 100 + seed))
-            loads.push_back(to_load(state.contacts));
+        const std::vector<identify::LoadState> states = random_pushes(truth, 6, 100 + seed);
         const auto doubts = read_doubts(model, folder.path(), 32);
         ASSERT_TRUE(doubts);
-        const std::vector<Forecast> told = forecast(model, loads, doubts, 2);
-        const std::vector<Forecast> real = forecast(truth, loads, std::nullopt, 2);
-        for (std::size_t i = 0; i < loads.size(); ++i) {
+        const std::vector<Forecast> told = forecast(model, states, doubts, 2);
+        const std::vector<Forecast> real = forecast(truth, states, std::nullopt, 2);
+        for (std::size_t i = 0; i < states.size(); ++i) {
             held += told[i].low <= real[i].largest && real[i].largest <= told[i].high;
             EXPECT_LT(told[i].high - told[i].low, told[i].largest) << "it says nothing";
             EXPECT_GT(told[i].high - told[i].low, 1e-4 * told[i].largest) << "it claims to know all";
@@ -123,13 +120,10 @@ struct CoarseForecast {
 
     /// How many of the coordinates held out lie within 1.96 sd, and how many there are.
     std::pair<int, int> within() const {
-        const identify::ContactLoads to_load(model);
-        std::vector<skeleton::Load> loads;
-        for (const identify::LoadState& state : held_out.states) loads.push_back(to_load(state.contacts));
-        const std::vector<Forecast> told = forecast(model, loads, doubts, 2);
+        const std::vector<Forecast> told = forecast(model, held_out.states, doubts, 2);
         const identify::Comparison comparison = identify::compare(model, held_out, 2);
         int held = 0, all = 0;
-        for (std::size_t s = 0; s < loads.size(); ++s) {
+        for (std::size_t s = 0; s < held_out.states.size(); ++s) {
             if (held_out.states[s].contacts.empty()) continue;
             const auto& readings = held_out.states[s].readings;
             for (std::size_t r = 0; r < readings.size(); ++r) {
@@ -167,13 +161,52 @@ TEST(ForecastOfACoarseModel, HoldsNinetyFivePercentOfWhatWasNotFitted) {
 }
 
 TEST_F(Forecasts, OfARigidlyKnownModelAreItsOwn) {
-    const identify::ContactLoads to_load(truth);
-    const std::vector<skeleton::Load> loads{to_load(random_pushes(truth, 1, 3).front().contacts)};
-    const Forecast only = forecast(truth, loads, std::nullopt, 1).front();
+    const Forecast only = forecast(truth, random_pushes(truth, 1, 3), std::nullopt, 1).front();
     EXPECT_EQ(only.sd.size(), 0);
     EXPECT_EQ(only.low, only.largest);
     EXPECT_EQ(only.high, only.largest);
     EXPECT_FALSE(read_doubts(truth, folder.path(), 32)) << "there is no posterior in an empty folder";
+}
+
+/// One push, held until each time, or gone there.
+std::vector<identify::LoadState> held_until(const skeleton::Model& model, const std::vector<double>& times, bool ends) {
+    std::vector<identify::LoadState> states;
+    for (const double time : times) {
+        states.push_back(random_pushes(model, 1, 3).front());
+        states.back().time = time;
+    }
+    if (ends) states.back().contacts.clear();
+    return states;
+}
+
+TEST_F(Forecasts, StatesCreepUntilTheirTimes) {
+    skeleton::Model model = truth;
+    model.effects.push_back({"viscosity", {{"creep", 0.5, "1"}, {"tau", 2, "s"}}});
+    const std::vector<identify::LoadState> states = held_until(model, {0, 2, 20}, false);
+    const std::vector<Forecast> told = forecast(model, states, std::nullopt, 2);
+    for (std::size_t s = 0; s < states.size(); ++s) {
+        identify::LoadState elastic = states[s];
+        for (mesh::Contact& contact : elastic.contacts) contact.force *= 1 + 0.5 * (1 - std::exp(-elastic.time / 2));
+        const Points expected = forecast(truth, {elastic}, std::nullopt, 1).front().displacement;
+        EXPECT_LT((told[s].displacement - expected).norm(), 1e-7 * expected.norm()) << "at " << elastic.time << " s";
+    }
+}
+
+TEST_F(Forecasts, WhatHasFlowedStays) {
+    skeleton::Model model = truth;
+    model.effects.push_back({"plasticity", {{"yield", 1e-3, "1"}, {"hardening", 0.5, "1"}}});
+    const std::vector<identify::LoadState> states = held_until(model, {0, 1}, true);
+    const std::vector<Forecast> told = forecast(model, states, std::nullopt, 2);
+    const skeleton::Equilibrium loaded =
+        skeleton::equilibrium(model, identify::ContactLoads(model)(states[0].contacts));
+    const skeleton::FibreStates flowed = skeleton::flowed(model, loaded);
+    const skeleton::Equilibrium left = skeleton::equilibrium(model, {}, {}, nullptr, flowed);
+    EXPECT_GT(told[1].largest, 0.01 * told[0].largest);
+    EXPECT_LT((told[1].equilibrium.state.x - left.state.x).norm(), 1e-6 * told[0].largest);
+    // another probe is another body
+    std::vector<identify::LoadState> apart = states;
+    apart[1].probe = apart[0].probe + 1;
+    EXPECT_LT(forecast(model, apart, std::nullopt, 2)[1].largest, 1e-9);
 }
 
 TEST_F(Forecasts, BeyondTheMeasurementsIsTold) {
