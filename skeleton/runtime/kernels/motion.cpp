@@ -37,11 +37,12 @@ PALPATE_INLINE void turn(Lanes t, Lanes& q_axis, Lanes& q_next, Lanes& q_last, L
     next = turned_next;
 }
 
-// Four rows of momenta from `offset` on, after a kick.
+// Forces over a time, and the share of momenta that drag leaves.
 struct Kick {
     double time = 0, kept = 1;
     const double* force = nullptr;
 };
+// Of four spheres the rows of momenta, from `offset` on.
 template <bool kicked>
 PALPATE_INLINE void momenta_after(const Kick& kick, int offset, double* momentum, Lanes (&row)[lanes]) {
     for (int i = 0; i < lanes; ++i) {
