@@ -29,8 +29,8 @@ FibreOffsets fibre_offsets(const Link& link, const Vec3& direction);
 
 /// Stiffnesses of the fibres, as kE is one, at a link's own k: K = shares k (12 x 3 or 6). In tension and in bending in
 /// either plane they come to the link's own, sum_j K_j = kE and sum_j K_j (r_j . f)^2 = kF (kF / 2 of the paper's
-/// link), so that what effects make of fibres never outweighs the link. Where k is that of the section, all are the
-/// same.
+/// link), so that where all have yielded hardening's share of the link is left. Where k is that of the section, all are
+/// the same; inner ones fall below 0 where the link bends 1.6 times as stiffly as its section stretches.
 using FibreShares = Eigen::Matrix<double, fibres_per_link, Eigen::Dynamic, 0, fibres_per_link, 6>;
 FibreShares fibre_shares(const Link& link);
 

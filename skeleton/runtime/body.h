@@ -108,8 +108,8 @@ public:
     /// One step of h by the implicit Euler rule, stable at any h. Factorisations serve on for as long as they lead to
     /// the answer. @throws SolverFailure when Newton's method does not end; the body stays as it was.
     void step_implicit(double h);
-    /// To where all forces vanish, from where it is; at rest then. At once: nothing creeps
-    /// meanwhile. @throws SolverFailure when there is no such place, or nothing holds the body.
+    /// To where all forces vanish, from where it is; at rest then. At once: nothing creeps meanwhile.
+    /// @throws SolverFailure when there is no such place, or nothing holds the body.
     EquilibriumReport equilibrium();
 
 private:
