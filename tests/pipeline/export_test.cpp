@@ -309,5 +309,22 @@ TEST(SimulateMotion, BeginsInTheEquilibriumOfARowOfTimeZero) {
     EXPECT_EQ(told["damping"]["stiffness"], 0.01);
 }
 
+TEST(SimulateMotion, CreepsFromLoadToLoadAsStatesDo) {
+    const TemporaryFolder scratch;
+    skeleton::Model model = exported_model();
+    model.damping = {.alpha = 0, .beta = 0.01};
+    model.effects.push_back({"viscosity", {{"creep", 0.8, "1"}, {"tau", 0.4, "s"}}});
+    skeleton::write_model(scratch / "model.json", model);
+    mesh::write_text(scratch / "probes.csv",
+                     "probe,time,x,y,z,fx,fy,fz,radius\n1,0.5,80,80,40,0,0,-1,0\n1,1.5,80,80,40,0,0,-2,0\n");
+    const commands::SimulateOptions still{scratch / "model.json", scratch / "probes.csv", scratch / "still"};
+    const double end = commands::simulate(still, {}).json["states"][1]["max_displacement_mm"];
+    commands::SimulateOptions moving{scratch / "model.json", scratch / "probes.csv", scratch / "moved", 0.01, 1.5};
+    moving.implicit = true;
+    const double reached = commands::simulate(moving, {}).json["probes"][0]["max_displacement_mm"];
+    EXPECT_NEAR(reached, end,
+                0.01 * end);  // steps are a fortieth of the time of the creep
+}
+
 }  // namespace
 }  // namespace palpate::pipeline
