@@ -14,7 +14,7 @@ namespace palpate::pipeline {
 struct QualityProbing {
     fem::Law law = fem::Law::linear;  // linear: largest displacements of 0.5 % of the longest side; others: 5 %
     int fit = 48;                     // probes that skeletons are fitted to, [1, 1000]
-    int held_out = 12;                // other ones that they are judged by, [1, 1000]
+    int held_out = 48;                // other ones that they are judged by, [1, 1000]
     int threads = 1;                  // changes no number
     void validate() const;            // @throws InvalidInput naming option, value and bound
 };

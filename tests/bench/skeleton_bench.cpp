@@ -4,7 +4,8 @@
 // Writes two tables in markdown; --csv the same numbers in one. Errors are relative, |model - body| / |body| over all
 // of the surface that is free, per cent: rms over probes, median, 90th percentile, and pooled at equal force.
 // "linear": displacements of 0.5 % of the longest side, both linear. "large": of 5 %, neo-Hookean body, large
-// rotations, half as many probes. "coarse": quadratic tetrahedra in small strain with as many free nodes, E fitted.
+// rotations, half as many probes to fit to, two thirds to judge by. "coarse": quadratic tetrahedra in small strain with
+// as many free nodes, E fitted.
 // --sets keeps the bodies' answers there, and reads them where they are there already: they take most of the time.
 
 #include <fmt/format.h>
@@ -38,7 +39,7 @@ using pipeline::ProbedQuality;
 struct Options {
     std::vector<std::string> bodies = bench::body_names();
     std::vector<int> spheres;  // free ones; empty: each body's own
-    int fit = 48, held_out = 12, threads = 1;
+    int fit = 48, held_out = 48, threads = 1;
     bool skip_large = false, skip_coarse = false;
     fs::path meshes = "../shared/data/meshes", sets, csv;
 };
