@@ -13,7 +13,7 @@
 namespace palpate::mesh {
 namespace {
 
-constexpr double entries_per_byte = 1000;   // zlib packs no denser
+constexpr double entries_per_byte = 1000;                 // zlib packs no denser
 constexpr double bytes_per_byte = 24 * entries_per_byte;  // of memory for one of the file: points of three doubles
 constexpr double most_mebibytes = 4096;
 constexpr std::size_t most_head = 1 << 20;  // [bytes] that are looked through
