@@ -68,12 +68,12 @@ std::optional<Eigen::Vector4d> local_coordinates(const mesh::VolumeMesh& mesh, i
 
 ElementLocator::ElementLocator(const mesh::VolumeMesh& mesh) : mesh_(mesh) {
     const auto m = static_cast<int>(mesh.tetrahedra.rows());
-    std::vector<mesh::Box> boxes(m);
+    boxes_.resize(m);
     mesh::Box all = mesh::bounding_box(mesh.nodes);
     for (int e = 0; e < m; ++e) {
-        boxes[e] = element_box(mesh, e);
-        all.min = all.min.cwiseMin(boxes[e].min);
-        all.max = all.max.cwiseMax(boxes[e].max);
+        boxes_[e] = element_box(mesh, e);
+        all.min = all.min.cwiseMin(boxes_[e].min);
+        all.max = all.max.cwiseMax(boxes_[e].max);
     }
 
     // About one cell an element, at most 256 along a side.
@@ -85,7 +85,7 @@ ElementLocator::ElementLocator(const mesh::VolumeMesh& mesh) : mesh_(mesh) {
     // Count, then fill.
     start_.assign(static_cast<std::size_t>(cells_.x()) * cells_.y() * cells_.z() + 1, 0);
     const auto for_each_cell = [&](int e, auto&& visit) {
-        const Eigen::Vector3i low = cell_of(boxes[e].min), high = cell_of(boxes[e].max);
+        const Eigen::Vector3i low = cell_of(boxes_[e].min), high = cell_of(boxes_[e].max);
         for (int z = low.z(); z <= high.z(); ++z) {
             for (int y = low.y(); y <= high.y(); ++y) {
                 for (int x = low.x(); x <= high.x(); ++x) visit(index_of({x, y, z}));
@@ -119,6 +119,9 @@ std::optional<ElementPoint> ElementLocator::find(const Vec3& point) const {
     std::optional<ElementPoint> best;
     double depth = rounding;
     for (int k = start_[cell]; k < start_[cell + 1]; ++k) {
+        // where a mesh is far finer than elsewhere, a cell lists thousands
+        const mesh::Box& box = boxes_[elements_[k]];
+        if ((point.array() < box.min.array()).any() || (point.array() > box.max.array()).any()) continue;
         const auto l = local_coordinates(mesh_, elements_[k], point);
         if (!l || l->minCoeff() < depth) continue;
         // At equal depth the first element stays.

@@ -31,6 +31,7 @@ private:
     std::size_t index_of(const Eigen::Vector3i& cell) const;
 
     const mesh::VolumeMesh& mesh_;
+    std::vector<mesh::Box> boxes_;  // of the elements
     Vec3 min_;
     double cell_size_;
     Eigen::Vector3i cells_;
