@@ -8,16 +8,6 @@
 
 namespace palpate::identify {
 
-double EffectNumber::value_of(double number) const {
-    if (logarithm) return std::exp(number);
-    return spread > 0 ? spread * std::sinh(number) : number;
-}
-
-double EffectNumber::number_of(double value) const {
-    if (logarithm) return std::log(value);
-    return spread > 0 ? std::asinh(value / spread) : value;
-}
-
 bool Effect::enforce(const Eigen::VectorXd&, Setting&) const { return false; }
 
 Action Effect::act(const Problem&, int, Action action, const Eigen::VectorXd&) const { return action; }
@@ -57,8 +47,8 @@ skeleton::Effect Effect::told(const std::vector<EffectNumber>& numbers, const Ei
     assert(std::ssize(numbers) == values.size());
     skeleton::Effect result{name(), {}};
     for (std::size_t j = 0; j < numbers.size(); ++j) {
-        const double value = numbers[j].value_of(values[static_cast<Eigen::Index>(j)]);
-        result.parameters.push_back({numbers[j].name, value, numbers[j].unit});
+        const double value = values[static_cast<Eigen::Index>(j)];
+        result.parameters.push_back({numbers[j].name, numbers[j].logarithm ? std::exp(value) : value, numbers[j].unit});
     }
     return result;
 }
@@ -69,7 +59,7 @@ Eigen::VectorXd Effect::values(const std::vector<EffectNumber>& numbers, const s
         const EffectNumber& number = numbers[j];
         const auto found = std::ranges::find(told.parameters, number.name, &skeleton::EffectParameter::name);
         const bool is_told = found != told.parameters.end();
-        result[j] = is_told ? number.number_of(found->value) : number.start;
+        result[j] = !is_told ? number.start : number.logarithm ? std::log(found->value) : found->value;
     }
     return result;
 }

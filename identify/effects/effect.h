@@ -51,13 +51,8 @@ struct EffectNumber {
     double start = 0;        // neutral, or where a fit begins
     double prior_mean = 0, prior_sd = 1;
     bool logarithm = false;       // the fit's number is its logarithm
-    double spread = 0;            // above 0: the fit's number is asinh(value / spread), like a logarithm beyond it
     double least = -INFINITY;     // of the fit's number
     bool prior_at_start = false;  // its prior is centred where the fit begins: a direction, which a scan has found
-
-    /// The value behind the fit's number, and back.
-    double value_of(double number) const;
-    double number_of(double value) const;
 };
 
 /// What a weak effect does to a model that lacks it, one way or another: groups of columns over sigma, as many numbers

@@ -3,18 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 
 #include "identify/diagnose/fit.h"
 #include "identify/effects/catalogue.h"
 
 namespace palpate::identify {
 namespace {
-
-// How strongly materials stiffen spans orders of magnitude: what is believed of the coefficients before the
-// measurements has wide tails. One sd of it is 3 and 30, two are 14 and 140, three 63 and 630.
-constexpr double prior_sd = 1.5;
-constexpr double spread_2 = 1.4, spread_3 = 14;
 
 /// A material that grows stiffer as it is stretched: Yeoh's law, C20 = c2 mu and C30 = c3 mu beside mu/2.
 class StiffeningEffect : public Effect {
@@ -33,13 +27,12 @@ public:
     }
 
     std::vector<EffectNumber> numbers(const BodyModel&, const Problem&) const override {
-        return {{.name = "c2", .unit = "1", .prior_sd = prior_sd, .spread = spread_2, .least = 0},
-                {.name = "c3", .unit = "1", .prior_sd = prior_sd, .spread = spread_3, .least = 0}};
+        return {{.name = "c2", .unit = "1", .prior_sd = 3, .least = 0},
+                {.name = "c3", .unit = "1", .prior_sd = 30, .least = 0}};
     }
 
     bool enforce(const Eigen::VectorXd& values, Setting& setting) const override {
-        setting.effects.material.push_back(
-            std::make_shared<skeleton::Stiffening>(spread_2 * std::sinh(values[0]), spread_3 * std::sinh(values[1])));
+        setting.effects.material.push_back(std::make_shared<skeleton::Stiffening>(values[0], values[1]));
         return true;
     }
 
@@ -55,7 +48,7 @@ public:
             const ScreenColumns both = columns(answers);
             return ScreenColumns{both.columns * both.prior_sd.asDiagonal(), Eigen::VectorXd::Ones(1), true};
         };
-        plan.start = [](Eigen::Index, const Eigen::VectorXd&) { return Eigen::Vector2d::Constant(0.2); };
+        plan.start = [](Eigen::Index, const Eigen::VectorXd&) { return Eigen::Vector2d(0.3, 0.3); };
         return plan;
     }
 

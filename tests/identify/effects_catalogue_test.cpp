@@ -172,18 +172,6 @@ INSTANTIATE_TEST_SUITE_P(Catalogue, EveryEffect, testing::ValuesIn(catalogue()),
     return name;
 });
 
-TEST(EffectNumber, IsTheValueItsLogarithmOrOfWideTails) {
-    const EffectNumber plain, logarithm{.name = "", .unit = "", .logarithm = true},
-        wide{.name = "", .unit = "", .spread = 2};
-    for (const EffectNumber& number : {plain, logarithm, wide}) {
-        for (const double n : {-3.0, 0.0, 0.5, 4.0}) EXPECT_NEAR(number.number_of(number.value_of(n)), n, 1e-12);
-    }
-    EXPECT_EQ(plain.value_of(0.5), 0.5);
-    EXPECT_DOUBLE_EQ(logarithm.value_of(0.5), std::exp(0.5));
-    EXPECT_NEAR(wide.value_of(0.01), 0.02, 1e-5);
-    EXPECT_NEAR(wide.value_of(8 + std::log(3)), 3 * wide.value_of(8), 1e-3);
-}
-
 /// Six probes, each with twice the load of the one before.
 Problem doubling_loads() {
     Problem problem;

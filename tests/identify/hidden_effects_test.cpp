@@ -93,19 +93,6 @@ TEST_P(HiddenEffect, LeftOutOfTheCatalogueIsNotExplained) {
 INSTANTIATE_TEST_SUITE_P(OfABody, HiddenEffect, testing::ValuesIn(hidden_cases()),
                          [](const auto& about) { return about.param.effect; });
 
-TEST_F(Diagnosed, ABodyThatStiffensTenTimesAsMuchAsMostIsNamedToo) {
-    const auto stiffening = find_effect("stiffening");
-    const skeleton::Effect strong{"stiffening", {{"c2", 40, "1"}, {"c3", 400, "1"}}};
-    const Eigen::VectorXd values = stiffening->values(stiffening->numbers(*model_, Problem{}), strong);
-    const MeasurementSet set =
-        make_twin(*model_, body_.set(SmallBody::probes(0.1)), truth("stiffening", values), sigma);
-    DiagnoseOptions options;
-    options.law = neo_hooke;
-    const Diagnosis found = diagnose(set, options);
-    EXPECT_THAT(found.explanation, ElementsAre("stiffening"));
-    EXPECT_NEAR(found.ranking.front().told.effect.parameters[0].value, 40, 20);
-}
-
 // --- A Poisson's ratio that the set declares ----------------------------------------------------------------------
 
 class DeclaredRatio : public Diagnosed {
