@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <fstream>
 #include <regex>
 #include <string>
@@ -13,9 +12,7 @@
 namespace palpate::mesh {
 namespace {
 
-constexpr double entries_per_byte = 1000;                 // zlib packs no denser
-constexpr double bytes_per_byte = 24 * entries_per_byte;  // of memory for one of the file: points of three doubles
-constexpr double most_mebibytes = 4096;
+constexpr double entries_per_byte = 1000;   // zlib packs no denser
 constexpr std::size_t most_head = 1 << 20;  // [bytes] that are looked through
 
 void read_guarded(const std::filesystem::path& file, std::string_view head, double bytes,
@@ -30,17 +27,15 @@ void read_guarded(const std::filesystem::path& file, std::string_view head, doub
                             file.string(), (*it)[1].str(), bytes));
         }
     }
-    // VTK's parser goes beyond its arrays where a compressed block lies, or makes as many as it says: a child finds out
+    // VTK's parser goes beyond its arrays where a compressed block lies: a child finds out
     const auto rehearse = [&] {
         read();
         return std::string("read");
     };
-    const double mebibytes = std::min(most_mebibytes, 256 + bytes_per_byte * bytes / (1 << 20));
-    if (run_in_child(rehearse, {.seconds = 120, .mebibytes = mebibytes}).end != ChildResult::End::Answered) {
-        throw InvalidInput(
-            fmt::format("{}: breaks what reads VTK files, or asks for more than {:.0f} MiB, too much for its size. The "
-                        "file is broken: write it again.",
-                        file.string(), mebibytes));
+    if (run_in_child(rehearse, {.seconds = 120, .mebibytes = 4096}).end != ChildResult::End::Answered) {
+        throw InvalidInput(fmt::format(
+            "{}: breaks what reads VTK files, or asks for more than 4 GiB. The file is broken: write it again.",
+            file.string()));
     }
     read();
 }
