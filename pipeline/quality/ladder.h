@@ -14,7 +14,7 @@ namespace palpate::pipeline {
 struct QualityOptions {
     std::vector<int> spheres{8, 16, 32, 64, 128, 256, 512};  // free ones of each rung, [1, 20000]
     int fit = 48;                                            // probes that skeletons are fitted to, [1, 1000]
-    int held_out = 12;                                       // other ones that they are judged by, [1, 1000]
+    int held_out = 48;                                       // other ones that they are judged by, [1, 1000]
     int threads = 1;                                         // changes no number
     void validate() const;                                   // @throws InvalidInput naming option, value and bound
 };
