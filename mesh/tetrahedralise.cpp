@@ -11,6 +11,7 @@
 #include <new>
 
 #include "mesh/errors.h"
+#include "mesh/io/bytes.h"
 #include "mesh/io/child_process.h"
 #include "mesh/topology/shells.h"
 
@@ -49,40 +50,40 @@ void give(const Surface& surface, const Points& holes, double scale, tetgenio& i
     }
 }
 
-template <class T>
-void append(std::string& bytes, const T* data, std::size_t count) {
-    if (count > 0) bytes.append(reinterpret_cast<const char*>(data), count * sizeof(T));
-}
+/// What TetGen came to.
+struct Filling {
+    int code = 0;  // why it gave up; 0: it did not
+    Points nodes;
+    Tetrahedra tetrahedra;
 
-/// Two counts, the points, the corners: see `take`. Where TetGen gave up, its code in the place of the first count,
-/// negative.
-std::string call_tetgen(const Surface& surface, const Points& holes, double scale, std::string switches) {
+    template <class Archive>
+    void serialize(Archive& archive) {
+        archive(code, nodes, tetrahedra);
+    }
+};
+
+Filling call_tetgen(const Surface& surface, const Points& holes, double scale, std::string switches) {
     tetgenio in, out;
     give(surface, holes, scale, in);
-    std::int64_t counts[2] = {0, 0};
     try {
         ::tetrahedralize(switches.data(), &in, &out);
-        counts[0] = out.numberofpoints;
-        counts[1] = out.numberofcorners == 4 ? out.numberoftetrahedra : 0;
     } catch (const int code) {
         if (code == out_of_memory) throw std::bad_alloc();
-        counts[0] = -code;
+        return {.code = code, .nodes = {}, .tetrahedra = {}};
     }
-    std::string bytes;
-    append(bytes, counts, 2);
-    if (counts[0] < 0) return bytes;
-    append(bytes, out.pointlist, 3 * static_cast<std::size_t>(counts[0]));
-    append(bytes, out.tetrahedronlist, 4 * static_cast<std::size_t>(counts[1]));
-    return bytes;
+    Filling filling{.nodes = Eigen::Map<const Points>(out.pointlist, out.numberofpoints, 3), .tetrahedra = {}};
+    if (out.numberofcorners == 4)
+        filling.tetrahedra = Eigen::Map<const Tetrahedra>(out.tetrahedronlist, out.numberoftetrahedra, 4);
+    return filling;
 }
 
 // ---- In this process --------------------------------------------------------------------------------------------
 
 /// Why TetGen gave up, in words; empty where it did not.
-std::string complaint(const std::string& bytes) {
-    std::int64_t code = 0;
-    if (bytes.size() >= sizeof code) std::memcpy(&code, bytes.data(), sizeof code);
-    switch (-code) {
+std::string complaint(int code) {
+    switch (code) {
+        case 0:
+            return "";
         case 3:
             return "it found that the surface crosses itself";
         case 4:
@@ -90,30 +91,8 @@ std::string complaint(const std::string& bytes) {
         case 5:
             return "it found two sides of the surface too close to each other";
         default:
-            return code < 0 ? fmt::format("it gave up (code {})", -code) : "";
+            return fmt::format("it gave up (code {})", code);
     }
-}
-
-/// The mesh behind the bytes; empty when they are no mesh.
-VolumeMesh take(const std::string& bytes, double scale) {
-    VolumeMesh mesh;
-    std::int64_t counts[2] = {0, 0};
-    if (bytes.size() < sizeof counts) return mesh;
-    std::memcpy(counts, bytes.data(), sizeof counts);
-    const auto [points, elements] = counts;
-    const auto size = static_cast<std::int64_t>(bytes.size() - sizeof counts);
-    if (points < 0 || elements < 0 || points > size || elements > size ||
-        size != points * 3 * std::int64_t{sizeof(double)} + elements * 4 * std::int64_t{sizeof(int)})
-        return mesh;
-
-    mesh.nodes.resize(points, 3);
-    mesh.tetrahedra.resize(elements, 4);
-    const char* at = bytes.data() + sizeof counts;
-    std::memcpy(mesh.nodes.data(), at, static_cast<std::size_t>(points) * 3 * sizeof(double));
-    at += static_cast<std::size_t>(points) * 3 * sizeof(double);
-    std::memcpy(mesh.tetrahedra.data(), at, static_cast<std::size_t>(elements) * 4 * sizeof(int));
-    mesh.nodes /= scale;
-    return mesh;
 }
 
 /// 6 sqrt(2) V / (root mean square edge)^3 of the worst element: 1 for a regular one.
@@ -242,11 +221,14 @@ VolumeMesh tetrahedralise(const Surface& surface, const TetrahedraliseOptions& o
         const double left = options.time_limit - spent;
         const ChildLimits limits{*keep ? 0.6 * left : left, options.memory_limit};
         const std::string switches = fmt::format("p{}q{:.4f}a{:.9f}Q", keep, options.quality, largest);
-        const ChildResult child = run_in_child([&] { return call_tetgen(surface, holes, scale, switches); }, limits);
+        const ChildResult child =
+            run_in_child([&] { return to_bytes(call_tetgen(surface, holes, scale, switches)); }, limits);
         std::string wrong = ending(child, options);
         if (child.end == ChildResult::End::Answered) {
-            wrong = complaint(child.answer);
-            VolumeMesh mesh = take(child.answer, scale);
+            Filling filling;
+            from_bytes(child.answer, filling);
+            VolumeMesh mesh{.nodes = filling.nodes / scale, .tetrahedra = std::move(filling.tetrahedra), .faces = {}};
+            wrong = complaint(filling.code);
             if (wrong.empty()) wrong = fault(mesh, surface, volume);
             if (wrong.empty()) {
                 mesh.faces = boundary_faces(mesh.tetrahedra);

@@ -1,32 +1,22 @@
 #include "mesh/io/poly_data.h"
 
-#include <fmt/format.h>
-#include <vtkCellArray.h>
-#include <vtkCellData.h>
-#include <vtkDataArray.h>
-#include <vtkNew.h>
-#include <vtkPointData.h>
-#include <vtkPolyData.h>
-#include <vtkXMLPolyDataReader.h>
+#include <vtkCellType.h>
 
 #include <regex>
 
-#include "mesh/errors.h"
 #include "mesh/io/atomic_file.h"
-#include "mesh/io/vtk_errors.h"
-#include "mesh/io/vtk_grid.h"
 
 namespace palpate::mesh {
 namespace {
 
-/// The cells with so many corners, a row each.
+/// The cells of a type with so many corners, a row each.
 template <int corners>
-Eigen::Matrix<int, Eigen::Dynamic, corners> cells_of(vtkCellArray* cells) {
+Eigen::Matrix<int, Eigen::Dynamic, corners> cells_of(const VtkData& data, int type) {
     std::vector<int> rows;
-    vtkIdType size = 0;
-    const vtkIdType* points = nullptr;
-    for (cells->InitTraversal(); cells->GetNextCell(size, points);) {
-        if (size == corners) rows.insert(rows.end(), points, points + corners);
+    for (std::size_t c = 0; c < data.types.size(); ++c) {
+        const auto cell = data.cell(c);
+        if (data.types[c] != type || cell.size() != corners) continue;
+        for (const std::int64_t corner : cell) rows.push_back(static_cast<int>(corner));
     }
     Eigen::Matrix<int, Eigen::Dynamic, corners> result(static_cast<Eigen::Index>(rows.size()) / corners, corners);
     for (Eigen::Index i = 0; i < result.size(); ++i) result(i / corners, i % corners) = rows[i];
@@ -35,24 +25,17 @@ Eigen::Matrix<int, Eigen::Dynamic, corners> cells_of(vtkCellArray* cells) {
 
 }  // namespace
 
-PolyData read_poly_data(const std::filesystem::path& file) {
-    if (!std::filesystem::is_regular_file(file)) throw IoError(fmt::format("{}: no such file", file.string()));
-    vtkNew<vtkXMLPolyDataReader> reader;
-    const VtkErrors errors;
-    reader->SetFileName(file.c_str());
-    reader->Update();
-    if (errors.heard() || reader->GetErrorCode() != 0) {
-        throw InvalidInput(
-            fmt::format("{}: this is no whole VTP file (VTK XML poly data); write it again", file.string()));
-    }
-    vtkPolyData* poly = reader->GetOutput();
+PolyData as_poly_data(VtkData data) {
     PolyData result;
-    result.points.resize(poly->GetNumberOfPoints(), 3);
-    for (Eigen::Index i = 0; i < result.points.rows(); ++i) poly->GetPoint(i, result.points.row(i).data());
-    result.triangles = cells_of<3>(poly->GetPolys());
-    result.lines = cells_of<2>(poly->GetLines());
-    result.data = {arrays_of(poly->GetPointData()), arrays_of(poly->GetCellData())};
+    result.triangles = cells_of<3>(data, VTK_POLYGON);
+    result.lines = cells_of<2>(data, VTK_POLY_LINE);
+    result.points = std::move(data.points);
+    result.data = {std::move(data.of_points), std::move(data.of_cells)};
     return result;
+}
+
+PolyData read_poly_data(const std::filesystem::path& file) {
+    return as_poly_data(read_own_vtk(file, VtkKind::poly_data));
 }
 
 std::vector<SeriesStep> read_pvd(const std::filesystem::path& file) {

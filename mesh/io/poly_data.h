@@ -2,7 +2,7 @@
 
 #include <filesystem>
 
-#include "mesh/io/vtk_files.h"
+#include "mesh/io/vtk_data.h"
 
 namespace palpate::mesh {
 
@@ -14,7 +14,10 @@ struct PolyData {
     MeshData data;
 };
 
-/// @throws IoError when there is no such file, InvalidInput when it is no whole VTP file.
+PolyData as_poly_data(VtkData data);
+
+/// Of a file that this program wrote. @throws IoError when there is no such file, InvalidInput when it is no whole VTP
+/// file.
 PolyData read_poly_data(const std::filesystem::path& file);
 
 /// The files of a series (.pvd) in their order. @throws IoError when there is no such file.

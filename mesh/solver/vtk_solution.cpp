@@ -1,8 +1,5 @@
 #include <fmt/format.h>
 #include <vtkCellType.h>
-#include <vtkFieldData.h>
-#include <vtkPointData.h>
-#include <vtkUnstructuredGrid.h>
 
 #include <algorithm>
 #include <array>
@@ -11,8 +8,6 @@
 
 #include "mesh/errors.h"
 #include "mesh/io/poly_data.h"
-#include "mesh/io/read_vtk.h"
-#include "mesh/io/vtk_grid.h"
 #include "mesh/io/words.h"
 #include "mesh/solver/solution_parts.h"
 
@@ -55,7 +50,7 @@ const Eigen::MatrixXd& displacement_of(const std::vector<DataArray>& arrays, con
                     file.string(), names.empty() ? "none" : listed(names)));
 }
 
-CellShape shape_of(int type, vtkIdType cell, const std::filesystem::path& file) {
+CellShape shape_of(int type, std::size_t cell, const std::filesystem::path& file) {
     switch (type) {
         case VTK_TETRA:
         case VTK_QUADRATIC_TETRA:
@@ -78,27 +73,19 @@ CellShape shape_of(int type, vtkIdType cell, const std::filesystem::path& file) 
     }
 }
 
-constexpr bool has_no_volume(int type) {
-    return (type >= VTK_VERTEX && type <= VTK_QUAD) || (type >= VTK_QUADRATIC_EDGE && type <= VTK_QUADRATIC_QUAD) ||
-           type == VTK_BIQUADRATIC_QUAD || type == VTK_BIQUADRATIC_TRIANGLE;
-}
-
-Cells cells_of(vtkUnstructuredGrid* grid, const std::filesystem::path& file) {
+Cells cells_of(const VtkData& grid, const std::filesystem::path& file) {
     Cells cells;
-    const Points points = points_of(file, grid);
-    for (Eigen::Index i = 0; i < points.rows(); ++i) {
+    for (Eigen::Index i = 0; i < grid.points.rows(); ++i) {
         cells.node_numbers.push_back(i);
-        cells.nodes.emplace_back(points.row(i));
+        cells.nodes.emplace_back(grid.points.row(i));
     }
-    for (vtkIdType e = 0; e < grid->GetNumberOfCells(); ++e) {
-        if (has_no_volume(grid->GetCellType(e))) continue;
-        vtkIdType count = 0;
-        const vtkIdType* nodes = nullptr;
-        grid->GetCellPoints(e, count, nodes);
-        const CellShape shape = shape_of(grid->GetCellType(e), e, file);
-        if (count < nodes_of(shape).corners)
-            throw InvalidInput(fmt::format("{}: cell {} has {} nodes, too few.", file.string(), e, count));
-        cells.cells.push_back({e, shape, {nodes, nodes + count}});
+    for (std::size_t e = 0; e < grid.types.size(); ++e) {
+        if (is_flat(grid.types[e])) continue;
+        const auto nodes = grid.cell(e);
+        const CellShape shape = shape_of(grid.types[e], e, file);
+        if (std::ssize(nodes) < nodes_of(shape).corners)
+            throw InvalidInput(fmt::format("{}: cell {} has {} nodes, too few.", file.string(), e, nodes.size()));
+        cells.cells.push_back({static_cast<std::int64_t>(e), shape, {nodes.begin(), nodes.end()}});
     }
     return cells;
 }
@@ -123,14 +110,12 @@ Solution read_vtk_solution(const std::filesystem::path& file, const std::string&
     Solution solution;
     solution.file = file;
     if (in_small_letters(file.extension().string()) == ".vtu") {
-        const vtkSmartPointer<vtkUnstructuredGrid> grid = read_grid(file);
+        const VtkData grid = read_vtk(file, VtkKind::unstructured_grid);
         set_mesh(solution, cells_of(grid, file));
-        solution.steps.push_back({time_in(arrays_of(grid->GetFieldData())),
-                                  checked(displacement_of(arrays_of(grid->GetPointData()), file, array), file)});
+        solution.steps.push_back({time_in(grid.of_file), checked(displacement_of(grid.of_points, file, array), file)});
         return solution;
     }
-    PolyData data;
-    read_vtk(file, [&] { data = read_poly_data(file); });
+    const PolyData data = as_poly_data(read_vtk(file, VtkKind::poly_data));
     if (data.triangles.rows() == 0)
         throw InvalidInput(fmt::format("{}: holds no triangles; a surface of triangles is needed.", file.string()));
     solution.nodes = data.points;

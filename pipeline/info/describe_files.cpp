@@ -9,7 +9,6 @@
 #include "mesh/errors.h"
 #include "mesh/io/atomic_file.h"
 #include "mesh/io/poly_data.h"
-#include "mesh/io/read_vtk.h"
 #include "mesh/read_body.h"
 #include "mesh/read_surface.h"
 #include "mesh/solver/solution.h"
@@ -98,8 +97,7 @@ Description describe_series(const fs::path& file) {
 }
 
 Description describe_poly_data(const fs::path& file) {
-    mesh::PolyData part;
-    mesh::read_vtk(file, [&] { part = mesh::read_poly_data(file); });
+    const mesh::PolyData part = mesh::as_poly_data(mesh::read_vtk(file, mesh::VtkKind::poly_data));
     Description told{.kind = fmt::format("{} points, {} triangles, {} lines", part.points.rows(), part.triangles.rows(),
                                          part.lines.rows()),
                      .lines = {box_in_words(part.points)},

@@ -196,6 +196,21 @@ TEST_F(ReadSurface, TellsWhatIsWrongWithAVtp) {
     EXPECT_TRUE(says(refusal("a.vtp", "<VTKFile type=\"PolyData\"><PolyData>"), {"a.vtp", "VTP"}));
 }
 
+TEST_F(ReadSurface, AVtpNamesPointsThatAreThere) {
+    const auto text = [](const std::string& corners, const std::string& ends) {
+        return "<VTKFile type=\"PolyData\" version=\"0.1\"><PolyData><Piece NumberOfPoints=\"3\" NumberOfPolys=\"1\">"
+               "<Points><DataArray type=\"Float64\" NumberOfComponents=\"3\" format=\"ascii\">0 0 0 1 0 0 0 1 "
+               "0</DataArray></Points><Polys><DataArray type=\"Int64\" Name=\"connectivity\" format=\"ascii\">" +
+               corners + "</DataArray><DataArray type=\"Int64\" Name=\"offsets\" format=\"ascii\">" + ends +
+               "</DataArray></Polys></Piece></PolyData></VTKFile>";
+    };
+    EXPECT_EQ(read("a.vtp", text("0 1 2", "3")).triangles.rows(), 1);
+    EXPECT_TRUE(says(refusal("a.vtp", text("0 1 3", "3")), {"cell 0", "point 3", "there are 3"}));
+    EXPECT_TRUE(says(refusal("a.vtp", text("0 1 -1", "3")), {"cell 0", "point -1"}));
+    EXPECT_TRUE(says(refusal("a.vtp", text("0 1 4294967298", "3")), {"cell 0", "point 4294967298"}));  // 2 in 32 bits
+    EXPECT_TRUE(says(refusal("a.vtp", text("0 1 2", "4")), {"a.vtp"}));
+}
+
 TEST_F(ReadSurface, VtpStripsTurnEveryOtherTriangle) {
     const Surface strip = read(
         "a.vtp",

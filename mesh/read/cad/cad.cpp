@@ -2,59 +2,44 @@
 
 #include <fmt/format.h>
 
-#include <cstring>
 #include <fstream>
 
 #include "mesh/errors.h"
 
 #ifdef PALPATE_WITH_CAD
+#include "mesh/io/bytes.h"
 #include "mesh/io/child_process.h"
-#include "mesh/io/surface_bytes.h"
 #include "mesh/read/cad/tessellate.h"
 #endif
 
 namespace palpate::mesh {
 
 #ifdef PALPATE_WITH_CAD
+
+template <class Archive>
+void serialize(Archive& archive, Tessellation& t) {
+    archive(t.error, t.solids, t.solids_united, t.faces, t.faces_missing, t.chord, t.surface.vertices,
+            t.surface.triangles);
+}
+
 namespace {
 
 constexpr ChildLimits reading_limits{300, 8192};
 constexpr ChildLimits uniting_limits{120, 8192};
 
-constexpr std::size_t head_size = 6;
-
-/// Six numbers, the message, the surface: see `unpacked`.
-std::string packed(const Tessellation& t) {
-    const double head[head_size] = {static_cast<double>(t.error.size()),  static_cast<double>(t.solids),
-                                    static_cast<double>(t.solids_united), static_cast<double>(t.faces),
-                                    static_cast<double>(t.faces_missing), t.chord};
-    return std::string(reinterpret_cast<const char*>(head), sizeof head) + t.error + to_bytes(t.surface);
-}
-
-Tessellation unpacked(std::string_view bytes) {
-    double head[head_size];
-    std::memcpy(head, bytes.data(), sizeof head);
-    const auto number = [&](std::size_t i) { return static_cast<int>(head[i]); };
-    const auto message = static_cast<std::size_t>(number(0));
-    return {.error = std::string(bytes.substr(sizeof head, message)),
-            .solids = number(1),
-            .solids_united = number(2),
-            .faces = number(3),
-            .faces_missing = number(4),
-            .chord = head[5],
-            .surface = surface_from_bytes(bytes.substr(sizeof head + message))};
-}
-
 /// What the child came to, its own failure as an error in words.
 Tessellation in_child(const std::filesystem::path& file, bool unite, const ChildLimits& limits) {
     using End = ChildResult::End;
-    const ChildResult child = run_in_child([&] { return packed(tessellate(file, unite, cad_chord)); }, limits);
-    if (child.end == End::Answered) return unpacked(child.answer);
-    Tessellation none;
-    none.error = child.end == End::OutOfTime     ? fmt::format("OpenCASCADE did not end within {} s", limits.seconds)
-                 : child.end == End::OutOfMemory ? fmt::format("OpenCASCADE needs more than {} MiB", limits.mebibytes)
-                                                 : std::string("OpenCASCADE crashed");
-    return none;
+    const ChildResult child = run_in_child([&] { return to_bytes(tessellate(file, unite, cad_chord)); }, limits);
+    Tessellation result;
+    if (child.end == End::Answered) {
+        from_bytes(child.answer, result);
+        return result;
+    }
+    result.error = child.end == End::OutOfTime     ? fmt::format("OpenCASCADE did not end within {} s", limits.seconds)
+                   : child.end == End::OutOfMemory ? fmt::format("OpenCASCADE needs more than {} MiB", limits.mebibytes)
+                                                   : std::string("OpenCASCADE crashed");
+    return result;
 }
 
 void note_solids(const Tessellation& t, const std::string& why_apart, std::vector<std::string>& notes) {

@@ -1,16 +1,12 @@
 #include <fmt/format.h>
-#include <vtkCell.h>
-#include <vtkCellData.h>
 #include <vtkCellType.h>
-#include <vtkDataArray.h>
-#include <vtkGenericCell.h>
 
 #include <algorithm>
 #include <array>
 #include <cctype>
 
 #include "mesh/errors.h"
-#include "mesh/io/vtk_grid.h"
+#include "mesh/io/vtk_data.h"
 #include "mesh/read/volume/elements.h"
 
 namespace palpate::mesh {
@@ -21,15 +17,13 @@ constexpr std::array material_names{"material",         "materialid", "materiali
                                     "gmsh:geometrical", "medit:ref",  "tetgen:ref",  "region",       "regions",
                                     "regionid",         "label",      "labels",      "cellentityids"};
 
-vtkDataArray* material_of(vtkUnstructuredGrid* grid) {
-    vtkCellData* data = grid->GetCellData();
+const DataArray* material_of(const VtkData& grid) {
     for (const char* wanted : material_names)
-        for (int a = 0; a < data->GetNumberOfArrays(); ++a) {
-            vtkDataArray* array = data->GetArray(a);
-            if (!array || !array->GetName() || array->GetNumberOfComponents() != 1) continue;
-            std::string name = array->GetName();
+        for (const DataArray& array : grid.of_cells) {
+            if (array.values.cols() != 1) continue;
+            std::string name = array.name;
             std::ranges::transform(name, name.begin(), [](unsigned char c) { return std::tolower(c); });
-            if (name == wanted) return array;
+            if (name == wanted) return &array;
         }
     return nullptr;
 }
@@ -37,30 +31,27 @@ vtkDataArray* material_of(vtkUnstructuredGrid* grid) {
 }  // namespace
 
 Elements read_vtu_elements(const std::filesystem::path& file) {
-    const vtkSmartPointer<vtkUnstructuredGrid> grid = read_grid(file);
+    const VtkData grid = read_vtk(file, VtkKind::unstructured_grid);
     Elements elements;
-    const Points points = points_of(file, grid);
-    for (Eigen::Index i = 0; i < points.rows(); ++i) {
+    for (Eigen::Index i = 0; i < grid.points.rows(); ++i) {
         elements.node_numbers.push_back(i);
-        elements.nodes.emplace_back(points.row(i));
+        elements.nodes.emplace_back(grid.points.row(i));
     }
-    vtkDataArray* materials = material_of(grid);
-    vtkNew<vtkGenericCell> kind;
-    for (vtkIdType e = 0; e < grid->GetNumberOfCells(); ++e) {
-        const int type = grid->GetCellType(e);
-        kind->SetCellType(type);
-        if (kind->GetCellDimension() < 3) continue;
-        vtkIdType count = 0;
-        const vtkIdType* nodes = nullptr;
-        grid->GetCellPoints(e, count, nodes);
-        const bool is_tetrahedron = (type == VTK_TETRA && count == 4) || (type == VTK_QUADRATIC_TETRA && count == 10);
+    const DataArray* materials = material_of(grid);
+    for (std::size_t e = 0; e < grid.types.size(); ++e) {
+        const int type = grid.types[e];
+        if (is_flat(type)) continue;
+        const auto nodes = grid.cell(e);
+        const bool is_tetrahedron =
+            (type == VTK_TETRA && nodes.size() == 4) || (type == VTK_QUADRATIC_TETRA && nodes.size() == 10);
         if (!is_tetrahedron)
             throw InvalidInput(fmt::format(
                 "{}: cell {} is of VTK type {} with {} nodes; tetrahedra of type {} (4 nodes) or {} (10) are "
                 "allowed.",
-                file.string(), e, type, count, int{VTK_TETRA}, int{VTK_QUADRATIC_TETRA}));
-        elements.add(e, {nodes, nodes + count}, file.string());
-        if (materials) elements.materials.push_back(static_cast<std::int64_t>(materials->GetTuple1(e)));
+                file.string(), e, type, nodes.size(), int{VTK_TETRA}, int{VTK_QUADRATIC_TETRA}));
+        elements.add(static_cast<std::int64_t>(e), {nodes.begin(), nodes.end()}, file.string());
+        if (materials)
+            elements.materials.push_back(static_cast<std::int64_t>(materials->values(static_cast<Eigen::Index>(e), 0)));
     }
     return elements;
 }
