@@ -3,6 +3,7 @@
 #include <functional>
 
 #include "diagnosed.h"
+#include "identify/diagnose/judge.h"
 #include "tests/messages.h"
 
 // What a diagnosis is told, what it is not, and what it refuses.
@@ -107,6 +108,27 @@ TEST_F(Diagnosed, WhatErrorsOfTheMeshMayFeignIsNoClaim) {
     EXPECT_EQ(not_claimed.verdict, Verdict::adequate);
     EXPECT_GT(candidate(not_claimed, "compliant-support").log_bayes_factor, coarse.least_evidence);
     EXPECT_THAT(candidate(not_claimed, "compliant-support").objection, HasSubstr("errors of mesh and rig"));
+}
+
+TEST_F(Diagnosed, WhatLeavesMoreThanItExplainsIsNoClaim) {
+    // of a clear case, as if meshes had left so much; with evidence all the same
+    Diagnosis found = diagnose(twin(truth("gravity", half_g)));
+    ASSERT_TRUE(found.explained);
+    found.tried = {*found.explained};
+    found.baseline.strain = 0;
+    const auto verdict = [&](double before, double after) {
+        found.explanation.clear();
+        found.explained.reset();
+        found.baseline.whitened_rms = before;
+        found.tried.front().fit.whitened_rms = after;
+        judge(*model_, {}, found);
+        return found.verdict;
+    };
+    EXPECT_EQ(verdict(1.08, 1.02), Verdict::missing_effect);
+    EXPECT_EQ(verdict(1.08, 1.05), Verdict::adequate);
+    EXPECT_EQ(verdict(1.12, 1.07), Verdict::unexplained);
+    EXPECT_THAT(found.tried.front().objection, HasSubstr("leaves more"));
+    EXPECT_EQ(verdict(1.12, 1.04), Verdict::missing_effect);
 }
 
 TEST_F(Diagnosed, NumbersDoNotDependOnThreads) {
