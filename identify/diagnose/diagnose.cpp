@@ -93,9 +93,11 @@ private:
     }
 
     void estimate_noise() {
-        // What is rough in the errors is noise: a missing effect is smooth from marker to marker.
+        // What is rough in the errors is noise: a missing effect is smooth from marker to marker. Errors of few readings
+        // that are trusted less are as they are, a median bears them.
         Problem& problem = result_.problem;
-        const Eigen::VectorXd error_mm = leading().residual.cwiseProduct(problem.sigma);
+        const Refit& fit = leading();
+        const Eigen::VectorXd error_mm = fit.residual.cwiseQuotient(fit.V->weights()).cwiseProduct(problem.sigma);
         const double rough = noise_by_roughness(problem, error_mm);
         const double finest = std::max(options_.resolution * moved_, 1e-12);
         const double noise = std::max(rough, finest);

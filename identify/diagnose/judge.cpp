@@ -52,16 +52,18 @@ std::string put_together_of_aliases(const Explained& explained) {
     return {};
 }
 
-/// Of what is beyond the noise without an effect, more is left with it than not. Thousands of readings make evidence of
-/// little, and strong stiffening takes up a third of what a coarse mesh is off by.
-bool leaves_more_than_it_explains(const Refit& without, const Refit& with) {
-    const double before = without.whitened_rms * without.whitened_rms, after = with.whitened_rms * with.whitened_rms;
-    return after - 1 > before - after;
+/// Does an explanation leave too much of what is beyond the noise without it? Thousands of readings make evidence of
+/// little: strong stiffening took up a third of what a coarse mesh was off by, and an inclusion or the like over a half.
+bool leaves_too_much(const Refit& without, const Explained& explained) {
+    const double before = without.whitened_rms * without.whitened_rms;
+    const double after = explained.fit.whitened_rms * explained.fit.whitened_rms;
+    const double most = std::ranges::all_of(explained.effects, &Effect::is_like_mesh_error) ? 0.5 : 1;
+    return after - 1 > most * (before - after);
 }
 
 std::string objection_to(const Diagnosis& diagnosis, const Explained& explained, const DiagnoseOptions& options) {
-    if (leaves_more_than_it_explains(diagnosis.baseline, explained.fit))
-        return "it leaves more, beyond the noise, than it explains, as errors of a mesh do";
+    if (leaves_too_much(diagnosis.baseline, explained))
+        return "it leaves too much, beyond the noise, of what it should explain, as errors of a mesh do";
     if (explained.effects.size() == 1 && is_likely(explained, options) && is_enough(diagnosis.baseline, options)) {
         const double least = least_next_to_noise(*explained.effects.front(), diagnosis.problem, options);
         if (explained.log_bayes_factor < least) {

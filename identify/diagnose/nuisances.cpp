@@ -108,6 +108,42 @@ Eigen::MatrixXd clamp_sectors(const BodyModel& model, int most) {
     return W;
 }
 
+double squared_distance(const Points& points, const Vec3& x, Eigen::Index& nearest) {
+    return (points.rowwise() - x.transpose()).rowwise().squaredNorm().minCoeff(&nearest);
+}
+
+/// How closely each marker lies to what is held.
+class Border {
+public:
+    Border(const BodyModel& model, const Points& markers) {
+        const Points& support = model.support_points();
+        double sum = 0;
+        int count = 0;
+        for (Eigen::Index p = 0; p < model.pieces().rows() && support.rows() > 0; ++p) {
+            if (!model.pieces_at_support()[static_cast<std::size_t>(p)]) continue;
+            Eigen::Index nearest = 0;
+            sum += std::sqrt(squared_distance(support, model.pieces().row(p), nearest));
+            ++count;
+        }
+        closeness_ = Eigen::VectorXd::Zero(markers.rows());
+        skin_.assign(static_cast<std::size_t>(markers.rows()), 0);
+        if (!(sum > 0)) return;
+        const double reach = 2 * sum / count;
+        for (Eigen::Index m = 0; m < markers.rows(); ++m) {
+            Eigen::Index held = 0;
+            closeness_[m] = std::exp(-squared_distance(support, markers.row(m), held) / (reach * reach));
+            squared_distance(model.skin(), support.row(held), skin_[static_cast<std::size_t>(m)]);
+        }
+    }
+
+    double closeness(int marker) const { return closeness_[marker]; }  // 1: on the support, 0: far from it
+    Eigen::Index skin_point(int marker) const { return skin_[static_cast<std::size_t>(marker)]; }  // held next to it
+
+private:
+    Eigen::VectorXd closeness_;
+    std::vector<Eigen::Index> skin_;
+};
+
 }  // namespace
 
 double effective_radius(const BodyModel& model, const mesh::Contact& contact) {
@@ -159,14 +195,20 @@ Eigen::VectorXd reading_weights(const BodyModel& model, const Problem& problem, 
     const double E = model.young(setting);
     constexpr double nu = 0.45;
     const double flow = setting.effects.plasticity ? options.flow : 0;
+    const Border border(model, problem.rest);
+    std::vector<Points> skin;  // what it moved by, in each action
+    for (const Eigen::VectorXd& q : played.q) skin.push_back(model.skin_positions(q, setting) - model.skin());
     Eigen::VectorXd variance = Eigen::VectorXd::Ones(problem.rows());  // in sigma^2
     for (Eigen::Index n = 0; n < problem.rows(); ++n) {
         const int marker = problem.coordinate[n] / 3;
-        const double moved = (played.stand[problem.action[n]].row(marker) - problem.rest.row(marker)).norm();
-        variance[n] += std::pow(flow * moved / problem.sigma[n], 2);
+        const Vec3 moved = played.stand[problem.action[n]].row(marker) - problem.rest.row(marker);
+        const Vec3 base = skin[problem.action[n]].row(border.skin_point(marker));
+        variance[n] += std::pow(flow * moved.norm() / problem.sigma[n], 2);
+        variance[n] +=
+            std::pow(options.ragged * border.closeness(marker) * (moved - base).norm() / problem.sigma[n], 2);
         for (const mesh::Contact& contact : played.actions[problem.action[n]].contacts) {
             const double r = effective_radius(model, contact), F = contact.force.norm();
-            const double d = (problem.rest.row(problem.coordinate[n] / 3).transpose() - contact.point).norm();
+            const double d = (problem.rest.row(marker).transpose() - contact.point).norm();
             double U = F * (1 - nu * nu) / (2 * E * r);
             if (model.is_nonlinear(setting)) U *= 1 + F / (M_PI * r * r * E);
             const double near = std::min(1.0, std::pow(1.2 * r / std::max(d, 1e-9), 2));

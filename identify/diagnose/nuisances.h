@@ -13,6 +13,7 @@ struct NuisanceOptions {
     int clamp_sectors = 30;
     double gain_at_support = 0.3;  // of ln force of a probe that reaches a support
     double dent = 0.1;             // of the local indentation, unknown for each reading
+    double ragged = 0.15;          // of what a marker at a support's border moves against it, unknown for each reading
     double flow = 0.01;            // of the displacement of a body that yields, unknown for each reading
 };
 
@@ -32,6 +33,9 @@ Nuisances make_nuisances(const BodyModel& model, const Problem& problem, const E
 /// Weights W (N): 1 far from contacts; below it near one, where a reading depends on how exactly the contact is made:
 ///   sigma^2 -> sigma^2 + (kappa U min(1, (1.2 r / d)^2) (1 + p/E))^2, U = F (1 - nu^2) / (2 E r), p = F / (pi r^2),
 /// d the reading's distance from the contact at rest, kappa the `dent`; the last factor for laws of large deformation.
+/// Nor does a mesh end a support more exactly than its pieces are long: for a marker that moves by u against the
+/// support, d from it,
+///   sigma^2 -> sigma^2 + (ragged u exp(-(d/l)^2))^2, l twice the mean distance of the pieces that its border cuts.
 /// Where the material yields, a share of the modelled displacement comes on top: what flows keeps and adds up the
 /// errors of its mesh.
 Eigen::VectorXd reading_weights(const BodyModel& model, const Problem& problem, const Explanation& explanation,

@@ -17,7 +17,7 @@ namespace {
 constexpr int carriers = 6;           // spheres that carry a vertex
 constexpr double reach = 0.45;        // sd of the weights, of the links' median length
 constexpr double ridge = 1e-3;        // of the mean square of what spheres move
-constexpr int most_nodes = 8000;      // of a body whose elements are made quadratic
+constexpr int most_corners = 8000;    // of a body whose elements are quadratic, or are made so
 constexpr double most_poisson = 0.4;  // that linear ones bear without locking
 constexpr int hops = 2;               // over links, to the spheres that may carry a vertex
 
@@ -69,14 +69,29 @@ Eigen::SparseMatrix<double> mean_motions(const mesh::VolumeMesh& body, const Tet
     return E;
 }
 
+mesh::VolumeMesh without_midsides(const mesh::VolumeMesh& body) {
+    if (!body.is_quadratic()) return body;
+    std::vector<int> row(body.nodes.rows(), -1), corners;
+    for (const int node : body.tetrahedra.leftCols<4>().reshaped()) row[node] = 0;
+    for (int node = 0; node < body.nodes.rows(); ++node) {
+        if (row[node] < 0) continue;
+        row[node] = static_cast<int>(corners.size());
+        corners.push_back(node);
+    }
+    const auto renumbered = [&](int node) { return row[node]; };
+    return {body.nodes(corners, Eigen::all), body.tetrahedra.leftCols<4>().unaryExpr(renumbered),
+            body.faces.leftCols<3>().unaryExpr(renumbered)};
+}
+
 Condensed condense(const mesh::VolumeMesh& body, const fem::Material& material, const TetGraph& graph,
                    const std::vector<int>& owner, const Model& model) {
     Condensed result;
     int free = 0;
     for (const Sphere& sphere : model.spheres) result.place.push_back(sphere.held ? -1 : free++);
     // A skin from a wrong Poisson's ratio is somewhat worse, and one from hundreds of thousands of nodes too slow.
-    const bool is_large = !body.is_quadratic() && body.nodes.rows() > most_nodes;
-    const mesh::VolumeMesh elements = is_large ? body : mesh::to_quadratic(body);
+    const mesh::VolumeMesh corners_only = without_midsides(body);
+    const bool is_large = corners_only.nodes.rows() > most_corners;
+    const mesh::VolumeMesh elements = is_large ? corners_only : mesh::to_quadratic(body);
     fem::Material of_elements = material;
     if (is_large) of_elements.poisson = std::min(material.poisson, most_poisson);
     const Eigen::SparseMatrix<double> E = mean_motions(elements, graph, owner, model, result.place);

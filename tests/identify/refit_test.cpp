@@ -111,6 +111,23 @@ TEST_F(Refits, NameTheNuisanceThatIsMostStrained) {
     EXPECT_DOUBLE_EQ(std::abs(fit.V->nuisances(fit.error)[at - fit.nuisances.names.begin()]), fit.strain);
 }
 
+TEST_F(Refits, TrustMarkersLessNextToWhatIsHeld) {
+    const Problem problem = make_problem(twin(truth()), sigma);
+    const NuisanceOptions border_alone{.dent = 0, .ragged = 0.15};
+    const Played played = play(*model_, problem, truth(), 1);
+    const Eigen::VectorXd weights = reading_weights(*model_, problem, truth(), played, border_alone);
+    Eigen::VectorXd unknown(24);  // sd beyond the noise, over what the marker moves
+    for (Eigen::Index n = 0; n < problem.rows(); ++n) {
+        const int marker = problem.coordinate[n] / 3;
+        const double moved = (played.stand[problem.action[n]].row(marker) - problem.rest.row(marker)).norm();
+        unknown[marker] = problem.sigma[n] * std::sqrt(std::pow(weights[n], -2) - 1) / moved;
+    }
+    EXPECT_GT(unknown.head(4).minCoeff(), 0.03);  // 6 mm from the support, of elements 8 mm long
+    EXPECT_LT(unknown.maxCoeff(), 0.15);
+    EXPECT_LT(unknown.segment(4, 4).maxCoeff(), unknown.head(4).minCoeff());
+    EXPECT_LT(unknown.tail(16).maxCoeff(), 2e-3);
+}
+
 TEST_F(Refits, TrustReadingsLessWhereTheLoadHasCrept) {
     // The material gives way as under a greater load: so does what is unknown about a contact.
     const Explanation creeps = truth("viscosity", numbers({1, std::log(1)}));
