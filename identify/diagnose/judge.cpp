@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "identify/diagnose/next_probe/next_probe.h"
 #include "identify/effects/catalogue.h"
@@ -53,12 +54,26 @@ std::string put_together_of_aliases(const Explained& explained) {
 }
 
 /// Does an explanation leave too much of what is beyond the noise without it? Thousands of readings make evidence of
-/// little: strong stiffening took up a third of what a coarse mesh was off by, and an inclusion or the like over a half.
+/// little: strong stiffening took up a third of what a coarse mesh was off by, and an inclusion or the like over a
+/// half.
 bool leaves_too_much(const Refit& without, const Explained& explained) {
     const double before = without.whitened_rms * without.whitened_rms;
     const double after = explained.fit.whitened_rms * explained.fit.whitened_rms;
     const double most = std::ranges::all_of(explained.effects, &Effect::is_like_mesh_error) ? 0.5 : 1;
     return after - 1 > most * (before - after);
+}
+
+/// Why an effect of an explanation, as it came out, is none of that kind; empty: nothing speaks against it.
+std::string objection_of_effects(const Diagnosis& diagnosis, const Explained& explained,
+                                 const DiagnoseOptions& options) {
+    const auto& all = explained.fit.explanation;
+    for (std::size_t e = 0; e < all.effects.size(); ++e) {
+        if (!explained.has(all.effects[e]->name())) continue;  // known: no claim
+        const bool enough = enough_without(diagnosis, explained, all.effects[e]->name(), options);
+        std::string objection = all.effects[e]->objection(diagnosis.problem, all.values[e], enough);
+        if (!objection.empty()) return objection;
+    }
+    return {};
 }
 
 std::string objection_to(const Diagnosis& diagnosis, const Explained& explained, const DiagnoseOptions& options) {
@@ -73,25 +88,17 @@ std::string objection_to(const Diagnosis& diagnosis, const Explained& explained,
                 explained.log_bayes_factor, least);
         }
     }
-    std::string aliases = put_together_of_aliases(explained);
-    if (!aliases.empty()) return aliases;
-    const auto& all = explained.fit.explanation;
-    for (std::size_t e = 0; e < all.effects.size(); ++e) {
-        if (!explained.has(all.effects[e]->name())) continue;  // known: no claim
-        const bool enough = enough_without(diagnosis, explained, all.effects[e]->name(), options);
-        std::string objection = all.effects[e]->objection(diagnosis.problem, all.values[e], enough);
-        if (!objection.empty()) return objection;
-    }
-    return {};
+    return put_together_of_aliases(explained);
 }
 
-/// Likely explanations that explain enough and do not fall behind the likeliest, by evidence.
+/// Likely explanations that explain enough and do not fall behind the likeliest, by evidence. Those with an effect that
+/// is refused for what it came out as (`refused`) are no rivals.
 std::vector<const Explained*> explain_alike(const std::vector<const Explained*>& by_evidence,
-                                            const DiagnoseOptions& options) {
+                                            const std::set<const Explained*>& refused, const DiagnoseOptions& options) {
     std::vector<const Explained*> alike;
     double most = -INFINITY;
     for (const Explained* one : by_evidence) {
-        if (!is_likely(*one, options)) continue;
+        if (!is_likely(*one, options) || refused.contains(one)) continue;
         most = std::max(most, one->log_bayes_factor);
         const bool predicts = one->held_out.whitened_rms <= options.most_left_held_out;
         const bool leads = most - one->log_bayes_factor < options.least_lead;
@@ -147,8 +154,13 @@ void judge(const BodyModel& model, const DiagnoseOptions& options, Diagnosis& di
     const bool outliers = !diagnosis.outliers.readings.empty();
     const bool enough = is_enough(diagnosis.baseline, options);
     std::vector<const Explained*> by_evidence;
+    std::set<const Explained*> refused;
     for (Explained& one : diagnosis.tried) {
         one.objection = objection_to(diagnosis, one, options);
+        if (one.objection.empty()) {
+            one.objection = objection_of_effects(diagnosis, one, options);
+            if (!one.objection.empty()) refused.insert(&one);
+        }
         by_evidence.push_back(&one);
         if (one.effects.size() > 1) continue;
         const auto own = std::ranges::find(diagnosis.ranking, one.effects.front(), &Candidate::effect);
@@ -158,7 +170,7 @@ void judge(const BodyModel& model, const DiagnoseOptions& options, Diagnosis& di
     // is there evidence for more than what is claimed?
     const bool something = std::ranges::any_of(
         by_evidence, [&](const Explained* one) { return is_likely(*one, options) && one->objection.empty(); });
-    const std::vector<const Explained*> alike = explain_alike(by_evidence, options);
+    const std::vector<const Explained*> alike = explain_alike(by_evidence, refused, options);
     if (alike.size() > 1) {
         diagnosis.verdict = Verdict::ambiguous;
         diagnosis.next_probe = separate(model, diagnosis.problem, alike, options.refit);
