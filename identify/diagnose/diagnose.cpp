@@ -93,8 +93,8 @@ private:
     }
 
     void estimate_noise() {
-        // What is rough in the errors is noise: a missing effect is smooth from marker to marker. Errors of few readings
-        // that are trusted less are as they are, a median bears them.
+        // What is rough in the errors is noise: a missing effect is smooth from marker to marker. Errors of few
+        // readings that are trusted less are as they are, a median bears them.
         Problem& problem = result_.problem;
         const Refit& fit = leading();
         const Eigen::VectorXd error_mm = fit.residual.cwiseQuotient(fit.V->weights()).cwiseProduct(problem.sigma);
