@@ -221,12 +221,12 @@ VolumeMesh tetrahedralise(const Surface& surface, const TetrahedraliseOptions& o
         const double left = options.time_limit - spent;
         const ChildLimits limits{*keep ? 0.6 * left : left, options.memory_limit};
         const std::string switches = fmt::format("p{}q{:.4f}a{:.9f}Q", keep, options.quality, largest);
-        const ChildResult child =
+        ChildResult child =
             run_in_child([&] { return to_bytes(call_tetgen(surface, holes, scale, switches)); }, limits);
         std::string wrong = ending(child, options);
         if (child.end == ChildResult::End::Answered) {
             Filling filling;
-            from_bytes(child.answer, filling);
+            from_bytes(std::move(child.answer), filling);
             VolumeMesh mesh{.nodes = filling.nodes / scale, .tetrahedra = std::move(filling.tetrahedra), .faces = {}};
             wrong = complaint(filling.code);
             if (wrong.empty()) wrong = fault(mesh, surface, volume);

@@ -183,7 +183,7 @@ VtkData read_own_vtk(const fs::path& file, VtkKind kind) {
 VtkData read_vtk(const fs::path& file, VtkKind kind) {
     require_file(file);
     check_head(file);
-    const ChildResult child = run_in_child(
+    ChildResult child = run_in_child(
         [&] {
             std::string refusal;
             VtkData data;
@@ -203,7 +203,7 @@ VtkData read_vtk(const fs::path& file, VtkKind kind) {
     }
     std::string refusal;
     VtkData data;
-    from_bytes(child.answer, refusal, data);
+    from_bytes(std::move(child.answer), refusal, data);
     if (!refusal.empty()) throw InvalidInput(refusal);
     return data;
 }

@@ -6,7 +6,7 @@
 namespace palpate::mesh {
 
 std::optional<Surface> guarded(const std::function<Surface()>& step) {
-    const ChildResult child = run_in_child(
+    ChildResult child = run_in_child(
         [&] {
             const Surface surface = step();
             return to_bytes(surface.vertices, surface.triangles);
@@ -14,7 +14,7 @@ std::optional<Surface> guarded(const std::function<Surface()>& step) {
         {.seconds = 300, .mebibytes = 8192});
     if (child.end != ChildResult::End::Answered) return std::nullopt;
     Surface surface;
-    from_bytes(child.answer, surface.vertices, surface.triangles);
+    from_bytes(std::move(child.answer), surface.vertices, surface.triangles);
     if (surface.triangles.rows() == 0) return std::nullopt;
     return surface;
 }

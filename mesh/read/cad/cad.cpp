@@ -30,10 +30,10 @@ constexpr ChildLimits uniting_limits{120, 8192};
 /// What the child came to, its own failure as an error in words.
 Tessellation in_child(const std::filesystem::path& file, bool unite, const ChildLimits& limits) {
     using End = ChildResult::End;
-    const ChildResult child = run_in_child([&] { return to_bytes(tessellate(file, unite, cad_chord)); }, limits);
+    ChildResult child = run_in_child([&] { return to_bytes(tessellate(file, unite, cad_chord)); }, limits);
     Tessellation result;
     if (child.end == End::Answered) {
-        from_bytes(child.answer, result);
+        from_bytes(std::move(child.answer), result);
         return result;
     }
     result.error = child.end == End::OutOfTime     ? fmt::format("OpenCASCADE did not end within {} s", limits.seconds)
