@@ -3,6 +3,7 @@
 #include <fcntl.h>
 #include <fmt/core.h>
 #include <poll.h>
+#include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -60,13 +61,26 @@ bool write_all(int pipe, const void* data, std::size_t size) {
     return true;
 }
 
+/// Ends the child with its parent, and closes what the parent has open: a lock that the parent holds on a file would
+/// outlive it otherwise.
+void cling_to(pid_t parent, int pipe) {
+    prctl(PR_SET_PDEATHSIG, SIGKILL);
+    if (getppid() != parent) _exit(exception_code);  // it died before we asked to be told
+    const auto end = static_cast<unsigned>(pipe);
+    if (end > STDERR_FILENO + 1) close_range(STDERR_FILENO + 1, end - 1, 0);
+    close_range(end + 1, ~0U, 0);
+}
+
 /// The child's life. Nothing of the parent is torn down: it leaves by _exit.
-[[noreturn]] void live(const std::function<std::string()>& work, const ChildLimits& limits, double base, int pipe) {
+[[noreturn]] void live(const std::function<std::string()>& work, const ChildLimits& limits, double base, pid_t parent,
+                       int pipe) {
+    cling_to(parent, pipe);
     for (const int signal : {SIGSEGV, SIGBUS, SIGABRT, SIGFPE, SIGILL, SIGXCPU, SIGPIPE, SIGINT, SIGTERM})
         std::signal(signal, SIG_DFL);
     const int nowhere = open("/dev/null", O_RDWR);
     dup2(nowhere, STDOUT_FILENO);
     dup2(nowhere, STDERR_FILENO);
+    close(nowhere);
     limit(RLIMIT_CORE, 0);
     limit(RLIMIT_CPU, std::ceil(limits.seconds) + 1);
     limit(RLIMIT_AS, base + limits.mebibytes * 1024 * 1024);
@@ -124,6 +138,7 @@ int wait_for(pid_t child) {
 ChildResult run_in_child(const std::function<std::string()>& work, const ChildLimits& limits) {
     const auto deadline = Clock::now() + std::chrono::microseconds(static_cast<long long>(limits.seconds * 1e6));
     const double base = address_space();
+    const pid_t parent = getpid();
     int ends[2];
     pid_t child = -1;
     {
@@ -134,7 +149,7 @@ ChildResult run_in_child(const std::function<std::string()>& work, const ChildLi
             throw SolverFailure(fmt::format(
                 "No pipe to a child process can be made: {}. Close open files and try again.", std::strerror(errno)));
         child = fork();
-        if (child == 0) live(work, limits, base, ends[1]);
+        if (child == 0) live(work, limits, base, parent, ends[1]);
         close(ends[1]);
     }
     if (child < 0) {

@@ -19,8 +19,9 @@ struct ChildResult {
     std::string answer;  // what `work` returned, when it answered
 };
 
-/// Runs `work` in a child process with limits; its crash, hang or greed does no harm here. The child prints nothing.
-/// It begins as a copy of this thread alone: `work` must not wait for other threads.
+/// Runs `work` in a child process with limits; its crash, hang or greed does no harm here. The child prints
+/// nothing, holds no file of this process open, and ends with it. It begins as a copy of this thread alone: `work` must
+/// not wait for other threads.
 /// @throws SolverFailure when no child can be started.
 ChildResult run_in_child(const std::function<std::string()>& work, const ChildLimits& limits);
 

@@ -92,6 +92,13 @@ int lock(const fs::path& folder) {
     }
 }
 
+/// Whether it holds files that no run leaves: one that was killed as it began leaves a lock and half a record.
+bool holds_others(const fs::path& folder) {
+    return std::any_of(fs::directory_iterator(folder), fs::directory_iterator(), [](const fs::directory_entry& entry) {
+        return entry.path().filename() != lock_name && !mesh::is_unfinished(entry.path());
+    });
+}
+
 /// Takes away what a killed run had half written beside its targets.
 void remove_remains(const fs::path& folder) {
     std::vector<fs::path> remains;
@@ -102,7 +109,9 @@ void remove_remains(const fs::path& folder) {
     for (const fs::path& path : remains) fs::remove_all(path, ignored);
 }
 
+/// What the runs before wrote down; null where no record of ours stands.
 json read_record(const fs::path& file) {
+    if (!fs::exists(file)) return {};
     try {
         const json record = json::parse(mesh::read_text(file));
         return record.value("program", "") == "palpate" ? record : json();
@@ -117,8 +126,8 @@ RunFolder::RunFolder(fs::path folder, bool force) : folder_(std::move(folder)) {
     if (fs::exists(folder_) && !fs::is_directory(folder_)) {
         throw InvalidInput(fmt::format("{}: is a file; name a folder for the run", folder_.string()));
     }
-    if (fs::exists(folder_ / record_name)) record_ = read_record(folder_ / record_name);
-    if (fs::exists(folder_) && !fs::is_empty(folder_) && record_.is_null() && !force) {
+    const bool has_record = !read_record(folder_ / record_name).is_null();
+    if (!has_record && !force && fs::exists(folder_) && holds_others(folder_)) {
         throw InvalidInput(
             fmt::format("{}: the folder holds files that palpate did not make; name another one, or say "
                         "--force to write into it",
@@ -130,6 +139,7 @@ RunFolder::RunFolder(fs::path folder, bool force) : folder_(std::move(folder)) {
 
     lock_ = lock(folder_);
     remove_remains(folder_);
+    record_ = read_record(folder_ / record_name);  // as it is now that nobody else writes it
     if (record_.is_null()) record_ = json::object();
     record_["program"] = "palpate";
     record_["version"] = version;

@@ -93,7 +93,7 @@ TEST(Resume, AKilledRunEndsAsOneThatRanThrough) {
         if (!was_killed) whole /= 2;  // the machine has less to do than when the first run was timed
         if (i % 5 < 4 && i + 1 < kills()) continue;
 
-        ASSERT_EQ(finish(start_run(scratch, "run")), 0);
+        ASSERT_EQ(finish(start_run(scratch, "run")), 0) << mesh::read_text(scratch / "said");
         const std::vector<std::string> files = files_of(scratch / "whole");
         EXPECT_EQ(files_of(scratch / "run"), files);
         for (const std::string& file : files) {
@@ -124,7 +124,7 @@ TEST_P(ShortOf, SaysSoAndGoesOnLater) {
             EXPECT_EQ(sha256_of_file(scratch / "run" / file), sha256_of_file(scratch / "whole" / file)) << file;
         }
     }
-    ASSERT_EQ(finish(start_run(scratch, "run")), 0);
+    ASSERT_EQ(finish(start_run(scratch, "run")), 0) << mesh::read_text(scratch / "said");
     EXPECT_EQ(files_of(scratch / "run"), whole);
 }
 
@@ -147,6 +147,17 @@ TEST(Resume, ASecondRunInOneFolderSaysSoAndStops) {
             says(message_of([&] { const RunFolder second(scratch / "run", false); }), {"another palpate works", "-o"}));
     }
     EXPECT_NO_THROW(const RunFolder third(scratch / "run", false));
+}
+
+TEST(Resume, AFolderThatAKilledRunHadJustBegunIsItsOwn) {
+    const TemporaryFolder scratch;
+    mesh::write_text(scratch / "run/.lock", "");
+    mesh::write_text(mesh::unfinished_beside(scratch / "run/run.json"), "{");
+    EXPECT_NO_THROW(const RunFolder again(scratch / "run", false));
+    mesh::write_text(scratch / "other/.lock", "");
+    mesh::write_text(scratch / "other/letter.txt", "");
+    EXPECT_TRUE(
+        says(message_of([&] { const RunFolder other(scratch / "other", false); }), {"did not make", "--force"}));
 }
 
 TEST(Resume, WhatAKilledRunLeftHalfWrittenGoes) {
