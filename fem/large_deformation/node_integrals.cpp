@@ -10,6 +10,8 @@ namespace palpate::fem {
 NodeIntegrals node_integrals(const mesh::VolumeMesh& mesh, const std::vector<char>& held) {
     const Eigen::Index n = mesh.nodes.rows();
     NodeIntegrals result{Eigen::VectorXd::Zero(n), Eigen::VectorXd::Zero(n), Eigen::VectorXd::Zero(n)};
+    for (Eigen::Index i = 0; i < n; ++i) result.support(i) = held[i] ? 1 : 0;
+    result.support /= result.support.sum();
 
     const auto solid_rule = quadrature_5();
     for (Eigen::Index e = 0; e < mesh.tetrahedra.rows(); ++e) {
@@ -19,13 +21,9 @@ NodeIntegrals node_integrals(const mesh::VolumeMesh& mesh, const std::vector<cha
             const Mat3 J = X.transpose() * shape_gradient<4, 10>(l);
             const double dV = weight / 6 * J.determinant();
             const auto N = shape<4, 10>(l);
-            for (int i = 0; i < 10; ++i) {
-                result.volume(element(i)) += dV * N(i);
-                if (held[element(i)]) result.support(element(i)) += dV * N(i) * N(i);
-            }
+            for (int i = 0; i < 10; ++i) result.volume(element(i)) += dV * N(i);
         }
     }
-    result.support /= result.support.sum();
 
     const auto face_rule = triangle_quadrature_5();
     for (Eigen::Index f = 0; f < mesh.faces.rows(); ++f) {

