@@ -220,6 +220,13 @@ TEST_F(ReadVolume, VtuTellsMaterialsAndRefusesOtherCells) {
     VolumeMesh bar = make_bar({0, 0, 0}, {1, 1, 1}, {1, 1, 1});
     write_vtu(folder / "a.vtu", bar, {.points = {}, .cells = {{"MaterialIds", Eigen::VectorXd::LinSpaced(6, 1, 6)}}});
     EXPECT_TRUE(says(read_body(folder / "a.vtu").notes.at(0), {"6 materials"}));
+    // what is no whole number is no material's
+    for (const double value : {0.5, 1e300, double(INFINITY), std::nan("")}) {
+        Eigen::VectorXd region = Eigen::VectorXd::LinSpaced(6, 1, 6);
+        region[3] = value;
+        write_vtu(folder / "a.vtu", bar, {.points = {}, .cells = {{"region", region}}});
+        EXPECT_TRUE(read_body(folder / "a.vtu").notes.empty()) << value;
+    }
     bar.nodes(0, 0) = std::nan("");
     write_vtu(folder / "b.vtu", bar);
     EXPECT_TRUE(says(message_of<InvalidInput>([&] { read_body(folder / "b.vtu"); }), {"point 0", "not finite"}));

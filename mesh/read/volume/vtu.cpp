@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <cmath>
 
 #include "mesh/errors.h"
 #include "mesh/io/vtk_data.h"
@@ -17,10 +18,15 @@ constexpr std::array material_names{"material",         "materialid", "materiali
                                     "gmsh:geometrical", "medit:ref",  "tetgen:ref",  "region",       "regions",
                                     "regionid",         "label",      "labels",      "cellentityids"};
 
+bool are_whole_numbers(const Eigen::MatrixXd& values) {
+    constexpr double most = 9e15;  // whole numbers that a double tells apart
+    return values.unaryExpr([](double v) { return std::abs(v) <= most && v == std::floor(v); }).all();
+}
+
 const DataArray* material_of(const VtkData& grid) {
     for (const char* wanted : material_names)
         for (const DataArray& array : grid.of_cells) {
-            if (array.values.cols() != 1) continue;
+            if (array.values.cols() != 1 || !are_whole_numbers(array.values)) continue;
             std::string name = array.name;
             std::ranges::transform(name, name.begin(), [](unsigned char c) { return std::tolower(c); });
             if (name == wanted) return &array;
