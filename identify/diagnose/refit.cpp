@@ -9,9 +9,12 @@ namespace palpate::identify {
 namespace {
 
 // A step that promises to lower half the chi^2 by less is none: nothing against an evidence of 1, or against what a fit
-// that explains little is off by anyway.
-double settled(double objective, Eigen::Index readings) {
-    return std::max(0.02, 1e-3 * (objective - 0.5 * static_cast<double>(readings)));
+// that explains little is off by anyway. The less, the more effects leave; what they are sought at is to be exact.
+double settled(double objective, Eigen::Index readings, bool has_effects) {
+    const double noise = 0.5 * static_cast<double>(readings);
+    constexpr double share = 1e-3;
+    const double most = has_effects ? 20 * share : share;
+    return std::max(0.02, std::clamp(share * objective / noise, share, most) * (objective - noise));
 }
 
 struct Priors {
@@ -93,7 +96,7 @@ public:
                 VA.transpose() * at_.error - (x - priors_.mean).cwiseQuotient(priors_.sd.cwiseAbs2());
             Eigen::VectorXd move = bounded_move(H, g, priors_, x);
             at_.covariance = H.llt().solve(Eigen::MatrixXd::Identity(x.size(), x.size()));
-            at_.converged = 0.5 * g.dot(move) < settled(now, problem_.rows());
+            at_.converged = 0.5 * g.dot(move) < settled(now, problem_.rows(), !at_.explanation.effects.empty());
             if (at_.converged || is_hopeless(now, 0.5 * g.dot(move))) return;
             move *= std::min(1.0, 1 / move.cwiseQuotient(priors_.step).cwiseAbs().maxCoeff());
             ++at_.steps;

@@ -1,6 +1,7 @@
 // Several effects at once.
 
 #include <algorithm>
+#include <cmath>
 
 #include "identify/diagnose/judge.h"
 #include "identify/diagnose/search.h"
@@ -36,6 +37,11 @@ double evidence_for(const Refit& fit, const std::string& name) {
     return most;
 }
 
+/// Half of the chi^2 that a fit leaves beyond noise.
+double excess(const Explained& explained) {
+    return 0.5 * static_cast<double>(explained.fit.error.size()) * (std::pow(explained.fit.whitened_rms, 2) - 1);
+}
+
 /// An explanation without one of its effects.
 Explanation without(const Explanation& all, const std::string& name) {
     Explanation result = all;
@@ -57,6 +63,7 @@ bool Search::extend(std::size_t from, int most) {
     report(progress_, "screen next to " + listed(there), 0.8);
     const bool noise_is_left = is_likely(base, options_) && base.fit.whitened_rms <= options_.most_left;
     const double leads = leader()->log_bayes_factor;
+    constexpr double share = 0.05;
     bool grew = false;
     int refitted = 0;
     for (const Screened& screened : screen_at(base.fit, there)) {
@@ -65,9 +72,9 @@ bool Search::extend(std::size_t from, int most) {
         const double least = noise_is_left
                                  ? least_next_to_effect(*screened.effect, base.log_bayes_factor, problem_, options_)
                                  : options_.least_evidence;
-        // A screen is a linearisation, and says somewhat too little at times.
-        const bool said =
-            refitted < most && screened.log_bayes_factor >= std::max(options_.least_evidence, 0.5 * least);
+        // A screen is a linearisation, and says somewhat too little at times; little of much explains nothing.
+        const double worth_a_fit = std::max({options_.least_evidence, 0.5 * least, share * excess(base)});
+        const bool said = refitted < most && screened.log_bayes_factor >= worth_a_fit;
         if (!said && !(screened.effect->outwits_screen() && little_is_left())) continue;
         std::vector<std::string> names = there;
         names.push_back(screened.effect->name());
@@ -99,10 +106,15 @@ void Search::put_together() {
         if (!is_likely(tried_[order[i]], options_)) break;
         extend(order[i], 3);
     }
+    // One more is worth looking for where the last one has explained half of what was left: else it is not in the
+    // catalogue.
+    double left_with_fewer = excess(tried_[order.front()]);
     for (int count = 2; count < options_.together; ++count) {
         const std::size_t best = index_of_leader();
         if (std::ssize(tried_[best].effects) < count || is_enough(tried_[best].fit, options_)) break;
-        if (!extend(best, 2)) break;
+        const double left = excess(tried_[best]);
+        if (left > 0.5 * left_with_fewer || !extend(best, 2)) break;
+        left_with_fewer = left;
     }
     drop_and_swap();
 }
