@@ -79,18 +79,25 @@ MeasurementSet understood(const MeasurementSet& set, const std::vector<skeleton:
     return result;
 }
 
+void refuse_what_cannot_show(const Effect& effect, const BodyModel& body, const MeasurementSet& set) {
+    const Problem problem = make_problem(set, 1);
+    const bool spread = effect.has_memory() && !problem.by_stage;
+    const bool is_fitted = effect.name() != "outliers";  // they are found, reading by reading
+    if (!is_fitted || !effect.numbers(body, spread ? problem.stage_by_stage() : problem).empty()) return;
+    throw InvalidInput(fmt::format("The effect '{}' cannot show in this body and this set. What shows it: {}.",
+                                   effect.name(), effect.description().reveals));
+}
+
 class Climb {
 public:
-    Climb(const skeleton::Model& model, const BodyModel* reference, const MeasurementSet& set,
-          const LadderOptions& options, const Progress& progress)
-        : model_(model), set_(set), options_(options), progress_(progress) {
-        if (!reference) {
-            own_body_ = std::make_unique<SkeletonBody>(model, set.markers, 0.1);
-            body_ = own_body_.get();
-            body_is_skeleton_ = true;
-        } else {
-            body_ = reference;
-        }
+    Climb(const skeleton::Model& model, const BodyModel& body, const MeasurementSet& set, const LadderOptions& options,
+          const Progress& progress)
+        : model_(model),
+          body_(body),
+          body_is_skeleton_(dynamic_cast<const SkeletonBody*>(&body) != nullptr),
+          set_(set),
+          options_(options),
+          progress_(progress) {
         for (const std::vector<int>& fold : folds_of(set)) {
             folds_.push_back({part_of(set, fold, false), part_of(set, fold, true)});
             result_.held_out_probes.insert(result_.held_out_probes.end(), fold.begin(), fold.end());
@@ -121,7 +128,7 @@ private:
             options.law = diagnosis->law;
             options.near = {&diagnosis->problem, effects.empty() ? &diagnosis->baseline : &diagnosis->best()};
         }
-        return diagnose(*body_, set, options);
+        return diagnose(body_, set, options);
     }
 
     static skeleton::Effect start_of(const std::string& name, const Diagnosis* diagnosis) {
@@ -203,7 +210,7 @@ private:
         options.known = told(found);
         options.near = {&found.problem, &found.best()};
         if (found.outliers.readings.empty()) options.without.emplace_back("outliers");
-        return diagnose(*body_, part, options);
+        return diagnose(body_, part, options);
     }
 
     struct Unseen {
@@ -214,11 +221,11 @@ private:
                           const Diagnosis& found) const {
         const RefitOptions& how = options_.diagnose.refit;
         const Refit& fit = found.best();
-        Unseen result{held_out, predict(*body_, make_problem(held_out, found.noise), fit, how)};
+        Unseen result{held_out, predict(body_, make_problem(held_out, found.noise), fit, how)};
         if (std::ranges::find(effects, "outliers") == effects.end()) return result;
         const Outliers off = find_outliers(make_problem(held_out, found.noise), result.predicted.residual);
         result.set = without_readings(held_out, off.readings);
-        result.predicted = predict(*body_, make_problem(result.set, found.noise), fit, how);
+        result.predicted = predict(body_, make_problem(result.set, found.noise), fit, how);
         return result;
     }
 
@@ -252,12 +259,11 @@ private:
     }
 
     const skeleton::Model& model_;
+    const BodyModel& body_;
+    bool body_is_skeleton_;
     const MeasurementSet& set_;
     const LadderOptions& options_;
     const Progress& progress_;
-    const BodyModel* body_ = nullptr;
-    std::unique_ptr<SkeletonBody> own_body_;
-    bool body_is_skeleton_ = false;
     struct Fold {
         MeasurementSet fitted, held_out;
     };
@@ -269,11 +275,11 @@ private:
 
 }  // namespace
 
-Ladder climb(const skeleton::Model& model, const BodyModel* reference, const MeasurementSet& set,
+Ladder climb(const skeleton::Model& model, const BodyModel& body, const MeasurementSet& set,
              const std::vector<std::string>& effects, const LadderOptions& options, const Diagnosis* diagnosis,
              const Progress& progress) {
-    for (const std::string& name : effects) find_effect(name);
-    return Climb(model, reference, set, options, progress).run(effects, diagnosis);
+    for (const std::string& name : effects) refuse_what_cannot_show(*find_effect(name), body, set);
+    return Climb(model, body, set, options, progress).run(effects, diagnosis);
 }
 
 }  // namespace palpate::identify

@@ -88,6 +88,9 @@ public:
     const std::string& name() const { return description().name; }
     bool is_of_body() const { return description().kind == EffectKind::body; }
 
+    /// Is it of a skeleton's links alone? No solid has it.
+    virtual bool is_of_links() const { return false; }
+
     /// Its numbers in a problem. None: it cannot show there.
     virtual std::vector<EffectNumber> numbers(const BodyModel& model, const Problem& problem) const = 0;
 

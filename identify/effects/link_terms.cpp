@@ -29,6 +29,8 @@ public:
         return text;
     }
 
+    bool is_of_links() const override { return true; }
+
     std::vector<EffectNumber> numbers(const BodyModel& model, const Problem&) const override {
         if (!has_links(model)) return {};
         return {{.name = "torsion", .unit = "1", .least = 0}};
@@ -60,6 +62,8 @@ public:
             .next_probe = "load"};
         return text;
     }
+
+    bool is_of_links() const override { return true; }
 
     std::vector<EffectNumber> numbers(const BodyModel& model, const Problem&) const override {
         if (!has_links(model)) return {};

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "identify/effects/catalogue.h"
+#include "identify/models/skeleton_body.h"
 #include "identify/set/plausibility.h"
 #include "mesh/errors.h"
 #include "mesh/io/region_yaml.h"
@@ -52,6 +53,15 @@ std::unique_ptr<identify::ReferenceBody> reference_of(const identify::Measuremen
         throw InvalidInput("the body cannot be made of finite elements: " + reference.why_none);
     }
     return std::move(reference.body);
+}
+
+std::unique_ptr<identify::BodyModel> body_to_judge(const std::string& kind, const ModelAndSet& given,
+                                                   double edge_length) {
+    if (kind != "skeleton") return reference_of(given.set, edge_length);
+    constexpr double start_young = 0.1;  // [MPa], where the set has no guess
+    const bool told = given.set.material && given.set.material->young > 0;
+    return std::make_unique<identify::SkeletonBody>(given.model, given.set.markers,
+                                                    told ? given.set.material->young : start_young);
 }
 
 void warn_of_modulus(const nlohmann::json& compare, const identify::MeasurementSet& set) {

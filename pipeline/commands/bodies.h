@@ -27,6 +27,11 @@ identify::MeasurementSet understood(const identify::MeasurementSet& set, const s
 /// @throws InvalidInput telling why there is none.
 std::unique_ptr<identify::ReferenceBody> reference_of(const identify::MeasurementSet& set, double edge_length);
 
+/// What errors are judged on: "reference", or "skeleton", which starts from the set's Young's modulus where it has one.
+/// @throws InvalidInput telling why there is no reference.
+std::unique_ptr<identify::BodyModel> body_to_judge(const std::string& kind, const ModelAndSet& given,
+                                                   double edge_length);
+
 /// Says aloud where a fit's Young's modulus hints at a slip of units. `compare`: with the baseline that was fitted.
 void warn_of_modulus(const nlohmann::json& compare, const identify::MeasurementSet& set);
 

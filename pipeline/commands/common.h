@@ -99,6 +99,7 @@ struct ImproveCommandOptions {
     std::filesystem::path model, set, output;
     std::vector<std::string> add = {};  // effects, a rung each
     bool automatic = false;             // what a diagnosis names, in place of those
+    std::string body = {};              // as for a diagnosis; empty: the skeleton where an effect is of its links alone
     CaseOverrides say = {};
 };
 Outcome improve(const ImproveCommandOptions& options, const Common& common);

@@ -3,25 +3,12 @@
 #include <fmt/format.h>
 
 #include "identify/effects/catalogue.h"
-#include "identify/models/skeleton_body.h"
 #include "mesh/io/atomic_file.h"
 #include "pipeline/commands/bodies.h"
 #include "pipeline/results/diagnosis_json.h"
 #include "pipeline/results/diagnosis_words.h"
 
 namespace palpate::pipeline::commands {
-namespace {
-
-constexpr double start_young = 0.1;  // [MPa], where the set has no guess
-
-std::unique_ptr<identify::BodyModel> body_to_judge(const DiagnoseCommandOptions& options, const ModelAndSet& given) {
-    if (options.body != "skeleton") return reference_of(given.set, options.say.edge_length.value_or(0));
-    const bool told = given.set.material && given.set.material->young > 0;
-    return std::make_unique<identify::SkeletonBody>(given.model, given.set.markers,
-                                                    told ? given.set.material->young : start_young);
-}
-
-}  // namespace
 
 Outcome diagnose(const DiagnoseCommandOptions& options, const Common& common) {
     if (!options.output.empty()) refuse_to_overwrite(options.output, common.force);
@@ -29,7 +16,7 @@ Outcome diagnose(const DiagnoseCommandOptions& options, const Common& common) {
     const ModelAndSet given = read_model_and_set(options.model, options.set);
     identify::DiagnoseOptions how = diagnose_options(given.model, common);
     how.without = options.without;
-    const auto body = body_to_judge(options, given);
+    const auto body = body_to_judge(options.body, given, options.say.edge_length.value_or(0));
     const identify::Diagnosis found = identify::diagnose(*body, given.set, how, Console::progress());
 
     Outcome outcome;
@@ -43,7 +30,7 @@ Outcome diagnose(const DiagnoseCommandOptions& options, const Common& common) {
     if (outcome.json["verdict"] == "missing-effect") {
         outcome.text += fmt::format("Next: palpate improve {} {}", options.model.string(), options.set.string());
         for (const std::string& effect : found.explanation) outcome.text += " --add " + effect;
-        outcome.text += " -o improved\n";
+        outcome.text += options.body == "skeleton" ? " --body skeleton -o improved\n" : " -o improved\n";
     } else if (outcome.json["verdict"] == "ambiguous") {
         outcome.text += "Next: add that probe to the set, and diagnose again\n";
     }

@@ -32,22 +32,34 @@ identify::Diagnosis diagnose_aloud(const identify::BodyModel& body, const identi
     return found;
 }
 
+/// "reference" or "skeleton".
+std::string judged_on(const ImproveCommandOptions& options) {
+    std::string of_links;
+    for (const std::string& name : options.add) {
+        if (identify::find_effect(name)->is_of_links()) of_links = name;
+    }
+    if (!options.body.empty()) return options.body;
+    if (of_links.empty()) return "reference";
+    Console::notice(fmt::format("Errors are judged on the skeleton: no solid has '{}'.", of_links));
+    return "skeleton";
+}
+
 }  // namespace
 
 Outcome improve(const ImproveCommandOptions& options, const Common& common) {
     const fs::path output = options.output.empty() ? fs::path("improved") : options.output;
     refuse_to_overwrite(output, common.force);
-    for (const std::string& name : options.add) identify::find_effect(name);
+    const std::string kind = judged_on(options);
     const ModelAndSet given = read_model_and_set(options.model, options.set);
     const identify::LadderOptions how{.identify = identify_options(options.say, common),
                                       .diagnose = diagnose_options(given.model, common)};
     how.identify.validate();
-    const auto reference = reference_of(given.set, options.say.edge_length.value_or(0));
+    const auto body = body_to_judge(kind, given, options.say.edge_length.value_or(0));
     std::optional<identify::Diagnosis> found;
-    if (options.automatic) found = diagnose_aloud(*reference, given.set, how.diagnose);
+    if (options.automatic) found = diagnose_aloud(*body, given.set, how.diagnose);
     const std::vector<std::string>& effects = found ? found->explanation : options.add;
-    identify::Ladder ladder = identify::climb(given.model, reference.get(), given.set, effects, how,
-                                              found ? &*found : nullptr, Console::progress());
+    identify::Ladder ladder =
+        identify::climb(given.model, *body, given.set, effects, how, found ? &*found : nullptr, Console::progress());
     ladder.identified.damping = damping_of(ladder.steps.back().model, given.set, how.identify.seed, common);
     write_ladder(output, ladder);
 

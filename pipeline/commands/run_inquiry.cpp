@@ -112,7 +112,7 @@ json RunInquiry::improve(const skeleton::Model& model, const json& diagnosis) {
     const fs::path folder = folder_.path() / "improve";
     const bool ran = folder_.stage({"improve", settings, subject_.files, {"skeleton", "diagnose"}, {"improve"}}, [&] {
         identify::Ladder ladder =
-            identify::climb(model, &reference(), set_, effects, how, &diagnosed(model), Console::progress());
+            identify::climb(model, reference(), set_, effects, how, &diagnosed(model), Console::progress());
         ladder.identified.damping = damping_of(ladder.steps.back().model, set_, how.identify.seed, common_);
         write_ladder(folder, ladder);
         return json{{"steps", ladder.steps.size()}, {"rms_mm", ladder.steps.back().skeleton.rms_mm}};

@@ -53,10 +53,7 @@ void Verbs::add_diagnose(CLI::App& app) {
     sub->add_option("--without", diagnose.without, "An effect to leave out of the catalogue; repeatable")
         ->expected(1)
         ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
-    sub->add_option("--body", diagnose.body,
-                    "What the errors are judged on: reference (finite elements, by default) or skeleton, whose\n"
-                    "coarseness may be taken for physics")
-        ->check(CLI::IsMember({"reference", "skeleton"}));
+    add_body(sub, diagnose.body, "by default");
     add_edge_length(sub, diagnose.say);
 }
 
@@ -75,6 +72,7 @@ void Verbs::add_improve(CLI::App& app) {
         ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
     what->add_flag("--auto", improve.automatic, "What a diagnosis names");
     what->require_option(1);
+    add_body(sub, improve.body, "by default, but for what links alone have");
     add_identify_flags(sub, improve.say);
     add_edge_length(sub, improve.say);
 }

@@ -57,6 +57,13 @@ void add_probing_flags(CLI::App* verb, CaseOverrides& say) {
         ->group("Probing");
 }
 
+void add_body(CLI::App* verb, std::string& body, const std::string& when) {
+    verb->add_option("--body", body,
+                     "What the errors are judged on: reference (finite elements, " + when +
+                         ")\nor skeleton, whose coarseness may be taken for physics")
+        ->check(CLI::IsMember({"reference", "skeleton"}));
+}
+
 void add_edge_length(CLI::App* verb, CaseOverrides& say) {
     verb->add_option("--edge-length", say.edge_length,
                      "Of the tetrahedra [mm]; 6 % of the longest side by default, 7 % where effects are looked for")

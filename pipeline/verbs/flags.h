@@ -15,4 +15,7 @@ void add_identify_flags(CLI::App* verb, CaseOverrides& say);
 /// Size of the elements of a reference body.
 void add_edge_length(CLI::App* verb, CaseOverrides& say);
 
+/// `when`: the reference is it, "by default".
+void add_body(CLI::App* verb, std::string& body, const std::string& when);
+
 }  // namespace palpate::pipeline

@@ -10,6 +10,7 @@
 #include "mesh/errors.h"
 #include "skeleton/state.h"
 #include "small_body.h"
+#include "tests/messages.h"
 
 namespace palpate::identify {
 namespace {
@@ -34,7 +35,7 @@ protected:
         return make_twin(*reference_, body_.set(SmallBody::probes(0.03, probes)), truth, sigma);
     }
     Ladder climb(const MeasurementSet& set, const std::vector<std::string>& effects) const {
-        return identify::climb(body_.chain(), reference_.get(), set, effects, options_);
+        return identify::climb(body_.chain(), *reference_, set, effects, options_);
     }
     static std::vector<std::string> names_of(const std::vector<skeleton::Effect>& effects) {
         std::vector<std::string> names;
@@ -133,7 +134,7 @@ TEST_F(Climbed, OutliersAreLeftOutOfTheMeasurements) {
 TEST_F(Climbed, TheDiagnosisTellsWhatTheScreenExpected) {
     const MeasurementSet set = twin({{"gravity", half_g_}});
     const Diagnosis diagnosis = diagnose(*reference_, set, options_.diagnose);
-    const Ladder ladder = identify::climb(body_.chain(), reference_.get(), set, {"gravity"}, options_, &diagnosis);
+    const Ladder ladder = identify::climb(body_.chain(), *reference_, set, {"gravity"}, options_, &diagnosis);
     EXPECT_EQ(ladder.steps[1].predicted_rms_mm, diagnosis.ranking.front().predicted_rms_mm);
     EXPECT_TRUE(std::isnan(ladder.steps[0].predicted_rms_mm));
 }
@@ -182,6 +183,30 @@ TEST_F(Climbed, NoRungButTheFirstWithoutEffects) {
 }
 
 TEST_F(Climbed, AnUnknownEffectIsRefused) { EXPECT_THROW(climb(twin({}), {"gravty"}), InvalidInput); }
+
+TEST_F(Climbed, AnEffectThatCannotShowIsRefused) {
+    EXPECT_TRUE(says(message_of<InvalidInput>([&] {
+                         climb(twin({}), {"gravity", "pressure"});
+                     }),
+                     {"'pressure'", "cannot show", "cavity"}));
+    EXPECT_THROW(climb(twin({}), {"shear"}), InvalidInput);  // no solid has it
+}
+
+TEST_F(Climbed, WhatLinksAloneHaveIsAddedOnTheSkeletonItself) {
+    options_.diagnose.law = 1;
+    const auto skeleton = body_.skeleton();
+    const Explanation truth = with(bare_truth(*skeleton, 1), find_effect("shear"), Eigen::VectorXd::Constant(1, 0.5));
+    const MeasurementSet set = make_twin(*skeleton, body_.set(SmallBody::probes(0.05)), truth, sigma);
+    const Ladder ladder = identify::climb(body_.chain(), *skeleton, set, {"shear"}, options_);
+    ASSERT_EQ(ladder.steps.size(), 2u);
+    EXPECT_FALSE(ladder.steps[0].reference || ladder.steps[1].reference);
+    EXPECT_THAT(names_of(ladder.steps[1].model.effects), ElementsAre("shear"));
+    EXPECT_NEAR(ladder.steps[1].effects[0].parameters[0].value, 0.5, 0.1);
+    EXPECT_GT(ladder.steps[0].skeleton.rms_mm, 1.2 * sigma);
+    EXPECT_NEAR(ladder.steps[1].skeleton.rms_mm, sigma, 0.1 * sigma);
+    EXPECT_LT(ladder.steps[1].skeleton.held_out_rms_mm, ladder.steps[0].skeleton.held_out_rms_mm);
+    EXPECT_EQ(ladder.verdict, Verdict::adequate);
+}
 
 }  // namespace
 }  // namespace palpate::identify
