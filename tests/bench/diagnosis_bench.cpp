@@ -97,8 +97,7 @@ std::string climbed(const identify::BodyModel& body, const identify::Measurement
                     const identify::Diagnosis& found, const Options& options) {
     identify::LadderOptions how;
     how.identify.threads = how.diagnose.refit.threads = options.threads;
-    const identify::Ladder ladder =
-        identify::climb(skeleton_of(set), options.skeleton ? nullptr : &body, set, found.explanation, how, &found);
+    const identify::Ladder ladder = identify::climb(skeleton_of(set), body, set, found.explanation, how, &found);
     const identify::LadderStep &first = ladder.steps.front(), &last = ladder.steps.back();
     const std::string skeleton = fmt::format(
         "{:.3f} -> {:.3f} mm ({:+.0f} %), held out {:.3f} -> {:.3f} mm ({:+.0f} %)", first.skeleton.rms_mm,
