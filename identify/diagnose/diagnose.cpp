@@ -236,6 +236,7 @@ void DiagnoseOptions::validate() const {
     };
     above("most_left", most_left);
     above("most_left_held_out", most_left_held_out);
+    above("most_gap", most_gap);
     above("most_strain", most_strain);
     const auto no_less = [](const char* name, double value) {
         if (!(value >= 0)) throw InvalidInput(fmt::format("{} is {}; it must be 0 or more", name, value));

@@ -36,6 +36,7 @@ struct DiagnoseOptions {
     double most_left = 1.1;               // whitened rms, for what is left to be noise
     double most_left_together = 1.06;     // the same where several effects explain it: they bend to more
     double most_left_held_out = 1.2;      // the same on probes left out
+    double most_gap = 1.06;               // the same over that on probes fitted, where it is above 1
     double most_strain = 8;               // of a nuisance, in its prior sd
     double least_outliers = 100;          // the same for outliers: one reading of 15 sigma, say
     double mesh_error = 0.015;            // of the displacement: what meshes and their contacts may be off by

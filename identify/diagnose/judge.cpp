@@ -79,6 +79,12 @@ std::string objection_of_effects(const Diagnosis& diagnosis, const Explained& ex
 std::string objection_to(const Diagnosis& diagnosis, const Explained& explained, const DiagnoseOptions& options) {
     if (leaves_too_much(diagnosis.baseline, explained))
         return "it leaves too much, beyond the noise, of what it should explain, as errors of a mesh do";
+    const double unseen = explained.held_out.whitened_rms, gap = unseen / explained.fit.whitened_rms;
+    constexpr double chance = 10;  // over the number of rows: what a few dozen unknowns bring about
+    if (unseen > 1 && gap > options.most_gap + chance / static_cast<double>(diagnosis.problem.rows())) {
+        return fmt::format(
+            "it bends to each probe: those left out are off by {:.2f} times what it leaves on the others", gap);
+    }
     if (explained.effects.size() == 1 && is_likely(explained, options) && is_enough(diagnosis.baseline, options)) {
         const double least = least_next_to_noise(*explained.effects.front(), diagnosis.problem, options);
         if (explained.log_bayes_factor < least) {

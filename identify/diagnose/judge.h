@@ -21,7 +21,8 @@ double least_next_to_effect(const Effect& effect, double brought, const Problem&
                             const DiagnoseOptions& options);
 
 /// Comes to a verdict on what was tried: an explanation is claimed if its evidence is great enough and leads, what is
-/// left is noise on fitted and on held-out probes and little next to what it explains, and no nuisance is strained.
+/// left is noise on fitted probes, hardly more on held-out ones and little next to what it explains, and no nuisance is
+/// strained.
 /// `diagnosis`: all but verdict, explanation, law, probabilities and next probe, which are filled in; the ranking is
 /// put into order.
 void judge(const BodyModel& model, const DiagnoseOptions& options, Diagnosis& diagnosis);

@@ -131,6 +131,25 @@ TEST_F(Diagnosed, WhatLeavesTooMuchIsNoClaim) {
     EXPECT_EQ(verdict(1.12, 1.04), Verdict::missing_effect);
 }
 
+TEST_F(Diagnosed, WhatBendsToEachProbeIsNoClaim) {
+    Diagnosis found = diagnose(twin(truth("gravity", half_g)));
+    ASSERT_TRUE(found.explained);
+    EXPECT_LT(found.explained->held_out.whitened_rms, 1.03 * found.explained->fit.whitened_rms);
+    found.tried = {*found.explained};
+    found.tried.front().fit.whitened_rms = 1;
+    const auto verdict = [&](double gap) {
+        found.explanation.clear();
+        found.explained.reset();
+        found.tried.front().held_out.whitened_rms = gap;
+        judge(*model_, {}, found);
+        return found.verdict;
+    };
+    const double most = 1.06 + 10 / 648.0;  // rows
+    EXPECT_EQ(verdict(most - 0.01), Verdict::missing_effect);
+    EXPECT_EQ(verdict(most + 0.01), Verdict::unexplained);
+    EXPECT_THAT(found.tried.front().objection, HasSubstr("those left out"));
+}
+
 TEST_F(Diagnosed, NumbersDoNotDependOnThreads) {
     const MeasurementSet set = twin(truth("gravity", half_g));
     DiagnoseOptions one, two;

@@ -139,9 +139,10 @@ TEST_F(Climbed, TheDiagnosisTellsWhatTheScreenExpected) {
     EXPECT_TRUE(std::isnan(ladder.steps[0].predicted_rms_mm));
 }
 
-TEST_F(Climbed, WithoutAReferenceTheSkeletonFindsTheEffectItself) {
+TEST_F(Climbed, JudgedOnTheSkeletonItFindsTheEffectItself) {
     options_.diagnose.law.reset();
-    const Ladder ladder = identify::climb(body_.chain(), nullptr, twin({{"gravity", half_g_}}), {"gravity"}, options_);
+    const Ladder ladder =
+        identify::climb(body_.chain(), *body_.skeleton(), twin({{"gravity", half_g_}}), {"gravity"}, options_);
     ASSERT_EQ(ladder.steps.size(), 2u);
     EXPECT_FALSE(ladder.steps[1].reference);
     EXPECT_LT(ladder.steps[1].skeleton.rms_mm, 0.5 * ladder.steps[0].skeleton.rms_mm);
