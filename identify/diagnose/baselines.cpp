@@ -103,4 +103,42 @@ const Refit& Baselines::best() const {
     return *fits_[best];
 }
 
+Explanation first_guess(const BodyModel& model, const Problem& problem, int law, int threads) {
+    Explanation guess;
+    guess.law = law;
+    guess.theta.resize(std::ssize(model.parameters()));
+    for (Eigen::Index p = 0; p < guess.theta.size(); ++p) guess.theta[p] = model.parameters()[p].start;
+
+    // Linear answers against measurements, both less the unloaded pose where there is one: what acts without load
+    // (weight, a moved frame) drops out.
+    Explanation linear = guess;
+    linear.law = 0;
+    const Played played = play(model, problem, linear, threads);
+    const Eigen::VectorXd measured = problem.displacement();
+    Eigen::VectorXd modelled = problem.pick(played.markers);
+    std::vector<double> sum(problem.rest.size(), 0.0);
+    std::vector<int> count(problem.rest.size(), 0);
+    for (Eigen::Index n = 0; n < problem.rows(); ++n) {
+        modelled[n] -= problem.rest(problem.coordinate[n] / 3, problem.coordinate[n] % 3);
+        if (problem.loaded(problem.action[n])) continue;
+        sum[problem.coordinate[n]] += measured[n];
+        ++count[problem.coordinate[n]];
+    }
+    double pm = 0, pp = 0;
+    for (Eigen::Index n = 0; n < problem.rows(); ++n) {
+        const int c = problem.coordinate[n];
+        if (!problem.loaded(problem.action[n])) continue;
+        const double unloaded = count[c] > 0 ? sum[c] / count[c] : 0;
+        const double w = 1 / (problem.sigma[n] * problem.sigma[n]);
+        pm += w * modelled[n] * (measured[n] - unloaded);
+        pp += w * modelled[n] * modelled[n];
+    }
+    if (pp > 0 && pm > 0.02 * pp) {
+        for (Eigen::Index p = 0; p < guess.theta.size(); ++p) {
+            if (model.parameters()[p].stiffens) guess.theta[p] -= std::log(pm / pp);
+        }
+    }
+    return guess;
+}
+
 }  // namespace palpate::identify

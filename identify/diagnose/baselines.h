@@ -4,6 +4,10 @@
 
 namespace palpate::identify {
 
+/// Numbers that begin a fit under a law without effects: Young's modulus, or what stands for it, scaled so that the
+/// linear answers are as large as the measurements' differences to the unloaded state.
+Explanation first_guess(const BodyModel& model, const Problem& problem, int law, int threads);
+
 /// A problem fitted under each law of a model, with no effects but those that are known.
 class Baselines {
 public:

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "identify/diagnose/refit.h"
+#include "identify/diagnose/baselines.h"
 #include "mesh/errors.h"
 
 namespace palpate::identify {

@@ -60,8 +60,4 @@ double objective_near(const BodyModel& model, const Problem& problem, const Expl
 double promised_objective(const BodyModel& model, const Problem& problem, const Explanation& explanation,
                           const RefitOptions& options, const Refit& near);
 
-/// Numbers that begin a fit under a law without effects: Young's modulus, or what stands for it, scaled so that the
-/// linear answers are as large as the measurements' differences to the unloaded state.
-Explanation first_guess(const BodyModel& model, const Problem& problem, int law, int threads);
-
 }  // namespace palpate::identify

@@ -4,6 +4,7 @@
 #include <functional>
 
 #include "diagnosed.h"
+#include "identify/diagnose/baselines.h"
 
 // Predictions of what was not seen.
 

@@ -1,6 +1,7 @@
 #include "identify/diagnose/refit.h"
 
 #include "diagnosed.h"
+#include "identify/diagnose/baselines.h"
 #include "identify/diagnose/nearby.h"
 
 // Fits that begin at others.
