@@ -80,7 +80,7 @@ std::string objection_to(const Diagnosis& diagnosis, const Explained& explained,
     if (leaves_too_much(diagnosis.baseline, explained))
         return "it leaves too much, beyond the noise, of what it should explain, as errors of a mesh do";
     const double unseen = explained.held_out.whitened_rms, gap = unseen / explained.fit.whitened_rms;
-    constexpr double chance = 10;  // over the number of rows: what a few dozen unknowns bring about
+    constexpr double chance = 10;  // over the number of rows: an allowance for small sets
     if (unseen > 1 && gap > options.most_gap + chance / static_cast<double>(diagnosis.problem.rows())) {
         return fmt::format(
             "it bends to each probe: those left out are off by {:.2f} times what it leaves on the others", gap);

@@ -84,8 +84,13 @@ void refuse_what_cannot_show(const Effect& effect, const BodyModel& body, const 
     const bool spread = effect.has_memory() && !problem.by_stage;
     const bool is_fitted = effect.name() != "outliers";  // they are found, reading by reading
     if (!is_fitted || !effect.numbers(body, spread ? problem.stage_by_stage() : problem).empty()) return;
-    throw InvalidInput(fmt::format("The effect '{}' cannot show in this body and this set. What shows it: {}.",
-                                   effect.name(), effect.description().reveals));
+    throw InvalidInput(
+        effect.is_of_links()
+            ? fmt::format("The effect '{}' cannot show in a solid: links alone have it. Judge it on the skeleton.",
+                          effect.name())
+            : fmt::format("The effect '{}' cannot show in this body and this set. Leave it out, or measure what shows "
+                          "it: {}.",
+                          effect.name(), effect.description().reveals));
 }
 
 class Climb {

@@ -43,9 +43,9 @@ struct LadderOptions {
 ///
 /// `effects`: in the order of the rungs. What they come to is found on `body`, the reference or the skeleton itself;
 /// body effects then go into the skeleton and its stiffnesses are fitted again, faults of the measurement into how the
-/// set is understood. A quarter of the loaded probes is held out, spread evenly; where there
-/// are eight or fewer, every third probe in turn. The model of the last step is fitted to all. `diagnosis`: of the
-/// whole set by that body, where there is one.
+/// set is understood. A quarter of the loaded probes is held out, spread evenly; where there are eight or fewer, every
+/// third probe in turn. The model of the last step is fitted to all. `diagnosis`: of the whole set by that body, where
+/// there is one.
 /// @throws InvalidInput, also where an effect cannot show in the body and the set; SolverFailure.
 Ladder climb(const skeleton::Model& model, const BodyModel& body, const MeasurementSet& set,
              const std::vector<std::string>& effects, const LadderOptions& options,

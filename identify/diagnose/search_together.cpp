@@ -63,7 +63,6 @@ bool Search::extend(std::size_t from, int most) {
     report(progress_, "screen next to " + listed(there), 0.8);
     const bool noise_is_left = is_likely(base, options_) && base.fit.whitened_rms <= options_.most_left;
     const double leads = leader()->log_bayes_factor;
-    constexpr double share = 0.05;
     bool grew = false;
     int refitted = 0;
     for (const Screened& screened : screen_at(base.fit, there)) {
@@ -73,6 +72,7 @@ bool Search::extend(std::size_t from, int most) {
                                  ? least_next_to_effect(*screened.effect, base.log_bayes_factor, problem_, options_)
                                  : options_.least_evidence;
         // A screen is a linearisation, and says somewhat too little at times; little of much explains nothing.
+        constexpr double share = 0.05;
         const double worth_a_fit = std::max({options_.least_evidence, 0.5 * least, share * excess(base)});
         const bool said = refitted < most && screened.log_bayes_factor >= worth_a_fit;
         if (!said && !(screened.effect->outwits_screen() && little_is_left())) continue;
