@@ -144,10 +144,13 @@ Eigen::MatrixXd HyperelasticBody::element_forces(const Eigen::VectorXd& u, const
 
 BodyEquilibrium HyperelasticBody::equilibrium(const BodySetting& setting, const Eigen::VectorXd& f,
                                               const NewtonOptions& options, const Eigen::VectorXd* start,
-                                              const PlasticState* before) const {
+                                              const PlasticState* before, const BodyTangent* guide) const {
     setting.material.validate();
     options.validate();
-    return find_equilibrium(impl_->shape, impl_->order(setting.effects), setting, f, options, start, before);
+    const EliminationOrder& order = impl_->order(setting.effects);
+    const auto* nearby = dynamic_cast<const FactoredTangent*>(guide);
+    const Cholesky* factor = nearby && nearby->is_in(order) ? &nearby->factor() : nullptr;
+    return find_equilibrium(impl_->shape, order, setting, f, options, start, before, factor);
 }
 
 std::shared_ptr<const PlasticState> HyperelasticBody::plastic_state(const Eigen::VectorXd& u,

@@ -46,6 +46,8 @@ public:
     virtual ~BodyTangent() = default;
     /// J^-1 B (3n x p); rows of held nodes are ignored in B and zero in the result. Safe from several threads.
     virtual Eigen::MatrixXd solve(const Eigen::MatrixXd& B) const = 0;
+    /// Memory that it takes [GB].
+    virtual double gigabytes() const = 0;
 };
 
 /// How far a yielding material has flowed, point by point; made by HyperelasticBody::plastic_state.
@@ -107,8 +109,10 @@ public:
     /// load stepping when it fails at once. A body that yields flows at once from what it was `before`: a load that
     /// turns on its way is better put on in parts, each from the plastic state of the one before. @throws SolverFailure
     /// with iterations and residual when none was found.
+    /// `guide`: the tangent of a state nearby, factored by this body; steps are taken by it for as long as they serve.
     BodyEquilibrium equilibrium(const BodySetting& setting, const Eigen::VectorXd& f, const NewtonOptions& options = {},
-                                const Eigen::VectorXd* start = nullptr, const PlasticState* before = nullptr) const;
+                                const Eigen::VectorXd* start = nullptr, const PlasticState* before = nullptr,
+                                const BodyTangent* guide = nullptr) const;
 
     /// Does the boundary close in cavities within the body, which can be under pressure?
     bool has_cavities() const;

@@ -22,7 +22,7 @@ void NewtonOptions::validate() const {
 
 BodyEquilibrium find_equilibrium(const BodyShape& body, const EliminationOrder& order, const BodySetting& setting,
                                  const Eigen::VectorXd& f, const NewtonOptions& options, const Eigen::VectorXd* start,
-                                 const PlasticState* before) {
+                                 const PlasticState* before, const Cholesky* guide) {
     const Unknowns& unknowns = order.unknowns;
     assert(f.size() == body.mesh.nodes.size());
     BodyEquilibrium result;
@@ -47,7 +47,7 @@ BodyEquilibrium find_equilibrium(const BodyShape& body, const EliminationOrder& 
         u = unknowns.scatter(unknowns.gather(*start));
         if (!loaded.admits(u)) return false;
         const bool near = loaded.conservative() || unknowns.gather(loaded.net_force(u)).norm() < 0.2 * load;
-        return (near || elastically(1)) && newton.minimise(loaded, tolerance(options.tolerance), u);
+        return (near || elastically(1)) && newton.minimise(loaded, tolerance(options.tolerance), u, guide);
     };
     // Each step starts where the last two point to; only the last has to be exact.
     const auto in_steps = [&](int steps) {

@@ -7,7 +7,10 @@
 namespace palpate::fem {
 
 FactoredTangent::FactoredTangent(const EliminationOrder& order, const LowerMatrix& K)
-    : unknowns_(order.unknowns.size()), number_(order.unknowns.number()), cholesky_(order.supernodes) {
+    : structure_(order.supernodes),
+      unknowns_(order.unknowns.size()),
+      number_(order.unknowns.number()),
+      cholesky_(order.supernodes) {
     if (!cholesky_.factor(K)) {
         throw SolverFailure(
             "The body's tangent is not positive definite here: these displacements are no stable equilibrium. Take "

@@ -38,6 +38,7 @@ bool Newton::factor(const LoadedBody& body, const Eigen::VectorXd& u) {
     secants_.clear();
     std::fill_n(K_.valuePtr(), K_.nonZeros(), 0.0);
     body.add_tangent(u, order_.unknowns, K_);
+    in_use_ = &cholesky_;
     ++factorisations_;
     return cholesky_.factor(K_);
 }
@@ -72,7 +73,7 @@ Eigen::VectorXd Newton::direction(const Eigen::VectorXd& force) const {
         q -= along(k) * secants_[k].y;
     }
     Block X = q;
-    cholesky_.solve(X);
+    in_use_->solve(X);
     q = X;
     for (std::size_t k = 0; k < secants_.size(); ++k)
         q += (along(k) - secants_[k].y.dot(q) / secants_[k].sy) * secants_[k].s;
@@ -126,9 +127,12 @@ void Newton::remember(const State& from, const State& to) {
     if (secant.sy > 0) secants_.push_back(std::move(secant));
 }
 
-bool Newton::minimise(const LoadedBody& body, double tolerance, Eigen::VectorXd& u) {
+bool Newton::minimise(const LoadedBody& body, double tolerance, Eigen::VectorXd& u, const Cholesky* guide) {
     State here(body, order_.unknowns, u), next = here;
-    bool factored = false;
+    bool factored = guide != nullptr;
+    in_use_ = guide;
+    promised_ = INFINITY;
+    secants_.clear();
     for (int k = 0;; ++k) {
         u = here.u;
         residual_ = here.r.norm();

@@ -16,8 +16,9 @@ public:
     Newton(const EliminationOrder& order, int iterations);
 
     /// Moves u to where the norm of the net force on the unknowns is at most `tolerance` [N]; false when that takes
-    /// more than the iterations allowed or goes no further. @pre no element is inside out at u.
-    bool minimise(const LoadedBody& body, double tolerance, Eigen::VectorXd& u);
+    /// more than the iterations allowed or goes no further. `guide`: a factor over the same unknowns that the first
+    /// steps are taken by, of the tangent in a state nearby. @pre no element is inside out at u.
+    bool minimise(const LoadedBody& body, double tolerance, Eigen::VectorXd& u, const Cholesky* guide = nullptr);
 
     int iterations() const { return iterations_; }          // in all
     int factorisations() const { return factorisations_; }  // in all
@@ -42,8 +43,9 @@ private:
     const int allowed_;
     LowerMatrix K_;
     Cholesky cholesky_;
-    double shift_ = 0;     // of the tangent's diagonal, as a share of its mean
-    double promised_ = 0;  // decrease of the potential, by its slope along the last step [N mm]
+    const Cholesky* in_use_ = nullptr;  // what steps are taken by
+    double shift_ = 0;                  // of the tangent's diagonal, as a share of its mean
+    double promised_ = 0;               // decrease of the potential, by its slope along the last step [N mm]
     std::vector<Secant> secants_;
     int iterations_ = 0, factorisations_ = 0;
     double residual_ = 0;

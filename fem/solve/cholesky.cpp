@@ -25,6 +25,32 @@ double pivot_ratio(const Supernodes& structure, const double* values) {
     return smallest * smallest / (largest * largest);
 }
 
+/// x <- (L L^T)^-1 x. A product of matrices copies both first; for one right-hand side, L is gone through as it lies.
+void solve_one(const Supernodes& structure, const double* values, int tallest, double* x) {
+    Eigen::VectorXd gathered = Eigen::VectorXd::Zero(tallest);
+    for (int s = 0; s < structure.count(); ++s) {
+        const int n = structure.columns(s), height = structure.height(s);
+        const auto below = structure.rows_below(s);
+        const double* L = values + structure.first_value[s];
+        double* x1 = x + structure.first_column[s];
+        cblas_dtrsv(CblasColMajor, CblasLower, CblasNoTrans, CblasNonUnit, n, L, height, x1, 1);
+        if (below.empty()) continue;
+        cblas_dgemv(CblasColMajor, CblasNoTrans, height - n, n, 1.0, L + n, height, x1, 1, 0.0, gathered.data(), 1);
+        for (std::size_t k = 0; k < below.size(); ++k) x[below[k]] -= gathered[static_cast<Eigen::Index>(k)];
+    }
+    for (int s = structure.count(); s-- > 0;) {
+        const int n = structure.columns(s), height = structure.height(s);
+        const auto below = structure.rows_below(s);
+        const double* L = values + structure.first_value[s];
+        double* x1 = x + structure.first_column[s];
+        if (!below.empty()) {
+            for (std::size_t k = 0; k < below.size(); ++k) gathered[static_cast<Eigen::Index>(k)] = x[below[k]];
+            cblas_dgemv(CblasColMajor, CblasTrans, height - n, n, -1.0, L + n, height, gathered.data(), 1, 1.0, x1, 1);
+        }
+        cblas_dtrsv(CblasColMajor, CblasLower, CblasTrans, CblasNonUnit, n, L, height, x1, 1);
+    }
+}
+
 }  // namespace
 
 Cholesky::Cholesky(std::shared_ptr<const Supernodes> structure) : structure_(std::move(structure)) {
@@ -57,6 +83,7 @@ bool Cholesky::factor(const LowerMatrix& K) {
 void Cholesky::solve(Block& X) const {
     openblas_set_num_threads(1);
     const auto p = static_cast<int>(X.cols());
+    if (p == 1) return solve_one(*structure_, values_.get(), tallest_, X.data());
     Block gathered(tallest_, p);
 
     // Forward: X1 <- L11^-1 X1, then X2 <- X2 - L21 X1. BLAS counts by columns and sees X transposed.

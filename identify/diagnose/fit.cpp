@@ -52,6 +52,11 @@ Eigen::MatrixXd effect_forces(const BodyModel& model, const Problem& problem, co
     return forces;
 }
 
+std::shared_ptr<const Tangent> tangent_of(const BodyModel& model, const Setting& setting, const Played& played, int k) {
+    const auto make = [&] { return model.tangent(played.q[k], setting, played.actions[k]); };
+    return played.tangents ? played.tangents->get(k, make) : make();
+}
+
 /// Without the columns that are zero.
 Signatures::InAction as_signatures(const Eigen::MatrixXd& forces) {
     Signatures::InAction result;
@@ -101,7 +106,7 @@ std::vector<Eigen::MatrixXd> yielding_forces(const BodyModel& model, const Probl
                                 model.residual(played.q[k], less.setting, action_of(less))) /
                                (more.h - less.h);
         }
-        const Eigen::MatrixXd steps = model.tangent(played.q[k], setting, played.actions[k])->solve(forces[k]);
+        const Eigen::MatrixXd steps = tangent_of(model, setting, played, k)->solve(forces[k]);
         for (Eigen::Index j = 0; j < numbers; ++j) {
             for (Life& life : lives[j]) {
                 const Eigen::VectorXd q = model.advance(played.q[k], life.h * steps.col(j), life.setting);
@@ -178,11 +183,11 @@ Points Explanation::see(const Problem& problem, const Points& markers) const {
 }
 
 Played play(const BodyModel& model, const Problem& problem, const Explanation& explanation, int threads,
-            const std::vector<Eigen::VectorXd>* start) {
+            const std::vector<Eigen::VectorXd>* start, const KeptTangents* guides) {
     const Setting setting = explanation.setting();
     const auto count = static_cast<int>(problem.actions.size());
     Played result{std::vector<Action>(count), std::vector<Eigen::VectorXd>(count), std::vector<Points>(count),
-                  std::vector<Points>(count)};
+                  std::vector<Points>(count), std::make_shared<KeptTangents>(count)};
     const Eigen::VectorXd rest = model.rest(setting);
 
     // A linear law: one factorisation, one step from rest.
@@ -199,7 +204,8 @@ Played play(const BodyModel& model, const Problem& problem, const Explanation& e
         } else if (linear) {
             result.q[k] = model.advance(rest, linear->solve(model.residual(rest, setting, action)), setting);
         } else {
-            result.q[k] = model.equilibrium(setting, action, start ? &(*start)[k] : nullptr);
+            result.q[k] =
+                model.equilibrium(setting, action, start ? &(*start)[k] : nullptr, guides ? guides->kept(k) : nullptr);
         }
         if (yields) after[k] = model.remember(result.q[k], setting, action);
         result.stand[k] = model.observe(result.q[k], setting);
@@ -236,7 +242,7 @@ std::vector<Eigen::MatrixXd> answers(const BodyModel& model, const Problem& prob
             if (part.forces.cols() > 0) G.middleCols(at, part.forces.cols()) = part.forces;
             at += part.forces.cols();
         }
-        const auto tangent = linear ? linear : model.tangent(played.q[k], setting, played.actions[k]);
+        const auto tangent = linear ? linear : tangent_of(model, setting, played, k);
         const Eigen::MatrixXd X = tangent->solve(G);
         const Eigen::SparseMatrix<double> P = model.observation(played.q[k], setting);
         at = 0;

@@ -4,6 +4,7 @@
 #include <optional>
 #include <vector>
 
+#include "identify/diagnose/kept_tangents.h"
 #include "identify/diagnose/problem.h"
 #include "identify/effects/effect.h"
 
@@ -34,12 +35,14 @@ struct Played {
     std::vector<Eigen::VectorXd> q;  // configurations (K)
     std::vector<Points> stand;       // where the markers stand (K of m x 3) [mm]
     std::vector<Points> markers;     // as they are seen
+    std::shared_ptr<KeptTangents> tangents = nullptr;  // there; none: they are made anew each time
 };
 
 /// @pre the problem is stage by stage where the explanation has a memory.
-/// @throws SolverFailure where an action has no equilibrium. `start`: of a neighbouring explanation.
+/// @throws SolverFailure where an action has no equilibrium. `start`, `guides`: configurations and tangents of a
+/// neighbouring explanation.
 Played play(const BodyModel& model, const Problem& problem, const Explanation& explanation, int threads,
-            const std::vector<Eigen::VectorXd>* start = nullptr);
+            const std::vector<Eigen::VectorXd>* start = nullptr, const KeptTangents* guides = nullptr);
 
 /// How the coordinates answer to signatures at the played configurations, over sigma: P (J^-1 forces + steps), seen
 /// through the explanation (N x width each). One factorisation an action serves all.

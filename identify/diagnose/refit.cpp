@@ -129,7 +129,7 @@ private:
                 }
             }
             try {
-                Played played = play(model_, problem_, trial, threads_, &predicted);
+                Played played = play(model_, problem_, trial, threads_, &predicted, at_.played.tangents.get());
                 const Eigen::VectorXd error = error_of(problem_, played);
                 const double then = objective(*at_.V, error, priors_, trial.all());
                 if (!(then < now)) continue;
@@ -137,6 +137,7 @@ private:
                 at_.explanation = std::move(trial);
                 at_.played = std::move(played);
                 at_.error = error;
+                has_slopes_ = false;
                 return true;
             } catch (const SolverFailure&) {
                 continue;  // too soft to carry its load: no improvement
@@ -146,10 +147,12 @@ private:
     }
 
     void linearise() {
+        if (has_slopes_) return;
         at_.columns = answers(model_, problem_, at_.explanation, at_.played,
                               {own_signatures(model_, problem_, at_.explanation, at_.played)}, threads_, &steps_)
                           .front() +
                       seen_directly(problem_, at_.explanation, at_.played);
+        has_slopes_ = true;
     }
 
     const BodyModel& model_;
@@ -158,6 +161,7 @@ private:
     int threads_;
     double rival_;  // whitened rms, at least that of noise
     Refit& at_;
+    bool has_slopes_ = false;             // columns and steps are those of where it stands
     std::vector<Eigen::MatrixXd> steps_;  // J^-1 times the signatures, of each action
 };
 
@@ -249,6 +253,7 @@ Refit refit(const BodyModel& model, const Problem& problem, const Explanation& e
         at.nuisances = start->nuisances;
     }
     conclude(problem, priors, at);
+    at.played.tangents.reset();  // many fits are kept
     return at;
 }
 

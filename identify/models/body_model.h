@@ -47,6 +47,8 @@ public:
     virtual ~Tangent() = default;
     /// J^-1 B (dofs x p), zero at what is held. Safe from several threads.
     virtual Eigen::MatrixXd solve(const Eigen::MatrixXd& B) const = 0;
+    /// Memory that it takes [GB].
+    virtual double gigabytes() const = 0;
 };
 
 /// A model of a body, as identification, comparison and diagnosis see it: they do not know whether it is made of finite
@@ -72,9 +74,11 @@ public:
 
     // The five questions.
 
-    /// Where all net forces vanish. `start`: a neighbouring configuration. @throws SolverFailure where there is none.
+    /// Where all net forces vanish. `start`: a neighbouring configuration; `guide`: the tangent of one, under whatever
+    /// setting, which steps from the start may go by. @throws SolverFailure where there is none.
     virtual Eigen::VectorXd equilibrium(const Setting& setting, const Action& action,
-                                        const Eigen::VectorXd* start = nullptr) const = 0;
+                                        const Eigen::VectorXd* start = nullptr,
+                                        const Tangent* guide = nullptr) const = 0;
     /// Net generalized force; minus the reaction at what is held.
     virtual Eigen::VectorXd residual(const Eigen::VectorXd& q, const Setting& setting, const Action& action) const = 0;
     /// The factored tangent. @throws SolverFailure when it is not positive definite.

@@ -32,6 +32,8 @@ class FemTangent : public Tangent {
 public:
     explicit FemTangent(std::shared_ptr<const fem::BodyTangent> factor) : factor_(std::move(factor)) {}
     Eigen::MatrixXd solve(const Eigen::MatrixXd& B) const override { return factor_->solve(B); }
+    double gigabytes() const override { return factor_->gigabytes(); }
+    const fem::BodyTangent& factor() const { return *factor_; }
 
 private:
     std::shared_ptr<const fem::BodyTangent> factor_;
@@ -188,14 +190,15 @@ fem::Material ReferenceBody::material(const Setting& setting) const {
 
 Eigen::VectorXd ReferenceBody::rest(const Setting&) const { return Eigen::VectorXd::Zero(dofs()); }
 
-Eigen::VectorXd ReferenceBody::equilibrium(const Setting& setting, const Action& action,
-                                           const Eigen::VectorXd* start) const {
+Eigen::VectorXd ReferenceBody::equilibrium(const Setting& setting, const Action& action, const Eigen::VectorXd* start,
+                                           const Tangent* guide) const {
     // What is not found soon next to a known state is no answer for a trial.
     require_material(material(setting));
     const fem::NewtonOptions options{.tolerance = 1e-7, .iterations = start ? 40 : 60, .load_steps = start ? 0 : 16};
+    const auto* nearby = dynamic_cast<const FemTangent*>(guide);
     return impl_->body
         .equilibrium(impl_->setting(setting, material(setting), action), impl_->load(action), options, start,
-                     memory_of(action))
+                     memory_of(action), nearby ? &nearby->factor() : nullptr)
         .u;
 }
 

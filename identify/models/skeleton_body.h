@@ -24,8 +24,8 @@ public:
     double young(const Setting& setting) const override;
     bool is_nonlinear(const Setting& setting) const override;
     Eigen::VectorXd rest(const Setting& setting) const override;
-    Eigen::VectorXd equilibrium(const Setting& setting, const Action& action,
-                                const Eigen::VectorXd* start) const override;
+    Eigen::VectorXd equilibrium(const Setting& setting, const Action& action, const Eigen::VectorXd* start = nullptr,
+                                const Tangent* guide = nullptr) const override;
     Eigen::VectorXd residual(const Eigen::VectorXd& q, const Setting& setting, const Action& action) const override;
     std::shared_ptr<const Tangent> tangent(const Eigen::VectorXd& q, const Setting& setting,
                                            const Action& action) const override;

@@ -156,6 +156,44 @@ TEST(Equilibrium, DoesNotDependOnTheStart) {
     EXPECT_LT(relative(body.equilibrium(setting, f, sharp, &inside_out).u, cold.u), 1e-7);
 }
 
+TEST(Equilibrium, GoesByATangentFromNearbyWithoutAFactorOfItsOwn) {
+    const Beam beam({8, 2, 2}, {6, 2, 2});
+    const HyperelasticBody body = beam.body();
+    const Eigen::VectorXd f = beam.end_force({0.0005, 0.001, -0.0025});
+    for (const Law law : laws) {
+        BodySetting setting{law, {.density = 1e-7}, {.points = {std::make_shared<Weight>(Vec3(0, 0, -900))}}};
+        const Eigen::VectorXd near = body.equilibrium(setting, f).u;
+        const auto guide = body.factor(near, setting);
+        setting.material.young *= 1.05;
+        const BodyEquilibrium alone = body.equilibrium(setting, f, {}, &near);
+        const BodyEquilibrium guided = body.equilibrium(setting, f, {}, &near, nullptr, guide.get());
+        EXPECT_GE(alone.factorisations, 1);
+        EXPECT_EQ(guided.factorisations, 0);
+        EXPECT_LT((guided.u - alone.u).norm(), 1e-7 * alone.u.norm());
+    }
+}
+
+TEST(Equilibrium, ABadGuideDoesNotLeadAstray) {
+    const Beam beam({8, 2, 2}, {6, 2, 2});
+    const HyperelasticBody body = beam.body();
+    const Eigen::VectorXd f = beam.end_force({0.0005, 0.001, -0.0025}), rest = Eigen::VectorXd::Zero(f.size());
+    const BodySetting setting{Law::neo_hooke, {}, {}};
+    const Eigen::VectorXd answer = body.equilibrium(setting, f).u;
+
+    // a hundred times as stiff
+    BodySetting stiff = setting;
+    stiff.material.young *= 100;
+    const auto slow = body.factor(rest, stiff);
+    EXPECT_LT((body.equilibrium(setting, f, {}, &rest, nullptr, slow.get()).u - answer).norm(), 1e-6 * answer.norm());
+
+    // over other unknowns: of a body whose supports give way
+    BodySetting loose = setting;
+    loose.effects.points = {std::make_shared<Springs>(ActsOn::support, 0.05, 0.0)};
+    const auto other = body.factor(rest, loose);
+    const BodyEquilibrium found = body.equilibrium(setting, f, {}, &answer, nullptr, other.get());
+    EXPECT_LT((found.u - answer).norm(), 1e-6 * answer.norm());
+}
+
 TEST(Equilibrium, LargeLoadsAreAppliedInSteps) {
     const Beam beam({12, 1, 1}, {8, 1, 1});
     const HyperelasticBody body = beam.body();
