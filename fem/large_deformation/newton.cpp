@@ -15,6 +15,7 @@ constexpr int halvings = 30;              // of a step
 constexpr double armijo = 1e-4;           // share of the decrease that the slope promises
 constexpr double least_shift = 1e-5;      // share of the diagonal's mean
 constexpr double leap_shift = 2e-2;       // where a leap landed: enough nearly always
+constexpr int most_astray = 10;           // shifts on end: on the way to an equilibrium there are up to three
 
 }  // namespace
 
@@ -130,6 +131,7 @@ void Newton::remember(const State& from, const State& to) {
 bool Newton::minimise(const LoadedBody& body, double tolerance, Eigen::VectorXd& u, const Cholesky* guide) {
     State here(body, order_.unknowns, u), next = here;
     bool factored = guide != nullptr;
+    int astray = 0;
     in_use_ = guide;
     promised_ = INFINITY;
     secants_.clear();
@@ -151,6 +153,8 @@ bool Newton::minimise(const LoadedBody& body, double tolerance, Eigen::VectorXd&
         const bool fresh = !factored;
         if (fresh) {
             if (!factor_anyway(body, here.u)) return false;
+            astray = shift_ > 0 ? astray + 1 : 0;
+            if (astray > most_astray) return false;
             step = direction(here.r);
             promised_ = step.dot(here.r);
         }

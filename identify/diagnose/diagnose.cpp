@@ -85,7 +85,8 @@ private:
         if (result_.verdict != Verdict::unexplained) return;
         const Eigen::VectorXd left_mm = result_.best().residual.cwiseProduct(result_.problem.sigma);
         const double left = rms(left_mm);
-        if (left > options_.mesh_error * moved_) return;
+        constexpr double most = 0.015;  // of the displacement: what meshes and their contacts may be off by
+        if (left > most * moved_) return;
         result_.notes.push_back(
             fmt::format("What is left, {:.3g} mm rms, is {:.2g} % of the displacement: a mesh may be off by as much. "
                         "Shorter elements (--edge-length) leave less; noise told as {:.3g} mm or more covers it.",

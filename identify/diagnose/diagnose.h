@@ -39,7 +39,7 @@ struct DiagnoseOptions {
     double most_gap = 1.06;               // the same over that on probes fitted, where it is above 1
     double most_strain = 8;               // of a nuisance, in its prior sd
     double least_outliers = 100;          // the same for outliers: one reading of 15 sigma, say
-    double mesh_error = 0.015;            // of the displacement: what meshes and their contacts may be off by
+    double mesh_error = 0.005;            // of the displacement: what errors of a mesh may do in the way of an effect
     double resolution = 0.01;             // of the displacement: what nobody told of noise is no less, as of a mesh
     double idealised = 60;  // ln Bayes factor that an effect's idealisation may leave to another, at least
     RefitOptions refit;

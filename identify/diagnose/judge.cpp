@@ -173,9 +173,12 @@ void judge(const BodyModel& model, const DiagnoseOptions& options, Diagnosis& di
         if (own != diagnosis.ranking.end()) own->objection = one.objection;
     }
     std::ranges::stable_sort(by_evidence, std::greater{}, &Explained::log_bayes_factor);
-    // is there evidence for more than what is claimed?
-    const bool something = std::ranges::any_of(
-        by_evidence, [&](const Explained* one) { return is_likely(*one, options) && one->objection.empty(); });
+    // Is there evidence for more than what is claimed? Little of what an error of the mesh brings about is none.
+    const auto first = std::ranges::find_if(by_evidence, [&](const Explained* one) { return !refused.contains(one); });
+    const double most = first == by_evidence.end() ? 0 : (*first)->log_bayes_factor;
+    const bool something = std::ranges::any_of(by_evidence, [&](const Explained* one) {
+        return is_likely(*one, options) && one->objection.empty() && one->log_bayes_factor > 0.5 * most;
+    });
     const std::vector<const Explained*> alike = explain_alike(by_evidence, refused, options);
     if (alike.size() > 1) {
         diagnosis.verdict = Verdict::ambiguous;
@@ -199,9 +202,9 @@ void judge(const BodyModel& model, const DiagnoseOptions& options, Diagnosis& di
     if (diagnosis.explained) name_effects(diagnosis);
     if (outliers && diagnosis.verdict != Verdict::unexplained) diagnosis.explanation.emplace_back("outliers");
     if (diagnosis.explanation.empty()) return;
-    const auto first = std::ranges::find_if(
+    const auto named = std::ranges::find_if(
         ranking, [&](const Candidate& c) { return c.effect->name() == diagnosis.explanation.front(); });
-    std::rotate(ranking.begin(), first, first + 1);
+    std::rotate(ranking.begin(), named, named + 1);
 }
 
 }  // namespace palpate::identify

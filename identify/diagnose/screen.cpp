@@ -82,6 +82,15 @@ Screened judge_columns(const Problem& problem, const Leftover& leftover, const S
         const Eigen::VectorXd start = plan.start(static_cast<Eigen::Index>(best), share * all[best].value);
         if (result.starts.empty() || start != result.starts.back()) result.starts.push_back(start);
     }
+    if (!plan.place) return result;
+    constexpr double nearly = 0.9;
+    double second = nearly * evidence[best];
+    for (std::size_t i = 0; i < evidence.size(); ++i) {
+        const auto alternative = static_cast<Eigen::Index>(i);
+        if (evidence[i] <= second || plan.place(alternative) == plan.place(static_cast<Eigen::Index>(best))) continue;
+        second = evidence[i];
+        result.elsewhere = plan.start(alternative, all[i].value);
+    }
     return result;
 }
 

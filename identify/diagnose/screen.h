@@ -1,5 +1,7 @@
 #pragma once
 
+#include <optional>
+
 #include "identify/diagnose/fit.h"
 #include "identify/diagnose/refit.h"
 
@@ -8,10 +10,11 @@ namespace palpate::identify {
 /// What the score test says of an effect at a fit that lacks it.
 struct Screened {
     std::shared_ptr<const Effect> effect;
-    double log_bayes_factor = 0;               // averaged over the alternatives: places, directions
-    double keep = 0;                           // b^T V^-1 b / b^T W^2 b
-    double predicted_rms_mm = 0;               // of the errors once it is in, by this linearisation
-    std::vector<Eigen::VectorXd> starts = {};  // values to begin a refit with; each after the first has less of it
+    double log_bayes_factor = 0;                    // averaged over the alternatives: places, directions
+    double keep = 0;                                // b^T V^-1 b / b^T W^2 b
+    double predicted_rms_mm = 0;                    // of the errors once it is in, by this linearisation
+    std::vector<Eigen::VectorXd> starts = {};       // values to begin a refit with; each after the first has less of it
+    std::optional<Eigen::VectorXd> elsewhere = {};  // the same in another place that promises nearly as much
 
     /// The most that a refit may bring: this is a linearisation, which it may exceed twice over, and of little several
     /// times.

@@ -91,7 +91,8 @@ int Search::most_promising_law() const {
     return best;
 }
 
-/// A fit with one effect more; nothing where there is no equilibrium.
+/// A fit with one effect more; nothing where there is no equilibrium. Where it does not leave noise alone, another
+/// place that promised nearly as much is tried too.
 std::optional<Explained> Search::refit_with(const Refit& base, const Screened& screened) const {
     Explanation explanation = base.explanation;
     explanation.effects.push_back(screened.effect);
@@ -104,7 +105,12 @@ std::optional<Explained> Search::refit_with(const Refit& base, const Screened& s
         const double begins = objective_near(model_, problem_for(explanation), explanation, options_.refit, from);
         if (begins < objective(base)) break;
     }
-    return refit_from(explanation, from, {screened.effect});
+    std::optional<Explained> found = refit_from(explanation, from, {screened.effect});
+    const bool is_settled = found && found->fit.whitened_rms <= options_.most_left_together;
+    if (!screened.elsewhere || is_settled) return found;
+    explanation.values.back() = *screened.elsewhere;
+    std::optional<Explained> other = refit_from(explanation, from, {screened.effect});
+    return !found || (other && other->log_bayes_factor > found->log_bayes_factor) ? other : found;
 }
 
 std::optional<Explained> Search::refit_from(const Explanation& explanation, const Refit& start,

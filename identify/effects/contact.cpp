@@ -45,7 +45,8 @@ public:
                           .start = hard,
                           .prior_mean = hard,
                           .prior_sd = 1,
-                          .logarithm = true});
+                          .logarithm = true,
+                          .least = hard + std::log(softest)});
         return result;
     }
 
@@ -74,9 +75,12 @@ public:
             return ScreenColumns{answers, Eigen::VectorXd::Constant(1, 1.0), true};
         };
         const double hard = std::log(hardness(model));
-        plan.start = [scan, hard](Eigen::Index plane, const Eigen::VectorXd&) {
+        plan.place = [scan](Eigen::Index plane) { return scan->planes()[plane].direction; };
+        // Less of a plane is a softer one: a hard one a little too near does more harm than none.
+        plan.start = [scan, hard](Eigen::Index plane, const Eigen::VectorXd& screened) {
             Eigen::VectorXd start(5);
-            start << scan->planes()[plane].normal, scan->planes()[plane].offset, hard;
+            const double softer = std::log(std::clamp(screened[0] * screened[0], softest, 1.0));
+            start << scan->planes()[plane].normal, scan->planes()[plane].offset, hard + softer;
             return start;
         };
         return plan;
@@ -100,6 +104,9 @@ public:
     }
 
 private:
+    // of `hardness`: twice E over the body's size. What yields more than the body does is no wall.
+    static constexpr double softest = 0.01;
+
     /// A plane next to which the body is soft [N/mm^3].
     static double hardness(const BodyModel& model) {
         Eigen::VectorXd theta(std::ssize(model.parameters()));

@@ -70,6 +70,8 @@ struct ScreenPlan {
     std::function<ScreenColumns(const Eigen::MatrixXd& answers)> columns;
     /// Start values out of the best alternative and what the screen expects of its numbers.
     std::function<Eigen::VectorXd(Eigen::Index alternative, const Eigen::VectorXd& screened)> start;
+    /// Which alternatives are one place or direction, from which a refit does not come to another. None: all are one.
+    std::function<int(Eigen::Index alternative)> place = {};
 };
 
 /// What a probe changes about the body besides its loads.

@@ -93,7 +93,7 @@ PlaneScan::PlaneScan(const BodyModel& model, const Problem& problem, const Setti
         }
         for (const double share : {0.0, 0.05, 0.1, 0.2, 0.35, 0.5}) {
             direction.offsets.push_back(at_rest - share * depth);
-            planes_.push_back({n, direction.offsets.back()});
+            planes_.push_back({n, direction.offsets.back(), static_cast<int>(directions_.size())});
         }
         directions_.push_back(std::move(direction));
     }

@@ -13,6 +13,7 @@ public:
     struct Plane {
         Vec3 normal;
         double offset;  // [mm]
+        int direction;  // planes of one normal share it
     };
 
     PlaneScan(const BodyModel& model, const Problem& problem, const Setting& setting, const Played& played);

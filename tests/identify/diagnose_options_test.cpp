@@ -110,6 +110,31 @@ TEST_F(Diagnosed, WhatErrorsOfTheMeshMayFeignIsNoClaim) {
     EXPECT_THAT(candidate(not_claimed, "compliant-support").objection, HasSubstr("errors of mesh and rig"));
 }
 
+TEST_F(Diagnosed, LittleNextToWhatErrorsOfTheMeshFeignIsNothing) {
+    const MeasurementSet set = twin(truth("compliant-support", numbers({1.7, 0})));
+    DiagnoseOptions options;
+    options.law = neo_hooke;
+    options.mesh_error = 0.015;
+    Diagnosis found = diagnose(set, options);
+    ASSERT_EQ(found.verdict, Verdict::adequate);
+    const auto own = std::ranges::find_if(found.tried, [](const Explained& e) { return e.has("compliant-support"); });
+    ASSERT_NE(own, found.tried.end());
+    Explained feigned = *own, other = *own;
+    options.mesh_error = 0.05;
+    feigned.log_bayes_factor = 50;
+    other.effects = {find_effect("gravity")};
+    const auto verdict = [&](double evidence) {
+        other.log_bayes_factor = evidence;
+        found.tried = {feigned, other};
+        judge(*model_, options, found);
+        EXPECT_THAT(found.tried.front().objection, HasSubstr("errors of mesh and rig"));
+        EXPECT_EQ(found.tried.back().objection, "");
+        return found.verdict;
+    };
+    EXPECT_EQ(verdict(24), Verdict::adequate);
+    EXPECT_EQ(verdict(40), Verdict::unexplained);
+}
+
 TEST_F(Diagnosed, WhatLeavesTooMuchIsNoClaim) {
     // of a clear case, as if meshes had left so much; with evidence all the same
     Diagnosis found = diagnose(twin(truth("gravity", half_g)));

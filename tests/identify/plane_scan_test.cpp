@@ -154,6 +154,12 @@ TEST_P(Planes, DoWhatAPlaneInTheWayDoes) {
     const Eigen::VectorXd start = plan.start(best, Eigen::VectorXd::Ones(1));
     EXPECT_EQ(start.head<3>(), scan_->planes()[best].normal);
     EXPECT_EQ(start[3], scan_->planes()[best].offset);
+    // less of it is as soft as the square of that
+    EXPECT_NEAR(plan.start(best, Eigen::VectorXd::Constant(1, 0.1))[4], start[4] + std::log(0.01), 1e-12);
+    for (Eigen::Index p = 0; p < scan_->width(); ++p) {
+        const bool same = scan_->planes()[p].normal == scan_->planes()[best].normal;
+        EXPECT_EQ(plan.place(p) == plan.place(best), same);
+    }
 }
 
 TEST(PlaneScan, OfABodyThatNothingMovesHasNoPlanes) {
