@@ -31,10 +31,10 @@ struct Explanation {
 
 /// A model in all actions of a problem, as an explanation has it.
 struct Played {
-    std::vector<Action> actions;     // as the effects make them, with what the body remembers (K)
-    std::vector<Eigen::VectorXd> q;  // configurations (K)
-    std::vector<Points> stand;       // where the markers stand (K of m x 3) [mm]
-    std::vector<Points> markers;     // as they are seen
+    std::vector<Action> actions;                       // as the effects make them, with what the body remembers (K)
+    std::vector<Eigen::VectorXd> q;                    // configurations (K)
+    std::vector<Points> stand;                         // where the markers stand (K of m x 3) [mm]
+    std::vector<Points> markers;                       // as they are seen
     std::shared_ptr<KeptTangents> tangents = nullptr;  // there; none: they are made anew each time
 };
 

@@ -61,9 +61,10 @@ identify::DiagnoseOptions ablated(const std::vector<std::string>& parts) {
                          .clamp = none,
                          .gain_at_support = none,
                          .dent = none,
+                         .ragged = none,
                          .flow = none};
         } else if (part == "mesh-error") {
-            nuisances.softness = nuisances.clamp = nuisances.dent = nuisances.flow = none;
+            nuisances.softness = nuisances.clamp = nuisances.dent = nuisances.ragged = nuisances.flow = none;
             options.mesh_error = 0;
         } else if (part == "gates") {
             options.least_lead = 0;
