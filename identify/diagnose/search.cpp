@@ -143,7 +143,7 @@ void Search::confirm_single_effects() {
                             .predicted_rms_mm = screened.predicted_rms_mm};
         double least = std::max(options_.least_screen, 0.1 * screened_[law].front().log_bayes_factor);
         // A refit finds more than a linearisation promises, and not many times as much.
-        if (enough) least = std::max(least, 0.2 * least_next_to_noise(*screened.effect, problem_, options_));
+        if (enough) least = std::max(least, 0.3 * least_next_to_noise(*screened.effect, problem_, options_));
         candidate.objection = enough ? screened.effect->objection(problem_, screened.starts.front(), true) : "";
         if (candidate.objection.empty() && refitted < options_.refits && screened.log_bayes_factor >= least &&
             screened.at_most() > claimed) {
