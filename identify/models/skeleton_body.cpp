@@ -48,7 +48,7 @@ public:
         solver_.factor_tangent(k, load, at);
     }
     Eigen::MatrixXd solve(const Eigen::MatrixXd& B) const override { return solver_.solve_tangent(B); }
-    /// By a few hundred entries of the factor for each degree of freedom, as filled bodies have.
+    /// An estimate: at most 500 entries of the factor for each degree of freedom.
     double gigabytes() const override { return 8e-9 * dofs_ * std::min(dofs_, 500); }
 
 private:
