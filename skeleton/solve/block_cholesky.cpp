@@ -146,30 +146,46 @@ double BlockCholesky::cost_in_solutions() const {
     return n_ > 0 ? 6 * products / (2 * blocks) : 0;
 }
 
-void BlockCholesky::solve(double* b, double* work) const {
-    for (int p = 0; p < n_; ++p) {
-        std::copy_n(b + Eigen::Index{6} * block_at_[p], 6, work + Eigen::Index{8} * p);
-        work[8 * p + 6] = work[8 * p + 7] = 0;
+void BlockCholesky::solve(double* b, Eigen::Index columns, double* work) const {
+    const Eigen::Index from = Eigen::Index{6} * n_, to = Eigen::Index{8} * n_;  // of one column to the next
+    for (Eigen::Index c = 0; c < columns; ++c) {
+        for (int p = 0; p < n_; ++p) {
+            double* const own = work + c * to + Eigen::Index{8} * p;
+            std::copy_n(b + c * from + Eigen::Index{6} * block_at_[p], 6, own);
+            own[6] = own[7] = 0;
+        }
     }
-    // L z = b, L^T x = z
+    // L z = b, L^T x = z; a column of L is read from memory once for all of b
     for (int j = 0; j < n_; ++j) {
         const Column& column = columns_[j];
-        solve_forward(factor_.data() + column.first, column.rows.data(), static_cast<int>(column.rows.size()), j, work);
+        for (Eigen::Index c = 0; c < columns; ++c) {
+            solve_forward(factor_.data() + column.first, column.rows.data(), static_cast<int>(column.rows.size()), j,
+                          work + c * to);
+        }
     }
     for (int j = n_ - 1; j >= 0; --j) {
         const Column& column = columns_[j];
-        solve_backward(factor_.data() + column.first, column.rows.data(), static_cast<int>(column.rows.size()), j,
-                       work);
+        for (Eigen::Index c = 0; c < columns; ++c) {
+            solve_backward(factor_.data() + column.first, column.rows.data(), static_cast<int>(column.rows.size()), j,
+                           work + c * to);
+        }
     }
-    for (int p = 0; p < n_; ++p) std::copy_n(work + Eigen::Index{8} * p, 6, b + Eigen::Index{6} * block_at_[p]);
+    for (Eigen::Index c = 0; c < columns; ++c) {
+        for (int p = 0; p < n_; ++p) {
+            std::copy_n(work + c * to + Eigen::Index{8} * p, 6, b + c * from + Eigen::Index{6} * block_at_[p]);
+        }
+    }
 }
 
-void BlockCholesky::solve(double* b) { solve(b, right_hand_.data()); }
+void BlockCholesky::solve(double* b) { solve(b, 1, right_hand_.data()); }
 
 void BlockCholesky::solve(Eigen::MatrixXd& B) const {
     assert(B.rows() == 6 * n_);
-    std::vector<double> work(std::size_t{8} * n_);
-    for (Eigen::Index c = 0; c < B.cols(); ++c) solve(B.col(c).data(), work.data());
+    constexpr Eigen::Index together = 16;
+    std::vector<double> work(std::size_t{8} * n_ * std::min(together, B.cols()));
+    for (Eigen::Index c = 0; c < B.cols(); c += together) {
+        solve(B.col(c).data(), std::min(together, B.cols() - c), work.data());
+    }
 }
 
 }  // namespace palpate::skeleton

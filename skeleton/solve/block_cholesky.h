@@ -51,7 +51,8 @@ private:
 
     void factor_symbolically(const std::vector<std::array<int, 2>>& couplings);
     int slot(int row, int column) const;
-    void solve(double* b, double* work) const;
+    /// `work`: eight numbers where b has six.
+    void solve(double* b, Eigen::Index columns, double* work) const;
 
     int n_;
     std::vector<int> position_;               // in the elimination order, of each block
