@@ -5,8 +5,9 @@
 namespace palpate::identify {
 
 struct ConjugateGradients {
-    double residual = 1e-3;  // of each column, that may be left of its right-hand side
-    int products = 1000;     // at most
+    double left = 1e-6;   // of each column's energy x^T (shift + A) x, that may be left to gain,
+    double enough = 0;    // or so much of it
+    int products = 1000;  // at most
 };
 
 struct ShiftedSolution {
@@ -15,8 +16,10 @@ struct ShiftedSolution {
     int products = 0;      // with A, of all columns at once
 };
 
-/// (shift + A) X = B, B (P x n), columns side by side, preconditioned by the spectrum of an A nearby: a few products
-/// where that leaves out what is small beside the shift. [Hestenes & Stiefel 1952]
+/// (shift + A) X = B, B (P x n), preconditioned by the spectrum of an A nearby: a few products where that leaves out
+/// what is small beside the shift. Columns share their directions, so that n of them need far fewer products than one.
+/// What is left is at most what the spectrum says of the residual, or else about what the last products gained.
+/// [Hestenes & Stiefel 1952; O'Leary 1980 for blocks; Strakos & Tichy 2002 for what is left]
 ShiftedSolution solve_shifted(const SymmetricProduct& A, double shift, const Eigen::MatrixXd& B, const Spectrum& near,
                               const ConjugateGradients& options = {});
 

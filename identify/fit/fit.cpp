@@ -33,8 +33,9 @@ std::optional<Prediction> try_prediction(const PositionDomain& domain, int threa
 }
 
 constexpr double most_numbers = 4e6;  // of a spectrum's vectors
-constexpr double forcing = 3e-2;      // of a step's equations, that may be left of the gradient
-constexpr double roughly = 1e-2;      // the same, for a promise alone
+constexpr double forcing = 1e-2;      // of what a step promises, that it may leave,
+constexpr double of_nothing = 0.1;    // or of a fall that is none
+constexpr double roughly = 1e-2;      // of what a promise tells
 constexpr int products_of_a_promise = 60;
 constexpr int stale = 12;               // products of steps, after which the spectrum is found anew, at least
 constexpr double dear = 3;              // products with a column after another, to one of a spectrum's
@@ -70,14 +71,17 @@ int worth_a_spectrum(const Spectrum& spectrum, Eigen::Index P) {
     return static_cast<int>(std::min<Eigen::Index>(columns, P / 8));
 }
 
-/// That the measurements tell of, where a spectrum has no room for them: a tenth of all numbers, say. One where it has,
-/// so that each settles.
-double directions(const Spectrum& spectrum, int P) { return spectrum.is_whole ? 1 : std::max(1.0, P / 10.0); }
+/// Falls below it are none: the tolerance, or where numbers are too many for a spectrum, so much for each.
+double nothing(const FitOptions& options, const Spectrum& spectrum, int P) {
+    return options.tolerance * (spectrum.is_whole ? 1 : P);
+}
 
-/// (1 + damping + A) dv = -g by conjugate gradients, preconditioned by the spectrum of an A nearby.
-Step damped_step(const SymmetricProduct& A, const Eigen::VectorXd& g, double damping, const Spectrum& near) {
-    const ShiftedSolution solution =
-        solve_shifted(A, 1 + damping, -g, near, {.residual = forcing, .products = static_cast<int>(g.size())});
+/// (1 + damping + A) dv = -g by conjugate gradients, preconditioned by the spectrum of an A nearby. `none`: a fall that
+/// is not worth a product.
+Step damped_step(const SymmetricProduct& A, const Eigen::VectorXd& g, double damping, const Spectrum& near,
+                 double none) {
+    const ShiftedSolution solution = solve_shifted(
+        A, 1 + damping, -g, near, {.left = forcing, .enough = 2 * none, .products = static_cast<int>(g.size())});
     Step step{solution.X, 0, solution.products};
     // -g dv - dv (1 + A) dv / 2, and (1 + A) dv = -g - left - damping dv
     step.promised = (step.dv.dot(solution.left.col(0) - g) + damping * step.dv.squaredNorm()) / 2;
@@ -101,8 +105,7 @@ double promised_chi_squared(const PositionDomain& domain, const LogNormalPrior& 
     const SymmetricProduct A = whitened_curvature(slopes, prior);
     const Eigen::VectorXd of_errors = prior.slopes_by_v(slopes.gradient()), g = of_errors + prior.whitened(fit.theta);
     const Spectrum near{sharper * fit.spectrum.values, fit.spectrum.vectors};
-    const ShiftedSolution step =
-        solve_shifted(A, 1, -g, near, {.residual = roughly, .products = products_of_a_promise});
+    const ShiftedSolution step = solve_shifted(A, 1, -g, near, {.left = roughly, .products = products_of_a_promise});
     // A dv = -g - left - dv
     const Eigen::VectorXd dv = step.X.col(0);
     return domain.chi_squared(fit.prediction) + dv.dot(2 * of_errors - g - step.left.col(0) - dv);
@@ -147,11 +150,12 @@ FitResult fit_map(const PositionDomain& domain, const LogNormalPrior& prior, con
         ++fit.iterations;
 
         // its least, damped; none left to gain without damping is the end
-        const Step step = damped_step(A, g, damping, fit.spectrum);
+        const double none = nothing(options, fit.spectrum, P);
+        const Step step = damped_step(A, g, damping, fit.spectrum, of_nothing * none);
         products += step.products;
         known = !fit.spectrum.is_whole || products <= worth_a_spectrum(fit.spectrum, P);
         const double to_gain = damping == 0 ? step.promised : g.dot(fit.spectrum.inverse(1, g).col(0)) / 2;
-        if (to_gain < options.tolerance * directions(fit.spectrum, P)) {
+        if (to_gain < none) {
             fit.converged = true;
             fit.trace.push_back(fit.trace.back());
             break;

@@ -12,39 +12,41 @@ namespace {
 
 constexpr std::size_t least_probes = 3;  // of fewer, none can be forecast from the others
 
-/// Rows of a group's states, one below the other.
-struct Rows {
-    Eigen::MatrixXd J;             // d errors / dv over sigma (N x r)
-    Eigen::VectorXd sigma, error;  // [mm] (N); a missing coordinate has none
-};
+/// What the measured coordinates of a probe say of its errors e [mm] under a step s along the directions,
+/// e + sigma J s: |e|^2, and what goes with s and with its square.
+struct Probe {
+    Eigen::MatrixXd curvature;         // J^T J (r x r)
+    Eigen::VectorXd slope;             // J^T e / sigma (r)
+    double noise = 0, scale = 0;       // squares, over the coordinates [mm^2]
+    double errors = 0;                 // |e|^2 [mm^2]
+    Eigen::VectorXd errors_slope;      // J^T sigma e [mm^2] (r)
+    Eigen::MatrixXd errors_curvature;  // J^T sigma^2 J [mm^2] (r x r)
 
-/// Of the coordinates that were measured in these states.
-Rows rows_of(const std::vector<int>& states, const Slopes& slopes, const Eigen::MatrixXd& directions) {
-    Rows rows;
-    for (const int s : states) {
-        const Eigen::VectorXd &weights = slopes.weights(s), &errors = slopes.errors(s);
-        const Eigen::MatrixXd moved = slopes.moved_markers(s, directions);
-        const Eigen::Index before = rows.error.size(), count = (weights.array() > 0).count();
-        rows.J.conservativeResize(before + count, directions.cols());
-        rows.sigma.conservativeResize(before + count);
-        rows.error.conservativeResize(before + count);
-        for (Eigen::Index i = 0, row = before; i < weights.size(); ++i) {
-            if (weights[i] <= 0) continue;
-            rows.sigma[row] = 1 / std::sqrt(weights[i]);
-            rows.J.row(row) = -moved.row(i) / rows.sigma[row];
-            rows.error[row++] = errors[i];
-        }
+    explicit Probe(Eigen::Index r)
+        : curvature(Eigen::MatrixXd::Zero(r, r)),
+          slope(Eigen::VectorXd::Zero(r)),
+          errors_slope(slope),
+          errors_curvature(curvature) {}
+
+    /// A state of the probe: how its markers move along the directions (3m x r) [mm].
+    void add(const Eigen::MatrixXd& moved, const Eigen::VectorXd& weights, const Eigen::VectorXd& e) {
+        const Eigen::VectorXd is_measured = (weights.array() > 0).cast<double>();
+        const Eigen::MatrixXd measured = is_measured.asDiagonal() * moved;  // sigma J = -measured
+        const Eigen::MatrixXd weighted = weights.asDiagonal() * moved;
+        curvature += moved.transpose() * weighted;
+        slope -= weighted.transpose() * e;
+        errors += is_measured.dot(e.cwiseAbs2());
+        errors_slope -= measured.transpose() * e;
+        errors_curvature += moved.transpose() * measured;
     }
-    return rows;
-}
 
-/// Errors under a fit to all states but these [mm]. `curvature`: of half of chi^2 and prior by the directions, of all.
-Eigen::VectorXd unseen_errors(const Rows& rows, const Eigen::MatrixXd& curvature) {
-    const Eigen::VectorXd d = rows.error.cwiseQuotient(rows.sigma);
-    const Eigen::MatrixXd H = curvature - rows.J.transpose() * rows.J;
-    const Eigen::VectorXd step = H.ldlt().solve(rows.J.transpose() * d);
-    return rows.error + rows.sigma.cwiseProduct(rows.J * step);
-}
+    /// |e|^2 under a fit to all other probes. Of all probes and the prior by the directions: the curvature of half of
+    /// their square, and how far its fall has settled.
+    double unseen(const Eigen::MatrixXd& all, const Eigen::VectorXd& left) const {
+        const Eigen::VectorXd step = (all - curvature).ldlt().solve(slope - left);
+        return errors + step.dot(2 * errors_slope + errors_curvature * step);
+    }
+};
 
 }  // namespace
 
@@ -58,22 +60,26 @@ ForecastError left_out_error(const PositionDomain& domain, const LogNormalPrior&
     for (const auto& [probe, states] : by_probe) groups.push_back(states);
 
     const Slopes slopes = domain.slopes(fit.theta, fit.prediction);
-    const Eigen::MatrixXd& vectors = fit.spectrum.vectors;
-    const Eigen::MatrixXd directions = prior.coloured(vectors);
-    // a spectrum without room for all is one of the way there
-    Eigen::MatrixXd curvature = fit.spectrum.is_whole
-                                    ? Eigen::MatrixXd(fit.spectrum.values.asDiagonal())
-                                    : Eigen::MatrixXd(vectors.transpose() * whitened_curvature(slopes, prior)(vectors));
-    curvature.diagonal().array() += 1;
+    const Eigen::MatrixXd directions = prior.coloured(fit.spectrum.vectors);
+    std::vector<Probe> probes_left_out(groups.size(), Probe(directions.cols()));
+    for_each_in_parallel(static_cast<int>(groups.size()), threads, [&](int g) {
+        Probe& probe = probes_left_out[g];
+        for (const int s : groups[g]) {
+            probe.add(slopes.moved_markers(s, directions), slopes.weights(s), slopes.errors(s));
+            probe.noise += domain.states()[s].coordinates * domain.squared_noise(s);
+            probe.scale += domain.states()[s].coordinates * domain.squared_scale(s);
+        }
+    });
+    Eigen::MatrixXd all = Eigen::MatrixXd::Identity(directions.cols(), directions.cols());
+    Eigen::VectorXd left = fit.spectrum.vectors.transpose() * prior.whitened(fit.theta);
+    for (const Probe& probe : probes_left_out) {
+        all += probe.curvature;
+        left += probe.slope;
+    }
     Eigen::VectorXd relative(std::ssize(groups));  // squared
     for_each_in_parallel(static_cast<int>(groups.size()), threads, [&](int g) {
-        const Rows rows = rows_of(groups[g], slopes, directions);
-        double noise = 0, scale = 0;  // squares, over the coordinates [mm^2]
-        for (const int s : groups[g]) {
-            noise += domain.states()[s].coordinates * domain.squared_noise(s);
-            scale += domain.states()[s].coordinates * domain.squared_scale(s);
-        }
-        relative[g] = std::max(0.0, unseen_errors(rows, curvature).squaredNorm() - noise) / scale;
+        const Probe& probe = probes_left_out[g];
+        relative[g] = std::max(0.0, probe.unseen(all, left) - probe.noise) / probe.scale;
     });
     return {std::sqrt(relative.mean()), domain.least_displacement(), static_cast<int>(groups.size())};
 }

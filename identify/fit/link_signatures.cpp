@@ -91,10 +91,10 @@ LinkSignatures::LinkSignatures(std::shared_ptr<const LinksAtRest> links, const s
     of_volumes_.setFromTriplets(entries.begin(), entries.end());
 }
 
-Eigen::MatrixXd LinkSignatures::times(const Eigen::MatrixXd& K) const {
-    Eigen::MatrixXd F = of_volumes_ * K;
+fem::Block LinkSignatures::times(const fem::Block& K) const {
+    fem::Block F = of_volumes_ * K;
     const Eigen::Index n = links_->order.per_link();
-    Eigen::MatrixXd own(n, K.cols()), pulls(12, K.cols());
+    fem::Block own(n, K.cols()), pulls(12, K.cols());
     for (Eigen::Index l = 0; l < std::ssize(links_->ends); ++l) {
         for (int s = 0; s < n; ++s) own.row(s) = K.row(links_->order.of_link(l, s));
         pulls.noalias() = of_links_.middleCols(n * l, n).lazyProduct(own);
@@ -104,10 +104,10 @@ Eigen::MatrixXd LinkSignatures::times(const Eigen::MatrixXd& K) const {
     return F;
 }
 
-Eigen::MatrixXd LinkSignatures::transposed_times(const Eigen::MatrixXd& F) const {
-    Eigen::MatrixXd K = of_volumes_.transpose() * F;
+fem::Block LinkSignatures::transposed_times(const fem::Block& F) const {
+    fem::Block K = of_volumes_.transpose() * F;
     const Eigen::Index n = links_->order.per_link();
-    Eigen::MatrixXd ends(12, F.cols()), own(n, F.cols());
+    fem::Block ends(12, F.cols()), own(n, F.cols());
     for (Eigen::Index l = 0; l < std::ssize(links_->ends); ++l) {
         ends.topRows<6>() = F.middleRows<6>(Eigen::Index{6} * links_->ends[l][0]);
         ends.bottomRows<6>() = F.middleRows<6>(Eigen::Index{6} * links_->ends[l][1]);

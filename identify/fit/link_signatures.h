@@ -3,6 +3,7 @@
 #include <Eigen/SparseCore>
 #include <memory>
 
+#include "fem/solve/cholesky.h"
 #include "skeleton/equilibrium.h"
 #include "skeleton/links/placed_links.h"
 
@@ -35,9 +36,9 @@ public:
     LinkSignatures(std::shared_ptr<const LinksAtRest> links, const skeleton::Equilibrium& equilibrium,
                    skeleton::Law law);
 
-    Eigen::Index dofs() const { return of_volumes_.rows(); }           // 6N
-    Eigen::MatrixXd times(const Eigen::MatrixXd& K) const;             // G K (6N x n), of K (stiffnesses x n)
-    Eigen::MatrixXd transposed_times(const Eigen::MatrixXd& F) const;  // G^T F (stiffnesses x n), of F (6N x n)
+    Eigen::Index dofs() const { return of_volumes_.rows(); }  // 6N
+    fem::Block times(const fem::Block& K) const;              // G K (6N x n), of K (stiffnesses x n)
+    fem::Block transposed_times(const fem::Block& F) const;   // G^T F (stiffnesses x n), of F (6N x n)
 
 private:
     std::shared_ptr<const LinksAtRest> links_;

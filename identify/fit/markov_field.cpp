@@ -1,5 +1,8 @@
 #include "identify/fit/markov_field.h"
 
+#include <algorithm>
+
+#include "fem/solve/cholesky.h"
 #include "mesh/errors.h"
 
 namespace palpate::identify {
@@ -22,38 +25,85 @@ Sparse precision_of(int n, const std::vector<MarkovField::Edge>& edges, double o
     return Q;
 }
 
-/// The diagonal of (L L^T)^-1, from the last column on, each by the entries of those behind it that L has:
-///   Z_ij = delta_ij / L_jj^2 - sum_(k > j) L_kj Z_ik / L_jj. [Takahashi, Fagan, Chin 1973]
+/// Columns [first, last) of a Cholesky factor with the same rows below them.
+struct SameRows {
+    Eigen::Index first, last;
+};
+
+std::vector<SameRows> groups_of(const Sparse& L) {
+    const int *start = L.outerIndexPtr(), *rows = L.innerIndexPtr();
+    const auto goes_on = [&](Eigen::Index j) {  // as column j did: the next one is its parent, and adds no row
+        const int count = start[j + 1] - start[j];
+        return count > 1 && rows[start[j] + 1] == j + 1 && start[j + 2] - start[j + 1] == count - 1;
+    };
+    std::vector<SameRows> groups;
+    for (Eigen::Index j = 0; j < L.cols(); ++j) {
+        if (j > 0 && goes_on(j - 1)) {
+            ++groups.back().last;
+        } else {
+            groups.push_back({j, j + 1});
+        }
+    }
+    return groups;
+}
+
+/// The diagonal of Z = (L L^T)^-1, from the last columns J on, by the entries of those behind them that L has, R:
+///   Z_RJ = -Z_RR Y,  Z_JJ = (L_JJ L_JJ^T)^-1 + Y^T Z_RR Y,  Y = L_RJ L_JJ^-1. [Takahashi, Fagan, Chin 1973]
 Eigen::VectorXd diagonal_of_inverse(const Sparse& L) {
-    const auto n = L.cols();
+    using Dense = Eigen::MatrixXd;
     Sparse Z = L;  // the same entries
-    Eigen::VectorXd column = Eigen::VectorXd::Zero(n), sum = Eigen::VectorXd::Zero(n);
-    for (Eigen::Index j = n - 1; j >= 0; --j) {
-        // sums over k of the entries (i, k), k from this column's own; each stands in the column of the smaller index
-        const auto first = L.outerIndexPtr()[j], last = L.outerIndexPtr()[j + 1];
-        const int* rows = L.innerIndexPtr();
-        const double* values = L.valuePtr();
-        for (auto at = first + 1; at < last; ++at) column[rows[at]] = values[at];
-        for (auto at = first + 1; at < last; ++at) {
-            const int k = rows[at];
-            for (Sparse::InnerIterator z(Z, k); z; ++z) {
-                sum[z.row()] += values[at] * z.value();
-                if (z.row() != k) sum[k] += column[z.row()] * z.value();
+    const int *start = L.outerIndexPtr(), *rows = L.innerIndexPtr();
+    std::vector<Eigen::Index> place(static_cast<std::size_t>(L.cols()), -1);  // among R
+    const std::vector<SameRows> groups = groups_of(L);
+    for (auto group = groups.rbegin(); group != groups.rend(); ++group) {
+        const auto [first, last] = *group;
+        const Eigen::Index own = last - first, below = start[last] - start[last - 1] - 1;
+        const int* const R = rows + start[last - 1] + 1;
+        Dense of_L = Dense::Zero(own + below, own);
+        for (Eigen::Index c = 0; c < own; ++c) {
+            std::copy_n(L.valuePtr() + start[first + c], own - c + below, &of_L(c, c));
+        }
+        const auto L_JJ = of_L.topRows(own).triangularView<Eigen::Lower>();
+
+        for (Eigen::Index a = 0; a < below; ++a) place[R[a]] = a;
+        Dense Z_RR(below, below);
+        for (Eigen::Index a = 0; a < below; ++a) {
+            for (Sparse::InnerIterator z(Z, R[a]); z; ++z) {
+                const Eigen::Index b = place[z.row()];
+                if (b >= 0) Z_RR(a, b) = Z_RR(b, a) = z.value();
             }
         }
-        double diagonal = 1 / (values[first] * values[first]);
-        for (auto at = first + 1; at < last; ++at) {
-            Z.valuePtr()[at] = -sum[rows[at]] / values[first];
-            diagonal -= values[at] * Z.valuePtr()[at] / values[first];
-        }
-        Z.valuePtr()[first] = diagonal;
+        for (Eigen::Index a = 0; a < below; ++a) place[R[a]] = -1;
 
-        for (auto at = first + 1; at < last; ++at) {
-            for (Sparse::InnerIterator z(Z, rows[at]); z; ++z) sum[z.row()] = 0;
-            column[rows[at]] = 0;
+        const Dense Y = L_JJ.solve<Eigen::OnTheRight>(of_L.bottomRows(below));
+        const Dense root = L_JJ.solve(Dense::Identity(own, own));
+        Dense of_Z(own + below, own);
+        of_Z.bottomRows(below).noalias() = -Z_RR * Y;
+        of_Z.topRows(own).noalias() = root.transpose() * root - Y.transpose() * of_Z.bottomRows(below);
+        for (Eigen::Index c = 0; c < own; ++c) {
+            std::copy_n(&of_Z(c, c), own - c + below, Z.valuePtr() + start[first + c]);
         }
     }
     return Z.diagonal();
+}
+
+/// X <- L^-1 X, all columns at once.
+void solve_lower(const Sparse& L, fem::Block& X) {
+    for (Eigen::Index j = 0; j < L.cols(); ++j) {
+        Sparse::InnerIterator at(L, j);
+        X.row(j) /= at.value();
+        while (++at) X.row(at.row()) -= at.value() * X.row(j);
+    }
+}
+
+/// X <- L^-T X, the same.
+void solve_upper(const Sparse& L, fem::Block& X) {
+    for (Eigen::Index j = L.cols() - 1; j >= 0; --j) {
+        Sparse::InnerIterator at(L, j);
+        const double diagonal = at.value();
+        while (++at) X.row(j) -= at.value() * X.row(at.row());
+        X.row(j) /= diagonal;
+    }
 }
 
 }  // namespace
@@ -73,12 +123,16 @@ MarkovField::MarkovField(int n, const std::vector<Edge>& edges, double own) : Ma
 Sparse MarkovField::precision() const { return d_.asDiagonal() * Q_ * d_.asDiagonal(); }
 
 Eigen::MatrixXd MarkovField::coloured(const Eigen::MatrixXd& V) const {
-    return d_.cwiseInverse().asDiagonal() * (llt_.permutationPinv() * llt_.matrixU().solve(V)).eval();
+    fem::Block X = V;
+    solve_upper(llt_.matrixL().nestedExpression(), X);
+    return d_.cwiseInverse().asDiagonal() * (llt_.permutationPinv() * X).eval();
 }
 
 Eigen::MatrixXd MarkovField::transposed(const Eigen::MatrixXd& X) const {
-    const Eigen::MatrixXd scaled = d_.cwiseInverse().asDiagonal() * X;
-    return llt_.matrixL().solve((llt_.permutationP() * scaled).eval());
+    const fem::Block scaled = d_.cwiseInverse().asDiagonal() * X;
+    fem::Block solved = llt_.permutationP() * scaled;
+    solve_lower(llt_.matrixL().nestedExpression(), solved);
+    return solved;
 }
 
 Eigen::MatrixXd MarkovField::whitened(const Eigen::MatrixXd& X) const {

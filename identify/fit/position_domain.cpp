@@ -150,7 +150,7 @@ Prediction PositionDomain::predict_linear(const Eigen::VectorXd& k) const {
 }
 
 TangentSolve PositionDomain::linear_tangent(const Eigen::VectorXd& k) const {
-    return [law = rest_law_, factor = rest_law_->factor(k)](const Eigen::MatrixXd& F) { return factor->solve(F); };
+    return [law = rest_law_, factor = rest_law_->factor(k)](const fem::Block& F) { return factor->solve(F); };
 }
 
 /// A solver on loan, with all that it hangs on.
@@ -165,7 +165,9 @@ struct PositionDomain::Borrowed {
 std::shared_ptr<PositionDomain::Borrowed> PositionDomain::borrow() const { return std::make_shared<Borrowed>(*this); }
 
 TangentSolve PositionDomain::tangent_of(std::shared_ptr<Borrowed> borrowed) {
-    return [borrowed = std::move(borrowed)](const Eigen::MatrixXd& F) { return (**borrowed->solver).solve_tangent(F); };
+    return [borrowed = std::move(borrowed)](const fem::Block& F) -> fem::Block {
+        return (**borrowed->solver).solve_tangent(F);
+    };
 }
 
 TangentSolve PositionDomain::factored(const skeleton::Load& load, const Eigen::VectorXd& k,
@@ -271,11 +273,11 @@ double PositionDomain::common_factor(const Eigen::VectorXd& theta) const {
     if (!goes_as_inverse_) return 0;
 
     // measured displacement = what links pull at rest + scale x that of the loads, weighted least squares
-    const SolverPool::Loan solver(*solvers_);
     const Eigen::VectorXd k = parameters_.stiffness(theta);
     Eigen::MatrixXd F(F_.rows(), F_.cols() + 1);
     F << F_, G_rest_ * k;
-    const Eigen::MatrixXd U = solver->linear_steps(k, F);
+    const Eigen::MatrixXd U =
+        rest_law_ ? Eigen::MatrixXd(linear_tangent(k)(F)) : SolverPool::Loan(*solvers_)->linear_steps(k, F);
     double up = 0, down = 0;
     for (int s = 0; s < static_cast<int>(states_.size()); ++s) {
         const Eigen::VectorXd modelled = *P_[s] * U.col(s), pulled = *P_[s] * U.rightCols<1>();

@@ -59,6 +59,8 @@ public:
     /// A prediction brought nearer to a theta that is one step away, to first order, for `predict` to start from.
     Prediction advanced(const Prediction& prediction, const Slopes& slopes, const Eigen::VectorXd& step) const;
     double chi_squared(const Prediction& prediction) const;
+    /// Measured less modelled, of a state, zero for a missing coordinate (3m).
+    Eigen::VectorXd errors(int s, const Points& markers) const;
     double squared_distance(const Prediction& prediction) const;  // between measured and modelled [mm^2]
     /// ln of the likelihood's constant: - sum ln(sigma sqrt(2 pi)).
     double log_constant() const { return log_constant_; }
@@ -88,8 +90,6 @@ private:
     std::shared_ptr<Borrowed> borrow() const;
     static TangentSolve tangent_of(std::shared_ptr<Borrowed> borrowed);  // with what its solver has factored
     TangentSolve factored(const skeleton::Load& load, const Eigen::VectorXd& k, const skeleton::Equilibrium& at) const;
-    /// Measured less modelled, zero for a missing coordinate (3m).
-    Eigen::VectorXd errors(int s, const Points& markers) const;
     Points dented(int s, const Eigen::Matrix<double, 6, 1>& dent) const;  // (m x 3) [mm]
 
     std::shared_ptr<const skeleton::Model> model_;

@@ -147,14 +147,14 @@ RestLaw::Factor::~Factor() {
     room_->idle.push_back(std::move(factor_));
 }
 
-Eigen::MatrixXd RestLaw::Factor::solve(const Eigen::MatrixXd& F) const {
+fem::Block RestLaw::Factor::solve(const fem::Block& F) const {
     const std::vector<int>& number = room_->number;
     fem::Block packed(room_->structure->size(), F.cols());
     for (std::size_t i = 0; i < number.size(); ++i) {
         if (number[i] >= 0) packed.middleRows<6>(Eigen::Index{6} * number[i]) = F.middleRows<6>(6 * i);
     }
     factor_->solve(packed);
-    Eigen::MatrixXd X = Eigen::MatrixXd::Zero(F.rows(), F.cols());
+    fem::Block X = fem::Block::Zero(F.rows(), F.cols());
     for (std::size_t i = 0; i < number.size(); ++i) {
         if (number[i] >= 0) X.middleRows<6>(6 * i) = packed.middleRows<6>(Eigen::Index{6} * number[i]);
     }

@@ -54,7 +54,7 @@ public:
     Factor(const Factor&) = delete;
     Factor& operator=(const Factor&) = delete;
     /// K^-1 F (6N x p); rows of held spheres are ignored in F and zero in the result.
-    Eigen::MatrixXd solve(const Eigen::MatrixXd& F) const;
+    fem::Block solve(const fem::Block& F) const;
 
 private:
     friend class RestLaw;

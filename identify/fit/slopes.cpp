@@ -11,15 +11,16 @@ namespace palpate::identify {
 namespace {
 
 constexpr int batch = 8;            // parts that are held at once, whatever the threads
-constexpr Eigen::Index wide = 128;  // right-hand sides that are solved for at once
+constexpr Eigen::Index narrow = 6;  // right-hand sides that are solved for at once, or else all,
+constexpr Eigen::Index wide = 128;  // and at most
 
 /// The sum of parts (rows x n), in their order.
-Eigen::MatrixXd sum_of_parts(int count, int threads, const std::function<Eigen::MatrixXd(int)>& part_of) {
-    Eigen::MatrixXd sum;
+fem::Block sum_of_parts(int count, int threads, const std::function<fem::Block(int)>& part_of) {
+    fem::Block sum;
     for (int first = 0; first < count; first += batch) {
-        std::vector<Eigen::MatrixXd> parts(std::min(batch, count - first));
+        std::vector<fem::Block> parts(std::min(batch, count - first));
         for_each_in_parallel(static_cast<int>(parts.size()), threads, [&](int i) { parts[i] = part_of(first + i); });
-        for (const Eigen::MatrixXd& part : parts) {
+        for (const fem::Block& part : parts) {
             if (sum.size() == 0) sum.setZero(part.rows(), part.cols());
             sum += part;
         }
@@ -66,11 +67,15 @@ Slopes::Slopes(std::vector<State> states, const Eigen::SparseMatrix<double>& dk,
 }
 
 std::vector<Slopes::States> Slopes::together(Eigen::Index n) const {
-    const bool shared = tangents_.size() == 1;
-    const auto most = static_cast<std::size_t>(shared ? std::max<Eigen::Index>(1, wide / n) : 1);
+    const Eigen::Index count = std::ssize(states_);
+    Eigen::Index most = 1;
+    if (tangents_.size() == 1) {
+        const Eigen::Index evenly = (count + batch - 1) / batch;  // so that each thread has some
+        most = std::clamp<Eigen::Index>(std::max(evenly, narrow / n), 1, std::max<Eigen::Index>(1, wide / n));
+    }
     std::vector<States> parts;
-    for (int s = 0; s < static_cast<int>(states_.size()); ++s) {
-        if (parts.empty() || parts.back().size() == most) parts.emplace_back();
+    for (int s = 0; s < count; ++s) {
+        if (parts.empty() || std::ssize(parts.back()) == most) parts.emplace_back();
         parts.back().push_back(s);
     }
     return parts;
@@ -80,31 +85,31 @@ const TangentSolve& Slopes::tangent(const States& states) const {
     return tangents_.size() == 1 ? tangents_.front() : tangents_[states.front()];
 }
 
-Eigen::MatrixXd Slopes::moved(const States& states, const Eigen::MatrixXd& K) const {
-    Eigen::MatrixXd F;
+fem::Block Slopes::moved(const States& states, const fem::Block& K) const {
+    fem::Block F;
     for (std::size_t i = 0; i < states.size(); ++i) {
-        const Eigen::MatrixXd own = states_[states[i]].G.times(K);
+        const fem::Block own = states_[states[i]].G.times(K);
         if (i == 0) F.resize(own.rows(), own.cols() * std::ssize(states));
         F.middleCols(static_cast<Eigen::Index>(i) * own.cols(), own.cols()) = own;
     }
     return tangent(states)(F);
 }
 
-Eigen::MatrixXd Slopes::pulled(const States& states, const Eigen::MatrixXd& F) const {
-    const Eigen::MatrixXd X = tangent(states)(F);
+fem::Block Slopes::pulled(const States& states, const fem::Block& F) const {
+    const fem::Block X = tangent(states)(F);
     const Eigen::Index n = X.cols() / std::ssize(states);
-    Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(dk_.rows(), n);
+    fem::Block sum = fem::Block::Zero(dk_.rows(), n);
     for (std::size_t i = 0; i < states.size(); ++i) {
         sum += states_[states[i]].G.transposed_times(X.middleCols(static_cast<Eigen::Index>(i) * n, n));
     }
     return sum;
 }
 
-std::vector<Eigen::MatrixXd> Slopes::lived(int last, const Eigen::MatrixXd& K) const {
-    std::vector<Eigen::MatrixXd> X(last + 1), Z(last + 1);  // Z: of what has flowed (24L x n)
+std::vector<fem::Block> Slopes::lived(int last, const fem::Block& K) const {
+    std::vector<fem::Block> X(last + 1), Z(last + 1);  // Z: of what has flowed (24L x n)
     for (int s = 0; s <= last; ++s) {
         const Life& life = *states_[s].life;
-        Eigen::MatrixXd F = states_[s].G.times(K);
+        fem::Block F = states_[s].G.times(K);
         if (life.before >= 0) F += life.flow.pulls * Z[life.before];
         X[s] = tangents_[s](F);
         Z[s] = life.flow.follows * X[s];
@@ -113,16 +118,16 @@ std::vector<Eigen::MatrixXd> Slopes::lived(int last, const Eigen::MatrixXd& K) c
     return X;
 }
 
-Eigen::MatrixXd Slopes::pulled_through(std::vector<Eigen::MatrixXd> F) const {
-    std::vector<Eigen::MatrixXd> Z(F.size());  // what the states after it make of what has flowed (24L x n)
-    Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(dk_.rows(), F.front().cols());
+fem::Block Slopes::pulled_through(std::vector<fem::Block> F) const {
+    std::vector<fem::Block> Z(F.size());  // what the states after it make of what has flowed (24L x n)
+    fem::Block sum = fem::Block::Zero(dk_.rows(), F.front().cols());
     for (int s = static_cast<int>(F.size()) - 1; s >= 0; --s) {
         const Life& life = *states_[s].life;
         if (Z[s].size() > 0) F[s] += life.flow.follows.transpose() * Z[s];
-        const Eigen::MatrixXd X = tangents_[s](F[s]);
+        const fem::Block X = tangents_[s](F[s]);
         sum += states_[s].G.transposed_times(X);
         if (life.before < 0) continue;
-        Eigen::MatrixXd handed = life.flow.pulls.transpose() * X;
+        fem::Block handed = life.flow.pulls.transpose() * X;
         if (Z[s].size() > 0) handed += life.flow.lasts.transpose() * Z[s];
         if (Z[life.before].size() == 0) Z[life.before].setZero(handed.rows(), handed.cols());
         Z[life.before] += handed;
@@ -130,9 +135,9 @@ Eigen::MatrixXd Slopes::pulled_through(std::vector<Eigen::MatrixXd> F) const {
     return sum;
 }
 
-Eigen::MatrixXd Slopes::seen(const State& state, const Eigen::MatrixXd& X) {
-    if (!state.P) return Eigen::MatrixXd::Zero(X.rows(), X.cols());
-    const Eigen::MatrixXd weighted = state.weights.asDiagonal() * (*state.P * X).eval();
+fem::Block Slopes::seen(const State& state, const fem::Block& X) {
+    if (!state.P) return fem::Block::Zero(X.rows(), X.cols());
+    const fem::Block weighted = state.weights.asDiagonal() * (*state.P * X).eval();
     return state.P->transpose() * weighted;
 }
 
@@ -146,15 +151,15 @@ Eigen::VectorXd Slopes::gradient() const {
 Eigen::MatrixXd Slopes::transposed_times(const std::vector<Eigen::MatrixXd>& D) const {
     // J = -W^(1/2) P T^-1 G dk/dtheta
     const Eigen::Index n = D.front().cols();
-    std::vector<Eigen::MatrixXd> F(states_.size());
+    std::vector<fem::Block> F(states_.size());
     for (std::size_t s = 0; s < F.size(); ++s) F[s].setZero(states_[s].G.dofs(), n);
     for (int s = 0; s < count_read(); ++s) {
         F[read_[s]] = states_[read_[s]].P->transpose() * (weights(s).cwiseSqrt().asDiagonal() * D[s]).eval();
     }
     if (remembers()) return -(dk_.transpose() * pulled_through(std::move(F)));
     const std::vector<States> parts = together(n);
-    const Eigen::MatrixXd sum = sum_of_parts(static_cast<int>(parts.size()), threads_, [&](int p) {
-        Eigen::MatrixXd own(F.front().rows(), n * std::ssize(parts[p]));
+    const fem::Block sum = sum_of_parts(static_cast<int>(parts.size()), threads_, [&](int p) {
+        fem::Block own(F.front().rows(), n * std::ssize(parts[p]));
         for (std::size_t i = 0; i < parts[p].size(); ++i) {
             own.middleCols(static_cast<Eigen::Index>(i) * n, n) = F[parts[p][i]];
         }
@@ -165,15 +170,15 @@ Eigen::MatrixXd Slopes::transposed_times(const std::vector<Eigen::MatrixXd>& D) 
 
 Eigen::MatrixXd Slopes::curvature_times(const Eigen::MatrixXd& V) const {
     // J^T J V = G^T T^-1 P^T W P T^-1 G V
-    const Eigen::MatrixXd K = dk_ * V;
+    const fem::Block K = dk_ * fem::Block(V);
     if (remembers()) {
-        std::vector<Eigen::MatrixXd> X = lived(static_cast<int>(states_.size()) - 1, K);
+        std::vector<fem::Block> X = lived(static_cast<int>(states_.size()) - 1, K);
         std::ranges::transform(states_, X, X.begin(), &Slopes::seen);
         return dk_.transpose() * pulled_through(std::move(X));
     }
     const std::vector<States> parts = together(V.cols());
-    const Eigen::MatrixXd sum = sum_of_parts(static_cast<int>(parts.size()), threads_, [&](int p) {
-        Eigen::MatrixXd X = moved(parts[p], K);
+    const fem::Block sum = sum_of_parts(static_cast<int>(parts.size()), threads_, [&](int p) {
+        fem::Block X = moved(parts[p], K);
         for (std::size_t i = 0; i < parts[p].size(); ++i) {
             auto own = X.middleCols(static_cast<Eigen::Index>(i) * V.cols(), V.cols());
             own = seen(states_[parts[p][i]], own);
@@ -185,7 +190,7 @@ Eigen::MatrixXd Slopes::curvature_times(const Eigen::MatrixXd& V) const {
 
 Eigen::MatrixXd Slopes::steps(const Eigen::VectorXd& step) const {
     const Eigen::VectorXd dk = dk_ * step;
-    std::vector<Eigen::MatrixXd> found;
+    std::vector<fem::Block> found;
     if (remembers()) {
         found = lived(static_cast<int>(states_.size()) - 1, dk);
     } else {
@@ -195,7 +200,7 @@ Eigen::MatrixXd Slopes::steps(const Eigen::VectorXd& step) const {
     }
     Eigen::MatrixXd all(found.front().rows(), std::ssize(states_));
     Eigen::Index column = 0;
-    for (const Eigen::MatrixXd& part : found) {
+    for (const fem::Block& part : found) {
         all.middleCols(column, part.cols()) = part;
         column += part.cols();
     }
@@ -204,7 +209,8 @@ Eigen::MatrixXd Slopes::steps(const Eigen::VectorXd& step) const {
 
 Eigen::MatrixXd Slopes::moved_markers(int state, const Eigen::MatrixXd& V) const {
     const int s = read_[state];
-    return *states_[s].P * (remembers() ? lived(s, dk_ * V).back() : moved({s}, dk_ * V));
+    const fem::Block K = dk_ * fem::Block(V);
+    return *states_[s].P * (remembers() ? lived(s, K).back() : moved({s}, K));
 }
 
 Slopes PositionDomain::slopes(const Eigen::VectorXd& theta, const Prediction& prediction) const {

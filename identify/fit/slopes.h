@@ -11,7 +11,7 @@
 namespace palpate::identify {
 
 /// T^-1 F (6N x n), of F (6N x n), with the factored tangent T = -dr/dx of an equilibrium; keeps alive what it needs.
-using TangentSolve = std::function<Eigen::MatrixXd(const Eigen::MatrixXd& F)>;
+using TangentSolve = std::function<fem::Block(const fem::Block& F)>;
 
 /// What comes before a state, where the material remembers, and how it hands on what has flowed.
 struct Life {
@@ -62,14 +62,14 @@ private:
     /// States that are solved for at once, with n columns each.
     std::vector<States> together(Eigen::Index n) const;
     const TangentSolve& tangent(const States& states) const;
-    Eigen::MatrixXd moved(const States& states, const Eigen::MatrixXd& K) const;   // T^-1 G K, state after state
-    Eigen::MatrixXd pulled(const States& states, const Eigen::MatrixXd& F) const;  // sum of G^T T^-1 F
+    fem::Block moved(const States& states, const fem::Block& K) const;   // T^-1 G K, state after state
+    fem::Block pulled(const States& states, const fem::Block& F) const;  // sum of G^T T^-1 F
     // The same for states that were lived through: of each up to `last`, and of all.
-    std::vector<Eigen::MatrixXd> lived(int last, const Eigen::MatrixXd& K) const;
-    Eigen::MatrixXd pulled_through(std::vector<Eigen::MatrixXd> F) const;
+    std::vector<fem::Block> lived(int last, const fem::Block& K) const;
+    fem::Block pulled_through(std::vector<fem::Block> F) const;
     bool remembers() const { return states_.front().life.has_value(); }
     /// P^T W P X of a state, zero for one that nobody read.
-    static Eigen::MatrixXd seen(const State& state, const Eigen::MatrixXd& X);
+    static fem::Block seen(const State& state, const fem::Block& X);
 
     std::vector<State> states_;
     std::vector<int> read_;

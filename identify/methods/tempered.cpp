@@ -62,11 +62,11 @@ Sampled perturbed(const PositionDomain& domain, const LogNormalPrior& prior, con
     Eigen::VectorXd mean = fit.theta;
     const SymmetricProduct A = whitened_curvature(slopes, prior);
     const int evaluations = centre(
-        mean, prior.coloured(steps.v.leftCols(few_pairs)),
+        mean, prior.coloured(steps.v.leftCols(few_pairs)), slopes,
         [&](const Eigen::VectorXd& downhill) -> Eigen::VectorXd {
-            return solve_shifted(A, 1, downhill, fit.spectrum, {.residual = 0.1}).X;
+            return solve_shifted(A, 1, downhill, fit.spectrum, {.left = 1e-2}).X;
         },
-        domain, prior, fit.prediction, how.threads);
+        domain, prior, fit, how.threads);
     return {perturbed_particles(log_density, mean, steps, proposal, how), evaluations,
             "particles: too many directions that the measurements tell of to weigh them; they are fits to readings "
             "with other noise and a prior with another centre, by the slopes at the fit, and the evidence is rough"};
@@ -80,8 +80,8 @@ Sampled sample(const PositionDomain& domain, const LogNormalPrior& prior, const 
     const bool too_dear = is_too_dear(domain, how.particles);
     Sampled sampled;
     if (domain.parameters().size() > many_parameters) {
-        sampled.evaluations = centre(proposals.front(), domain, prior, fit.prediction, too_dear ? few_pairs : pairs,
-                                     how.seed, how.threads);
+        sampled.evaluations =
+            centre(proposals.front(), domain, prior, fit, too_dear ? few_pairs : pairs, how.seed, how.threads);
     }
     if (too_dear) {
         sampled.filter = drawn_particles(log_density, proposals.front(), how);

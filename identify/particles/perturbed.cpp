@@ -18,7 +18,7 @@ PerturbedSteps perturbed_steps(const Slopes& slopes, const LogNormalPrior& prior
     }
     const Eigen::MatrixXd pulls = prior.slopes_by_v(slopes.transposed_times(e)) + n;
     const ShiftedSolution solution =
-        solve_shifted(whitened_curvature(slopes, prior), 1, pulls, near, {.residual = 0.05});
+        solve_shifted(whitened_curvature(slopes, prior), 1, pulls, near, {.left = 1e-3});
     return {solution.X, pulls - solution.left};
 }
 

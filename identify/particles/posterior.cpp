@@ -61,10 +61,10 @@ std::vector<Correlation> strong_correlations(const Eigen::MatrixXd& particles, c
     constexpr Eigen::Index strip = 256;
     for (Eigen::Index first = 0; first < S.cols(); first += strip) {
         const Eigen::Index count = std::min(strip, S.cols() - first);
-        const Eigen::MatrixXd R = S.middleCols(first, count).transpose() * S;
+        const Eigen::MatrixXd R = S.middleCols(first, count).transpose() * S.rightCols(S.cols() - first);
         for (Eigen::Index a = 0; a < count; ++a) {
             for (Eigen::Index b = first + a + 1; b < S.cols(); ++b) {
-                if (std::abs(R(a, b)) >= least) result.push_back({known[first + a], known[b], R(a, b)});
+                if (std::abs(R(a, b - first)) >= least) result.push_back({known[first + a], known[b], R(a, b - first)});
             }
         }
     }

@@ -1,7 +1,9 @@
 #include "identify/particles/proposal.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <vector>
 
 #include "identify/parallel.h"
 #include "identify/particles/random.h"
@@ -10,37 +12,50 @@
 namespace palpate::identify {
 namespace {
 
-constexpr int centring_looks = 4;                  // at the posterior's slopes, at most
-constexpr double centred = 0.1;                    // of ln pi, that the next step would gain
+constexpr int centring_looks = 3;                  // at the posterior's slopes, at most
+constexpr double centred = 0.1;                    // of ln pi, that the next step would gain,
+constexpr double centred_each = 1e-3;              // or so much for each number
 constexpr std::uint64_t centring_round = 1 << 30;  // of the random streams, beyond any move's
 
-/// ln pi of a domain and a prior, and its slopes by v, theta = mean + C v; averages over draws of a proposal.
+/// Averages over pairs of draws on either side of a mean.
 struct Look {
-    int stands = 0;            // draws with an equilibrium
-    double log_density = 0;    // mean over them, but for a constant
-    Eigen::VectorXd downhill;  // (P)
+    int stand = 0;                        // pairs with equilibria
+    double log_density = 0;               // ln pi, but for a constant
+    std::vector<Eigen::MatrixXd> errors;  // of each state, over sigma (3m x 1)
 };
 
-Look look_round(const Eigen::MatrixXd& theta, const PositionDomain& domain, const LogNormalPrior& prior,
-                const Prediction& near, int threads) {
-    Eigen::MatrixXd slopes = Eigen::MatrixXd::Zero(theta.rows(), theta.cols());
-    Eigen::ArrayXd log_density = Eigen::ArrayXd::Zero(theta.cols());
-    Eigen::ArrayXi stands = Eigen::ArrayXi::Zero(theta.cols());
-    for_each_in_parallel(static_cast<int>(theta.cols()), threads, [&](int i) {
+/// Of draws mean +- offsets. `like`: has as many errors, and their weights.
+Look look_round(const Eigen::VectorXd& mean, const Eigen::MatrixXd& offsets, const Slopes& like,
+                const PositionDomain& domain, const LogNormalPrior& prior, const Prediction& near, int threads) {
+    std::vector<Look> pairs(static_cast<std::size_t>(offsets.cols()));
+    const auto add = [&](const Eigen::VectorXd& theta, Look& to) {
+        const Prediction prediction = domain.predict(theta, 1, &near);
+        to.log_density -= domain.chi_squared(prediction) / 2 + prior.half_square(theta);
+        for (int s = 0; s < like.count_read(); ++s) {
+            to.errors[s] += like.weights(s).cwiseSqrt().cwiseProduct(domain.errors(s, prediction.markers[s]));
+        }
+    };
+    Look look;
+    look.errors.resize(static_cast<std::size_t>(like.count_read()));
+    for (int s = 0; s < like.count_read(); ++s) look.errors[s].setZero(like.weights(s).size(), 1);
+    for_each_in_parallel(static_cast<int>(pairs.size()), threads, [&](int i) {
+        pairs[i].errors = look.errors;
         try {
-            const Prediction prediction = domain.predict(theta.col(i), 1, &near);
-            slopes.col(i) =
-                prior.slopes_by_v(domain.slopes(theta.col(i), prediction).gradient()) + prior.whitened(theta.col(i));
-            log_density[i] = -domain.chi_squared(prediction) / 2 - prior.half_square(theta.col(i));
-            stands[i] = 1;
+            add(mean + offsets.col(i), pairs[i]);
+            add(mean - offsets.col(i), pairs[i]);
+            pairs[i].stand = 1;
         } catch (const SolverFailure&) {  // such a body would not stand
         }
     });
-    Look look;
-    look.stands = stands.sum();
-    if (look.stands == 0) return look;
-    look.log_density = log_density.sum() / look.stands;
-    look.downhill = slopes.rowwise().sum() / look.stands;
+    for (const Look& pair : pairs) {
+        if (pair.stand == 0) continue;
+        ++look.stand;
+        look.log_density += pair.log_density;
+        for (std::size_t s = 0; s < look.errors.size(); ++s) look.errors[s] += pair.errors[s];
+    }
+    const double draws = 2.0 * look.stand;
+    look.log_density /= draws;
+    for (Eigen::MatrixXd& errors : look.errors) errors /= draws;
     return look;
 }
 
@@ -77,46 +92,44 @@ GaussianProposal laplace_proposal(const FitResult& fit, const LogNormalPrior& pr
     return {fit.theta, prior, fit.spectrum, 1 + 1 / static_cast<double>(fit.theta.size())};
 }
 
-int centre(Eigen::VectorXd& mean, const Eigen::MatrixXd& offsets,
+int centre(Eigen::VectorXd& mean, const Eigen::MatrixXd& offsets, const Slopes& slopes,
            const std::function<Eigen::VectorXd(const Eigen::VectorXd&)>& covariance, const PositionDomain& domain,
-           const LogNormalPrior& prior, const Prediction& near, int threads) {
-    Eigen::MatrixXd both(offsets.rows(), 2 * offsets.cols());
-    for (Eigen::Index i = 0; i < offsets.cols(); ++i) {
-        both.col(2 * i) = offsets.col(i);
-        both.col(2 * i + 1) = -offsets.col(i);
-    }
+           const LogNormalPrior& prior, const FitResult& fit, int threads) {
+    const double enough = std::max(centred, centred_each * static_cast<double>(mean.size()));
     const auto look_from = [&](const Eigen::VectorXd& middle) {
-        return look_round(both.colwise() + middle, domain, prior, near, threads);
+        return look_round(middle, offsets, slopes, domain, prior, fit.prediction, threads);
     };
     Look here = look_from(mean);
     int looks = 1;
     double share = 1;
-    while (here.stands > 0 && looks < centring_looks) {
-        const Eigen::VectorXd step = covariance(here.downhill);
-        if (share * here.downhill.dot(step) < centred) break;
+    while (here.stand > 0 && looks < centring_looks) {
+        const Eigen::VectorXd downhill = prior.slopes_by_v(slopes.transposed_times(here.errors)) + prior.whitened(mean);
+        const Eigen::VectorXd step = covariance(downhill);
+        if (share * downhill.dot(step) < enough) break;
         const Eigen::VectorXd there = mean - share * prior.coloured(step);
         Look look = look_from(there);
         ++looks;
-        if (look.stands >= here.stands && look.log_density > here.log_density) {
+        if (look.stand >= here.stand && look.log_density > here.log_density) {
             mean = there;
             here = std::move(look);
         } else {
             share /= 4;
         }
     }
-    return looks * static_cast<int>(both.cols());
+    return looks * 2 * static_cast<int>(offsets.cols());
 }
 
-int centre(GaussianProposal& proposal, const PositionDomain& domain, const LogNormalPrior& prior,
-           const Prediction& near, int pairs, std::uint64_t seed, int threads) {
+int centre(GaussianProposal& proposal, const PositionDomain& domain, const LogNormalPrior& prior, const FitResult& fit,
+           int pairs, std::uint64_t seed, int threads) {
     const auto P = static_cast<int>(proposal.mean.size());
     Eigen::MatrixXd z(P, pairs);
     for (int i = 0; i < pairs; ++i) z.col(i) = RandomStream(seed, centring_round, i).normals(P);
     const Eigen::MatrixXd offsets = proposal.parameters(z).colwise() - proposal.mean;
+    const Slopes slopes = domain.slopes(fit.theta, domain.predict(fit.theta, threads, &fit.prediction, true));
     return centre(
-        proposal.mean, offsets,
+        proposal.mean, offsets, slopes,
         [&](const Eigen::VectorXd& downhill) -> Eigen::VectorXd { return proposal.spectrum.inverse(1, downhill); },
-        domain, prior, near, threads);
+        domain, prior, fit, threads);
 }
 
 }  // namespace palpate::identify

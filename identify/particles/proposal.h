@@ -23,20 +23,20 @@ struct GaussianProposal {
 /// Laplace's approximation at the fit, wider by 1 + 1 / P, so that the effective sample size stands it.
 GaussianProposal laplace_proposal(const FitResult& fit, const LogNormalPrior& prior);
 
-/// Moves the mean to where the posterior's slope, averaged over the proposal, is zero: the best of all Gaussians of
-/// this covariance (least Kullback-Leibler divergence from them to the posterior). With thousands of links that each
-/// may be half or twice as stiff, a body is softer or stiffer than by the links' middle values, by many sd of what the
-/// measurements tell, so that Laplace's particles, round the mode, nearly all miss. Means over `pairs` z and -z, and
-/// Newton's method with the proposal's own covariance, as long as ln pi rises on average. Draws without equilibrium
-/// count nothing.
+/// Moves the mean of draws that lie +-offsets from it (P x pairs) to where their errors, on average, and the prior pull
+/// nowhere. With thousands of links that each may be half or twice as stiff, a body is softer or stiffer than by the
+/// links' middle values, by many sd of what the measurements tell, so that particles round the mode nearly all miss. By
+/// Gauss and Newton, with the slopes at the fit: those at each draw pull towards less spread as well, which stays as it
+/// is. As long as ln pi rises on average; pairs of which one has no equilibrium count nothing.
+/// @param covariance the draws', times a vector, in coordinates in which the prior is N(0, 1)
+/// @param fit where the slopes were taken
 /// Returns how often all equilibria were solved.
-int centre(GaussianProposal& proposal, const PositionDomain& domain, const LogNormalPrior& prior,
-           const Prediction& near, int pairs, std::uint64_t seed, int threads);
-
-/// The same for a mean of draws that lie +-offsets from it (P x pairs); `covariance`: theirs, times a vector, both in
-/// coordinates in which the prior is N(0, 1).
-int centre(Eigen::VectorXd& mean, const Eigen::MatrixXd& offsets,
+int centre(Eigen::VectorXd& mean, const Eigen::MatrixXd& offsets, const Slopes& slopes,
            const std::function<Eigen::VectorXd(const Eigen::VectorXd&)>& covariance, const PositionDomain& domain,
-           const LogNormalPrior& prior, const Prediction& near, int threads);
+           const LogNormalPrior& prior, const FitResult& fit, int threads);
+
+/// The same for a proposal round the fit, with so many pairs of draws from it.
+int centre(GaussianProposal& proposal, const PositionDomain& domain, const LogNormalPrior& prior, const FitResult& fit,
+           int pairs, std::uint64_t seed, int threads);
 
 }  // namespace palpate::identify

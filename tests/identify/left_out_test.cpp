@@ -60,6 +60,16 @@ TEST_P(ForecastOfALeftOutProbe, IsThatOfAFitWithoutIt) {
     EXPECT_EQ(told.probes, 6);
 }
 
+TEST_P(ForecastOfALeftOutProbe, TakesNoFitThatHasSettled) {
+    const PositionDomain domain = domain_of(set);
+    FitResult whole = fit(domain);
+    const std::vector<int> probes{1, 2, 3, 4, 5, 6};
+    const double settled = left_out_error(domain, prior(domain), whole, probes).relative;
+    whole.theta.array() += 0.02;
+    whole.prediction = domain.predict(whole.theta, 1);
+    EXPECT_NEAR(left_out_error(domain, prior(domain), whole, probes).relative, settled, 0.01 * settled);
+}
+
 TEST_P(ForecastOfALeftOutProbe, TakesThreeProbes) {
     const PositionDomain domain = domain_of(set);
     // times of one probe are left out together

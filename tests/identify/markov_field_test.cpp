@@ -31,6 +31,18 @@ TEST(MarkovField, VariancesAreOne) {
     }
 }
 
+TEST(MarkovField, VariancesAreOneOnAGrid) {  // whose factor has columns with the same rows below them
+    constexpr int side = 7, n = side * side * side;
+    std::vector<MarkovField::Edge> edges;
+    for (int i = 0; i < n; ++i) {
+        if (i % side + 1 < side) edges.push_back({i, i + 1, 1});
+        if (i / side % side + 1 < side) edges.push_back({i, i + side, 2});
+        if (i + side * side < n) edges.push_back({i, i + side * side, 0.5});
+    }
+    const Eigen::MatrixXd C = root(MarkovField(n, edges, 0.1), n);
+    EXPECT_LT((C.rowwise().squaredNorm().array() - 1).abs().maxCoeff(), 1e-12);  // rounding
+}
+
 TEST(MarkovField, PrecisionIsZeroBetweenNodesThatAreNotJoined) {
     const Eigen::MatrixXd C = root(make_field(20, 1), 20);
     const Eigen::MatrixXd precision = (C * C.transpose()).inverse();

@@ -29,17 +29,43 @@ TEST(SolveShifted, SolvesColumnsSideBySide) {
     const SymmetricProduct times = [&](const Eigen::MatrixXd& V) { return A * V; };
     Eigen::MatrixXd B = columns(P, 4, 2);
     B.col(2).setZero();  // solved from the start
-    const ShiftedSolution found = solve_shifted(times, 0.5, B, {}, {.residual = 1e-10});
+    const ShiftedSolution found = solve_shifted(times, 0.5, B, {}, {.left = 1e-20});
     const Eigen::MatrixXd exact = (A + 0.5 * Eigen::MatrixXd::Identity(P, P)).llt().solve(B);
     EXPECT_LT((found.X - exact).norm(), 1e-8 * exact.norm());
     EXPECT_EQ(found.X.col(2), Eigen::VectorXd::Zero(P));
     EXPECT_LE(found.products, 2 * P);  // P of them by exact arithmetic
     // what is left is told, however early it ends
-    const ShiftedSolution early = solve_shifted(times, 0.5, B, {}, {.residual = 1e-10, .products = 3});
+    const ShiftedSolution early = solve_shifted(times, 0.5, B, {}, {.left = 1e-20, .products = 3});
     EXPECT_EQ(early.products, 3);
     EXPECT_LT((B - A * early.X - 0.5 * early.X - early.left).norm(), 1e-9 * B.norm());
     // the spectrum of A itself leaves nothing to do
     EXPECT_EQ(solve_shifted(times, 0.5, B, leading_spectrum(times, P)).products, 1);
+}
+
+TEST(SolveShifted, ColumnsShareTheirDirections) {
+    constexpr int P = 400, together = 16;
+    const Eigen::MatrixXd R =
+        columns(P, P, 1) * Eigen::VectorXd::LinSpaced(P, 0, 8).array().exp().inverse().matrix().asDiagonal();
+    const Eigen::MatrixXd A = 100 * R * R.transpose();  // eigenvalues over seven orders of magnitude
+    const SymmetricProduct times = [&](const Eigen::MatrixXd& V) { return A * V; };
+    Eigen::MatrixXd B = columns(P, together, 2);
+    B.col(1) = 1e-6 * B.col(0);  // no direction of its own
+    const ShiftedSolution all = solve_shifted(times, 1, B, {}), one = solve_shifted(times, 1, B.col(0), {});
+    const Eigen::MatrixXd exact = (A + Eigen::MatrixXd::Identity(P, P)).llt().solve(B);
+    EXPECT_LT(3 * all.products, one.products);
+
+    // each to the energy that may be left, but for what the last products do not tell
+    const auto left = [&](const ShiftedSolution& found, int column) {
+        const Eigen::VectorXd off = exact.col(column) - found.X.col(column);
+        return off.dot(A * off + off) / B.col(column).dot(exact.col(column));
+    };
+    for (int i = 0; i < together; ++i) EXPECT_LT(left(all, i), 3e-6) << i;
+    EXPECT_LT(left(one, 0), 3e-6);
+
+    const double energy = B.col(0).dot(exact.col(0));
+    const ShiftedSolution early = solve_shifted(times, 1, B.col(0), {}, {.enough = 0.1 * energy});
+    EXPECT_LT(early.products, one.products);
+    EXPECT_LT(left(early, 0), 0.1);
 }
 
 /// A block whose links differ, seen at its spheres.

@@ -64,6 +64,14 @@ struct ManyLinks {
     double log_density(const Eigen::VectorXd& theta) const {
         return prior.log_density(theta) - 0.5 * domain.chi_squared(domain.predict(theta, 1));
     }
+    /// Mean over draws.
+    double log_density(const GaussianProposal& proposal) const {
+        double sum = 0;
+        for (int i = 0; i < 50; ++i) {
+            sum += log_density(proposal.parameters(RandomStream(7, 1, i).normals(domain.parameters().size())).col(0));
+        }
+        return sum / 50;
+    }
     double effective_share(const GaussianProposal& proposal) const {
         constexpr int n = 100;
         Eigen::VectorXd log_weights(n);
@@ -79,10 +87,11 @@ struct ManyLinks {
 TEST(Centre, HundredsOfLinksAreWeighedWhereLaplaceMisses) {
     const ManyLinks body;
     GaussianProposal proposal = laplace_proposal(body.fit, body.prior);
-    const double by_laplace = body.effective_share(proposal);
-    centre(proposal, body.domain, body.prior, body.fit.prediction, 8, 1, 2);
+    const double by_laplace = body.effective_share(proposal), density = body.log_density(proposal);
+    centre(proposal, body.domain, body.prior, body.fit, 8, 1, 2);
     EXPECT_LT(by_laplace, 0.15);
     EXPECT_GT(body.effective_share(proposal), 1.7 * by_laplace);
+    EXPECT_GT(body.log_density(proposal), density + 0.5);
 }
 
 TEST(Centre, KeepsAGaussianPosteriorsMean) {
@@ -95,7 +104,7 @@ TEST(Centre, KeepsAGaussianPosteriorsMean) {
     const LogNormalPrior prior{Eigen::VectorXd::Zero(3), Eigen::VectorXd::Constant(3, 1e-5), nullptr};
     const FitResult fit = fit_map(domain, prior, prior.mean, 1);
     GaussianProposal proposal = laplace_proposal(fit, prior);
-    centre(proposal, domain, prior, fit.prediction, 8, 1, 1);
+    centre(proposal, domain, prior, fit, 8, 1, 1);
     EXPECT_LT((proposal.mean - fit.theta).norm(), 1e-3 * 1e-5);  // of the prior's sd
 }
 
