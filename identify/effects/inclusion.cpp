@@ -13,6 +13,8 @@
 namespace palpate::identify {
 namespace {
 
+constexpr double flat = 0.01;  // of the largest extent: no place is known better before, in a sheet neither
+
 /// A ball within the body that is stiffer, or softer, than the rest.
 class InclusionEffect : public Effect {
 public:
@@ -34,7 +36,8 @@ public:
 
     std::vector<EffectNumber> numbers(const BodyModel& model, const Problem&) const override {
         const Eigen::RowVector3d low = model.pieces().colwise().minCoeff(), high = model.pieces().colwise().maxCoeff();
-        const Eigen::RowVector3d centre = 0.5 * (low + high), sd = (high - low) / 3.5;
+        const Eigen::RowVector3d centre = 0.5 * (low + high), extent = high - low;
+        const Eigen::RowVector3d sd = extent.cwiseMax(flat * extent.maxCoeff()) / 3.5;
         std::vector<EffectNumber> result;
         result.reserve(5);
         for (int a = 0; a < 3; ++a) {

@@ -58,6 +58,7 @@ ShiftedSolution solve_shifted(const SymmetricProduct& A, double shift, const Eig
         const Eigen::MatrixXd Q = A(directions) + shift * directions;
         ++solution.products;
         const Eigen::LLT<Eigen::MatrixXd> bends(directions.transpose() * Q);
+        if (bends.info() != Eigen::Success) break;  // eigenvalues so large that the shift drowns
         const Eigen::MatrixXd falls = directions.transpose() * R, lengths = bends.solve(falls);
         solution.X += directions * lengths;
         R -= Q * lengths;

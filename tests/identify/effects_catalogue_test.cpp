@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <set>
 
+#include "lattice.h"
 #include "mesh/errors.h"
 #include "small_body.h"
 #include "tests/messages.h"
@@ -180,6 +181,13 @@ Problem doubling_loads() {
         problem.probe.push_back(k + 1);
     }
     return problem;
+}
+
+TEST(Inclusion, HasAWidthAcrossASheet) {
+    const SkeletonBody sheet(make_lattice({3, 3, 1}), {}, 1);
+    for (const EffectNumber& number : find_effect("inclusion")->numbers(sheet, {})) {
+        EXPECT_GT(number.prior_sd, 0) << number.name;
+    }
 }
 
 TEST(ForceGain, IsObjectedToWhereTheBodyStiffens) {
