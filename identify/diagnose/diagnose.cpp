@@ -47,6 +47,9 @@ public:
         if (!result_.noise_known) estimate_noise();
         set_plain_outliers_aside();
         if (options_.screen) {
+            // Evidence of fits that leave noise may differ by some tens for nuisances that were taken elsewhere: the
+            // baseline's are taken where it stands, as those of a fit with an effect are.
+            if (is_enough(baseline(), options_)) baselines_.refit(result_.problem, true);
             inquire();
             if (!result_.noise_known && explained()) {
                 estimate_noise();

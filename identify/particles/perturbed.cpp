@@ -17,8 +17,7 @@ PerturbedSteps perturbed_steps(const Slopes& slopes, const LogNormalPrior& prior
         for (Eigen::MatrixXd& of_state : e) of_state.col(i) = random.normals(static_cast<int>(of_state.rows()));
     }
     const Eigen::MatrixXd pulls = prior.slopes_by_v(slopes.transposed_times(e)) + n;
-    const ShiftedSolution solution =
-        solve_shifted(whitened_curvature(slopes, prior), 1, pulls, near, {.left = 1e-3});
+    const ShiftedSolution solution = solve_shifted(whitened_curvature(slopes, prior), 1, pulls, near, {.left = 1e-3});
     return {solution.X, pulls - solution.left};
 }
 

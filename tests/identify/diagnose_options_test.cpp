@@ -101,7 +101,7 @@ TEST_F(Diagnosed, WhatErrorsOfTheMeshMayFeignIsNoClaim) {
     DiagnoseOptions exact, coarse;
     exact.law = coarse.law = neo_hooke;
     exact.mesh_error = 0.001;
-    coarse.mesh_error = 0.015;
+    coarse.mesh_error = 0.01;
     const Diagnosis claimed = diagnose(set, exact), not_claimed = diagnose(set, coarse);
     ASSERT_LT(claimed.baseline.whitened_rms, exact.most_left);
     EXPECT_THAT(claimed.explanation, ElementsAre("compliant-support"));
@@ -114,7 +114,7 @@ TEST_F(Diagnosed, LittleNextToWhatErrorsOfTheMeshFeignIsNothing) {
     const MeasurementSet set = twin(truth("compliant-support", numbers({1.7, 0})));
     DiagnoseOptions options;
     options.law = neo_hooke;
-    options.mesh_error = 0.015;
+    options.mesh_error = 0.01;
     Diagnosis found = diagnose(set, options);
     ASSERT_EQ(found.verdict, Verdict::adequate);
     const auto own = std::ranges::find_if(found.tried, [](const Explained& e) { return e.has("compliant-support"); });
