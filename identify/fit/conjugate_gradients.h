@@ -18,8 +18,9 @@ struct ShiftedSolution {
 
 /// (shift + A) X = B, B (P x n), preconditioned by the spectrum of an A nearby: a few products where that leaves out
 /// what is small beside the shift. Columns share their directions, so that n of them need far fewer products than one.
-/// What is left is at most what the spectrum says of the residual, or else about what the last products gained.
-/// [Hestenes & Stiefel 1952; O'Leary 1980 for blocks; Strakos & Tichy 2002 for what is left]
+/// What is left is at most what the spectrum says of the residual, where it holds no more than A does, or else about
+/// what the last products gained. [Hestenes & Stiefel 1952; O'Leary 1980 for blocks; Strakos & Tichy 2002 for what is
+/// left]
 ShiftedSolution solve_shifted(const SymmetricProduct& A, double shift, const Eigen::MatrixXd& B, const Spectrum& near,
                               const ConjugateGradients& options = {});
 

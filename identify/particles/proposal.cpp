@@ -12,7 +12,7 @@
 namespace palpate::identify {
 namespace {
 
-constexpr int centring_looks = 3;                  // at the posterior's slopes, at most
+constexpr int centring_looks = 3;                  // at pairs of draws, at most
 constexpr double centred = 0.1;                    // of ln pi, that the next step would gain,
 constexpr double centred_each = 1e-3;              // or so much for each number
 constexpr std::uint64_t centring_round = 1 << 30;  // of the random streams, beyond any move's

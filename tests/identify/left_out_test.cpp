@@ -60,7 +60,7 @@ TEST_P(ForecastOfALeftOutProbe, IsThatOfAFitWithoutIt) {
     EXPECT_EQ(told.probes, 6);
 }
 
-TEST_P(ForecastOfALeftOutProbe, TakesNoFitThatHasSettled) {
+TEST_P(ForecastOfALeftOutProbe, NeedsNoFitThatHasSettled) {
     const PositionDomain domain = domain_of(set);
     FitResult whole = fit(domain);
     const std::vector<int> probes{1, 2, 3, 4, 5, 6};
