@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Eigenvalues>
+
 #include <algorithm>
 #include <cmath>
 
@@ -198,8 +200,7 @@ private:
         const Diagnosis before = result_;
         const Refit leads = leading();
         const bool is_explained = explained() && is_enough(leads, options_);
-        const double least =
-            is_explained ? least_next_to_effect(outliers_, leader()->log_bayes_factor, result_.problem, options_) : 0;
+        const double least = is_explained ? least_next_to_effect(outliers_, *leader(), result_.problem, options_) : 0;
         if (!set_outliers_aside(leads, least)) return false;
         if (!is_enough(without_them(leads), options_)) {
             result_ = before;
@@ -230,6 +231,25 @@ private:
     Diagnosis result_;
     double moved_ = 0;  // readings from rest, rms [mm]
 };
+
+/// Variances of what is told of fitted numbers v with a covariance C: the halves of what it differs by between v + c
+/// and v - c, squared, for each column c of C's square root.
+Eigen::VectorXd variances_of_told(const Effect& effect, const std::vector<EffectNumber>& numbers,
+                                  const Eigen::VectorXd& v, const Eigen::MatrixXd& covariance) {
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> axes(covariance);
+    const auto told = [&](const Eigen::VectorXd& x) -> Eigen::VectorXd {
+        const skeleton::Effect at = effect.told(numbers, x);
+        Eigen::VectorXd values(std::ssize(at.parameters));
+        for (Eigen::Index p = 0; p < values.size(); ++p) values[p] = at.parameters[p].value;
+        return values;
+    };
+    Eigen::VectorXd variances = 0 * told(v);
+    for (Eigen::Index j = 0; j < v.size(); ++j) {
+        const Eigen::VectorXd c = std::sqrt(std::max(axes.eigenvalues()[j], 0.0)) * axes.eigenvectors().col(j);
+        variances += (0.5 * (told(v + c) - told(v - c))).cwiseAbs2();
+    }
+    return variances;
+}
 
 }  // namespace
 
@@ -268,20 +288,11 @@ Told Explained::told(const std::string& name) const {
             continue;
         }
         Told result{all.effects[e]->told(fit.numbers[e], v), {}};
-        // told(v) as a map of the fit's numbers: its slopes carry their covariance over
-        const auto count = std::ssize(result.effect.parameters);
-        Eigen::MatrixXd slopes(count, v.size());
-        for (Eigen::Index j = 0; j < v.size(); ++j) {
-            constexpr double h = 1e-6;
-            const skeleton::Effect ahead =
-                all.effects[e]->told(fit.numbers[e], v + h * Eigen::VectorXd::Unit(v.size(), j));
-            for (Eigen::Index p = 0; p < count; ++p) {
-                slopes(p, j) = (ahead.parameters[p].value - result.effect.parameters[p].value) / h;
-            }
-        }
-        const Eigen::MatrixXd covariance =
-            slopes * fit.covariance.block(at, at, v.size(), v.size()) * slopes.transpose();
-        for (Eigen::Index p = 0; p < count; ++p) result.sd.push_back(std::sqrt(std::max(covariance(p, p), 0.0)));
+        const auto variances = [&](const Eigen::MatrixXd& covariance) {
+            return variances_of_told(*all.effects[e], fit.numbers[e], v, covariance.block(at, at, v.size(), v.size()));
+        };
+        const Eigen::VectorXd variance = variances(fit.covariance).cwiseMax(variances(fit.scatter));
+        for (const double one : variance) result.sd.push_back(std::sqrt(one));
         return result;
     }
     return {};

@@ -54,13 +54,13 @@ std::string put_together_of_aliases(const Explained& explained) {
 }
 
 /// Does an explanation leave too much of what is beyond the noise without it? Thousands of readings make evidence of
-/// little: strong stiffening took up a third of what a coarse mesh was off by, and an inclusion or the like over a
-/// half.
+/// little: what is like an error of the mesh took up a third to a half of what a coarse one was off by.
 bool leaves_too_much(const Refit& without, const Explained& explained) {
     const double before = without.whitened_rms * without.whitened_rms;
     const double after = explained.fit.whitened_rms * explained.fit.whitened_rms;
     const double most = std::ranges::all_of(explained.effects, &Effect::is_like_mesh_error) ? 0.5 : 1;
-    return after - 1 > most * (before - after);
+    const double chance = std::sqrt(2 / static_cast<double>(explained.fit.residual.size()));
+    return after - 1 > most * (before - after) + chance;
 }
 
 /// Why an effect of an explanation, as it came out, is none of that kind; empty: nothing speaks against it.
@@ -150,10 +150,11 @@ double least_next_to_noise(const Effect& effect, const Problem& problem, const D
     return std::max(least, 0.5 * in_sigmas * in_sigmas);
 }
 
-double least_next_to_effect(const Effect& effect, double brought, const Problem& problem,
+double least_next_to_effect(const Effect& effect, const Explained& there, const Problem& problem,
                             const DiagnoseOptions& options) {
-    constexpr double share = 5e-4;  // of the evidence
-    return std::max({options.idealised, share * brought, least_next_to_noise(effect, problem, options)});
+    double share = 0;
+    for (const auto& one : there.effects) share = std::max(share, one->left_by_idealisation());
+    return std::max({options.idealised, share * there.log_bayes_factor, least_next_to_noise(effect, problem, options)});
 }
 
 void judge(const BodyModel& model, const DiagnoseOptions& options, Diagnosis& diagnosis) {

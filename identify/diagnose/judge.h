@@ -15,9 +15,8 @@ bool is_enough(const Refit& fit, const DiagnoseOptions& options);
 /// displacement.
 double least_next_to_noise(const Effect& effect, const Problem& problem, const DiagnoseOptions& options);
 
-/// The same next to effects that leave noise and brought some evidence: more than their own idealisation (even springs,
-/// a ball, a law of flow) may feign, too.
-double least_next_to_effect(const Effect& effect, double brought, const Problem& problem,
+/// The same next to effects that are there and leave noise: more than their own idealisation may feign, too.
+double least_next_to_effect(const Effect& effect, const Explained& there, const Problem& problem,
                             const DiagnoseOptions& options);
 
 /// Comes to a verdict on what was tried: an explanation is claimed if its evidence is great enough and leads, what is

@@ -144,6 +144,25 @@ private:
     std::vector<Eigen::Index> skin_;
 };
 
+/// The contacts that dent the body in each action: its own, and where it yields, the strongest at each place before.
+std::vector<std::vector<mesh::Contact>> contacts_that_dent(const Problem& problem, const Played& played, bool yields) {
+    std::vector<std::vector<mesh::Contact>> dents;
+    dents.reserve(played.actions.size());
+    for (int k = 0; k < static_cast<int>(played.actions.size()); ++k) {
+        dents.push_back(played.actions[k].contacts);
+        if (!yields || problem.before(k) < 0) continue;
+        for (const mesh::Contact& earlier : dents[problem.before(k)]) {
+            const auto same = std::ranges::find(dents.back(), earlier.point, &mesh::Contact::point);
+            if (same == dents.back().end()) {
+                dents.back().push_back(earlier);
+            } else if (earlier.force.norm() > same->force.norm()) {
+                *same = earlier;
+            }
+        }
+    }
+    return dents;
+}
+
 }  // namespace
 
 double effective_radius(const BodyModel& model, const mesh::Contact& contact) {
@@ -196,6 +215,8 @@ Eigen::VectorXd reading_weights(const BodyModel& model, const Problem& problem, 
     constexpr double nu = 0.45;
     const double flow = setting.effects.plasticity ? options.flow : 0;
     const Border border(model, problem.rest);
+    const std::vector<std::vector<mesh::Contact>> dents =
+        contacts_that_dent(problem, played, problem.by_stage && flow > 0);
     std::vector<Points> skin;  // what it moved by, in each action
     for (const Eigen::VectorXd& q : played.q) skin.push_back(model.skin_positions(q, setting) - model.skin());
     Eigen::VectorXd variance = Eigen::VectorXd::Ones(problem.rows());  // in sigma^2
@@ -206,7 +227,7 @@ Eigen::VectorXd reading_weights(const BodyModel& model, const Problem& problem, 
         variance[n] += std::pow(flow * moved.norm() / problem.sigma[n], 2);
         variance[n] +=
             std::pow(options.ragged * border.closeness(marker) * (moved - base).norm() / problem.sigma[n], 2);
-        for (const mesh::Contact& contact : played.actions[problem.action[n]].contacts) {
+        for (const mesh::Contact& contact : dents[problem.action[n]]) {
             const double r = effective_radius(model, contact), F = contact.force.norm();
             const double d = (problem.rest.row(marker).transpose() - contact.point).norm();
             double U = F * (1 - nu * nu) / (2 * E * r);

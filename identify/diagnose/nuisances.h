@@ -37,7 +37,7 @@ Nuisances make_nuisances(const BodyModel& model, const Problem& problem, const E
 /// support, d from it,
 ///   sigma^2 -> sigma^2 + (ragged u exp(-(d/l)^2))^2, l twice the mean distance of the pieces that its border cuts.
 /// Where the material yields, a share of the modelled displacement comes on top: what flows keeps and adds up the
-/// errors of its mesh.
+/// errors of its mesh. It keeps dents, too: contacts of earlier stages count as well.
 Eigen::VectorXd reading_weights(const BodyModel& model, const Problem& problem, const Explanation& explanation,
                                 const Played& played, const NuisanceOptions& options = {});
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "mesh/errors.h"
 
@@ -199,6 +200,24 @@ void take_nuisances(const BodyModel& model, const Problem& problem, const RefitO
                  at.nuisances.precisions);
 }
 
+/// Covariance of the numbers by how far each probe pulls at them: C (sum_p s_p s_p^T) C P/(P - 1), s_p what the errors
+/// of probe p that the nuisances do not explain add to the slope of the objective. Errors that the readings of a probe
+/// share, as those of a mesh, show there, and not in C. [Liang & Zeger 1986; the "sandwich"]
+Eigen::MatrixXd scatter_of_probes(const Problem& problem, const Refit& at) {
+    const Eigen::VectorXd unexplained = at.residual.cwiseQuotient(at.V->weights());  // d - A nuisances
+    const Eigen::MatrixXd slopes = at.V->apply(at.columns);
+    std::map<int, Eigen::VectorXd> pulls;
+    for (Eigen::Index n = 0; n < problem.rows(); ++n) {
+        const auto [pull, is_new] = pulls.try_emplace(problem.probe[problem.action[n]]);
+        if (is_new) pull->second.setZero(at.columns.cols());
+        pull->second += unexplained[n] * slopes.row(n).transpose();
+    }
+    Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(at.columns.cols(), at.columns.cols());
+    for (const auto& [probe, pull] : pulls) sum += pull * pull.transpose();
+    const auto probes = static_cast<double>(pulls.size());
+    return at.covariance * sum * at.covariance * (probes / std::max(probes - 1, 1.0));
+}
+
 void conclude(const Problem& problem, const Priors& priors, Refit& at) {
     const auto N = static_cast<double>(problem.rows());
     const Eigen::VectorXd x = at.explanation.all();
@@ -217,6 +236,7 @@ void conclude(const Problem& problem, const Priors& priors, Refit& at) {
         at.most_strained = at.nuisances.names[most];
     }
     at.residual = at.V->residual(at.error);
+    at.scatter = scatter_of_probes(problem, at);
 }
 
 /// The same effects under the same law, whatever their numbers.

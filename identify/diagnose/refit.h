@@ -20,6 +20,7 @@ struct Refit {
     std::optional<Whitening> V;            // of nuisances and weights
     Eigen::VectorXd prior_mean, prior_sd;  // of all numbers
     Eigen::MatrixXd covariance;            // of all numbers, posterior
+    Eigen::MatrixXd scatter;               // of the same, by how far the probes disagree about them
     double log_evidence = 0;               // less the constant that the readings share
     int steps = 0;                         // Gauss-Newton's
     bool converged = false;

@@ -68,9 +68,8 @@ bool Search::extend(std::size_t from, int most) {
     for (const Screened& screened : screen_at(base.fit, there)) {
         if (refits_together_ >= options_.refits_together) break;
         if (base.log_bayes_factor + screened.at_most() < leads) continue;
-        const double least = noise_is_left
-                                 ? least_next_to_effect(*screened.effect, base.log_bayes_factor, problem_, options_)
-                                 : options_.least_evidence;
+        const double least =
+            noise_is_left ? least_next_to_effect(*screened.effect, base, problem_, options_) : options_.least_evidence;
         // A screen is a linearisation, and says somewhat too little at times; little of much explains nothing.
         constexpr double share = 0.05;
         const double worth_a_fit = std::max({options_.least_evidence, 0.5 * least, share * excess(base)});

@@ -114,8 +114,13 @@ public:
     /// Is it so far from linear that its screen may mislead? Then a refit is tried whatever the screen says, where
     /// nothing else explains the readings.
     virtual bool outwits_screen() const { return false; }
-    /// Does it change a body as errors of its mesh may: in one place, at the supports, or in some directions more?
+    /// Does it change a body as errors of its mesh may: in one place, at the supports, in some directions more, or
+    /// where it is strained?
     virtual bool is_like_mesh_error() const { return false; }
+
+    /// Of the evidence that it brings, the share that its idealisation (even springs, a ball) may leave to another
+    /// effect.
+    virtual double left_by_idealisation() const { return 5e-4; }
 
     /// By default the signatures of all numbers at their start, which must be neutral, and the start itself as the
     /// beginning of a refit. Keeps references to the arguments.

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "identify/diagnose/fit.h"
 #include "identify/effects/catalogue.h"
@@ -10,8 +11,15 @@
 namespace palpate::identify {
 namespace {
 
-/// A material that grows stiffer as it is stretched: Yeoh's law, C20 = c2 mu and C30 = c3 mu beside mu/2.
-class StiffeningEffect : public Effect {
+/// c2 up to which the fit's number, asinh(c2 / usual), is proportional to it; beyond, to its logarithm: tissue that is
+/// hardly strained may well be a hundred times as steep as rubber that is.
+constexpr double usual = 1.4;
+/// c3 / c2, about. Exponential laws, W = mu/2b (exp b(I - 3) - 1), have c3 = 4/3 c2^2: 4 at c2 = 3, 40 at 30.
+constexpr double usual_ratio = 10;
+
+/// A material that grows stiffer as it is stretched: Yeoh's law, C20 = c2 mu and C30 = c3 mu beside mu/2. The numbers
+/// are the coefficients themselves, as the screen sees them.
+class Coefficients : public Effect {
 public:
     const EffectDescription& description() const override {
         static const EffectDescription text{
@@ -36,25 +44,64 @@ public:
         return true;
     }
 
+    std::string sentence(const skeleton::Effect& told) const override {
+        return fmt::format("The material stiffens as it is strained: Yeoh coefficients of {:.3g} and {:.3g} over mu.",
+                           told.parameters[0].value, told.parameters[1].value);
+    }
+};
+
+/// The same as the fit sees it.
+class StiffeningEffect : public Coefficients {
+public:
+    std::vector<EffectNumber> numbers(const BodyModel&, const Problem&) const override {
+        return {{.name = "c2", .unit = "1", .prior_sd = 1.5, .least = 0},
+                {.name = "c3",
+                 .unit = "1",
+                 .start = std::log(usual_ratio),
+                 .prior_mean = std::log(usual_ratio),
+                 .prior_sd = 1.5}};
+    }
+
+    bool enforce(const Eigen::VectorXd& values, Setting& setting) const override {
+        const double c2 = usual * std::sinh(values[0]);
+        setting.effects.material.push_back(std::make_shared<skeleton::Stiffening>(c2, c2 * std::exp(values[1])));
+        return true;
+    }
+
+    skeleton::Effect told(const std::vector<EffectNumber>& numbers, const Eigen::VectorXd& values) const override {
+        skeleton::Effect result = Effect::told(numbers, values);
+        result.parameters[0].value = usual * std::sinh(values[0]);
+        result.parameters[1].value = result.parameters[0].value * std::exp(values[1]);
+        return result;
+    }
+
+    Eigen::VectorXd values(const std::vector<EffectNumber>& numbers, const skeleton::Effect& told) const override {
+        if (told.parameters.empty()) return Effect::values(numbers, told);
+        const Eigen::VectorXd coefficients = Coefficients::values(numbers, told);
+        constexpr double nothing = 1e-9;  // of the other one
+        const double c2 = std::max(coefficients[0], nothing * coefficients[1]);
+        const double ratio = c2 > 0 ? std::max(coefficients[1] / c2, nothing) : usual_ratio;
+        return Eigen::Vector2d(std::asinh(c2 / usual), std::log(ratio));
+    }
+
     // It goes with a softer start, which is far from the fit without it.
     bool outwits_screen() const override { return true; }
+
+    // A coarse mesh is off by more where it is strained more.
+    bool is_like_mesh_error() const override { return true; }
 
     ScreenPlan screen_plan(const BodyModel& model, const Problem& problem, const Explanation& explanation,
                            const Played& played) const override {
         // Either coefficient for itself, each over its prior. The linearisation promises more than there is: a refit
         // begins with little.
-        ScreenPlan plan = Effect::screen_plan(model, problem, explanation, played);
+        static const Coefficients coefficients;
+        ScreenPlan plan = coefficients.screen_plan(model, problem, explanation, played);
         plan.columns = [columns = plan.columns](const Eigen::MatrixXd& answers) {
             const ScreenColumns both = columns(answers);
             return ScreenColumns{both.columns * both.prior_sd.asDiagonal(), Eigen::VectorXd::Ones(1), true};
         };
-        plan.start = [](Eigen::Index, const Eigen::VectorXd&) { return Eigen::Vector2d(0.3, 0.3); };
+        plan.start = [](Eigen::Index, const Eigen::VectorXd&) { return Eigen::Vector2d(0.2, std::log(usual_ratio)); };
         return plan;
-    }
-
-    std::string sentence(const skeleton::Effect& told) const override {
-        return fmt::format("The material stiffens as it is strained: Yeoh coefficients of {:.3g} and {:.3g} over mu.",
-                           told.parameters[0].value, told.parameters[1].value);
     }
 };
 

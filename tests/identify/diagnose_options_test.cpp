@@ -149,9 +149,9 @@ TEST_F(Diagnosed, WhatLeavesTooMuchIsNoClaim) {
         judge(*model_, {}, found);
         return found.verdict;
     };
-    EXPECT_EQ(verdict(1.08, 1.02), Verdict::missing_effect);
-    EXPECT_EQ(verdict(1.08, 1.05), Verdict::adequate);
-    EXPECT_EQ(verdict(1.12, 1.07), Verdict::unexplained);
+    EXPECT_EQ(verdict(1.08, 1.05), Verdict::missing_effect);  // 648 rows may leave 1.03 by chance
+    EXPECT_EQ(verdict(1.09, 1.07), Verdict::adequate);
+    EXPECT_EQ(verdict(1.12, 1.09), Verdict::unexplained);
     EXPECT_THAT(found.tried.front().objection, HasSubstr("leaves too much"));
     EXPECT_EQ(verdict(1.12, 1.04), Verdict::missing_effect);
 }

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <set>
 
+#include "identify/diagnose/judge.h"
 #include "lattice.h"
 #include "mesh/errors.h"
 #include "small_body.h"
@@ -188,6 +189,49 @@ TEST(Inclusion, HasAWidthAcrossASheet) {
     for (const EffectNumber& number : find_effect("inclusion")->numbers(sheet, {})) {
         EXPECT_GT(number.prior_sd, 0) << number.name;
     }
+}
+
+TEST(Stiffening, OfAHundredTimesTheUsualIsNoSurprise) {
+    const auto effect = find_effect("stiffening");
+    const SkeletonBody lattice(make_lattice({3, 3, 1}), {}, 1);
+    const auto numbers = effect->numbers(lattice, {});
+    const auto away = [&](double c2, double c3) -> Eigen::VectorXd {  // in prior standard deviations
+        const skeleton::Effect told{"stiffening", {{"c2", c2, "1"}, {"c3", c3, "1"}}};
+        const Eigen::VectorXd values = effect->values(numbers, told);
+        return Eigen::Vector2d((values[0] - numbers[0].prior_mean) / numbers[0].prior_sd,
+                               (values[1] - numbers[1].prior_mean) / numbers[1].prior_sd)
+            .cwiseAbs();
+    };
+    EXPECT_NEAR(away(3, 30)[0], 1, 0.05);
+    EXPECT_LT(away(3, 12).maxCoeff(), 1.1);  // exponential laws
+    EXPECT_LT(away(100, 4 / 3. * 1e4).maxCoeff(), 4);
+    EXPECT_DOUBLE_EQ(away(0, 0).norm(), 0);
+}
+
+TEST(Stiffening, OfEitherCoefficientAloneComesBack) {
+    const auto effect = find_effect("stiffening");
+    const SkeletonBody lattice(make_lattice({3, 3, 1}), {}, 1);
+    const auto numbers = effect->numbers(lattice, {});
+    for (const auto& [c2, c3] : {std::pair{3.0, 0.0}, {0.0, 30.0}}) {
+        const skeleton::Effect told{"stiffening", {{"c2", c2, "1"}, {"c3", c3, "1"}}};
+        const skeleton::Effect back = effect->told(numbers, effect->values(numbers, told));
+        EXPECT_NEAR(back.parameters[0].value, c2, 1e-6);
+        EXPECT_NEAR(back.parameters[1].value, c3, 1e-6);
+    }
+}
+
+TEST(Judge, AsksForMoreBesideWhatFlows) {
+    Problem problem;
+    problem.measured = problem.sigma = Eigen::VectorXd::Ones(0);
+    const DiagnoseOptions options;
+    const auto least_beside = [&](const char* name) {
+        Explained there;
+        there.effects = {find_effect(name)};
+        there.log_bayes_factor = 1e6;
+        return least_next_to_effect(*find_effect("gravity"), there, problem, options);
+    };
+    EXPECT_DOUBLE_EQ(least_beside("viscosity"), 500);
+    EXPECT_DOUBLE_EQ(least_beside("plasticity"), 3000);
 }
 
 TEST(ForceGain, IsObjectedToWhereTheBodyStiffens) {

@@ -1,5 +1,7 @@
 #include "identify/diagnose/refit.h"
 
+#include <map>
+
 #include "diagnosed.h"
 #include "identify/diagnose/baselines.h"
 #include "identify/diagnose/nearby.h"
@@ -127,6 +129,48 @@ TEST_F(Refits, TrustMarkersLessNextToWhatIsHeld) {
     EXPECT_LT(unknown.maxCoeff(), 0.15);
     EXPECT_LT(unknown.segment(4, 4).maxCoeff(), unknown.head(4).minCoeff());
     EXPECT_LT(unknown.tail(16).maxCoeff(), 2e-3);
+}
+
+TEST_F(Refits, TrustMarkersLessWhereTheMaterialKeepsADent) {
+    const MeasurementSet set = body_.set(SmallBody::releases(0.03, 2));
+    const Problem problem = make_problem(set, sigma).stage_by_stage();
+    const Explanation yields = truth("plasticity", numbers({std::log(0.05), std::log(0.3)}));
+    const NuisanceOptions dents_alone{.dent = 30, .ragged = 0, .flow = 1e-9};
+    const auto unknown_without_load = [&](const Explanation& explanation) {  // variance beyond the noise, by stage
+        const Eigen::VectorXd weights =
+            reading_weights(*model_, problem, explanation, play(*model_, problem, explanation, 1), dents_alone);
+        std::map<double, double> most;
+        for (Eigen::Index n = 0; n < problem.rows(); ++n) {
+            const Stage& stage = problem.stages[problem.action[n]];
+            if (!stage.action.contacts.empty()) continue;
+            const double after = 10 * stage.probe + stage.time;
+            most[after] = std::max(most[after], std::pow(weights[n], -2) - 1);
+        }
+        return most;
+    };
+    const std::map<double, double> elastic = unknown_without_load(truth()), kept = unknown_without_load(yields);
+    ASSERT_EQ(kept.size(), 3);  // at first, and after either probe
+    for (const auto& [after, variance] : elastic) EXPECT_LT(variance, 1e-9) << after;
+    for (const auto& [after, variance] : kept) {
+        EXPECT_EQ(variance > 0.01, after > 0) << after;
+    }
+}
+
+TEST_F(Refits, KnowLessWhereProbesDisagree) {
+    // Noise alone scatters no more than the covariance says; of gains that come and go from probe to probe it knows
+    // nothing.
+    const Problem problem = make_problem(twin(truth()), sigma);
+    Problem off = problem;
+    for (Eigen::Index n = 0; n < off.rows(); ++n) {
+        const double moved = off.measured[n] - off.rest(off.coordinate[n] / 3, off.coordinate[n] % 3);
+        off.measured[n] += (off.probe[off.action[n]] % 2 ? 0.15 : -0.15) * moved;
+    }
+    const auto disagreement = [&](const Problem& with) {  // about ln E, over its standard deviation
+        const Refit fit = refit(*model_, with, first_guess(*model_, with, neo_hooke, 1), options_);
+        return std::sqrt(fit.scatter(0, 0) / fit.covariance(0, 0));
+    };
+    EXPECT_LT(disagreement(problem), 0.6);
+    EXPECT_GT(disagreement(off), 1);
 }
 
 TEST_F(Refits, TrustReadingsLessWhereTheLoadHasCrept) {

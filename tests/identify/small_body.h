@@ -162,7 +162,7 @@ inline Explanation with(Explanation truth, std::shared_ptr<const Effect> effect,
 /// Numbers of an effect that bends or moves the bar by some tenths of a millimetre and more.
 inline Eigen::VectorXd example(const Effect& effect, const std::vector<EffectNumber>& numbers) {
     static const std::map<std::string, std::vector<double>> chosen{
-        {"stiffening", {1, 10}},
+        {"stiffening", {std::asinh(1 / 1.4), std::log(10)}},
         {"anisotropy", {1.5, 0.48, 0.6, 0.64}},  // of unit length, as they are told
         {"inclusion", {21, 6, 4, std::log(7), std::log(3)}},
         {"volume", {std::log(0.1), std::log(0.4)}},

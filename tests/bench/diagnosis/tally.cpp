@@ -127,22 +127,31 @@ void Tally::print() const {
         fmt::print("| {} | {} | {:.2f} | {:.3f} | {:.3f} |\n", hidden, after.size(), quantile(before_.at(hidden), 0.5),
                    quantile(after, 0.5), quantile(after, 1));
     }
-    if (!numbers_.empty()) {
-        fmt::print(
-            "\n| number | of | error, median | largest | within 1 sd | 2 sd |\n| --- | --- | --- | --- | --- | --- "
-            "|\n");
-    }
-    for (const auto& [name, list] : numbers_) {
+    print_numbers();
+}
+
+void Tally::print_numbers() const {
+    if (numbers_.empty()) return;
+    fmt::print(
+        "\n| number | of | error, median | largest | within 10 % | within 1 sd | inside its 95 % interval |\n"
+        "| --- | --- | --- | --- | --- | --- | --- |\n");
+    std::vector<Number> all;
+    const auto row = [](const std::string& name, const std::vector<Number>& list) {
         std::vector<double> errors;
-        int within_1 = 0, within_2 = 0;
-        for (const Number& number : list) {
-            errors.push_back(std::abs(number.error));
-            within_1 += std::abs(number.z) <= 1 ? 1 : 0;
-            within_2 += std::abs(number.z) <= 2 ? 1 : 0;
-        }
-        fmt::print("| {} | {} | {:.1f} % | {:.1f} % | {} | {} |\n", name, list.size(), 100 * quantile(errors, 0.5),
-                   100 * quantile(errors, 1), within_1, within_2);
+        for (const Number& number : list) errors.push_back(std::abs(number.error));
+        const auto within = [](const std::vector<Number>& of, double Number::*what, double most) {
+            return std::ranges::count_if(of, [&](const Number& number) { return std::abs(number.*what) <= most; });
+        };
+        constexpr double sd_95 = 1.96;
+        fmt::print("| {} | {} | {:.1f} % | {:.1f} % | {} | {} | {} |\n", name, list.size(), 100 * quantile(errors, 0.5),
+                   100 * quantile(errors, 1), within(list, &Number::error, 0.1), within(list, &Number::z, 1),
+                   within(list, &Number::z, sd_95));
+    };
+    for (const auto& [name, list] : numbers_) {
+        row(name, list);
+        all.insert(all.end(), list.begin(), list.end());
     }
+    row("all", all);
 }
 
 }  // namespace palpate::bench

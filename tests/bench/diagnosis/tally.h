@@ -15,8 +15,8 @@ public:
     void add(const Tally& more);
     void add_failure() { ++counts_[Outcome::inconclusive]; }
 
-    /// Outcomes, false claims, what is named for what (confusion matrix), the numbers' errors and how many of them lie
-    /// within 1 and 2 standard deviations, what is left before and after; in Markdown.
+    /// Outcomes, false claims, what is named for what (confusion matrix), what is left before and after, the numbers'
+    /// errors and how many of them lie inside their 95 % intervals; in Markdown.
     void print() const;
 
 private:
@@ -24,6 +24,8 @@ private:
         double error = 0;  // relative
         double z = 0;      // in standard deviations
     };
+
+    void print_numbers() const;
 
     std::map<Outcome, int> counts_;
     int nulls_ = 0, blamed_ = 0;
