@@ -22,6 +22,7 @@ struct Priors {
     Eigen::VectorXd mean, sd, least, most;
     // How far a number may go at once: its prior's width, a logarithm no more than a factor of two.
     Eigen::VectorXd step;
+    std::vector<Eigen::Index> slack = {};  // numbers that do not hold up the others
 };
 
 Priors priors_of(const BodyModel& model, const Explanation& explanation,
@@ -29,6 +30,7 @@ Priors priors_of(const BodyModel& model, const Explanation& explanation,
     const Eigen::VectorXd start = explanation.all();
     constexpr double factor_of_two = 0.7;
     std::vector<double> mean, sd, least, most, step;
+    std::vector<Eigen::Index> slack;
     for (const StiffnessParameter& p : model.parameters()) {
         mean.push_back(p.prior_mean);
         sd.push_back(p.prior_sd);
@@ -38,6 +40,7 @@ Priors priors_of(const BodyModel& model, const Explanation& explanation,
     }
     for (const auto& list : numbers) {
         for (const EffectNumber& number : list) {
+            if (number.slack) slack.push_back(std::ssize(mean));
             mean.push_back(number.prior_at_start ? start[std::ssize(mean)] : number.prior_mean);
             sd.push_back(number.prior_sd);
             least.push_back(number.least);
@@ -48,20 +51,42 @@ Priors priors_of(const BodyModel& model, const Explanation& explanation,
     const auto vector = [](std::vector<double>& values) {
         return Eigen::VectorXd(Eigen::Map<Eigen::VectorXd>(values.data(), std::ssize(values)));
     };
-    return {vector(mean), vector(sd), vector(least), vector(most), vector(step)};
+    return {vector(mean), vector(sd), vector(least), vector(most), vector(step), slack};
 }
 
-/// The move that maximises g^T m - m^T H m / 2, numbers apart that stand at a bound and would go beyond it.
-Eigen::VectorXd bounded_move(Eigen::MatrixXd H, Eigen::VectorXd g, const Priors& priors, const Eigen::VectorXd& x) {
-    for (Eigen::Index i = 0; i < x.size(); ++i) {
-        const bool is_free = (x[i] > priors.least[i] || g[i] > 0) && (x[i] < priors.most[i] || g[i] < 0);
-        if (is_free) continue;
-        g[i] = 0;
+/// The move m that maximises g^T m - m^T H m / 2 where some numbers have theirs already.
+Eigen::VectorXd best_move(Eigen::MatrixXd H, Eigen::VectorXd g, const std::map<Eigen::Index, double>& fixed) {
+    for (const auto& [i, move] : fixed) g -= H.col(i) * move;
+    for (const auto& [i, move] : fixed) {
+        g[i] = move;
         H.row(i).setZero();
         H.col(i).setZero();
         H(i, i) = 1;
     }
     return H.llt().solve(g);
+}
+
+/// Numbers that stand at a bound and would go beyond it.
+std::map<Eigen::Index, double> held_at_bounds(const Eigen::VectorXd& g, const Priors& priors,
+                                              const Eigen::VectorXd& x) {
+    std::map<Eigen::Index, double> fixed;
+    for (Eigen::Index i = 0; i < x.size(); ++i) {
+        const bool is_free = (x[i] > priors.least[i] || g[i] > 0) && (x[i] < priors.most[i] || g[i] < 0);
+        if (!is_free) fixed[i] = 0;
+    }
+    return fixed;
+}
+
+/// A move of which no number goes further than it may at once. Numbers that are slack go as far as they may, and the
+/// others take account of it; where one of these would go too far, all go less.
+Eigen::VectorXd limited_move(const Eigen::MatrixXd& H, const Eigen::VectorXd& g, const Priors& priors,
+                             std::map<Eigen::Index, double> fixed, Eigen::VectorXd move) {
+    for (const Eigen::Index i : priors.slack) {
+        if (std::abs(move[i]) <= priors.step[i]) continue;
+        fixed[i] = std::copysign(priors.step[i], move[i]);
+        move = best_move(H, g, fixed);
+    }
+    return move * std::min(1.0, 1 / move.cwiseQuotient(priors.step).cwiseAbs().maxCoeff());
 }
 
 /// Half of chi^2 and priors, to be lowered.
@@ -85,7 +110,10 @@ public:
           rival_(std::max(1.0, options.rival)),
           at_(at) {}
 
-    void run(int most_steps) {
+    /// `to_the_end`: else it may stop where it hardly gets on, as V is not the last one, and bodies with memory are
+    /// slow to play.
+    void run(int most_steps, bool to_the_end) {
+        int crawling = 0;
         double now = objective(*at_.V, at_.error, priors_, at_.explanation.all());
         linearise();
         for (int step = 0; step < most_steps; ++step) {
@@ -95,14 +123,18 @@ public:
             const Eigen::VectorXd x = at_.explanation.all();
             const Eigen::VectorXd g =
                 VA.transpose() * at_.error - (x - priors_.mean).cwiseQuotient(priors_.sd.cwiseAbs2());
-            Eigen::VectorXd move = bounded_move(H, g, priors_, x);
+            const std::map<Eigen::Index, double> held = held_at_bounds(g, priors_, x);
+            const Eigen::VectorXd move = best_move(H, g, held);
             at_.covariance = H.llt().solve(Eigen::MatrixXd::Identity(x.size(), x.size()));
             at_.converged = 0.5 * g.dot(move) < settled(now, problem_.rows(), !at_.explanation.effects.empty());
             if (at_.converged || is_hopeless(now, 0.5 * g.dot(move))) return;
-            move *= std::min(1.0, 1 / move.cwiseQuotient(priors_.step).cwiseAbs().maxCoeff());
             ++at_.steps;
-            if (!advance(move, now)) return;
+            const double before = now;
+            if (!advance(limited_move(H, g, priors_, held, move), now)) return;
             linearise();
+            constexpr double little = 0.01;
+            crawling = is_shortened_ && before - now < little * now ? crawling + 1 : 0;
+            if (crawling == 2 && !to_the_end && at_.explanation.has_memory()) return;
         }
     }
 
@@ -135,6 +167,7 @@ private:
                 const double then = objective(*at_.V, error, priors_, trial.all());
                 if (!(then < now)) continue;
                 now = then;
+                is_shortened_ = share < 1;
                 at_.explanation = std::move(trial);
                 at_.played = std::move(played);
                 at_.error = error;
@@ -162,7 +195,8 @@ private:
     int threads_;
     double rival_;  // whitened rms, at least that of noise
     Refit& at_;
-    bool has_slopes_ = false;             // columns and steps are those of where it stands
+    bool has_slopes_ = false;
+    bool is_shortened_ = false;           // the last step             // columns and steps are those of where it stands
     std::vector<Eigen::MatrixXd> steps_;  // J^-1 times the signatures, of each action
 };
 
@@ -263,12 +297,12 @@ Refit refit(const BodyModel& model, const Problem& problem, const Explanation& e
                      Eigen::MatrixXd(problem.rows(), 0), Eigen::VectorXd(0));
     }
     Descent descent(model, problem, priors, options, at);
-    descent.run(options.steps);
+    descent.run(options.steps, false);
     constexpr double hopeless = 2;  // rms left, whitened
     const double left = std::sqrt(at.error.dot(at.V->apply(at.error).col(0)) / static_cast<double>(problem.rows()));
     if (!(start && start->V) || left < hopeless) {
         take_nuisances(model, problem, options, at);
-        descent.run(options.steps);
+        descent.run(options.steps, true);
     } else {
         at.nuisances = start->nuisances;
     }
@@ -278,7 +312,7 @@ Refit refit(const BodyModel& model, const Problem& problem, const Explanation& e
 }
 
 double objective(const Refit& fit) {
-    return objective(*fit.V, fit.error, {fit.prior_mean, fit.prior_sd, {}, {}, {}}, fit.explanation.all());
+    return objective(*fit.V, fit.error, {fit.prior_mean, fit.prior_sd, {}, {}, {}, {}}, fit.explanation.all());
 }
 
 double objective_near(const BodyModel& model, const Problem& problem, const Explanation& explanation,
@@ -299,7 +333,7 @@ double promised_objective(const BodyModel& model, const Problem& problem, const 
         const Played played = play(model, problem, explanation, options.threads, &near.played.q);
         const Eigen::VectorXd d = error_of(problem, played);
         const Eigen::VectorXd x = explanation.all();
-        const Priors priors{near.prior_mean, near.prior_sd, {}, {}, {}};
+        const Priors priors{near.prior_mean, near.prior_sd, {}, {}, {}, {}};
         const Eigen::VectorXd g =
             near.columns.transpose() * near.V->apply(d) - (x - priors.mean).cwiseQuotient(priors.sd.cwiseAbs2());
         return objective(*near.V, d, priors, x) - 0.5 * g.dot(near.covariance * g);

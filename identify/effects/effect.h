@@ -52,6 +52,7 @@ struct EffectNumber {
     double prior_mean = 0, prior_sd = 1;
     bool logarithm = false;       // the fit's number is its logarithm
     double least = -INFINITY;     // of the fit's number
+    bool slack = false;           // it hardly matters near its start, and may go too far there
     bool prior_at_start = false;  // its prior is centred where the fit begins: a direction, which a scan has found
 };
 

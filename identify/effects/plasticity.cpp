@@ -35,7 +35,8 @@ public:
                  .start = hardening,
                  .prior_mean = hardening,
                  .prior_sd = 1.5,
-                 .logarithm = true}};
+                 .logarithm = true,
+                 .slack = true}};
     }
 
     bool has_memory() const override { return true; }
