@@ -37,7 +37,7 @@ struct DiagnoseOptions {
     double most_left_together = 1.06;     // the same where several effects explain it: they bend to more
     double most_left_held_out = 1.2;      // the same on probes left out
     double most_gap = 1.06;               // the same over that on probes fitted, where it is above 1
-    double most_strain = 8;               // of a nuisance, in its prior sd
+    double most_strain = 8;               // of a nuisance, in its prior sd; twice as much where the body flows
     double least_outliers = 100;          // the same for outliers: one reading of 15 sigma, say
     double mesh_error = 0.005;            // of the displacement: what errors of a mesh may do in the way of an effect
     double resolution = 0.01;             // of the displacement: what nobody told of noise is no less, as of a mesh

@@ -140,7 +140,9 @@ bool is_likely(const Explained& explained, const DiagnoseOptions& options) {
 }
 
 bool is_enough(const Refit& fit, const DiagnoseOptions& options) {
-    return fit.whitened_rms <= options.most_left && fit.strain <= options.most_strain;
+    // What flows adds up the errors of its mesh, most of all along the border of a support.
+    const double most_strain = (fit.explanation.setting().effects.plasticity ? 2 : 1) * options.most_strain;
+    return fit.whitened_rms <= options.most_left && fit.strain <= most_strain;
 }
 
 double least_next_to_noise(const Effect& effect, const Problem& problem, const DiagnoseOptions& options) {
