@@ -195,8 +195,8 @@ private:
     int threads_;
     double rival_;  // whitened rms, at least that of noise
     Refit& at_;
-    bool has_slopes_ = false;
-    bool is_shortened_ = false;           // the last step             // columns and steps are those of where it stands
+    bool has_slopes_ = false;             // columns and steps are those of where it stands
+    bool is_shortened_ = false;           // the last step went less far than it was meant to
     std::vector<Eigen::MatrixXd> steps_;  // J^-1 times the signatures, of each action
 };
 
