@@ -3,7 +3,9 @@
 #include <cblas.h>
 #include <fmt/format.h>
 
+#include <cmath>
 #include <new>
+#include <vector>
 
 #include "fem/solve/factorise.h"
 #include "mesh/errors.h"
@@ -25,8 +27,9 @@ double pivot_ratio(const Supernodes& structure, const double* values) {
     return smallest * smallest / (largest * largest);
 }
 
-/// x <- (L L^T)^-1 x. A product of matrices copies both first; for one right-hand side, L is gone through as it lies.
-void solve_one(const Supernodes& structure, const double* values, int tallest, double* x) {
+// A product of matrices copies both first; for one right-hand side, L is gone through as it lies.
+
+void solve_lower_one(const Supernodes& structure, const double* values, int tallest, double* x) {
     Eigen::VectorXd gathered = Eigen::VectorXd::Zero(tallest);
     for (int s = 0; s < structure.count(); ++s) {
         const int n = structure.columns(s), height = structure.height(s);
@@ -38,6 +41,10 @@ void solve_one(const Supernodes& structure, const double* values, int tallest, d
         cblas_dgemv(CblasColMajor, CblasNoTrans, height - n, n, 1.0, L + n, height, x1, 1, 0.0, gathered.data(), 1);
         for (std::size_t k = 0; k < below.size(); ++k) x[below[k]] -= gathered[static_cast<Eigen::Index>(k)];
     }
+}
+
+void solve_upper_one(const Supernodes& structure, const double* values, int tallest, double* x) {
+    Eigen::VectorXd gathered = Eigen::VectorXd::Zero(tallest);
     for (int s = structure.count(); s-- > 0;) {
         const int n = structure.columns(s), height = structure.height(s);
         const auto below = structure.rows_below(s);
@@ -73,20 +80,23 @@ Cholesky::Cholesky(std::shared_ptr<const Supernodes> structure, const LowerMatri
     }
 }
 
-bool Cholesky::factor(const LowerMatrix& K) {
+bool Cholesky::factor(const LowerMatrix& K, double singular) {
     // The parallel work is ours; BLAS's own threads would get in its way.
     openblas_set_num_threads(1);
-    constexpr double singular = 1e-14;  // a mechanism leaves a pivot of rounding's size
     return factorise(*structure_, K, values_.get()) && pivot_ratio(*structure_, values_.get()) > singular;
 }
 
 void Cholesky::solve(Block& X) const {
+    solve_lower(X);
+    solve_upper(X);
+}
+
+void Cholesky::solve_lower(Block& X) const {
     openblas_set_num_threads(1);
     const auto p = static_cast<int>(X.cols());
-    if (p == 1) return solve_one(*structure_, values_.get(), tallest_, X.data());
+    if (p == 1) return solve_lower_one(*structure_, values_.get(), tallest_, X.data());
     Block gathered(tallest_, p);
-
-    // Forward: X1 <- L11^-1 X1, then X2 <- X2 - L21 X1. BLAS counts by columns and sees X transposed.
+    // X1 <- L11^-1 X1, then X2 <- X2 - L21 X1. BLAS counts by columns and sees X transposed.
     for (int s = 0; s < structure_->count(); ++s) {
         const int n = structure_->columns(s), height = structure_->height(s);
         const auto below = structure_->rows_below(s);
@@ -99,7 +109,14 @@ void Cholesky::solve(Block& X) const {
                     gathered.data(), p);
         for (std::size_t k = 0; k < below.size(); ++k) X.row(below[k]) -= gathered.row(k);
     }
-    // Backward: X1 <- L11^-T (X1 - L21^T X2).
+}
+
+void Cholesky::solve_upper(Block& X) const {
+    openblas_set_num_threads(1);
+    const auto p = static_cast<int>(X.cols());
+    if (p == 1) return solve_upper_one(*structure_, values_.get(), tallest_, X.data());
+    Block gathered(tallest_, p);
+    // X1 <- L11^-T (X1 - L21^T X2)
     for (int s = structure_->count(); s-- > 0;) {
         const int n = structure_->columns(s), height = structure_->height(s);
         const auto below = structure_->rows_below(s);
@@ -112,6 +129,55 @@ void Cholesky::solve(Block& X) const {
         }
         cblas_dtrsm(CblasColMajor, CblasRight, CblasLower, CblasNoTrans, CblasNonUnit, p, n, 1.0, L, height, X1, p);
     }
+}
+
+double Cholesky::log_root() const {
+    double sum = 0;
+    for (int s = 0; s < structure_->count(); ++s) {
+        const double* L = values_.get() + structure_->first_value[s];
+        for (int c = 0; c < structure_->columns(s); ++c)
+            sum += std::log(L[c * (structure_->height(s) + std::int64_t{1})]);
+    }
+    return sum;
+}
+
+Eigen::VectorXd Cholesky::inverse_diagonal() const {
+    // Z = (L L^T)^-1 from the last columns J on, by the entries of those behind them that L has, R:
+    //   Z_RJ = -Z_RR Y,  Z_JJ = (L_JJ L_JJ^T)^-1 + Y^T Z_RR Y,  Y = L_RJ L_JJ^-1. [Takahashi, Fagan, Chin 1973]
+    using Dense = Eigen::MatrixXd;
+    using Columns = Eigen::Map<const Dense, 0, Eigen::OuterStride<>>;
+    std::vector<int> supernode_of(structure_->size());
+    std::vector<Dense> Z(structure_->count());                // as L's supernodes lie
+    std::vector<Eigen::Index> place(structure_->size(), -1);  // among R
+    Eigen::VectorXd diagonal(structure_->size());
+    for (int s = structure_->count(); s-- > 0;) {
+        const int own = structure_->columns(s), height = structure_->height(s), below = height - own;
+        const int first = structure_->first_column[s];
+        std::fill_n(supernode_of.begin() + first, own, s);
+        const auto R = structure_->rows_below(s);
+        const Columns L(values_.get() + structure_->first_value[s], height, own, Eigen::OuterStride<>(height));
+        const auto L_JJ = L.topRows(own).triangularView<Eigen::Lower>();
+
+        for (int a = 0; a < below; ++a) place[R[a]] = a;
+        Dense Z_RR(below, below);
+        for (int a = 0; a < below; ++a) {
+            const int t = supernode_of[R[a]], column = R[a] - structure_->first_column[t];
+            const auto rows = structure_->rows_of(t);
+            for (int k = column; k < structure_->height(t); ++k) {
+                const Eigen::Index b = place[rows[k]];
+                if (b >= 0) Z_RR(a, b) = Z_RR(b, a) = Z[t](k, column);
+            }
+        }
+        for (int a = 0; a < below; ++a) place[R[a]] = -1;
+
+        const Dense Y = L_JJ.solve<Eigen::OnTheRight>(L.bottomRows(below));
+        const Dense root = L_JJ.solve(Dense::Identity(own, own));
+        Z[s].resize(height, own);
+        Z[s].bottomRows(below).noalias() = -Z_RR * Y;
+        Z[s].topRows(own).noalias() = root.transpose() * root - Y.transpose() * Z[s].bottomRows(below);
+        diagonal.segment(first, own) = Z[s].topRows(own).diagonal();
+    }
+    return diagonal;
 }
 
 }  // namespace palpate::fem

@@ -22,12 +22,17 @@ public:
     Cholesky(std::shared_ptr<const Supernodes> structure, const LowerMatrix& K);
 
     /// Factors K in place of what was factored before; false, and nothing to solve with, when K is not positive
-    /// definite to rounding. Works in parallel over the elimination tree and over fixed tiles of large supernodes: the
-    /// same numbers on any number of threads.
-    bool factor(const LowerMatrix& K);
+    /// definite to rounding: a pivot is below `singular` times the largest. Works in parallel over the elimination tree
+    /// and over fixed tiles of large supernodes: the same numbers on any number of threads.
+    bool factor(const LowerMatrix& K, double singular = 1e-14);
 
     /// X <- K^-1 X on one thread. Supernodes that a load does not reach are passed over. Safe from several threads.
     void solve(Block& X) const;
+    void solve_lower(Block& X) const;  // X <- L^-1 X
+    void solve_upper(Block& X) const;  // X <- L^-T X
+
+    double log_root() const;                   // ln det L
+    Eigen::VectorXd inverse_diagonal() const;  // of K^-1
 
     /// Stored entries of the factor.
     double entries() const { return static_cast<double>(structure_->first_value.back()); }
