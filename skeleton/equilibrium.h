@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/SparseCore>
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -9,9 +10,13 @@
 
 namespace palpate::skeleton {
 
+/// J^-1 B (6N x p) of an equilibrium nearby.
+using NearbyTangent = std::function<Eigen::MatrixXd(const Eigen::MatrixXd& B)>;
+
 struct EquilibriumOptions {
     double tolerance = 1e-9;  // of the residual, as a share of the largest force of loads and effects, > 0
     int iterations = 200;     // Newton steps at one load, >= 1
+    NearbyTangent nearby{};   // serves as long as steps by it converge well; large rotations alone
     void validate() const;    // @throws InvalidInput naming option, value and bound
 };
 

@@ -8,6 +8,8 @@ namespace palpate::skeleton {
 namespace {
 
 constexpr double enough_fall = 1e-4;  // of what the slope at the start promises
+constexpr double most_left = 0.25;    // of the net force, by a step with a tangent from nearby that is worth another
+constexpr double deep = 1e-3;         // of the tolerance
 
 // What is sought, all together.
 struct Problem {
@@ -73,6 +75,22 @@ bool leave_saddle(const Problem& problem, State& state, Balance& here) {
     return false;
 }
 
+// Steps by a tangent from nearby as long as each leaves little: one takes far less than a factor does. They end deeper
+// than need be, as those of the tangent itself do, for the last factor is to be that of the equilibrium.
+void settle(const Problem& problem, const NearbyTangent& solve, double tolerance, State& state, Balance& here) {
+    if (here.largest <= tolerance) return;
+    while (here.largest > deep * tolerance) {
+        const Eigen::VectorXd step = solve(here.net);
+        if (problem.system.step_limit(state, step) < 1) return;
+        const State trial = problem.system.advance(state, step, 1);
+        const Balance there = problem.balance(trial);
+        const bool falls = there.potential <= here.potential + here.rounding;  // or it leads back to a saddle
+        if (!falls || !(there.largest < most_left * here.largest)) return;
+        state = trial;
+        here = there;
+    }
+}
+
 }  // namespace
 
 bool newton(SkeletonSystem& system, const Eigen::VectorXd& k, const Load& load, const EquilibriumOptions& options,
@@ -82,6 +100,7 @@ bool newton(SkeletonSystem& system, const Eigen::VectorXd& k, const Load& load, 
         std::max(options.tolerance * system.largest_load(k, at.state, load), system.force_rounding(k));
     double shift = 0;
     Balance here = problem.balance(at.state);
+    if (options.nearby) settle(problem, options.nearby, tolerance, at.state, here);
     for (int iteration = 0;; ++iteration, ++at.iterations) {
         at.residual = here.largest;
         system.assemble(k, at.state, &load);

@@ -60,7 +60,7 @@ void release(const PlacedEffects& effects, Model& body) {
 }  // namespace
 
 SkeletonSystem::SkeletonSystem(const Model& model, const fem::Effects& effects)
-    : effects_(model, effects), links_(model, effects), matrix_(0, {}) {
+    : effects_(model, effects), links_(model, effects) {
     require_held(model);
     body_.law = model.law;
     body_.spheres = model.spheres;
@@ -81,7 +81,6 @@ SkeletonSystem::SkeletonSystem(const Model& model, const fem::Effects& effects)
     for (const auto& [a, b] : links_.volumes().pairs()) coupling_of_cell_.push_back(coupling(a, b));
     if (!body_.links.empty()) length_ = sum / static_cast<double>(body_.links.size());
     metric_ << 1, 1, 1, length_ * length_, length_ * length_, length_ * length_;
-    matrix_ = BlockCholesky(static_cast<int>(free_.size()), couplings_);
 
     std::vector<char> moves;
     for (const Sphere& sphere : body_.spheres) moves.push_back(sphere.held ? 0 : 1);
@@ -108,7 +107,7 @@ void SkeletonSystem::prepare(const Load& load) {
                 if (s.sphere < t.sphere) coupling(s.sphere, t.sphere);
     if (load.cavities)
         for (const auto& [a, b] : load.cavities->joined()) coupling(a, b);
-    if (couplings_.size() > before) matrix_ = BlockCholesky(static_cast<int>(free_.size()), couplings_);
+    if (couplings_.size() > before) matrix_.reset();
 }
 
 void SkeletonSystem::remember(const FibreStates& before) {
@@ -206,22 +205,23 @@ State SkeletonSystem::advance(const State& state, const Eigen::VectorXd& step, d
 void SkeletonSystem::assemble(const Eigen::VectorXd& k, const State& state, const Load* load) {
     assert(k.size() == links_.order().size());
     if (load) prepare(*load);
-    matrix_.set_zero();
+    if (!matrix_) matrix_ = make_tangent_matrix(static_cast<int>(free_.size()), couplings_);
+    matrix_->set_zero();
     for (size_t l = 0; l < body_.links.size(); ++l) {
         const Link& link = body_.links[l];
         const Mat12 H = links_.hessian(l, links_.order().link(k, static_cast<Eigen::Index>(l)), state, before_);
         const int i = block_of_[link.a], j = block_of_[link.b];
-        if (i >= 0) matrix_.add_diagonal(i, H.topLeftCorner<6, 6>());
-        if (j >= 0) matrix_.add_diagonal(j, H.bottomRightCorner<6, 6>());
-        if (coupling_of_[l] >= 0) matrix_.add_coupling(coupling_of_[l], H.topRightCorner<6, 6>());
+        if (i >= 0) matrix_->add_diagonal(i, H.topLeftCorner<6, 6>());
+        if (j >= 0) matrix_->add_diagonal(j, H.bottomRightCorner<6, 6>());
+        if (coupling_of_[l] >= 0) matrix_->add_coupling(coupling_of_[l], H.topRightCorner<6, 6>());
     }
     if (!links_.volumes().empty())
         add_pairs(links_.volumes().pairs(), coupling_of_cell_, links_.volumes().curvature(k, state));
     add_pairs(effects_.pairs(), coupling_of_pair_, effects_.curvature(state, effect_share_));
     if (!load) return;
     for (const auto& [a, b, block] : external_curvature(body_, state, *load)) {
-        if (a == b && block_of_[a] >= 0) matrix_.add_diagonal(block_of_[a], -block);
-        if (const int c = coupling(a, b); c >= 0) matrix_.add_coupling(c, -block);
+        if (a == b && block_of_[a] >= 0) matrix_->add_diagonal(block_of_[a], -block);
+        if (const int c = coupling(a, b); c >= 0) matrix_->add_coupling(c, -block);
     }
 }
 
@@ -229,12 +229,12 @@ void SkeletonSystem::add_pairs(const std::vector<std::array<int, 2>>& pairs, con
                                const std::vector<BlockCholesky::Block>& blocks) {
     for (size_t p = 0; p < blocks.size(); ++p) {
         const auto [a, b] = pairs[p];
-        if (a == b && block_of_[a] >= 0) matrix_.add_diagonal(block_of_[a], blocks[p]);
-        if (couplings[p] >= 0) matrix_.add_coupling(couplings[p], blocks[p]);
+        if (a == b && block_of_[a] >= 0) matrix_->add_diagonal(block_of_[a], blocks[p]);
+        if (couplings[p] >= 0) matrix_->add_coupling(couplings[p], blocks[p]);
     }
 }
 
-std::optional<BlockCholesky::BadPivot> SkeletonSystem::factor(double shift) { return matrix_.factor(shift, metric_); }
+std::optional<BlockCholesky::BadPivot> SkeletonSystem::factor(double shift) { return matrix_->factor(shift, metric_); }
 
 void SkeletonSystem::factor_stable(const Eigen::VectorXd& k) {
     if (const auto pivot = factor(0)) fail_at(*pivot, k);
@@ -267,7 +267,7 @@ Eigen::MatrixXd SkeletonSystem::solve(const Eigen::MatrixXd& B) const {
     assert(B.rows() == body_.dofs());
     Eigen::MatrixXd packed(6 * free_.size(), B.cols());
     for (size_t i = 0; i < free_.size(); ++i) packed.middleRows<6>(6 * i) = B.middleRows<6>(Eigen::Index{6} * free_[i]);
-    matrix_.solve(packed);
+    matrix_->solve(packed);
     Eigen::MatrixXd X = Eigen::MatrixXd::Zero(B.rows(), B.cols());
     for (size_t i = 0; i < free_.size(); ++i) X.middleRows<6>(Eigen::Index{6} * free_[i]) = packed.middleRows<6>(6 * i);
     return X;

@@ -7,8 +7,8 @@
 #include "skeleton/effects/placed_effects.h"
 #include "skeleton/links/placed_links.h"
 #include "skeleton/load.h"
-#include "skeleton/solve/block_cholesky.h"
 #include "skeleton/solve/branches.h"
+#include "skeleton/solve/tangent_matrix.h"
 
 namespace palpate::skeleton {
 
@@ -88,7 +88,7 @@ private:
     std::map<std::array<int, 2>, int> place_of_coupling_;  // of each pair of spheres a < b
     double length_ = 1, reach_ = 0;                        // largest coordinate [mm]
     BlockCholesky::Vec6 metric_;
-    BlockCholesky matrix_;
+    std::unique_ptr<TangentMatrix> matrix_;  // none: not assembled yet, or with other couplings
     Branches branches_;
 };
 

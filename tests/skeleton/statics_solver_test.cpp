@@ -76,5 +76,35 @@ TEST(StaticsSolver, LeavesTheTangentOfItsAnswerFactored) {
     EXPECT_EQ(x, solver.solve_tangent(b));
 }
 
+TEST(StaticsSolver, ATangentFromNearbySavesNewtonSteps) {
+    const Model model = make_lattice({4, 2, 2});
+    const Load load = force_at(model, 3, {1, 2, -3});
+    const Eigen::VectorXd k = stiffness_vector(model), softer = 0.95 * k;
+    StaticsSolver near(model), solver(model);
+    const Equilibrium start = near.solve(k, load);
+    const Equilibrium alone = solver.solve(softer, load, {}, &start.state);
+    const auto nearby = [&](const Eigen::MatrixXd& B) { return near.solve_tangent(B); };
+    const Equilibrium guided = solver.solve(softer, load, {.nearby = nearby}, &start.state);
+    EXPECT_GE(alone.iterations, 2);
+    EXPECT_EQ(guided.iterations, 0);
+    EXPECT_LT((guided.step - alone.step).norm(), 1e-9 * alone.step.norm());
+    // and its tangent is factored there
+    const Eigen::VectorXd b = Eigen::VectorXd::LinSpaced(model.dofs(), -1, 1), x = solver.solve_tangent(b);
+    solver.factor_tangent(softer, load, guided);
+    EXPECT_EQ(x, solver.solve_tangent(b));
+}
+
+TEST(StaticsSolver, ATangentThatIsNoneOfTheEquilibriumsDoesNoHarm) {
+    const Model model = make_lattice({4, 2, 2});
+    const Load load = force_at(model, 3, {1, 2, -3});
+    const Eigen::VectorXd k = stiffness_vector(model);
+    const Equilibrium alone = equilibrium(model, load);
+    for (const double factor : {-1.0, 1e-6, 1e3}) {
+        const auto wrong = [&](const Eigen::MatrixXd& B) -> Eigen::MatrixXd { return factor * B; };
+        const Equilibrium found = StaticsSolver(model).solve(k, load, {.nearby = wrong});
+        EXPECT_LT((found.step - alone.step).norm(), 1e-9 * alone.step.norm()) << factor;
+    }
+}
+
 }  // namespace
 }  // namespace palpate::skeleton
