@@ -1,7 +1,10 @@
 #pragma once
 
-#include <Eigen/SparseCholesky>
+#include <Eigen/SparseCore>
+#include <memory>
 #include <vector>
+
+#include "fem/solve/cholesky.h"
 
 namespace palpate::identify {
 
@@ -31,7 +34,8 @@ public:
 
 private:
     Eigen::SparseMatrix<double> Q_;
-    Eigen::SimplicialLLT<Eigen::SparseMatrix<double>> llt_;
+    Eigen::PermutationMatrix<Eigen::Dynamic, Eigen::Dynamic, int> order_;  // P, of the elimination
+    std::unique_ptr<fem::Cholesky> factor_;
     Eigen::VectorXd d_;  // D (n)
 };
 

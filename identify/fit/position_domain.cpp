@@ -181,6 +181,7 @@ Prediction PositionDomain::advanced(const Prediction& prediction, const Slopes& 
                                     const Eigen::VectorXd& step) const {
     Prediction result{prediction.equilibria, prediction.markers, {}, prediction.unread};
     if (law() == skeleton::Law::linear) return result;  // which starts from nowhere
+    result.tangents = prediction.tangents;
     const Eigen::MatrixXd steps = slopes.steps(step);
     Eigen::Index column = 0;
     const auto advance = [&](skeleton::Equilibrium& at) {
@@ -209,7 +210,9 @@ Prediction PositionDomain::predict(const Eigen::VectorXd& theta, int threads, co
         Lived lived = lived_before(*model_, solver, k, states_, s, prediction.equilibria,
                                    start != nullptr ? &start->unread[s] : nullptr);
         const skeleton::State* from = start != nullptr ? &start->equilibria[s].state : nullptr;
-        prediction.equilibria[s] = solver.solve(k, states_[s].load, {}, from, lived.flowed);
+        skeleton::EquilibriumOptions how;
+        if (start != nullptr && !start->tangents.empty()) how.nearby = start->tangents[s];
+        prediction.equilibria[s] = solver.solve(k, states_[s].load, how, from, lived.flowed);
         prediction.unread[s] = std::move(lived.unread);
         if (for_slopes) prediction.tangents[s] = tangent_of(std::move(borrowed));
         prediction.markers[s] = observe(*model_, prediction.equilibria[s], states_[s].points) + offsets_[s];

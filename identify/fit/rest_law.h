@@ -6,6 +6,7 @@
 
 #include "fem/solve/cholesky.h"
 #include "identify/fit/link_signatures.h"
+#include "skeleton/solve/block_structure.h"
 
 namespace palpate::identify {
 
@@ -27,24 +28,24 @@ public:
     const std::shared_ptr<const LinksAtRest>& links() const { return links_; }
 
 private:
-    using Block = Eigen::Matrix<double, 6, 6>;
-
     /// What a factor needs of its law, and leaves to the next one.
     struct Room {
-        std::vector<int> number;  // of each sphere in the order of elimination, -1: held
-        std::shared_ptr<const fem::Supernodes> structure;
+        Room(const std::vector<int>& free, const std::vector<std::array<int, 2>>& pairs);
+
+        std::vector<int> free;  // spheres
+        skeleton::BlockStructure structure;
         std::mutex mutex;
         std::vector<std::unique_ptr<fem::Cholesky>> idle;
     };
 
-    Eigen::VectorXd values_at(const Eigen::VectorXd& k) const;
-    void add(int a, int b, const Block& block, double* values) const;
+    fem::LowerMatrix matrix(const Eigen::VectorXd& k) const;
+    void add(int a, int b, const skeleton::BlockStructure::Block& block, fem::LowerMatrix& K) const;
 
     skeleton::Model model_;
     std::shared_ptr<const LinksAtRest> links_;
     std::shared_ptr<Room> room_;
-    std::vector<std::vector<int>> columns_;  // rows of each column of blocks: numbers, its own first, ascending
-    fem::LowerMatrix K_0_;                   // with room for all of K
+    std::vector<int> number_;  // among the free spheres, of each; -1: held
+    fem::LowerMatrix K_0_;     // with room for all of K
 };
 
 class RestLaw::Factor {

@@ -307,11 +307,12 @@ struct Block {
 
 void particles() {
     fmt::print(
-        "| parameters P | H | particles/s, matrix product | particles/s, a loop | of the machine's matrix product, % "
-        "|\n|---|---|---|---|---|\n");
+        "| parameters P | H | particles at once | particles/s | particles/s, a loop | of the machine's matrix product, "
+        "% "
+        "|\n|---|---|---|---|---|---|\n");
     const auto line = [](const ForceStatistics& s, const char* kind) {
         const auto P = static_cast<int>(s.g.size());
-        const int N = std::max(256, std::min(1 << 16, 20'000'000 / P));
+        const int N = P <= 100 ? 4096 : 20'000'000 / P;  // few, so that they stay in the cache
         Eigen::MatrixXd X(N, P);
         for (int p = 0; p < P; ++p) X.col(p) = RandomStream(1, 0, p).normals(N);
         double check = 0;
@@ -349,8 +350,8 @@ void particles() {
                                     return C(0, 0);
                                 },
                                 1);
-        fmt::print("| {} | {} | {:.3g} | {:.3g} | {:.0f} |{}\n", P, kind, batch, loop, 100 * batch * 2.0 * P * P / peak,
-                   std::isfinite(check) ? "" : " ");
+        fmt::print("| {} | {} | {} | {:.3g} | {:.3g} | {:.0f} |{}\n", P, kind, N, batch, loop,
+                   100 * batch * 2.0 * P * P / peak, std::isfinite(check) ? "" : " ");
         std::fflush(stdout);
     };
     for (const int P : {6, 100, 1000}) {
@@ -358,11 +359,14 @@ void particles() {
         for (int p = 0; p < P; ++p) R.col(p) = RandomStream(2, 0, p).normals(P);
         line({(R.transpose() * R).sparseView(), R.col(0), 1, P}, "dense");
     }
-    const Block block(7, skeleton::Law::large_rotation);
-    const Parameters parameters = group_stiffness(block.start, Scope::links, {skeleton::Stiffness::torsion});
-    const MeasurementSet whole = simulate_measurements(block.truth, block.set.states, markers_on_spheres(block.start));
-    const ForceDomain domain = force_domain(block.start, parameters, measured_configurations(block.start, whole));
-    line(domain.forces, "of a lattice");
+    for (const int side : {6, 7}) {
+        const Block block(side, skeleton::Law::large_rotation);
+        const Parameters parameters = group_stiffness(block.start, Scope::links, {skeleton::Stiffness::torsion});
+        const MeasurementSet whole =
+            simulate_measurements(block.truth, block.set.states, markers_on_spheres(block.start));
+        const ForceDomain domain = force_domain(block.start, parameters, measured_configurations(block.start, whole));
+        line(domain.forces, "of a lattice");
+    }
 }
 
 void scaling(const std::vector<int>& sides, const std::vector<std::string>& laws, int threads) {

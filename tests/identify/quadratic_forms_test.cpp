@@ -7,14 +7,14 @@
 namespace palpate::identify {
 namespace {
 
-/// H = R^T R (P x P), its entries kept where |i - j| <= band.
-Eigen::SparseMatrix<double> banded(int P, int band) {
+/// H = R^T R (P x P), of which blocks (i, j) are kept where |i - j| <= band.
+Eigen::SparseMatrix<double> banded(int P, int band, int block) {
     Eigen::MatrixXd R(P, P);
     for (int p = 0; p < P; ++p) R.col(p) = RandomStream(1, 0, p).normals(P);
     Eigen::MatrixXd H = R.transpose() * R;
     for (int i = 0; i < P; ++i) {
         for (int j = 0; j < P; ++j) {
-            if (std::abs(i - j) > band) H(i, j) = 0;
+            if (std::abs(i / block - j / block) > band) H(i, j) = 0;
         }
     }
     return H.sparseView();
@@ -22,14 +22,14 @@ Eigen::SparseMatrix<double> banded(int P, int band) {
 
 struct Shape {
     const char* what;
-    int P, band, N;
+    int P, band, N, block = 1;
 };
 
 class QuadraticForms : public testing::TestWithParam<Shape> {};
 
 TEST_P(QuadraticForms, AreThoseOfEachParticleAlone) {
-    const auto [what, P, band, N] = GetParam();
-    const Eigen::SparseMatrix<double> H = banded(P, band);
+    const auto [what, P, band, N, block] = GetParam();
+    const Eigen::SparseMatrix<double> H = banded(P, band, block);
     const Eigen::VectorXd g = RandomStream(2, 0, 0).normals(P);
     Eigen::MatrixXd X(N, P);
     for (int p = 0; p < P; ++p) X.col(p) = RandomStream(3, 0, p).normals(N);
@@ -44,7 +44,10 @@ TEST_P(QuadraticForms, AreThoseOfEachParticleAlone) {
 
 INSTANTIATE_TEST_SUITE_P(, QuadraticForms,
                          testing::Values(Shape{"few_whole_strips", 6, 6, 64}, Shape{"few_with_a_rest", 6, 6, 77},
-                                         Shape{"fewer_than_a_strip", 3, 3, 5}, Shape{"sparse", 120, 4, 70},
+                                         Shape{"fewer_than_a_strip", 3, 3, 5}, Shape{"one", 1, 1, 40},
+                                         Shape{"as_many_as_registers_hold", 8, 8, 33}, Shape{"one_more", 9, 9, 33},
+                                         Shape{"sparse", 120, 4, 70}, Shape{"pairs_with_the_same_rows", 121, 3, 70, 2},
+                                         Shape{"threes_with_the_same_rows", 120, 2, 70, 3},
                                          Shape{"dense", 50, 50, 1030}),
                          [](const auto& tested) { return tested.param.what; });
 
