@@ -15,11 +15,13 @@ namespace {
 
 using testing::HasSubstr;
 
-template <int R, int C>
-Eigen::MatrixXd dense(const BlockMatrix<R, C>& A) {
+template <int R, int C, class Value>
+Eigen::MatrixXd dense(const BlockMatrix<R, C, Value>& A) {
     Eigen::MatrixXd result = Eigen::MatrixXd::Zero(R * A.rows(), C * A.columns);
     for (int i = 0; i < A.rows(); ++i) {
-        for (int k = 0; k < A.count(i); ++k) result.block(R * i, C * A.columns_of(i)[k], R, C) = A.block(i, k);
+        for (int k = 0; k < A.count(i); ++k) {
+            result.block(R * i, C * A.columns_of(i)[k], R, C) = A.block(i, k).template cast<double>();
+        }
     }
     return result;
 }
@@ -74,6 +76,28 @@ TEST(BlockMatrix, ProductsAreThoseOfDenseMatrices) {
         multiply(P, Z, W);
         EXPECT_LT((W - p * Z).norm(), 1e-14 * Z.norm()) << columns;
     }
+}
+
+TEST(BlockMatrix, InSinglePrecisionIsRoundedAndItsProductsAreExact) {
+    const Bar bar({3, 1, 1}, {4, 2, 2});
+    const auto P = tentative_prolongator<3>(aggregate(bar.A, 0.03), rigid_modes(bar.free)).P;
+    const auto coarse = product(transpose(P), product(bar.A, P));
+    const auto check = [](const auto& exact) {
+        const auto A = rounded(exact);
+        const Eigen::MatrixXd a = dense(A);
+        const Eigen::MatrixXf single = dense(exact).template cast<float>();
+        EXPECT_EQ(a, single.cast<double>());
+        for (const int columns : {1, 3, 8, 11}) {
+            const Block X = scattered(a.cols(), columns), before = scattered(a.rows(), columns);
+            Block Y = before;
+            multiply(A, X, Y, Join::add);
+            EXPECT_LT((Y - (before + a * X)).norm(), 1e-14 * (a.norm() * X.norm() + before.norm())) << columns;
+        }
+    };
+    check(bar.A);
+    check(P);
+    check(transpose(P));
+    check(coarse);
 }
 
 TEST(Aggregates, HoldEachNodeOnceAndMany) {

@@ -24,12 +24,12 @@ void for_rows(int rows, Work&& work) {
 
 }  // namespace
 
-template <int R, int C>
-void multiply(const BlockMatrix<R, C>& A, const Block& X, Block& Y, Join join) {
+template <int R, int C, class Value>
+void multiply(const BlockMatrix<R, C, Value>& A, const Block& X, Block& Y, Join join) {
     assert(X.rows() == Eigen::Index{C} * A.columns && Y.rows() == Eigen::Index{R} * A.rows() && X.cols() == Y.cols());
-    const Panels panels{A.start.data(), A.column.data(), A.values.data()};
+    const Panels<Value> panels{A.start.data(), A.column.data(), A.values.data()};
     for_rows(A.rows(), [&](int begin, int end) {
-        multiply_rows<R, C>(panels, begin, end, X.data(), static_cast<int>(X.cols()), join, Y.data());
+        multiply_rows<R, C, Value>(panels, begin, end, X.data(), static_cast<int>(X.cols()), join, Y.data());
     });
 }
 
@@ -95,8 +95,11 @@ BlockMatrix<C, R> transpose(const BlockMatrix<R, C>& A) {
 // On the finest level a node has three unknowns, on all others six.
 template void multiply(const BlockMatrix<3, 3>&, const Block&, Block&, Join);
 template void multiply(const BlockMatrix<3, 6>&, const Block&, Block&, Join);
-template void multiply(const BlockMatrix<6, 3>&, const Block&, Block&, Join);
 template void multiply(const BlockMatrix<6, 6>&, const Block&, Block&, Join);
+template void multiply(const BlockMatrix<3, 3, float>&, const Block&, Block&, Join);
+template void multiply(const BlockMatrix<3, 6, float>&, const Block&, Block&, Join);
+template void multiply(const BlockMatrix<6, 3, float>&, const Block&, Block&, Join);
+template void multiply(const BlockMatrix<6, 6, float>&, const Block&, Block&, Join);
 template BlockMatrix<3, 6> product(const BlockMatrix<3, 3>&, const BlockMatrix<3, 6>&);
 template BlockMatrix<6, 6> product(const BlockMatrix<6, 3>&, const BlockMatrix<3, 6>&);
 template BlockMatrix<6, 6> product(const BlockMatrix<6, 6>&, const BlockMatrix<6, 6>&);

@@ -10,16 +10,17 @@
 namespace palpate::fem {
 
 /// A sparse matrix of small dense blocks (R x C), row by row. The blocks of a row lie beside each other as one dense
-/// panel of R rows, so that each of these is contiguous in memory.
-template <int R, int C>
+/// panel of R rows, so that each of these is contiguous in memory. Values in single precision, which products with
+/// large matrices pass through memory in half the time, are for what need not be exact.
+template <int R, int C, class Value = double>
 struct BlockMatrix {
     int columns = 0;                     // of blocks
     std::vector<std::int64_t> start{0};  // of each row's blocks (rows + 1)
     std::vector<int> column;             // of each block, ascending in a row
-    std::vector<double> values;          // R * C for each block
+    std::vector<Value> values;           // R * C for each block
 
-    using Panel = Eigen::Map<const Eigen::Matrix<double, R, Eigen::Dynamic, Eigen::RowMajor>>;
-    using MutablePanel = Eigen::Map<Eigen::Matrix<double, R, Eigen::Dynamic, Eigen::RowMajor>>;
+    using Panel = Eigen::Map<const Eigen::Matrix<Value, R, Eigen::Dynamic, Eigen::RowMajor>>;
+    using MutablePanel = Eigen::Map<Eigen::Matrix<Value, R, Eigen::Dynamic, Eigen::RowMajor>>;
 
     int rows() const { return static_cast<int>(start.size()) - 1; }
     std::int64_t blocks() const { return start.back(); }
@@ -45,8 +46,8 @@ BlockMatrix<R, C> with_pattern(const std::vector<std::vector<int>>& rows, int co
 
 /// Y = A X, Y + A X or Y - A X; X (C columns x p), Y (R rows x p). Entries of A are read once for all p. In parallel
 /// over rows: the same numbers on any number of threads, as everything here.
-template <int R, int C>
-void multiply(const BlockMatrix<R, C>& A, const Block& X, Block& Y, Join join = Join::set);
+template <int R, int C, class Value>
+void multiply(const BlockMatrix<R, C, Value>& A, const Block& X, Block& Y, Join join = Join::set);
 
 /// A B.
 template <int R, int K, int C>
@@ -54,5 +55,11 @@ BlockMatrix<R, C> product(const BlockMatrix<R, K>& A, const BlockMatrix<K, C>& B
 
 template <int R, int C>
 BlockMatrix<C, R> transpose(const BlockMatrix<R, C>& A);
+
+/// The same in single precision.
+template <int R, int C>
+BlockMatrix<R, C, float> rounded(const BlockMatrix<R, C>& A) {
+    return {A.columns, A.start, A.column, std::vector<float>(A.values.begin(), A.values.end())};
+}
 
 }  // namespace palpate::fem

@@ -103,7 +103,7 @@ Chebyshev<b>::Chebyshev(BlockMatrix<b, b> inverse_diagonal, double largest_eigen
 }
 
 template <int b>
-void Chebyshev<b>::smooth(const BlockMatrix<b, b>& A, Block& x, Block& residual, bool keep_residual) const {
+void Chebyshev<b>::smooth(const BlockMatrix<b, b, float>& A, Block& x, Block& residual, bool keep_residual) const {
     // d_1 = D^-1 r / middle, then d_k+1 = rho_k+1 rho_k d_k + 2 rho_k+1 / radius D^-1 r. [Saad 2003, algorithm 12.1]
     const double sigma = middle_ / radius_;
     double rho = 1 / sigma;

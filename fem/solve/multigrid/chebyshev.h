@@ -24,7 +24,7 @@ public:
 
     /// Improves x, the solution of A x = f; `residual` is f - A x on entry, and on return once more where
     /// `keep_residual`.
-    void smooth(const BlockMatrix<b, b>& A, Block& x, Block& residual, bool keep_residual) const;
+    void smooth(const BlockMatrix<b, b, float>& A, Block& x, Block& residual, bool keep_residual) const;
 
 private:
     BlockMatrix<b, b> inverse_diagonal_;

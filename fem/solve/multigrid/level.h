@@ -5,13 +5,14 @@
 
 namespace palpate::fem {
 
-/// A matrix, what smooths its errors, and the way to the next coarser level.
+/// A matrix, what smooths its errors, and the way to the next coarser level; in single precision, for a preconditioner
+/// is approximate anyway.
 template <int b>
 struct Level {
-    BlockMatrix<b, b> A;
+    BlockMatrix<b, b, float> A;
     Chebyshev<b> smoother;
-    BlockMatrix<b, 6> prolongation;
-    BlockMatrix<6, b> restriction;  // its transpose
+    BlockMatrix<b, 6, float> prolongation;
+    BlockMatrix<6, b, float> restriction;  // its transpose
 };
 
 /// A level, and what is on the next.
@@ -24,9 +25,9 @@ struct Coarsened {
 
 /// `strength`: least of a strong connection. @throws SolverFailure when A is singular to rounding.
 template <int b>
-Coarsened<b> coarsen(BlockMatrix<b, b> A, const RigidModes& modes, double strength);
+Coarsened<b> coarsen(const BlockMatrix<b, b>& A, const RigidModes& modes, double strength);
 
-extern template Coarsened<3> coarsen(BlockMatrix<3, 3>, const RigidModes&, double);
-extern template Coarsened<6> coarsen(BlockMatrix<6, 6>, const RigidModes&, double);
+extern template Coarsened<3> coarsen(const BlockMatrix<3, 3>&, const RigidModes&, double);
+extern template Coarsened<6> coarsen(const BlockMatrix<6, 6>&, const RigidModes&, double);
 
 }  // namespace palpate::fem

@@ -12,6 +12,7 @@ constexpr double least_coarsening = 0.8;  // of nodes, from level to level; what
 }  // namespace
 
 struct Multigrid::Impl {
+    BlockMatrix<3, 3> A;
     Level<3> finest;
     std::vector<Level<6>> coarser;
     Bottom bottom;
@@ -41,28 +42,28 @@ Multigrid::Multigrid(BlockMatrix<3, 3> A, const RigidModes& modes, const Multigr
     double strength = options.strength;
     const auto entries = static_cast<double>(9 * A.blocks());
     int finer_nodes = A.rows();
-    Coarsened<3> finest = coarsen(std::move(A), modes, strength);
+    Coarsened<3> finest = coarsen(A, modes, strength);
     BlockMatrix<6, 6> coarse = std::move(finest.A);
     RigidModes coarse_modes = std::move(finest.modes);
     double all_entries = entries + static_cast<double>(36 * coarse.blocks());
     std::vector<Level<6>> coarser;
     while (coarse.rows() > options.coarsest_nodes && coarse.rows() < least_coarsening * finer_nodes) {
         finer_nodes = coarse.rows();
-        Coarsened<6> next = coarsen(std::move(coarse), coarse_modes, strength /= 2);
+        Coarsened<6> next = coarsen(coarse, coarse_modes, strength /= 2);
         coarser.push_back(std::move(next.level));
         coarse = std::move(next.A);
         coarse_modes = std::move(next.modes);
         all_entries += static_cast<double>(36 * coarse.blocks());
     }
     impl_ = std::make_unique<Impl>(
-        Impl{std::move(finest.level), std::move(coarser), Bottom(coarse), all_entries / entries});
+        Impl{std::move(A), std::move(finest.level), std::move(coarser), Bottom(coarse), all_entries / entries});
 }
 
 Multigrid::~Multigrid() = default;
 Multigrid::Multigrid(Multigrid&&) noexcept = default;
 
 void Multigrid::apply(Block& f, Block& x) const { impl_->cycle(impl_->finest, 0, f, x); }
-const BlockMatrix<3, 3>& Multigrid::matrix() const { return impl_->finest.A; }
+const BlockMatrix<3, 3>& Multigrid::matrix() const { return impl_->A; }
 int Multigrid::levels() const { return static_cast<int>(impl_->coarser.size()) + 2; }
 double Multigrid::complexity() const { return impl_->complexity; }
 
