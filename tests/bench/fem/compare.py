@@ -79,7 +79,8 @@ def row(mesh, code, assemble, factor, load, all_loads, peak, off):
 
 
 def ours(args, mesh, folder):
-    found = measured([args.bench, "--only", mesh, "--folder", folder, "--loads", str(args.loads)], args.limit)
+    command = [args.bench, "--only", mesh, "--folder", folder, "--loads", str(args.loads), "--memory", str(args.memory)]
+    found = measured(command, args.limit)
     if not found:
         return None
     words = found[0].splitlines()[-1].replace(" GB", "").replace("CG ", "CG_").split()
@@ -131,9 +132,11 @@ def main():
     parser.add_argument("meshes", nargs="+")
     parser.add_argument("--bench", type=pathlib.Path, required=True)
     parser.add_argument("--dolfinx-root", type=pathlib.Path)
-    parser.add_argument("--packages", nargs="*", default=["mumps", "cholmod"], help="of PETSc's, for FEniCSx")
+    parser.add_argument("--without-calculix", action="store_true")
+    parser.add_argument("--packages", nargs="*", default=["mumps", "cholmod"], help="of PETSc's, for FEniCSx: also gamg")
     parser.add_argument("--loads", type=int, default=100)
     parser.add_argument("--threads", type=int, default=2)
+    parser.add_argument("--memory", type=float, default=0, help="that our factor may take [GB]; 0: as it decides")
     parser.add_argument("--limit", type=float, default=400, help="seconds that a code may take")
     args = parser.parse_args()
     print("| mesh | code | assemble [s] | analyse, factor [s] | a load [s] | all [s] | peak [GB] | differs by |")
@@ -144,7 +147,8 @@ def main():
             if reference is None:
                 row(mesh, "palpate", "", "", "", f"over {args.limit:.0f}", "", "")
                 continue
-            calculix(args, mesh, pathlib.Path(folder), reference)
+            if not args.without_calculix:
+                calculix(args, mesh, pathlib.Path(folder), reference)
             for package in args.packages:
                 dolfinx(args, mesh, pathlib.Path(folder), reference, package)
 

@@ -1,7 +1,8 @@
-"""A problem of fem_bench by FEniCSx (python3-dolfinx 0.5) and PETSc: dolfinx_solve.py FOLDER [mumps|cholmod].
+"""A problem of fem_bench by FEniCSx (python3-dolfinx 0.5) and PETSc: dolfinx_solve.py FOLDER [mumps|cholmod|gamg].
 
 Reads nodes.f64, tetrahedra.i32, held.i32, loaded.i32, markers.i32 and material.txt; writes dolfinx.f64, displacements at
-the markers for each load, and prints the seconds of each stage as JSON.
+the markers for each load, and prints the seconds of each stage as JSON. gamg: conjugate gradients with PETSc's
+multigrid of smoothed aggregation and rigid-body modes, load by load; the others factor.
 """
 import json
 import sys
@@ -55,30 +56,70 @@ A.assemble()
 A.setOption(PETSc.Mat.Option.SPD, True)
 stage("assemble", start)
 
+
+def rigid_modes():
+    """Orthonormal, as vectors of A's unknowns."""
+    x = V.tabulate_dof_coordinates()
+    modes = np.zeros((6, x.shape[0], 3))
+    for c in range(3):
+        modes[c, :, c] = 1
+        modes[3 + c] = np.cross(np.eye(3)[c], x - x.mean(axis=0))
+    basis = np.linalg.qr(modes.reshape(6, -1).T)[0]
+    return [PETSc.Vec().createWithArray(np.ascontiguousarray(column), bsize=3) for column in basis.T]
+
+
+def by_factor():
+    pc = PETSc.PC().create()
+    pc.setOperators(A)
+    pc.setType("cholesky")
+    pc.setFactorSolverType(package)
+    pc.setFactorSetUpSolverType()
+    pc.setUp()
+    factor = pc.getFactorMatrix()
+
+    def solve(loads):
+        size = A.getSize()[0]
+        B = PETSc.Mat().createDense([size, len(loads)], comm=MPI.COMM_WORLD)
+        B.setUp()
+        X = B.duplicate()
+        dense = np.zeros((size, len(loads)), order="F")
+        dense[3 * node[loads] + 2, np.arange(len(loads))] = 1
+        B.getDenseArray()[:] = dense
+        B.assemble()
+        X.assemble()
+        factor.matSolve(B, X)
+        return X.getDenseArray()
+
+    return solve
+
+
+def by_multigrid():
+    A.setNearNullSpace(PETSc.NullSpace().create(vectors=rigid_modes()))
+    ksp = PETSc.KSP().create(MPI.COMM_WORLD)
+    ksp.setType("cg")
+    ksp.setTolerances(rtol=1e-10, max_it=1000)
+    ksp.setOperators(A)
+    ksp.getPC().setType("gamg")
+    ksp.setUp()
+
+    def solve(loads):
+        answers = np.zeros((A.getSize()[0], len(loads)))
+        b, x = A.createVecs()
+        for k, at in enumerate(loads):
+            b.set(0)
+            b[3 * node[at] + 2] = 1
+            b.assemble()
+            ksp.solve(b, x)
+            assert ksp.getConvergedReason() > 0, ksp.getConvergedReason()
+            answers[:, k] = x.array
+        return answers
+
+    return solve
+
+
 start = clock()
-pc = PETSc.PC().create()
-pc.setOperators(A)
-pc.setType("cholesky")
-pc.setFactorSolverType(package)
-pc.setFactorSetUpSolverType()
-pc.setUp()
-factor = pc.getFactorMatrix()
+solve = by_multigrid() if package == "gamg" else by_factor()
 stage("factor", start)
-
-
-def solve(loads):
-    size = A.getSize()[0]
-    B = PETSc.Mat().createDense([size, len(loads)], comm=MPI.COMM_WORLD)
-    B.setUp()
-    X = B.duplicate()
-    dense = np.zeros((size, len(loads)), order="F")
-    dense[3 * node[loads] + 2, np.arange(len(loads))] = 1
-    B.getDenseArray()[:] = dense
-    B.assemble()
-    X.assemble()
-    factor.matSolve(B, X)
-    return X.getDenseArray()
-
 
 start = clock()
 solve(loaded[:1])
