@@ -14,6 +14,7 @@
 #include <utility>
 
 #include "fem/elements/assembly.h"
+#include "fem/solve/choice.h"
 #include "fem/solve/cholesky.h"
 #include "fem/solve/free_memory.h"
 #include "fem/solve/multigrid/conjugate_gradients.h"
@@ -42,6 +43,9 @@ void validate(const ElasticBodyOptions& options) {
     if (!(options.memory >= 0)) {
         throw InvalidInput(
             fmt::format("memory (that a factor may take) is {} GB; allowed: 0 and more.", options.memory));
+    }
+    if (options.loads < 0) {
+        throw InvalidInput(fmt::format("loads (to be solved for) is {}; allowed: 0 and more.", options.loads));
     }
 }
 
@@ -120,7 +124,7 @@ ElasticBody::ElasticBody(mesh::VolumeMesh mesh, const Material& material, const 
     arena(options).execute([&] { impl_->prepare(); });
 }
 
-/// A factor where memory holds it, else a multigrid.
+/// A factor where memory holds it and loads are worth it, else a multigrid.
 void ElasticBody::Impl::prepare() {
     const auto start = std::chrono::steady_clock::now();
     number = number_free_nodes(held);
@@ -133,12 +137,20 @@ void ElasticBody::Impl::prepare() {
 
     constexpr double share = 0.9;  // of the free memory
     const double allowed = options.memory > 0 ? options.memory : share * free_memory();
-    if (needed <= allowed) return make_factor(std::move(elimination));
+    if (needed > allowed) {
+        stats.note = fmt::format(
+            "A factor of the stiffness matrix ({} unknowns) would take {:.3g} GB of {:.3g} GB: conjugate gradients "
+            "with multigrid instead.",
+            stats.free_dofs, needed, allowed);
+    } else if (is_sooner_without_factor(elimination.supernodes, options.loads)) {
+        stats.note = fmt::format(
+            "A factor of the stiffness matrix ({} unknowns, {:.3g} GB) would take longer than {} load(s) without it: "
+            "conjugate gradients with multigrid instead.",
+            stats.free_dofs, needed, options.loads);
+    } else {
+        return make_factor(std::move(elimination));
+    }
     elimination = {};
-    stats.note = fmt::format(
-        "A factor of the stiffness matrix ({} unknowns) would take {:.3g} GB of {:.3g} GB: conjugate gradients with "
-        "multigrid instead.",
-        stats.free_dofs, needed, allowed);
     make_multigrid();
 }
 

@@ -172,7 +172,7 @@ private:
              {"measurements", "reference/reference.pvd"}},
             [&] {
                 const fem::ElasticBody elastic(body_, subject_.material, mesh::contains(subject_.supports, body_.nodes),
-                                               {.threads = common_.threads});
+                                               {.threads = common_.threads, .loads = p.probes});
                 if (!elastic.stats().note.empty()) Console::notice(elastic.stats().note);
                 ProbedBody probed =
                     probe_body(elastic, surface_, subject_.supports, p, c.identify.seed, Console::progress());

@@ -46,7 +46,7 @@ void measure(const bench::Bar& bar, const Settings& settings) {
     const double make = seconds([&] {
         body = std::make_unique<fem::ElasticBody>(
             problem.mesh, problem.material, problem.held,
-            fem::ElasticBodyOptions{.threads = settings.threads, .memory = settings.memory});
+            fem::ElasticBodyOptions{.threads = settings.threads, .memory = settings.memory, .loads = settings.loads});
     });
     solve_1 = seconds([&] { body->solve(one); });
     solve_all = seconds([&] { U = body->solve(loads); });

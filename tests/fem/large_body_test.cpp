@@ -4,6 +4,7 @@
 #include "bodies.h"
 #include "fem/elastic_body.h"
 #include "fem/patch_load.h"
+#include "fem/solve/choice.h"
 #include "tests/messages.h"
 
 namespace palpate::fem {
@@ -85,6 +86,34 @@ TEST(LargeBody, SaysWhyThereIsNoFactor) {
     EXPECT_EQ(body.stats().factor_entries, direct.stats().factor_entries);
 }
 
+TEST(LargeBody, AFewLoadsOfAThickOneTakeNoFactor) {
+    const LoadedBar bar(Kind::linear, {10, 10, 10}, {38, 38, 38});
+    const ElasticBody body = bar.body(0.3, {.loads = 1});
+    EXPECT_GE(body.stats().levels, 2);
+    EXPECT_TRUE(says(body.stats().note, {"would take longer than 1 load(s) without it", "multigrid instead"}));
+}
+
+/// A dense matrix, or a diagonal one.
+Supernodes supernodes_of(int unknowns, bool is_dense) {
+    const int count = is_dense ? 1 : unknowns, columns = unknowns / count;
+    Supernodes result{{0}, {0}, {0}, {}, std::vector<int>(count, -1)};
+    for (int s = 0; s < count; ++s) {
+        result.first_column.push_back(columns * (s + 1));
+        for (int r = 0; r < columns; ++r) result.rows.push_back(columns * s + r);
+        result.first_row.push_back(std::ssize(result.rows));
+        result.first_value.push_back(result.first_value.back() + std::int64_t{columns} * columns);
+    }
+    return result;
+}
+
+TEST(LargeBody, AFactorIsLeftOutWhereItsProductsOutweighTheLoads) {
+    const Supernodes dense = supernodes_of(12000, true);  // 12000^3 / 6 products: some seconds
+    EXPECT_TRUE(is_sooner_without_factor(dense, 1));
+    EXPECT_FALSE(is_sooner_without_factor(dense, 1000));
+    EXPECT_FALSE(is_sooner_without_factor(dense, 0));  // nobody said how many
+    EXPECT_FALSE(is_sooner_without_factor(supernodes_of(12000, false), 1));
+}
+
 TEST(LargeBody, PartsOnAHingeAreFound) {
     // Two bars that share one edge: the second can turn about it.
     mesh::VolumeMesh mesh = mesh::make_bar({0, 0, 0}, {4, 4, 4}, {4, 4, 4});
@@ -107,6 +136,12 @@ TEST(LargeBody, PartsOnAHingeAreFound) {
     const std::string complaint = message_of<SolverFailure>(
         [&] { ElasticBody(mesh, {.poisson = 0.3}, held, {.memory = no_memory}).solve(Eigen::MatrixXd(load)); });
     EXPECT_TRUE(says(complaint, {"one edge or corner only"}));
+}
+
+TEST(LargeBody, LoadsOutOfRangeAreNamed) {
+    const LoadedBar bar(Kind::quadratic, {12, 4, 4}, {6, 2, 2});
+    EXPECT_TRUE(says(message_of<InvalidInput>([&] { bar.body(0.3, {.loads = -1}); }),
+                     {"loads (to be solved for) is -1", "allowed: 0 and more"}));
 }
 
 TEST(LargeBody, MemoryOutOfRangeIsNamed) {
