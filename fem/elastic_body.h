@@ -26,8 +26,8 @@ struct ElasticBodyStats {
 };
 
 /// A linearly elastic body, held at some nodes: assembled and factored once (by supernodes, ordered by CHOLMOD), then
-/// solved for many loads. Where the factor would not fit into memory, each load is solved for by conjugate gradients
-/// with multigrid instead, to 1e-11 in the energy norm. P2/P0 from nu = 0.45.
+/// solved for many loads. Where the factor would not fit into memory, or take longer than the loads, each load is
+/// solved for by conjugate gradients with multigrid instead, to 1e-11 in the energy norm. P2/P0 from nu = 0.45.
 class ElasticBody {
 public:
     /// `held`: a flag per node (n). @throws InvalidInput when nothing, or too little to stop rigid motion, is held;

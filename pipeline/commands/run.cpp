@@ -1,5 +1,7 @@
 #include <fmt/format.h>
 
+#include <optional>
+
 #include "fem/elastic_body.h"
 #include "mesh/io/atomic_file.h"
 #include "mesh/io/region_yaml.h"
@@ -171,20 +173,30 @@ private:
              {"skeleton"},
              {"measurements", "reference/reference.pvd"}},
             [&] {
-                const fem::ElasticBody elastic(body_, subject_.material, mesh::contains(subject_.supports, body_.nodes),
-                                               {.threads = common_.threads, .loads = p.probes});
-                if (!elastic.stats().note.empty()) Console::notice(elastic.stats().note);
-                ProbedBody probed =
-                    probe_body(elastic, surface_, subject_.supports, p, c.identify.seed, Console::progress());
+                std::optional<fem::ElasticBody> elastic;
+                const auto probe = [&](int loads) {
+                    elastic.emplace(body_, subject_.material, mesh::contains(subject_.supports, body_.nodes),
+                                    fem::ElasticBodyOptions{.threads = common_.threads, .loads = loads});
+                    if (!elastic->stats().note.empty()) Console::notice(elastic->stats().note);
+                    return probe_body(*elastic, surface_, subject_.supports, p, c.identify.seed, Console::progress());
+                };
+                ProbedBody probed;
+                try {
+                    probed = probe(p.probes);
+                } catch (const SolverFailure& failure) {  // iterations fail where a factor, slower, may not
+                    if (!elastic || elastic->stats().levels == 0) throw;
+                    Console::notice(failure.what());
+                    probed = probe(0);
+                }
                 probed.set.name = c.name;
                 write_probed_body(folder_.path() / "measurements", probed, body_);
                 write_reference_series(probed.set);
                 json figures{{"states", probed.set.states.size()},
                              {"markers", probed.set.markers.size()},
-                             {"factor_seconds", elastic.stats().seconds_factor}};
+                             {"factor_seconds", elastic->stats().seconds_factor}};
                 const double longest = mesh::bounding_box(surface_.vertices).longest_side();
                 const double edge = c.edge_length > 0 ? c.edge_length : default_edge_share * longest;
-                if (const auto accuracy = estimate_accuracy(subject_, elastic, edge, probed.set)) {
+                if (const auto accuracy = estimate_accuracy(subject_, *elastic, edge, probed.set)) {
                     figures["relative_error"] = accuracy->relative;
                     figures["coarser_edge_mm"] = accuracy->coarser_edge;
                     figures["coarser_nodes"] = accuracy->coarser_nodes;
