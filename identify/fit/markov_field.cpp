@@ -44,8 +44,16 @@ MarkovField::MarkovField(const Sparse& precision) : Q_(precision), d_(Eigen::Vec
     order_.indices() = Eigen::Map<const Eigen::VectorXi>(elimination.position.data(), Q_.rows());
     factor_ =
         std::make_unique<fem::Cholesky>(std::make_shared<const fem::Supernodes>(std::move(elimination.supernodes)));
-    Sparse ordered(Q_.rows(), Q_.cols());
-    ordered.selfadjointView<Eigen::Lower>() = Q_.selfadjointView<Eigen::Lower>().twistedBy(order_);
+    std::vector<Eigen::Triplet<double, std::int64_t>> entries;
+    entries.reserve(Q_.nonZeros());
+    for (Eigen::Index i = 0; i < Q_.cols(); ++i) {
+        for (Sparse::InnerIterator q(Q_, i); q; ++q) {
+            const int row = order_.indices()[q.row()], column = order_.indices()[i];
+            if (row >= column) entries.emplace_back(row, column, q.value());
+        }
+    }
+    fem::LowerMatrix ordered(Q_.rows(), Q_.cols());
+    ordered.setFromTriplets(entries.begin(), entries.end());
     if (!factor_->factor(ordered, 0)) throw SolverFailure("the precision of a Gaussian field is not positive definite");
 }
 
