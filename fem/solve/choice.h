@@ -4,8 +4,8 @@
 
 namespace palpate::fem {
 
-/// Would conjugate gradients with multigrid be done with the loads of a body in some quarter of the time that its factor
-/// takes? `structure`: of the factor; three unknowns a node. False for 0 loads, which are not known.
+/// Would conjugate gradients with multigrid be done with the loads of a body in some quarter of the time that its
+/// factor takes? `structure`: of the factor; three unknowns a node. False for 0 loads, which are not known.
 bool is_sooner_without_factor(const Supernodes& structure, int loads);
 
 }  // namespace palpate::fem
