@@ -1,6 +1,7 @@
 #include "fem/elastic_body.h"
 
 #include <fmt/format.h>
+#include <tbb/enumerable_thread_specific.h>
 #include <tbb/global_control.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
@@ -17,6 +18,7 @@
 #include "fem/solve/choice.h"
 #include "fem/solve/cholesky.h"
 #include "fem/solve/free_memory.h"
+#include "fem/solve/huge_pages.h"
 #include "fem/solve/multigrid/conjugate_gradients.h"
 #include "fem/solve/multigrid/morton.h"
 #include "fem/solve/restraint.h"
@@ -96,7 +98,9 @@ struct ElasticBody::Impl {
     void make_multigrid();
     void solve_together(Block& X) const;
     template <class Loads>
-    void solve_some(const Loads& loads, std::span<const Eigen::Index> columns, Eigen::MatrixXd& U) const;
+    void solve_some(const Loads& loads, std::span<const Eigen::Index> columns, Block& X, Eigen::MatrixXd& U) const;
+    void take(const Block& X, std::span<const Eigen::Index> columns, Eigen::MatrixXd& U) const;
+    std::size_t block_of(std::size_t loads) const;
     template <class Loads>
     Eigen::MatrixXd solve(const Loads& loads) const;
     std::vector<Eigen::Index> solving_order(const Eigen::SparseMatrix<double>& loads) const;
@@ -236,36 +240,59 @@ void ElasticBody::Impl::solve_together(Block& X) const {
     }
 }
 
-template <class Loads>
-void ElasticBody::Impl::solve_some(const Loads& loads, std::span<const Eigen::Index> columns,
-                                   Eigen::MatrixXd& U) const {
-    // Whole vectors of loads, so that each entry of the matrix is read once; those that are zero are done at once.
-    const std::size_t width = factor || columns.size() < 3 ? columns.size() : together;
-    Block X = Block::Zero(stats.free_dofs, static_cast<Eigen::Index>(width));
-    fill(loads, columns, X);
-    solve_together(X);
-    for (std::size_t i = 0; i < number.size(); ++i) {
-        const Eigen::Index node = number[i];
-        for (std::size_t j = 0; node >= 0 && j < columns.size(); ++j) {
-            U.col(columns[j]).segment<3>(static_cast<Eigen::Index>(3 * i)) = X.col(j).segment<3>(3 * node);
+/// Columns of the displacements, all of their entries.
+void ElasticBody::Impl::take(const Block& X, std::span<const Eigen::Index> columns, Eigen::MatrixXd& U) const {
+    constexpr std::size_t chunk = 64;  // nodes, whose rows of X stay in the cache while they go to their columns
+    for (std::size_t begin = 0; begin < number.size(); begin += chunk) {
+        const std::size_t end = std::min(begin + chunk, number.size());
+        for (std::size_t j = 0; j < columns.size(); ++j) {
+            double* u = U.col(columns[j]).data();
+            for (std::size_t i = begin; i < end; ++i) {
+                for (int a = 0; a < 3; ++a) u[3 * i + a] = number[i] < 0 ? 0.0 : X(3 * number[i] + a, j);
+            }
         }
     }
 }
 
 template <class Loads>
+void ElasticBody::Impl::solve_some(const Loads& loads, std::span<const Eigen::Index> columns, Block& X,
+                                   Eigen::MatrixXd& U) const {
+    // Whole vectors of loads, so that each entry of the matrix is read once; those that are zero are done at once.
+    const std::size_t width = factor || columns.size() < 3 ? columns.size() : together;
+    X.setZero(stats.free_dofs, static_cast<Eigen::Index>(width));
+    fill(loads, columns, X);
+    solve_together(X);
+    take(X, columns, U);
+}
+
+/// Loads that are solved for together: as many as serve, but some blocks for the threads to share. That does not depend
+/// on how many threads there are, nor do the numbers.
+std::size_t ElasticBody::Impl::block_of(std::size_t loads) const {
+    if (!factor) return together;
+    const auto largest = static_cast<std::size_t>(options.block);
+    constexpr std::size_t shares = 4, least = 32;
+    const std::size_t block = std::min(largest, std::max(least, (loads + shares - 1) / shares));
+    const std::size_t blocks = (loads + block - 1) / block;
+    return (loads + blocks - 1) / std::max<std::size_t>(blocks, 1);
+}
+
+template <class Loads>
 Eigen::MatrixXd ElasticBody::Impl::solve(const Loads& loads) const {
     assert(loads.rows() == mesh.nodes.size());
-    Eigen::MatrixXd U = Eigen::MatrixXd::Zero(loads.rows(), loads.cols());
+    Eigen::MatrixXd U(loads.rows(), loads.cols());
+    use_huge_pages(U.data(), sizeof(double) * U.size());
     const std::vector<Eigen::Index> order = solving_order(loads);
-    const std::size_t block = factor ? options.block : together, blocks = (order.size() + block - 1) / block;
-    const auto solve_block = [&](std::size_t b) {
-        solve_some(loads, std::span(order).subspan(b * block, std::min(block, order.size() - b * block)), U);
+    const std::size_t block = block_of(order.size());
+    tbb::enumerable_thread_specific<Block> X;  // kept from block to block: fresh memory costs
+    const auto solve_block = [&](std::size_t begin) {
+        const std::size_t end = std::min(begin + block, order.size());
+        solve_some(loads, std::span(order).subspan(begin, end - begin), X.local(), U);
     };
     arena(options).execute([&] {
         if (factor) {
-            tbb::parallel_for(std::size_t(0), blocks, solve_block);
+            tbb::parallel_for(std::size_t(0), order.size(), block, solve_block, tbb::simple_partitioner());
         } else {  // threads work on rows
-            for (std::size_t b = 0; b < blocks; ++b) solve_block(b);
+            for (std::size_t begin = 0; begin < order.size(); begin += block) solve_block(begin);
         }
     });
     return U;

@@ -95,19 +95,32 @@ void Cholesky::solve_lower(Block& X) const {
     openblas_set_num_threads(1);
     const auto p = static_cast<int>(X.cols());
     if (p == 1) return solve_lower_one(*structure_, values_.get(), tallest_, X.data());
-    Block gathered(tallest_, p);
+    // In groups of loads, so that neighbouring ones pass over what none of them reaches.
+    constexpr int together = 64;
+    const int groups = (p + together - 1) / together;
+    Block gathered(tallest_, together);
+    for (int g = 0; g < groups; ++g) {
+        const int begin = p * g / groups, end = p * (g + 1) / groups;
+        solve_lower(X.middleCols(begin, end - begin), gathered);
+    }
+}
+
+void Cholesky::solve_lower(Eigen::Ref<Block> X, Block& gathered) const {
     // X1 <- L11^-1 X1, then X2 <- X2 - L21 X1. BLAS counts by columns and sees X transposed.
+    const auto p = static_cast<int>(X.cols()), stride = static_cast<int>(X.outerStride());
     for (int s = 0; s < structure_->count(); ++s) {
         const int n = structure_->columns(s), height = structure_->height(s);
         const auto below = structure_->rows_below(s);
         const double* L = values_.get() + structure_->first_value[s];
         if (X.middleRows(structure_->first_column[s], n).isZero(0)) continue;
         double* X1 = X.row(structure_->first_column[s]).data();
-        cblas_dtrsm(CblasColMajor, CblasRight, CblasLower, CblasTrans, CblasNonUnit, p, n, 1.0, L, height, X1, p);
+        cblas_dtrsm(CblasColMajor, CblasRight, CblasLower, CblasTrans, CblasNonUnit, p, n, 1.0, L, height, X1, stride);
         if (below.empty()) continue;
-        cblas_dgemm(CblasColMajor, CblasNoTrans, CblasTrans, p, height - n, n, 1.0, X1, p, L + n, height, 0.0,
+        cblas_dgemm(CblasColMajor, CblasNoTrans, CblasTrans, p, height - n, n, 1.0, X1, stride, L + n, height, 0.0,
                     gathered.data(), p);
-        for (std::size_t k = 0; k < below.size(); ++k) X.row(below[k]) -= gathered.row(k);
+        for (std::size_t k = 0; k < below.size(); ++k) {
+            X.row(below[k]) -= Eigen::Map<const Eigen::RowVectorXd>(gathered.data() + k * p, p);
+        }
     }
 }
 

@@ -38,6 +38,8 @@ public:
     double entries() const { return static_cast<double>(structure_->first_value.back()); }
 
 private:
+    void solve_lower(Eigen::Ref<Block> X, Block& gathered) const;
+
     std::shared_ptr<const Supernodes> structure_;
     std::unique_ptr<double[]> values_;
     int tallest_ = 0;  // supernode [rows]

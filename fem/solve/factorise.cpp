@@ -1,13 +1,15 @@
 #include "fem/solve/factorise.h"
 
 #include <cblas.h>
+#include <tbb/concurrent_queue.h>
 #include <tbb/enumerable_thread_specific.h>
-#include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 #include <tbb/task_group.h>
 
 #include <algorithm>
 #include <atomic>
+#include <memory>
+#include <utility>
 
 // LAPACK has no C header of its own.
 // NOLINTNEXTLINE(readability-identifier-naming)
@@ -17,7 +19,8 @@ namespace palpate::fem {
 
 namespace {
 
-constexpr int tile = 256;  // rows and columns that a thread works on at once: fits the second-level cache
+constexpr int width = 256;  // of a panel of columns that are factored together; a product's rows there
+constexpr int tall = 1024;  // rows of a panel that are gathered together: their product fits the second-level cache
 
 /// Rows [begin, end) below supernode `from`'s own columns are columns of the supernode that is updated.
 struct Update {
@@ -52,11 +55,9 @@ struct Updates {
     }
 };
 
-/// What a thread needs while it works on one supernode or tile.
-struct Workspace {
-    std::vector<int> place;       // of each row of the matrix in the supernode at hand
-    std::vector<int> target;      // of the product's rows in the supernode
-    std::vector<double> product;  // (tile x tile)
+/// Rows [row, row_end) of columns [column, column_end) of a supernode.
+struct Tile {
+    int row, row_end, column, column_end;
 };
 
 class Factorisation {
@@ -75,84 +76,133 @@ public:
     }
 
 private:
+    struct Job;
+    using Work = void (Factorisation::*)(const Job&, const Tile&);
+
+    /// Tiles that can be worked on at once.
+    struct Step {
+        Work work;
+        std::vector<Tile> tiles;
+    };
+
+    /// A supernode that is being eliminated, step by step. Whoever is done with a step's last tile goes on with the
+    /// next step: nobody waits, and who has no other work helps with any tile.
+    struct Job {
+        explicit Job(int size) : place(size) {}
+        int s = 0;
+        std::vector<int> place;  // of each row of the matrix in the supernode
+        std::vector<Step> steps;
+        std::size_t next = 0;       // step
+        std::atomic<int> left = 0;  // tiles of the step that are not done
+    };
+
+    /// What a thread needs while it works on a tile.
+    struct Workspace {
+        std::vector<int> target;      // of the product's rows in the supernode
+        std::vector<double> product;  // (tall x tile)
+    };
+
     void eliminate_all() {
         // Leaves of the elimination tree start; who finishes the last child goes on with the parent.
         std::vector<int> leaves;
         for (int s = 0; s < structure_.count(); ++s) {
             if (waiting_for_[s] == 0) leaves.push_back(s);
         }
-        tbb::task_group tasks;
         for (const int leaf : leaves) {
-            tasks.run([this, leaf] {
-                int s = leaf;
-                do {
-                    if (positive_) eliminate(s);
-                    s = structure_.parent[s];
-                } while (s >= 0 && --waiting_for_[s] == 0);
+            tasks_.run([this, leaf] {
+                std::shared_ptr<Job> job;
+                if (!idle_.try_pop(job)) job = std::make_shared<Job>(structure_.size());
+                start(*job, leaf);
+                go_on(job);
             });
         }
-        tasks.wait();
+        tasks_.wait();
+    }
+
+    /// Left-looking: what is left of K's columns after all updates, then a dense factorisation by panels of columns.
+    void start(Job& job, int s) {
+        const auto rows = structure_.rows_of(s);
+        for (std::size_t k = 0; k < rows.size(); ++k) job.place[rows[k]] = static_cast<int>(k);
+        job.s = s;
+        job.next = 0;
+        job.steps.clear();
+
+        const int height = structure_.height(s), columns = structure_.columns(s);
+        std::vector<Tile> tiles;
+        const auto add = [&](Tile all, int rows_together) {
+            for (int row = all.row; row < all.row_end; row += rows_together) {
+                tiles.push_back({row, std::min(row + rows_together, all.row_end), all.column, all.column_end});
+            }
+        };
+        const auto add_step = [&](Work work) {
+            if (!tiles.empty()) job.steps.push_back({work, std::exchange(tiles, {})});
+        };
+        for (int c = 0; c < columns; c += width) add({c, height, c, std::min(c + width, columns)}, tall);
+        add_step(&Factorisation::gather);
+        for (int c = 0; c < columns; c += width) {
+            const int end = std::min(c + width, columns);
+            if (c > 0) add({c, height, c, end}, width);
+            add_step(&Factorisation::subtract_left);
+            add({c, end, c, end}, width);
+            add_step(&Factorisation::factor_diagonal);
+            add({end, height, c, end}, width);
+            add_step(&Factorisation::divide);
+        }
+    }
+
+    /// The job's next steps, and those of the supernodes above that wait for it alone.
+    void go_on(const std::shared_ptr<Job>& job) {
+        do {
+            while (job->next < job->steps.size()) {
+                const Step& step = job->steps[job->next++];
+                const auto count = static_cast<int>(step.tiles.size());
+                job->left = count;
+                for (int k = 1; k < count; ++k) {
+                    tasks_.run([this, job, &step, k] {
+                        if (is_last(*job, step, k)) go_on(job);
+                    });
+                }
+                if (!is_last(*job, step, 0)) return;
+            }
+        } while (go_up(*job));
+        idle_.push(job);
+    }
+
+    /// Works on a tile; whether it was the last of its step.
+    bool is_last(Job& job, const Step& step, int k) {
+        if (positive_) (this->*step.work)(job, step.tiles[k]);
+        return --job.left == 0;
+    }
+
+    bool go_up(Job& job) {
+        const int parent = structure_.parent[job.s];
+        if (!positive_ || parent < 0 || --waiting_for_[parent] > 0) return false;
+        start(job, parent);
+        return true;
     }
 
     double* block(int s) const { return values_ + structure_.first_value[s]; }
-
-    /// Left-looking: what is left of K's columns after all updates, then a dense factorisation by tiles.
-    void eliminate(int s) {
-        std::vector<int>& place = workspaces_.local().place;
-        place.resize(structure_.size());
-        const auto rows = structure_.rows_of(s);
-        for (std::size_t k = 0; k < rows.size(); ++k) place[rows[k]] = static_cast<int>(k);
-        load(s, place);
-
-        const int row_tiles = (structure_.height(s) + tile - 1) / tile;
-        const int column_tiles = (structure_.columns(s) + tile - 1) / tile;
-        for_tiles(row_tiles * column_tiles, [&](int k) {
-            const int i = k % row_tiles, j = k / row_tiles;
-            if (i >= j) gather(s, i * tile, j * tile, place);
-        });
-        for (int j = 0; j < column_tiles && positive_; ++j) {
-            for_tiles(row_tiles - j, [&](int k) { subtract_left(s, (j + k) * tile, j * tile); });
-            factor_diagonal(s, j * tile);
-            for_tiles(row_tiles - j, [&](int k) { divide(s, (j + k) * tile, j * tile); });
-        }
+    double* at(int s, int row, int column) const {
+        return block(s) + row + static_cast<std::int64_t>(column) * structure_.height(s);
     }
 
-    /// In parallel where there is more than one. A thread that waits here takes up no other supernode, as its `place`
-    /// is still in use.
-    template <class Work>
-    static void for_tiles(int count, Work&& work) {
-        if (count == 1) return work(0);
-        tbb::this_task_arena::isolate([&] { tbb::parallel_for(0, count, work, tbb::simple_partitioner()); });
-    }
-
-    /// The columns of K.
-    void load(int s, const std::vector<int>& place) {
-        std::fill(block(s), block(s + 1), 0.0);
-        for (int c = 0; c < structure_.columns(s); ++c) {
-            double* column = block(s) + static_cast<std::int64_t>(c) * structure_.height(s);
-            for (LowerMatrix::InnerIterator entry(K_, structure_.first_column[s] + c); entry; ++entry) {
-                column[place[entry.row()]] = entry.value();
-            }
-        }
-    }
-
-    /// Subtracts L_d L_d^T of all earlier supernodes d from the tile at (row, column) of supernode s.
-    void gather(int s, int row, int column, const std::vector<int>& place) {
+    /// What is left of K's entries when L_d L_d^T of all earlier supernodes d is subtracted.
+    void gather(const Job& job, const Tile& t) {
+        load(job, t);
         Workspace& workspace = workspaces_.local();
-        workspace.product.resize(static_cast<std::size_t>(tile) * tile);
-        const int height = structure_.height(s);
-        const int row_end = std::min(row + tile, height), column_end = std::min(column + tile, structure_.columns(s));
+        workspace.product.resize(static_cast<std::size_t>(tall) * width);
+        const int s = job.s, height = structure_.height(s);
         for (std::size_t u = updates_.start[s]; u < updates_.start[s + 1]; ++u) {
             const auto [d, begin, end] = updates_.list[u];
             const auto rows = structure_.rows_below(d);
             // Which rows of d fall into the tile's columns and rows.
             const auto first_from = [&](int k, int position) {
                 return static_cast<int>(
-                    std::partition_point(rows.begin() + k, rows.end(), [&](int r) { return place[r] < position; }) -
+                    std::partition_point(rows.begin() + k, rows.end(), [&](int r) { return job.place[r] < position; }) -
                     rows.begin());
             };
-            const int c0 = first_from(begin, column), c1 = std::min(end, first_from(begin, column_end));
-            const int r0 = first_from(begin, row), r1 = first_from(begin, row_end);
+            const int c0 = first_from(begin, t.column), c1 = std::min(end, first_from(begin, t.column_end));
+            const int r0 = first_from(begin, t.row), r1 = first_from(begin, t.row_end);
             const int m = r1 - r0, n = c1 - c0;
             if (m <= 0 || n <= 0) continue;
 
@@ -160,40 +210,47 @@ private:
             cblas_dgemm(CblasColMajor, CblasNoTrans, CblasTrans, m, n, structure_.columns(d), 1.0, below + r0,
                         structure_.height(d), below + c0, structure_.height(d), 0.0, workspace.product.data(), m);
             workspace.target.resize(m);
-            for (int k = 0; k < m; ++k) workspace.target[k] = place[rows[r0 + k]];
+            for (int k = 0; k < m; ++k) workspace.target[k] = job.place[rows[r0 + k]];
             for (int c = 0; c < n; ++c) {
-                double* to = block(s) + static_cast<std::int64_t>(place[rows[c0 + c]]) * height;
+                double* to = block(s) + static_cast<std::int64_t>(job.place[rows[c0 + c]]) * height;
                 const double* from = &workspace.product[static_cast<std::size_t>(c) * m];
                 for (int k = 0; k < m; ++k) to[workspace.target[k]] -= from[k];
             }
         }
     }
 
-    /// The same for the supernode's own columns to the left of the tile.
-    void subtract_left(int s, int row, int column) {
-        if (column == 0) return;
-        const int height = structure_.height(s);
-        double* L = block(s);
-        cblas_dgemm(CblasColMajor, CblasNoTrans, CblasTrans, std::min(tile, height - row),
-                    std::min(tile, structure_.columns(s) - column), column, -1.0, L + row, height, L + column, height,
-                    1.0, L + row + static_cast<std::int64_t>(column) * height, height);
+    void load(const Job& job, const Tile& t) {
+        for (int c = t.column; c < t.column_end; ++c) {
+            double* column = block(job.s) + static_cast<std::int64_t>(c) * structure_.height(job.s);
+            std::fill(column + t.row, column + t.row_end, 0.0);
+            for (LowerMatrix::InnerIterator entry(K_, structure_.first_column[job.s] + c); entry; ++entry) {
+                const int row = job.place[entry.row()];
+                if (row >= t.row && row < t.row_end) column[row] = entry.value();
+            }
+        }
     }
 
-    void factor_diagonal(int s, int column) {
-        const int height = structure_.height(s), n = std::min(tile, structure_.columns(s) - column);
+    /// Subtracts what the supernode's own columns to the left give.
+    void subtract_left(const Job& job, const Tile& t) {
+        const int height = structure_.height(job.s);
+        double* L = block(job.s);
+        cblas_dgemm(CblasColMajor, CblasNoTrans, CblasTrans, t.row_end - t.row, t.column_end - t.column, t.column, -1.0,
+                    L + t.row, height, L + t.column, height, 1.0, at(job.s, t.row, t.column), height);
+    }
+
+    void factor_diagonal(const Job& job, const Tile& t) {
+        const int height = structure_.height(job.s), n = t.column_end - t.column;
         int info = 0;
-        dpotrf_("L", &n, block(s) + column + static_cast<std::int64_t>(column) * height, &height, &info);
+        dpotrf_("L", &n, at(job.s, t.row, t.column), &height, &info);
         if (info != 0) positive_ = false;
     }
 
-    /// Rows below the diagonal tile: A <- A L11^-T. The diagonal tile's own rows below its columns belong to it too.
-    void divide(int s, int row, int column) {
-        const int height = structure_.height(s), n = std::min(tile, structure_.columns(s) - column);
-        const int begin = std::max(row, column + n), m = std::min(row + tile, height) - begin;
-        if (m <= 0 || !positive_) return;
-        double* columns = block(s) + static_cast<std::int64_t>(column) * height;
-        cblas_dtrsm(CblasColMajor, CblasRight, CblasLower, CblasTrans, CblasNonUnit, m, n, 1.0, columns + column,
-                    height, columns + begin, height);
+    /// Below the diagonal: A <- A L11^-T.
+    void divide(const Job& job, const Tile& t) {
+        const int height = structure_.height(job.s);
+        cblas_dtrsm(CblasColMajor, CblasRight, CblasLower, CblasTrans, CblasNonUnit, t.row_end - t.row,
+                    t.column_end - t.column, 1.0, at(job.s, t.column, t.column), height, at(job.s, t.row, t.column),
+                    height);
     }
 
     const Supernodes& structure_;
@@ -203,6 +260,8 @@ private:
     std::vector<std::atomic<int>> waiting_for_;  // children of each supernode that are not done
     std::atomic<bool> positive_ = true;
     tbb::enumerable_thread_specific<Workspace> workspaces_;
+    tbb::concurrent_queue<std::shared_ptr<Job>> idle_;
+    tbb::task_group tasks_;
 };
 
 }  // namespace

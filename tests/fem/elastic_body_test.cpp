@@ -68,6 +68,35 @@ TEST(ElasticBody, DenseAndSparseLoadsAndBlocksAgree) {
     EXPECT_LT((single.solve(Eigen::MatrixXd(p.loads)) - U).norm(), 1e-11 * U.norm());
 }
 
+/// Unit forces at nodes of a thick body, whose last supernodes have several panels and strips of tiles.
+struct Thick {
+    mesh::VolumeMesh mesh = jittered_bar(Kind::quadratic, {4, 4, 4}, {9, 9, 9});
+    std::vector<char> held = nodes_where(mesh, [](const Vec3& x) { return x.x() < 1e-9; });
+    Eigen::SparseMatrix<double> loads{mesh.nodes.size(), 150};
+
+    Thick() {
+        for (int j = 0; j < loads.cols(); ++j) loads.insert(3 * (mesh.nodes.rows() - 1 - 11 * j) + j % 3, j) = 1;
+    }
+};
+
+TEST(ElasticBody, ThreadsDoNotChangeANumberOfThickBodies) {
+    const Thick p;
+    const Eigen::MatrixXd one = ElasticBody(p.mesh, {.young = 0.2}, p.held).solve(p.loads);
+    for (const int threads : {2, 5}) {
+        EXPECT_EQ(ElasticBody(p.mesh, {.young = 0.2}, p.held, {.threads = threads}).solve(p.loads), one) << threads;
+    }
+}
+
+TEST(ElasticBody, ManyLoadsMoveAsEachAlone) {
+    const Thick p;
+    const ElasticBody body(p.mesh, {.young = 0.2}, p.held, {.threads = 2});
+    const Eigen::MatrixXd U = body.solve(p.loads);
+    for (int j = 0; j < p.loads.cols(); j += 7) {
+        const Eigen::MatrixXd u = body.solve(Eigen::SparseMatrix<double>(p.loads.col(j)));
+        EXPECT_LT((U.col(j) - u).norm(), 1e-11 * u.norm()) << j;
+    }
+}
+
 TEST(ElasticBody, NoLoadsNoColumns) {
     const Probed p;
     const ElasticBody body(p.mesh, p.material, p.held);
