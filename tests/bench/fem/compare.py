@@ -21,8 +21,12 @@ from array import array
 HERE = pathlib.Path(__file__).resolve().parent
 
 
+class NotDone(Exception):
+    """Why a command gave no figures, in the words of the table."""
+
+
 def measured(command, limit, **options):
-    """Output, wall seconds and peak memory [GB] of a command; None where it fails or takes longer than `limit`."""
+    """Output, wall seconds and peak memory [GB] of a command. Raises NotDone where it fails or takes over `limit`."""
     with tempfile.TemporaryFile("w+") as output:
         start = time.perf_counter()
         child = subprocess.Popen(command, stdout=output, stderr=subprocess.STDOUT, start_new_session=True, **options)
@@ -34,7 +38,7 @@ def measured(command, limit, **options):
                 os.killpg(child.pid, signal.SIGKILL)
                 os.wait4(child.pid, 0)
                 child.returncode = -9
-                return None
+                raise NotDone(f"over {limit:.0f}")
             time.sleep(0.01)
         child.returncode = status
         wall = time.perf_counter() - start
@@ -42,7 +46,8 @@ def measured(command, limit, **options):
         text = output.read()
     if status:
         print(text[-2000:])
-        return None
+        how = f"killed by signal {os.WTERMSIG(status)}" if os.WIFSIGNALED(status) else "failed"
+        raise NotDone(f"{how} after {wall:.0f}, with {usage.ru_maxrss * 1024e-9:.3g} GB")
     return text, wall, usage.ru_maxrss * 1024e-9
 
 
@@ -81,8 +86,6 @@ def row(mesh, code, assemble, factor, load, all_loads, peak, off):
 def ours(args, mesh, folder):
     command = [args.bench, "--only", mesh, "--folder", folder, "--loads", str(args.loads), "--memory", str(args.memory)]
     found = measured(command, args.limit)
-    if not found:
-        return None
     words = found[0].splitlines()[-1].replace(" GB", "").replace("CG ", "CG_").split()
     assemble, analyse, factor, size, _, load, everything, peak = words[3:]
     row(mesh, "palpate" + (f" ({size})" if size.startswith("CG") else ""), assemble, float(analyse) + float(factor),
@@ -97,11 +100,10 @@ def calculix(args, mesh, folder, reference):
     first = next(k for k, line in enumerate(lines) if line.startswith("*CLOAD")) + 1
     (folder / mesh / "one.inp").write_text("".join(lines[:first + 1] + lines[first + args.loads:]))
     one = measured(["ccx", "-i", "one"], args.limit, cwd=folder / mesh, env=environment)
-    found = one and measured(["ccx", "-i", "green"], args.limit, cwd=folder / mesh, env=environment)
-    if not found:
-        row(mesh, "CalculiX", "", "", "", f"over {args.limit:.0f}" if not one else
-            f"one load {one[1]:.3g}, {args.loads} over {args.limit:.0f}", "", "")
-        return
+    try:
+        found = measured(["ccx", "-i", "green"], args.limit, cwd=folder / mesh, env=environment)
+    except NotDone as why:
+        raise NotDone(f"one load {one[1]:.3g}, {args.loads} {why}") from why
     off = difference(reference, of_calculix(folder / mesh / "green.dat"), args.loads)
     row(mesh, "CalculiX", "", "", (found[1] - one[1]) / (args.loads - 1), found[1], found[2], off)
 
@@ -117,14 +119,19 @@ def dolfinx(args, mesh, folder, reference, package):
     threads = str(args.threads)
     environment = dict(os.environ, OMP_NUM_THREADS=threads, OPENBLAS_NUM_THREADS=threads)
     found = measured(command, args.limit, env=environment)
-    name = f"FEniCSx, {package}"
-    if not found:
-        row(mesh, name, "", "", "", f"over {args.limit:.0f}", "", "")
-        return
     stages = json.loads(found[0].splitlines()[-1])
     off = difference(reference, displacements(inside / "dolfinx.f64"), args.loads)
     everything = sum(stages[stage] for stage in ("assemble", "factor", "loads"))
-    row(mesh, name, stages["assemble"], stages["factor"], stages["loads"] / args.loads, everything, found[2], off)
+    row(mesh, f"FEniCSx, {package}", stages["assemble"], stages["factor"], stages["loads"] / args.loads, everything, found[2], off)
+
+
+def told(mesh, code, work):
+    """What `work` returns; None where its command is not done, which makes a row."""
+    try:
+        return work()
+    except NotDone as why:
+        row(mesh, code, "", "", "", str(why), "", "")
+        return None
 
 
 def main():
@@ -143,14 +150,14 @@ def main():
     print("| --- | --- | --- | --- | --- | --- | --- | --- |")
     with tempfile.TemporaryDirectory() as folder:
         for mesh in args.meshes:
-            reference = ours(args, mesh, pathlib.Path(folder))
+            place = pathlib.Path(folder)
+            reference = told(mesh, "palpate", lambda: ours(args, mesh, place))
             if reference is None:
-                row(mesh, "palpate", "", "", "", f"over {args.limit:.0f}", "", "")
                 continue
             if not args.without_calculix:
-                calculix(args, mesh, pathlib.Path(folder), reference)
+                told(mesh, "CalculiX", lambda: calculix(args, mesh, place, reference))
             for package in args.packages:
-                dolfinx(args, mesh, pathlib.Path(folder), reference, package)
+                told(mesh, f"FEniCSx, {package}", lambda: dolfinx(args, mesh, place, reference, package))
 
 
 if __name__ == "__main__":
