@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cassert>
 #include <cmath>
 #include <limits>
@@ -103,20 +104,27 @@ double BodyMaterial::energy_scale() const {
     return model_.mu * volume;
 }
 
-double BodyMaterial::rounding() const {
-    // Small stresses are differences of terms as large as the moduli.
+double BodyMaterial::rounding(const Eigen::VectorXd& u) const {
+    // Small stresses are differences of terms as large as the moduli. The deformation gradient F = I + sum_i u_i dN_i
+    // is itself a difference: where a thin element moves by many times its height its terms are far larger than F, and
+    // each displacement is known to a share of its own size only. A stress of F S(F^T F) hands that on by |F|^2.
     double squares = 0;
     for (std::size_t e = 0; e < body_.elements.size(); ++e) {
         const ElementShape& shape = body_.elements[e];
         const ElementEffects* own = effects(e);
+        const NodeVectors moved = body_.displacements(u, e);
+        const auto reach = moved.colwise().squaredNorm();
         for (int q = 0; q < element_points; ++q) {
+            const double terms = 1 + shape.gradients(q).colwise().squaredNorm().cwiseProduct(reach).sum();
+            const double stretch = gradient_at(shape, moved, q).squaredNorm() / 3;
             double modulus = 1;  // over mu + K
             if (own) {
                 const Mat3 rest = Mat3::Identity();
                 const double added = own->is_scale() ? 0 : own->added(model_.law, q, rest, true).second.norm();
                 modulus = own->s(q) * (1 + model_.mu / (model_.mu + model_.K) * added);
             }
-            squares += modulus * modulus * (shape.w(q) * shape.gradients(q)).squaredNorm();
+            squares += terms * std::max(1.0, stretch * stretch) * modulus * modulus *
+                       (shape.w(q) * shape.gradients(q)).squaredNorm();
         }
     }
     return std::numeric_limits<double>::epsilon() * (model_.mu + model_.K) * std::sqrt(squares);

@@ -40,8 +40,8 @@ public:
 
     /// Shear modulus times volume, which energies are small differences of [N mm].
     double energy_scale() const;
-    /// About the norm of what rounding leaves of forces that balance [N].
-    double rounding() const;
+    /// About the norm of what rounding leaves of forces that balance in the displacement u [N].
+    double rounding(const Eigen::VectorXd& u) const;
 
 private:
     const ElementEffects* effects(std::size_t element) const {

@@ -16,6 +16,10 @@ constexpr double armijo = 1e-4;           // share of the decrease that the slop
 constexpr double least_shift = 1e-5;      // share of the diagonal's mean
 constexpr double leap_shift = 2e-2;       // where a leap landed: enough nearly always
 constexpr int most_astray = 10;           // shifts on end: on the way to an equilibrium there are up to three
+constexpr double roundings = 4;           // rounding is estimated as of independent errors; some go together
+// Share of the largest displacement that a Newton step moves at most where nothing lowers the potential any more:
+// readings are known to a thousandth of it at best, and the answer is good to far less than that.
+constexpr double nothing_more = 1e-6;
 
 }  // namespace
 
@@ -138,7 +142,7 @@ bool Newton::minimise(const LoadedBody& body, double tolerance, Eigen::VectorXd&
     for (int k = 0;; ++k) {
         u = here.u;
         residual_ = here.r.norm();
-        if (residual_ <= tolerance) return true;
+        if (residual_ <= tolerance || residual_ <= roundings * body.rounding(u)) return true;
         if (k == allowed_) return false;
         ++iterations_;
 
@@ -161,7 +165,8 @@ bool Newton::minimise(const LoadedBody& body, double tolerance, Eigen::VectorXd&
 
         const double length = search(body, here, step, next);
         if (length == 0) {
-            if (fresh) return false;
+            const bool stands = shift_ == 0 && step.cwiseAbs().maxCoeff() <= nothing_more * u.cwiseAbs().maxCoeff();
+            if (fresh) return stands;
             factored = false;
             continue;
         }

@@ -15,10 +15,10 @@ class Newton {
 public:
     Newton(const EliminationOrder& order, int iterations);
 
-    /// Moves u to where the norm of the net force on the unknowns is at most `tolerance` [N]; false when that takes
-    /// more than the iterations allowed, goes no further, or leads from one unstable state to the next. `guide`: a
-    /// factor over the same unknowns that the first steps are taken by, of the tangent in a state nearby. @pre no
-    /// element is inside out at u.
+    /// Moves u to where the norm of the net force on the unknowns is at most `tolerance` [N], or what rounding makes of
+    /// forces that balance; false when that takes more than the iterations allowed, goes no further, or leads from one
+    /// unstable state to the next. `guide`: a factor over the same unknowns that the first steps are taken by, of the
+    /// tangent in a state nearby. @pre no element is inside out at u.
     bool minimise(const LoadedBody& body, double tolerance, Eigen::VectorXd& u, const Cholesky* guide = nullptr);
 
     int iterations() const { return iterations_; }          // in all

@@ -66,7 +66,8 @@ struct Case {
     std::optional<int> label;                       // of a label image: which of its labels is the body
     std::vector<mesh::Region> supports;             // empty: the set's, or the default clamp
     std::optional<double> young, poisson, density;  // [MPa], [-], [kg/m^3]; absent: the set's, or defaults
-    double edge_length = 0;  // of the tetrahedra [mm]; 0: 6 % of the longest side, 7 % where effects are looked for
+    double edge_length =
+        0;  // of the tetrahedra [mm]; 0: 6 % of the longest side, less in a thin body; 7 % where effects are looked for
     bool linear_elements = false;
     skeleton::BuildOptions skeleton;
     bool sphere_curve = false;  // measure what more and fewer spheres would do

@@ -70,7 +70,7 @@ std::string to_yaml(const Case& c) {
     std::string text = "# Settings of a palpate run, defaults included.\nformat: palpate-case/1\n" + input_yaml(c);
     text += fmt::format(
         "volume:\n"
-        "  edge_length: {}      # of the tetrahedra [mm]; 0: 6 % of the longest side\n"
+        "  edge_length: {}      # of the tetrahedra [mm]; 0: 6 % of the longest side, less in a thin body\n"
         "  linear_elements: {}\n"
         "skeleton:\n"
         "  spheres: {}          # that are free to move; 0: by the body's shape\n"

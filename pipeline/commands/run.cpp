@@ -194,8 +194,7 @@ private:
                 json figures{{"states", probed.set.states.size()},
                              {"markers", probed.set.markers.size()},
                              {"factor_seconds", elastic->stats().seconds_factor}};
-                const double longest = mesh::bounding_box(surface_.vertices).longest_side();
-                const double edge = c.edge_length > 0 ? c.edge_length : default_edge_share * longest;
+                const double edge = c.edge_length > 0 ? c.edge_length : default_edge_length(surface_);
                 if (const auto accuracy = estimate_accuracy(subject_, *elastic, edge, probed.set)) {
                     figures["relative_error"] = accuracy->relative;
                     figures["coarser_edge_mm"] = accuracy->coarser_edge;

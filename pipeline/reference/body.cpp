@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "mesh/check_surface.h"
 #include "mesh/errors.h"
@@ -14,6 +16,9 @@
 namespace palpate::pipeline {
 
 namespace {
+
+constexpr double default_edge_share = 0.06;  // of the longest side
+constexpr double default_nodes = 20'000;     // that a thin body may have: solved in two seconds
 
 /// A surface filled with tetrahedra: where that fails with these edges, with shorter ones.
 void fill(Body& body, double edge, double volume_change, const Progress& progress) {
@@ -42,7 +47,7 @@ Body make_body(const mesh::Surface& surface, const BodyOptions& options, const P
     body.notes = repaired.steps;
 
     const double longest = mesh::bounding_box(repaired.surface.vertices).longest_side();
-    const double edge = options.edge_length > 0 ? options.edge_length : default_edge_share * longest;
+    const double edge = options.edge_length > 0 ? options.edge_length : default_edge_length(repaired.surface);
     if (edge > 0.5 * longest) {
         throw InvalidInput(
             fmt::format("edge length {:g} mm is more than half the body's longest side ({:g} mm): choose "
@@ -87,6 +92,22 @@ Body make_body(const Subject& subject, const BodyOptions& options, const Progres
         body.volume.is_quadratic() && !given.is_quadratic() ? ", given midside nodes on straight edges" : ""));
     if (options.edge_length > 0) body.notes.emplace_back("an edge length changes nothing on a ready-made mesh");
     return body;
+}
+
+double edge_of_sheet(const mesh::Surface& surface, double nodes) {
+    // A sheet of one element has A / (sqrt(3)/4 h^2) triangles on its surface and some 3.2 nodes for each of them.
+    return std::sqrt(3.2 / (std::sqrt(3.0) / 4) * mesh::area(surface) / nodes);
+}
+
+double edge_for_thickness(const mesh::Surface& surface, double edge, double nodes) {
+    const double thickness = 2 * std::abs(mesh::signed_volume(surface)) / mesh::area(surface);
+    constexpr double slenderest = 4;
+    return std::min(edge, std::max(slenderest * thickness, edge_of_sheet(surface, nodes)));
+}
+
+double default_edge_length(const mesh::Surface& surface) {
+    const double usual = default_edge_share * mesh::bounding_box(surface.vertices).longest_side();
+    return edge_for_thickness(surface, usual, default_nodes);
 }
 
 mesh::BoxRegion default_clamp(const mesh::Box& box) {

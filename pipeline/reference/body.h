@@ -13,7 +13,7 @@ namespace palpate::pipeline {
 struct Subject;
 
 struct BodyOptions {
-    double edge_length = 0;  // of the tetrahedra [mm]; 0: 6 % of the longest side
+    double edge_length = 0;  // of the tetrahedra [mm]; 0: 6 % of the longest side, less in a thin body
     bool linear_elements = false;
     double volume_change = 0.01;  // that remeshing may make, as a share: chords of a round body cut volume off
 };
@@ -35,8 +35,15 @@ Body make_body(const mesh::Surface& surface, const BodyOptions& options, const P
 /// @throws InvalidInput where the boundary of a ready-made mesh crosses itself or meets itself along an edge.
 Body make_body(const Subject& subject, const BodyOptions& options, const Progress& progress = {});
 
-/// Share of the longest side that elements are long by default.
-inline constexpr double default_edge_share = 0.06;
+/// Elements by default: 6 % of the longest side, and shorter where the body is thinner (`edge_for_thickness`) [mm].
+double default_edge_length(const mesh::Surface& surface);
+
+/// The edge length, no longer than `edge`, at which a thin body bends as it should: elements are at most four times as
+/// long as the body is thick on average, 2 V / A, as far as `nodes` quadratic nodes allow [mm].
+double edge_for_thickness(const mesh::Surface& surface, double edge, double nodes);
+
+/// Edge length of a thin body with about so many quadratic nodes, one element through the thickness [mm].
+double edge_of_sheet(const mesh::Surface& surface, double nodes);
 
 /// The clamp of a bare mesh: the 5 % of its length at the low end of its longest axis.
 mesh::BoxRegion default_clamp(const mesh::Box& box);

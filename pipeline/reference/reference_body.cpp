@@ -33,9 +33,10 @@ std::unique_ptr<identify::ReferenceBody> fill(const identify::MeasurementSet& se
 double reference_edge_length(const mesh::Surface& surface) {
     const double longest_side = mesh::bounding_box(surface.vertices).longest_side();
     const double volume = std::abs(mesh::signed_volume(surface));
-    // A body of edge length h has about 13.5 V / h^3 nodes.
+    // A body of edge length h has about 13.5 V / h^3 nodes, where it is thicker than that.
     constexpr double nodes = 2500;
-    return std::clamp(std::cbrt(13.5 * volume / nodes), 0.07 * longest_side, 0.12 * longest_side);
+    const double edge = std::clamp(std::cbrt(13.5 * volume / nodes), 0.07 * longest_side, 0.12 * longest_side);
+    return edge_for_thickness(surface, edge, nodes);
 }
 
 Reference make_reference(const identify::MeasurementSet& set, double edge_length, const Progress& progress) {

@@ -66,7 +66,8 @@ void add_body(CLI::App* verb, std::string& body, const std::string& when) {
 
 void add_edge_length(CLI::App* verb, CaseOverrides& say) {
     verb->add_option("--edge-length", say.edge_length,
-                     "Of the tetrahedra [mm]; 6 % of the longest side by default, 7 % where effects are looked for")
+                     "Of the tetrahedra [mm]; 6 % of the longest side by default, less in a thin body; 7 % where "
+                     "effects are looked for")
         ->check(CLI::PositiveNumber)
         ->group("Body");
 }
