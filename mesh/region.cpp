@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "mesh/convex_hull.h"
+
 namespace palpate::mesh {
 
 namespace {
@@ -22,8 +24,16 @@ struct Contains {
         return std::abs((p - plane.point).dot(plane.normal.normalized())) <= plane.within + slack(p);
     }
     bool operator()(const PointsRegion& near) const {
+        if (near.points.rows() == 0) return false;
         const double reach = near.within + slack(p);
-        return (near.points.rowwise() - p.transpose()).rowwise().squaredNorm().minCoeff() <= reach * reach;
+        const Eigen::VectorXd squares = (near.points.rowwise() - p.transpose()).rowwise().squaredNorm();
+        const double nearest = squares.minCoeff();
+        if (nearest <= reach * reach) return true;
+        if (!(near.joined > 0 && nearest <= near.joined * near.joined)) return false;
+        std::vector<Eigen::Index> neighbours;
+        for (Eigen::Index i = 0; i < squares.size(); ++i)
+            if (squares[i] <= near.joined * near.joined) neighbours.push_back(i);
+        return is_near_hull(near.points(neighbours, Eigen::all), p, reach);
     }
 };
 

@@ -19,10 +19,12 @@ struct PlaneRegion {
     Vec3 point, normal;  // normal: any length but zero
     double within;       // [mm]
 };
-/// All points within `within` of one of the points.
+/// All points within `within` of one of the points, or of the convex hull of those within `joined` of them: what lies
+/// between neighbours belongs to the region too.
 struct PointsRegion {
     Points points;
-    double within;  // [mm]
+    double within;       // [mm]
+    double joined = -1;  // [mm]; 0: each point is by itself; below 0: the same, for want of anything said
 };
 
 /// A part of space, where a body is held for instance; borders belong to it.

@@ -56,6 +56,7 @@ Region read_point_cloud(const YamlFields& yaml, double unit) {
         region.points = read_points(yaml.file().parent_path() / yaml.text("file"), unit);
     }
     region.within = unit * yaml.number("within", 0, largest_length);
+    if (yaml.has("joined")) region.joined = unit * yaml.number("joined", 0, largest_length);
     yaml.finish();
     return region;
 }
@@ -86,6 +87,10 @@ Region read_region(const YamlFields& yaml, double unit) {
 
 std::string list(const Vec3& v) { return fmt::format("[{}, {}, {}]", v.x(), v.y(), v.z()); }
 
+std::string reach_of(const PointsRegion& r) {
+    return fmt::format("within: {}", r.within) + (r.joined >= 0 ? fmt::format(", joined: {}", r.joined) : "");
+}
+
 struct ToYaml {
     std::string operator()(const BoxRegion& r) const {
         return fmt::format("box: {{min: {}, max: {}}}", list(r.min), list(r.max));
@@ -99,7 +104,7 @@ struct ToYaml {
     std::string operator()(const PointsRegion& r) const {
         std::string at;
         for (Eigen::Index i = 0; i < r.points.rows(); ++i) at += (i ? ", " : "") + list(r.points.row(i).transpose());
-        return fmt::format("points: {{at: [{}], within: {}}}", at, r.within);
+        return fmt::format("points: {{at: [{}], {}}}", at, reach_of(r));
     }
 };
 
@@ -137,7 +142,7 @@ std::string regions_to_yaml_in(const std::filesystem::path& folder, const std::v
             table += fmt::format("{},{},{}\n", point[0], point[1], point[2]);
         const std::string name = fmt::format("held_{}.csv", ++files);
         write_text(folder / name, table);
-        text += fmt::format("  - points: {{file: {}, within: {}}}\n", name, cloud->within);
+        text += fmt::format("  - points: {{file: {}, {}}}\n", name, reach_of(*cloud));
     }
     return text;
 }

@@ -11,7 +11,8 @@ namespace palpate::mesh {
 
 /// A list of regions, each a mapping with one of
 ///   box: {min, max}   sphere: {center, radius}   plane: {point, normal, within}   points: {file, within}
-/// `file`: a CSV of x,y,z, relative to the YAML file. Lengths are multiplied by `unit` [mm per unit of the file].
+/// `joined` (optional, of points): see PointsRegion. `file`: a CSV of x,y,z, relative to the YAML file. Lengths are
+/// multiplied by `unit` [mm per unit of the file].
 /// @throws InvalidInput naming file, line and field; for an empty list too.
 std::vector<Region> read_regions(const YamlFields& yaml, const std::string& key, double unit);
 

@@ -10,7 +10,9 @@
 #include "identify/set/plausibility.h"
 #include "mesh/errors.h"
 #include "mesh/read_body.h"
+#include "mesh/support_points.h"
 #include "pipeline/reference/body.h"
+#include "pipeline/reference/reference_body.h"
 
 namespace palpate::pipeline {
 namespace {
@@ -43,7 +45,7 @@ void read_mesh(Subject& subject) {
 
 void read_set(Subject& subject) {
     const Case& c = subject.settings;
-    subject.set = read_measurements(*c.measurements, subject.notes);
+    subject.set = read_measurements(*c.measurements, subject.notes, c.edge_length);
     subject.surface = subject.set->rest_surface;
     for (const auto& entry : std::filesystem::recursive_directory_iterator(subject.set->folder)) {
         if (entry.is_regular_file() && entry.path().filename() != "truth.json") subject.files.push_back(entry.path());
@@ -51,9 +53,23 @@ void read_set(Subject& subject) {
     std::sort(subject.files.begin(), subject.files.end());
 }
 
+/// Supports given by points as the patches that these sample; what was made of them stands in `notes`.
+std::vector<mesh::Region> patched(const std::vector<mesh::Region>& supports, const mesh::Surface& surface,
+                                  double edge_length, std::vector<std::string>& notes) {
+    mesh::PatchedSupports result = mesh::patched(supports, surface, edge_length);
+    std::ranges::move(result.notes, std::back_inserter(notes));
+    std::ranges::move(result.warnings, std::back_inserter(notes));
+    return std::move(result.regions);
+}
+
 void choose_supports(Subject& subject) {
     if (!subject.settings.supports.empty()) {
-        subject.supports = subject.settings.supports;
+        const double longest = mesh::bounding_box(subject.surface.vertices).longest_side();
+        const double told = subject.settings.edge_length;
+        const double edge = told > 0      ? told
+                            : subject.set ? reference_edge_length(subject.surface)
+                                          : default_edge_share * longest;
+        subject.supports = patched(subject.settings.supports, subject.surface, edge, subject.notes);
     } else if (subject.set) {
         subject.supports = subject.set->supports;
     } else {
@@ -95,12 +111,16 @@ void choose_material(Subject& subject) {
 
 }  // namespace
 
-identify::MeasurementSet read_measurements(const std::filesystem::path& path, std::vector<std::string>& notes) {
+identify::MeasurementSet read_measurements(const std::filesystem::path& path, std::vector<std::string>& notes,
+                                           double edge_length) {
     identify::LabelledSet labelled =
         identify::label_readings(identify::with_markers_of_fields(identify::read_measurement_set(path)));
     std::ranges::transform(identify::notes(labelled), std::back_inserter(notes),
                            [](const std::string& words) { return words + "."; });
     std::ranges::copy(identify::implausible(labelled.set), std::back_inserter(notes));
+    const mesh::Surface& surface = labelled.set.rest_surface;
+    labelled.set.supports =
+        patched(labelled.set.supports, surface, edge_length > 0 ? edge_length : reference_edge_length(surface), notes);
     for (identify::LoadState& state : labelled.set.states) {
         std::erase_if(state.readings, [](const identify::Reading& reading) { return reading.marker < 0; });
     }

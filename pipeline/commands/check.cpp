@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "mesh/held_parts.h"
 #include "mesh/io/atomic_file.h"
 #include "mesh/io/vtk_files.h"
 #include "pipeline/case/subject.h"
@@ -69,6 +70,31 @@ void write_faults(const std::filesystem::path& folder, const mesh::Surface& surf
     mesh::write_vtp_lines(folder / "faults.vtp", points, {}, {.points = {{"fault", of_point}}, .cells = {}});
 }
 
+/// What each support holds of the surface, and of a ready-made mesh whether that is enough.
+void add_supports(const Subject& subject, Outcome& outcome) {
+    constexpr double spacing = 0.005;  // of samples of the surface, as a share of the longest side: areas to 1 %
+    const double longest = mesh::bounding_box(subject.surface.vertices).longest_side();
+    const auto parts = subject.volume ? mesh::held_parts(subject.supports, *subject.volume)
+                                      : mesh::held_parts(subject.supports, subject.surface, spacing * longest);
+    std::vector<std::string> warnings;
+    if (subject.volume) warnings = mesh::too_little_held(subject.supports, *subject.volume);
+    nlohmann::json list = nlohmann::json::array();
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+        const std::string words = mesh::held_words(subject.supports, parts, i,
+                                                   subject.volume ? "nodes of the mesh" : "vertices of the surface");
+        outcome.text += "Held by " + words + ".\n";
+        list.push_back({{"nodes", parts[i].nodes}, {"area_mm2", parts[i].area}, {"words", words}});
+        if (!subject.volume && parts[i].area == 0)
+            warnings.push_back(
+                fmt::format("Support {} holds nothing of the surface: it is for material inside the "
+                            "body alone, or its unit or frame is not the body's.",
+                            i + 1));
+    }
+    for (const std::string& warning : warnings) outcome.text += "  - warning: " + warning + "\n";
+    outcome.json["supports"] = list;
+    outcome.json["warnings"] = warnings;
+}
+
 }  // namespace
 
 Outcome check(const CheckOptions& options, const Common& common) {
@@ -101,6 +127,7 @@ Outcome check(const CheckOptions& options, const Common& common) {
     if (subject.set) {
         outcome.json["set"] = {{"states", subject.set->states.size()}, {"markers", subject.set->markers.size()}};
     }
+    add_supports(subject, outcome);
     if (!options.output.empty()) {
         write_faults(options.output, subject.surface, places);
         mesh::write_text(options.output / "check.json", outcome.json.dump(2) + "\n");

@@ -3,6 +3,7 @@
 #include <optional>
 
 #include "fem/elastic_body.h"
+#include "mesh/held_parts.h"
 #include "mesh/io/atomic_file.h"
 #include "mesh/io/region_yaml.h"
 #include "mesh/io/vtk_files.h"
@@ -93,6 +94,22 @@ private:
         body_ = mesh::read_vtu(folder_.path() / "mesh/body.vtu");
         surface_ = mesh::read_surface(folder_.path() / "mesh/surface.vtp");
         tell("mesh", ran, fmt::format("{} tetrahedra, {} nodes", body_.tetrahedra.rows(), body_.nodes.rows()));
+        tell_supports();
+    }
+
+    /// What each support holds of the mesh, and whether that is enough.
+    void tell_supports() {
+        json words = json::array();
+        const std::vector<mesh::HeldPart> parts = mesh::held_parts(subject_.supports, body_);
+        for (std::size_t i = 0; i < parts.size(); ++i) {
+            words.push_back(mesh::held_words(subject_.supports, parts, i, "nodes of the mesh"));
+            Console::notice("held         " + words.back().get<std::string>());
+        }
+        for (const std::string& warning : mesh::too_little_held(subject_.supports, body_)) {
+            words.push_back(warning);
+            Console::warning(warning);
+        }
+        folder_.note("supports", words);
     }
 
     void make_skeleton() {

@@ -4,9 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "fem/material.h"
 #include "mesh/errors.h"
+#include "mesh/held_parts.h"
 #include "mesh/smooth_surface.h"
 #include "pipeline/reference/body.h"
 
@@ -16,7 +18,7 @@ namespace {
 constexpr double default_density = 1000;  // [kg/m^3]
 
 std::unique_ptr<identify::ReferenceBody> fill(const identify::MeasurementSet& set, double edge_length,
-                                              const Progress& progress) {
+                                              const Progress& progress, std::vector<std::string>& notes) {
     const double edge = edge_length > 0 ? edge_length : reference_edge_length(set.rest_surface);
     // Curving the elements gives back what their chords cut off.
     const Body body = make_body(set.rest_surface, {.edge_length = edge, .volume_change = 0.06}, progress);
@@ -24,8 +26,9 @@ std::unique_ptr<identify::ReferenceBody> fill(const identify::MeasurementSet& se
     options.density = set.density.value_or(default_density * fem::tonne_per_mm3);
     if (set.material && set.material->young > 0) options.young = set.material->young;
     if (set.material && !std::isnan(set.material->poisson)) options.poisson = set.material->poisson;
-    return std::make_unique<identify::ReferenceBody>(mesh::curve_to(body.volume, body.repaired), set.supports,
-                                                     set.markers, options);
+    const mesh::VolumeMesh curved = mesh::curve_to(body.volume, body.repaired);
+    std::ranges::move(mesh::too_little_held(set.supports, curved), std::back_inserter(notes));
+    return std::make_unique<identify::ReferenceBody>(curved, set.supports, set.markers, options);
 }
 
 }  // namespace
@@ -42,7 +45,7 @@ double reference_edge_length(const mesh::Surface& surface) {
 Reference make_reference(const identify::MeasurementSet& set, double edge_length, const Progress& progress) {
     Reference reference;
     try {
-        reference.body = fill(set, edge_length, progress);
+        reference.body = fill(set, edge_length, progress, reference.notes);
     } catch (const InvalidInput& e) {
         reference.why_none = e.what();
     } catch (const SolverFailure& e) {

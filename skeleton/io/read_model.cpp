@@ -139,9 +139,10 @@ mesh::Region read_region(const JsonField& field) {
         if (normal.norm() == 0) region["normal"].fail("longer than 0");
         return mesh::PlaneRegion{region["point"].vector(), normal, region["within"].number_at_least(0)};
     }
-    region.allow_only({"at", "within"});
+    region.allow_only({"at", "within", "joined"});
     const std::vector<JsonField> at = region["at"].list();
-    mesh::PointsRegion points{Points(static_cast<Eigen::Index>(at.size()), 3), region["within"].number_at_least(0)};
+    mesh::PointsRegion points{Points(static_cast<Eigen::Index>(at.size()), 3), region["within"].number_at_least(0),
+                              region.has("joined") ? region["joined"].number_at_least(0) : -1.0};
     for (size_t i = 0; i < at.size(); ++i) points.points.row(i) = at[i].vector().transpose();
     return points;
 }

@@ -85,7 +85,9 @@ struct RegionToJson {
         return {{"plane", {{"point", list(plane.point)}, {"normal", list(plane.normal)}, {"within", plane.within}}}};
     }
     Json operator()(const mesh::PointsRegion& points) const {
-        return {{"points", {{"at", rows_of(points.points)}, {"within", points.within}}}};
+        Json region = {{"at", rows_of(points.points)}, {"within", points.within}};
+        if (points.joined >= 0) region["joined"] = points.joined;
+        return {{"points", region}};
     }
 };
 
