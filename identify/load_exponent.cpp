@@ -53,10 +53,14 @@ LoadExponent fit_line(const std::vector<LogPoint>& points) {
     return {slope, n > 2 ? std::sqrt(scatter / ((n - 2) * xx)) : 1.0, {}};
 }
 
-/// `vanishes`: unloaded states were read, and nothing is wrong there.
-const char* words_for(const LoadExponent& exponent, bool vanishes) {
+/// What the states without load say of the error, which loaded ones alone do not tell.
+enum class Unloaded { none_read, without_error, with_error };
+
+const char* words_for(const LoadExponent& exponent, Unloaded unloaded) {
     if (exponent.sd > 0.5) return "the errors scatter too much to tell how they grow with the load";
-    if (exponent.value < least_growth && vanishes)
+    if (exponent.value < least_growth && unloaded == Unloaded::none_read)
+        return "the errors do not grow with the load; whether they are there without any, an unloaded state would tell";
+    if (exponent.value < least_growth && unloaded == Unloaded::without_error)
         return "nothing is wrong without load, and from probe to probe the errors do not grow with it: places differ "
                "more than loads";
     if (exponent.value < least_growth) return "the error is there without any load";
@@ -102,7 +106,9 @@ std::optional<LoadExponent> load_exponent(const std::vector<ErrorUnderLoad>& sta
         points.insert(points.end(), silent.begin(), silent.end());
     }
     LoadExponent exponent = fit_line(points);
-    exponent.words = words_for(exponent, !silent.empty() && silent.size() == unloaded.size());
+    exponent.words = words_for(exponent, unloaded.empty()                   ? Unloaded::none_read
+                                         : silent.size() == unloaded.size() ? Unloaded::without_error
+                                                                            : Unloaded::with_error);
     return exponent;
 }
 

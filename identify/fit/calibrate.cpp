@@ -9,6 +9,7 @@
 #include "identify/fit/lived.h"
 #include "identify/fit/modes.h"
 #include "mesh/errors.h"
+#include "mesh/io/words.h"
 #include "skeleton/statics.h"
 
 namespace palpate::identify {
@@ -234,7 +235,7 @@ Calibration calibrate(const skeleton::Model& model, const std::vector<StateReadi
         others = calibrator.other_modes(domain, prior, fit, starts);
     }
     calibrator.note(
-        fmt::format("relative model error: {:.2g} % of the displacement, beyond the noise", 100 * model_error));
+        fmt::format("relative model error: {}, beyond the noise", mesh::share_of(model_error, "the displacement")));
     if (!fit.converged) calibrator.note("the fit stopped before it settled: take the posterior with care");
     return {std::move(domain), std::move(prior), std::move(fit),         std::move(others),
             std::move(coarse), model_error,      calibrator.equilibria_, std::move(calibrator.notes_)};

@@ -14,6 +14,7 @@
 #include "identify/particles/tempered_filter.h"
 #include "identify/set/readings.h"
 #include "mesh/errors.h"
+#include "mesh/io/words.h"
 
 namespace palpate::identify {
 namespace {
@@ -156,9 +157,9 @@ IdentifyResult identify_tempered(const skeleton::Model& model, const Measurement
             result.modes.size()));
     }
     if (!std::isnan(result.forecast_error.relative)) {
-        result.notes.push_back(fmt::format("a probe that is left out of the fit: off by {}{:.2g} % of its displacement",
+        result.notes.push_back(fmt::format("a probe that is left out of the fit: off by {}{}",
                                            calibration.fit.spectrum.is_whole ? "" : "at least ",
-                                           100 * result.forecast_error.relative));
+                                           mesh::share_of(result.forecast_error.relative, "its displacement")));
     }
     result.fit_trace = calibration.fit.trace;
     result.model_error = calibration.model_error;

@@ -66,6 +66,12 @@ std::string suggestion(std::string_view word, const std::vector<std::string>& kn
     return fmt::format(" (did you mean '{}'?)", *nearest);
 }
 
+std::string share_of(double share, std::string_view whole) {
+    constexpr double as_times = 2;
+    if (share < as_times) return fmt::format("{:.1f} % of {}", 100 * share, whole);
+    return share < 1000 ? fmt::format("{:.3g} times {}", share, whole) : fmt::format("{:.0f} times {}", share, whole);
+}
+
 std::string listed(const std::vector<std::string>& words) {
     std::string text;
     for (const auto& word : words) text += (text.empty() ? "'" : ", '") + word + "'";

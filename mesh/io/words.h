@@ -23,6 +23,9 @@ std::string cited(std::string_view text);
 /// " (did you mean 'noise'?)" when one of the known words is spelled nearly like it, else "".
 std::string suggestion(std::string_view word, const std::vector<std::string>& known);
 
+/// "1.8 % of the displacement"; from twice the whole on "41.2 times the displacement".
+std::string share_of(double share, std::string_view whole);
+
 /// "a, b, c", each in quotes.
 std::string listed(const std::vector<std::string>& words);
 

@@ -7,6 +7,7 @@
 #include "mesh/io/atomic_file.h"
 #include "mesh/io/region_yaml.h"
 #include "mesh/io/vtk_files.h"
+#include "mesh/io/words.h"
 #include "mesh/read_surface.h"
 #include "pipeline/commands/run_curve.h"
 #include "pipeline/commands/run_inquiry.h"
@@ -236,8 +237,8 @@ private:
     std::string accuracy_in_words() const {
         const json& figures = folder_.record()["stages"]["measurements"]["figures"];
         if (!figures.contains("relative_error")) return "";
-        return fmt::format("; off by about {:.2g} %, as a coarser mesh tells",
-                           100 * figures["relative_error"].get<double>());
+        return fmt::format("; off by about {}, as a coarser mesh tells",
+                           mesh::share_of(figures["relative_error"].get<double>(), "the displacement"));
     }
 
     void write_reference_series(const identify::MeasurementSet& set) const {

@@ -32,7 +32,9 @@ std::string lead(const RunFiles& files) {
 }
 
 std::string share_of(const json& relative) {
-    return relative.is_number() ? percent(relative.get<double>()) : "unknown";
+    if (!relative.is_number()) return "unknown";
+    const double share = relative.get<double>();
+    return share < 10 ? percent(share) : fmt::format("{:.0f} times", share);
 }
 
 std::string tile(const std::string& value, const std::string& what) {

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <vector>
 
+#include "mesh/io/words.h"
 #include "pipeline/results/words.h"
 
 namespace palpate::pipeline {
@@ -14,7 +15,16 @@ namespace {
 using nlohmann::json;
 
 std::string share(const json& error) {
-    return error["relative"].is_number() ? percent(error["relative"].get<double>()) : "an unknown share";
+    if (!error["relative"].is_number()) return "an unknown share of the displacement";
+    return mesh::share_of(error["relative"].get<double>(), "the displacement");
+}
+
+/// Is what the body in finite elements leaves noise, and what nobody can know of contacts and clamps?
+bool is_explained_by_reference(const json& compare) {
+    constexpr double adequate = 1.1;  // sigmas, as a diagnosis takes it
+    const json reference = compare.value("reference", json());
+    if (!reference.is_object() || !reference["whitened_rms"].is_number()) return false;
+    return reference["whitened_rms"].get<double>() <= adequate;
 }
 
 std::string noise_words(const json& compare) {
@@ -24,6 +34,12 @@ std::string noise_words(const json& compare) {
     std::string left = "the model lacks something";
     if (compare["adequate"].get<bool>()) {
         left = "what is left is noise";
+    } else if (is_explained_by_reference(compare)) {
+        left = "what is left beyond it is the coarseness of the skeleton and what nobody knows of contacts and clamps";
+    } else if (!budget.is_object()) {
+        left =
+            "what is left beyond it is missing physics or the coarseness of the skeleton, which nothing here tells "
+            "apart";
     } else if (budget.is_object() && budget["missing_physics"].get<double>() < budget["reduction"].get<double>()) {
         left = "what is left beyond it is mostly the coarseness of the skeleton";
     }
@@ -47,9 +63,10 @@ std::string budget_words(const json& compare) {
     const json budget = compare.value("budget", json());
     if (!budget.is_object()) return {};
     return fmt::format(
-        " Of the mean square error {} is noise, {} the coarseness of the skeleton, {} physics that it lacks.",
+        " Of the mean square error {} is noise, {} the coarseness of the skeleton, {} {}.",
         percent(budget["noise"].get<double>()), percent(budget["reduction"].get<double>()),
-        percent(budget["missing_physics"].get<double>()));
+        percent(budget["missing_physics"].get<double>()),
+        is_explained_by_reference(compare) ? "what contacts and clamps may be off by" : "physics that it lacks");
 }
 
 /// The regions that noise does not explain, worst first.
@@ -74,9 +91,9 @@ std::string region_words(const json& compare) {
 
 std::string compare_in_words(const json& compare) {
     const json& error = compare["error"];
-    std::string text =
-        fmt::format("The model is off by {:.3g} mm rms, {} of the displacement, and by {:.3g} mm at most.",
-                    error["rms_mm"].get<double>(), share(error), error["max_mm"].get<double>());
+    std::string text = fmt::format("The model is off by {:.3g} mm rms, {}, and by {:.3g} mm at most.",
+                                   error["rms_mm"].get<double>(), share(error), error["max_mm"].get<double>());
+    text += if_it_explains_nothing(error["relative"]);
     if (compare.contains("held_out")) {
         text += fmt::format(" On the probes that were fitted it is off by {}, on those kept from the fit by {}.",
                             share(compare["fitted"]), share(compare["held_out"]));

@@ -143,7 +143,8 @@ std::string diagnosis_in_words(const json& diagnosis) {
                              : verdict == "ambiguous"    ? ambiguous(diagnosis)
                              : verdict == "unexplained"  ? unexplained(diagnosis)
                                                          : adequate(diagnosis);
-    return text + next_probe(diagnosis["next_probe"]);
+    return text + if_it_explains_nothing(diagnosis["baseline"].value("relative", json())) +
+           next_probe(diagnosis["next_probe"]);
 }
 
 }  // namespace palpate::pipeline

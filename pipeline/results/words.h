@@ -11,6 +11,13 @@ namespace palpate::pipeline {
 /// "12.3 %"
 inline std::string percent(double share) { return fmt::format("{:.1f} %", 100 * share); }
 
+/// What follows an error larger than what there is to explain; else nothing.
+inline std::string if_it_explains_nothing(const nlohmann::json& relative) {
+    if (!relative.is_number() || !(relative.get<double>() > 1)) return {};
+    return " That is more than the markers moved: the model explains nothing. Check where the body is held, the units, "
+           "the sign of the forces, and that body, markers and forces are in one frame.";
+}
+
 /// A place or a direction out of three numbers: "(80, 20, 0)".
 inline std::string place(const nlohmann::json& at) {
     return fmt::format("({:.3g}, {:.3g}, {:.3g})", at[0].get<double>(), at[1].get<double>(), at[2].get<double>());

@@ -110,10 +110,29 @@ TEST(CompareInWords, BlamesTheSkeletonWhereFiniteElementsFollow) {
     EXPECT_THAT(compare_in_words(c), HasSubstr("mostly the coarseness of the skeleton"));
 }
 
+TEST(CompareInWords, BlamesNothingWhereFiniteElementsLeaveNoise) {
+    json c = compared();
+    c["reference"]["whitened_rms"] = 1.05;
+    EXPECT_THAT(compare_in_words(c), AllOf(Not(HasSubstr("lacks")), HasSubstr("87.0 % what contacts and clamps")));
+}
+
+TEST(CompareInWords, AnErrorBeyondTheDisplacementIsToldAsTimesOfIt) {
+    json c = compared();
+    c["error"]["relative"] = 2900.4;
+    EXPECT_THAT(compare_in_words(c), AllOf(HasSubstr("2900 times the displacement"), HasSubstr("explains nothing"),
+                                           HasSubstr("held, the units, the sign of the forces"), Not(HasSubstr("e+"))));
+    EXPECT_THAT(compare_in_words(compared()), AllOf(HasSubstr("44.0 % of"), Not(HasSubstr("explains nothing"))));
+    json d = diagnosis("unexplained", {});
+    EXPECT_THAT(diagnosis_in_words(d), Not(HasSubstr("explains nothing")));
+    d["baseline"]["relative"] = 1.4;
+    EXPECT_THAT(diagnosis_in_words(d), HasSubstr("explains nothing"));
+}
+
 TEST(CompareInWords, NeedsNoReference) {
     json c = compared();
     for (const char* key : {"reference", "baseline", "budget"}) c[key] = nullptr;
-    EXPECT_THAT(compare_in_words(c), AllOf(HasSubstr("1.8 mm rms"), Not(HasSubstr("finite elements"))));
+    EXPECT_THAT(compare_in_words(c),
+                AllOf(HasSubstr("1.8 mm rms"), Not(HasSubstr("finite elements")), HasSubstr("tells apart")));
 }
 
 TEST(LadderInWords, TellsEveryStepAndTheVerdict) {
