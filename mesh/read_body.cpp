@@ -11,15 +11,18 @@
 #include "mesh/read/cad/cad.h"
 #include "mesh/read/label_image/label_surface.h"
 #include "mesh/read/volume/elements.h"
+#include "mesh/read/vtk_polygons.h"
 #include "mesh/read_surface.h"
 #include "mesh/solver/deck.h"
+#include "mesh/solver/vtk_cells.h"
 
 namespace palpate::mesh {
 
 namespace fs = std::filesystem;
 
 const char* const body_extensions =
-    ".stl, .obj, .ply, .off, .vtp (surfaces), .vtu, .msh, .mesh, .node, .ele, .inp (tetrahedra), .step, .stp, .iges, "
+    ".stl, .obj, .ply, .off, .vtp (surfaces), .vtk (either), .vtu, .msh, .mesh, .node, .ele, .inp (tetrahedra), .step, "
+    ".stp, .iges, "
     ".igs "
     "(CAD), .nii, .nii.gz, .nrrd, .nhdr, .mha, .mhd (labels of organs)";
 
@@ -52,6 +55,19 @@ BodyFile of_deck(const fs::path& file, const ReadBodyOptions&) {
 BodyFile of_tetgen(const fs::path& file, const ReadBodyOptions& options) {
     BodyFile body = of_elements<read_tetgen>(file, options);
     body.files = {tetgen_node_file(file), tetgen_element_file(file)};
+    return body;
+}
+
+/// Tetrahedra where the file holds solid cells, else a surface.
+BodyFile of_legacy_vtk(const fs::path& file, const ReadBodyOptions&) {
+    BodyFile body;
+    const VtkData data = read_vtk(file, VtkKind::legacy);
+    if (std::ranges::all_of(data.types, is_flat)) {
+        body.surface = triangulate(polygons_of(data), file);
+        return body;
+    }
+    body.volume = assemble(as_tetrahedra(cells_of(data, file), body.notes), file, body.notes);
+    body.surface = boundary_surface(*body.volume);
     return body;
 }
 
@@ -90,6 +106,7 @@ constexpr std::array body_formats{
     BodyFormat{".ply", of_surface},
     BodyFormat{".off", of_surface},
     BodyFormat{".vtp", of_surface},
+    BodyFormat{".vtk", of_legacy_vtk},
     BodyFormat{".vtu", of_elements<read_vtu_elements>},
     BodyFormat{".msh", of_elements<read_gmsh>},
     BodyFormat{".mesh", of_elements<read_medit>},

@@ -7,6 +7,7 @@
 #include <vtkCellType.h>
 #include <vtkDataArray.h>
 #include <vtkGenericCell.h>
+#include <vtkGenericDataObjectReader.h>
 #include <vtkNew.h>
 #include <vtkPointData.h>
 #include <vtkPolyData.h>
@@ -49,7 +50,9 @@ constexpr std::size_t most_head = 1 << 20;  // [bytes] that are looked through
 
 /// @throws InvalidInput where the head announces more than a file of this size can hold.
 void check_head(const fs::path& file) {
-    static const std::regex count(R"re(NumberOf\w+\s*=\s*["']\s*(\d+))re");
+    // of XML, and of a legacy file
+    static const std::regex count(
+        R"re((?:NumberOf\w+\s*=\s*["']\s*|(?:^|\n)(?:POINTS|CELLS|CELL_TYPES|VERTICES|LINES|POLYGONS|TRIANGLE_STRIPS|POINT_DATA|CELL_DATA|OFFSETS|DIMENSIONS)\s+)(\d+))re");
     std::string head(most_head, '\0');
     std::ifstream stream(file, std::ios::binary);
     stream.read(head.data(), static_cast<std::streamsize>(head.size()));
@@ -133,8 +136,7 @@ void take_arrays(vtkDataSet* source, const fs::path& file, VtkData& data) {
     data.of_file = arrays_of(source->GetFieldData(), -1, file);
 }
 
-VtkData grid_in(const fs::path& file) {
-    const auto grid = update<vtkXMLUnstructuredGridReader>(file, "VTU file (VTK XML unstructured grid)");
+VtkData grid_in(vtkUnstructuredGrid* grid, const fs::path& file) {
     VtkData data;
     take_points(grid, data);
     for (Eigen::Index i = 0; i < data.points.rows(); ++i)
@@ -153,8 +155,7 @@ VtkData grid_in(const fs::path& file) {
     return data;
 }
 
-VtkData poly_data_in(const fs::path& file) {
-    const auto poly = update<vtkXMLPolyDataReader>(file, "VTP file (VTK XML PolyData)");
+VtkData poly_data_in(vtkPolyData* poly, const fs::path& file) {
     VtkData data;
     take_points(poly, data);
     for (const auto& [cells, type] : {std::pair(poly->GetVerts(), VTK_POLY_VERTEX),
@@ -168,6 +169,15 @@ VtkData poly_data_in(const fs::path& file) {
     return data;
 }
 
+VtkData legacy_in(const fs::path& file) {
+    const auto object = update<vtkGenericDataObjectReader>(file, "legacy VTK file");
+    if (auto* grid = vtkUnstructuredGrid::SafeDownCast(object)) return grid_in(grid, file);
+    if (auto* poly = vtkPolyData::SafeDownCast(object)) return poly_data_in(poly, file);
+    throw InvalidInput(
+        fmt::format("{}: holds a {}; a DATASET of POLYDATA or UNSTRUCTURED_GRID is allowed. Export the body as one.",
+                    file.string(), object ? object->GetClassName() : "nothing"));
+}
+
 }  // namespace
 
 std::span<const std::int64_t> VtkData::cell(std::size_t c) const {
@@ -177,7 +187,15 @@ std::span<const std::int64_t> VtkData::cell(std::size_t c) const {
 
 VtkData read_own_vtk(const fs::path& file, VtkKind kind) {
     require_file(file);
-    return kind == VtkKind::poly_data ? poly_data_in(file) : grid_in(file);
+    switch (kind) {
+        case VtkKind::unstructured_grid:
+            return grid_in(update<vtkXMLUnstructuredGridReader>(file, "VTU file (VTK XML unstructured grid)"), file);
+        case VtkKind::poly_data:
+            return poly_data_in(update<vtkXMLPolyDataReader>(file, "VTP file (VTK XML PolyData)"), file);
+        case VtkKind::legacy:
+            break;
+    }
+    return legacy_in(file);
 }
 
 VtkData read_vtk(const fs::path& file, VtkKind kind) {

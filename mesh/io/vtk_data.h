@@ -9,7 +9,7 @@
 
 namespace palpate::mesh {
 
-/// What a VTK XML file holds, in plain arrays.
+/// What a VTK file holds, in plain arrays.
 struct VtkData {
     Points points;                          // (n x 3)
     std::vector<int> types;                 // of each cell, VTK's number
@@ -23,8 +23,8 @@ struct VtkData {
 };
 
 /// Poly data (.vtp) holds vertices, lines, polygons and strips in this order, whose types are VTK_POLY_VERTEX,
-/// VTK_POLY_LINE, VTK_POLYGON and VTK_TRIANGLE_STRIP.
-enum class VtkKind { unstructured_grid, poly_data };
+/// VTK_POLY_LINE, VTK_POLYGON and VTK_TRIANGLE_STRIP. A legacy file (.vtk) holds one or the other.
+enum class VtkKind { unstructured_grid, poly_data, legacy };
 
 /// A file that anybody may have written: a child process reads it and hands over what it holds.
 /// @throws IoError when there is no such file. InvalidInput when it is no whole file of that kind, when its head

@@ -141,19 +141,48 @@ void read_vertex(const PlyElement& element, Values& values, Polygons& polygons) 
     polygons.points.push_back(position);
 }
 
+int vertex_of(double value, const Values& values) {
+    if (value == std::floor(value) && std::abs(value) <= std::numeric_limits<int>::max())
+        return static_cast<int>(value);
+    throw InvalidInput(fmt::format("{}: vertex {} does not exist. Mend the face, or export the surface again.",
+                                   values.where(), value));
+}
+
+bool is_list_of_vertices(const PlyProperty& property) {
+    return property.count && (property.name == "vertex_indices" || property.name == "vertex_index");
+}
+
+/// Rows of triangles of which every other one is turned; -1 ends a row. Corners that are repeated, to go from one row
+/// to the next, make no triangle.
+void read_strips(const PlyElement& element, Values& values, Polygons& polygons) {
+    for (const PlyProperty& property : element.properties) {
+        std::vector<int> row;
+        for (std::size_t k = values.next_count(property); k > 0; --k) {
+            const double value = values.next(property.type);
+            if (!is_list_of_vertices(property)) continue;
+            if (value == -1) {
+                row.clear();
+                continue;
+            }
+            row.push_back(vertex_of(value, values));
+            if (row.size() < 3) continue;
+            const bool is_turned = row.size() % 2 == 0;
+            const auto last = row.end();
+            const std::array corners{is_turned ? last[-2] : last[-3], is_turned ? last[-3] : last[-2], last[-1]};
+            if (corners[0] == corners[1] || corners[1] == corners[2] || corners[0] == corners[2]) continue;
+            polygons.begin_polygon(values.is_text() ? values.line() : 0);
+            polygons.corners.insert(polygons.corners.end(), corners.begin(), corners.end());
+        }
+    }
+}
+
 void read_face(const PlyElement& element, Values& values, Polygons& polygons) {
     polygons.begin_polygon(values.is_text() ? values.line() : 0);
     for (const PlyProperty& property : element.properties) {
-        const bool is_corners =
-            property.count && (property.name == "vertex_indices" || property.name == "vertex_index");
+        const bool is_corners = is_list_of_vertices(property);
         for (std::size_t k = values.next_count(property); k > 0; --k) {
             const double value = values.next(property.type);
-            if (!is_corners) continue;
-            if (value != std::floor(value) || std::abs(value) > std::numeric_limits<int>::max())
-                throw InvalidInput(
-                    fmt::format("{}: vertex {} does not exist. Mend the face, or export the surface again.",
-                                values.where(), value));
-            polygons.corners.push_back(static_cast<int>(value));
+            if (is_corners) polygons.corners.push_back(vertex_of(value, values));
         }
     }
 }
@@ -176,18 +205,18 @@ Polygons read_ply(const std::string& content, const std::filesystem::path& file)
         if (element.name == "vertex" && !has(element, {"x", "y", "z"}))
             throw InvalidInput(fmt::format("{}: its vertices have no properties x, y and z. Export the surface again.",
                                            file.string()));
-        if (element.name == "face" && !has(element, {"vertex_indices"}) && !has(element, {"vertex_index"}))
-            throw InvalidInput(
-                fmt::format("{}: its faces have no list 'vertex_indices'. Export the surface again.", file.string()));
-        if (element.name == "tristrips")
-            throw InvalidInput(fmt::format(
-                "{}: holds triangle strips, which are not read. Export the surface with plain faces.", file.string()));
+        const bool is_strips = element.name == "tristrips";
+        if ((element.name == "face" || is_strips) && std::ranges::none_of(element.properties, is_list_of_vertices))
+            throw InvalidInput(fmt::format("{}: its {} have no list 'vertex_indices'. Export the surface again.",
+                                           file.string(), is_strips ? "triangle strips" : "faces"));
         for (std::size_t i = 0; i < element.count; ++i) {
             values.in(element, i);
             if (element.name == "vertex") {
                 read_vertex(element, values, polygons);
             } else if (element.name == "face") {
                 read_face(element, values, polygons);
+            } else if (is_strips) {
+                read_strips(element, values, polygons);
             } else {
                 for (const PlyProperty& property : element.properties) {
                     for (std::size_t k = values.next_count(property); k > 0; --k) values.next(property.type);

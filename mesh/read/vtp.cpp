@@ -1,14 +1,18 @@
+#include "mesh/read/vtk_polygons.h"
+
 #include <vtkCellType.h>
 
-#include "mesh/io/vtk_data.h"
-#include "mesh/read/polygons.h"
+#include <algorithm>
+#include <array>
 
 namespace palpate::mesh {
 namespace {
 
-void add_polygon(std::span<const std::int64_t> cell, Polygons& polygons) {
+/// `most` corners, midsides behind them left out.
+void add_polygon(std::span<const std::int64_t> cell, std::size_t most, Polygons& polygons) {
     polygons.begin_polygon();
-    for (const std::int64_t corner : cell) polygons.corners.push_back(static_cast<int>(corner));
+    for (const std::int64_t corner : cell.first(std::min(most, cell.size())))
+        polygons.corners.push_back(static_cast<int>(corner));
 }
 
 /// A strip is a row of triangles of which every other one is turned.
@@ -20,17 +24,48 @@ void add_strip(std::span<const std::int64_t> cell, Polygons& polygons) {
     }
 }
 
+void add_pixel(std::span<const std::int64_t> cell, Polygons& polygons) {
+    if (cell.size() < 4) return add_polygon(cell, cell.size(), polygons);
+    const std::array round{cell[0], cell[1], cell[3], cell[2]};
+    add_polygon(round, round.size(), polygons);
+}
+
 }  // namespace
 
-Polygons read_vtp(const std::string&, const std::filesystem::path& file) {
-    const VtkData data = read_vtk(file, VtkKind::poly_data);
+Polygons polygons_of(const VtkData& data) {
     Polygons polygons;
     for (const auto& point : data.points.rowwise()) polygons.points.emplace_back(point);
     for (std::size_t c = 0; c < data.types.size(); ++c) {
-        if (data.types[c] == VTK_POLYGON) add_polygon(data.cell(c), polygons);
-        if (data.types[c] == VTK_TRIANGLE_STRIP) add_strip(data.cell(c), polygons);
+        const auto cell = data.cell(c);
+        switch (data.types[c]) {
+            case VTK_POLYGON:
+                add_polygon(cell, cell.size(), polygons);
+                break;
+            case VTK_TRIANGLE:
+            case VTK_QUADRATIC_TRIANGLE:
+            case VTK_BIQUADRATIC_TRIANGLE:
+                add_polygon(cell, 3, polygons);
+                break;
+            case VTK_QUAD:
+            case VTK_QUADRATIC_QUAD:
+            case VTK_BIQUADRATIC_QUAD:
+                add_polygon(cell, 4, polygons);
+                break;
+            case VTK_PIXEL:
+                add_pixel(cell, polygons);
+                break;
+            case VTK_TRIANGLE_STRIP:
+                add_strip(cell, polygons);
+                break;
+            default:  // points and lines
+                break;
+        }
     }
     return polygons;
+}
+
+Polygons read_vtp(const std::string&, const std::filesystem::path& file) {
+    return polygons_of(read_vtk(file, VtkKind::poly_data));
 }
 
 }  // namespace palpate::mesh

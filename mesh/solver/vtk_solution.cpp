@@ -1,5 +1,4 @@
 #include <fmt/format.h>
-#include <vtkCellType.h>
 
 #include <algorithm>
 #include <array>
@@ -10,6 +9,7 @@
 #include "mesh/io/poly_data.h"
 #include "mesh/io/words.h"
 #include "mesh/solver/solution_parts.h"
+#include "mesh/solver/vtk_cells.h"
 
 namespace palpate::mesh {
 namespace {
@@ -48,46 +48,6 @@ const Eigen::MatrixXd& displacement_of(const std::vector<DataArray>& arrays, con
         fmt::format("{}: which of its point arrays of three components is the displacement? There are "
                     "{}; name it with --array.",
                     file.string(), names.empty() ? "none" : listed(names)));
-}
-
-CellShape shape_of(int type, std::size_t cell, const std::filesystem::path& file) {
-    switch (type) {
-        case VTK_TETRA:
-        case VTK_QUADRATIC_TETRA:
-            return CellShape::tetrahedron;
-        case VTK_PYRAMID:
-        case VTK_QUADRATIC_PYRAMID:
-            return CellShape::pyramid;
-        case VTK_WEDGE:
-        case VTK_QUADRATIC_WEDGE:
-            return CellShape::wedge;
-        case VTK_HEXAHEDRON:
-        case VTK_QUADRATIC_HEXAHEDRON:
-        case VTK_TRIQUADRATIC_HEXAHEDRON:
-            return CellShape::hexahedron;
-        default:
-            throw InvalidInput(
-                fmt::format("{}: cell {} is of VTK type {}; tetrahedra, hexahedra, wedges and pyramids "
-                            "are allowed, and cells without volume are skipped.",
-                            file.string(), cell, type));
-    }
-}
-
-Cells cells_of(const VtkData& grid, const std::filesystem::path& file) {
-    Cells cells;
-    for (Eigen::Index i = 0; i < grid.points.rows(); ++i) {
-        cells.node_numbers.push_back(i);
-        cells.nodes.emplace_back(grid.points.row(i));
-    }
-    for (std::size_t e = 0; e < grid.types.size(); ++e) {
-        if (is_flat(grid.types[e])) continue;
-        const auto nodes = grid.cell(e);
-        const CellShape shape = shape_of(grid.types[e], e, file);
-        if (std::ssize(nodes) < nodes_of(shape).corners)
-            throw InvalidInput(fmt::format("{}: cell {} has {} nodes, too few.", file.string(), e, nodes.size()));
-        cells.cells.push_back({static_cast<std::int64_t>(e), shape, {nodes.begin(), nodes.end()}});
-    }
-    return cells;
 }
 
 /// Under the name that ParaView gives to the time of a file.

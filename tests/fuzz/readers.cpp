@@ -120,6 +120,19 @@ const char* const posterior =
     "parameter,link,unit,mean,sd,q025,q50,q975,prior_mean,prior_sd,informed\n"
     "elongation:link0,0,N/mm,1.2,0.1,1.0,1.2,1.4,1,0.5,1\nflexion,,N*mm/rad,400,10,380,400,420,500,200,1\n";
 
+const char* const ply_strips =
+    "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\nelement "
+    "tristrips 1\nproperty list int int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n1 1 0\n8 0 1 2 3 -1 0 2 1\n";
+const char* const gmsh_1 =
+    "$NOD\n4\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 0 0 1\n$ENDNOD\n$ELM\n2\n1 2 7 1 3 1 2 3\n2 4 7 1 4 1 2 3 4\n$ENDELM\n";
+const char* const vtk_grid =
+    "# vtk DataFile Version 3.0\na\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 8 float\n0 0 0 2 0 0 2 2 0 0 2 0 0 0 2 2 "
+    "0 2 2 2 2 0 2 2\nCELLS 1 9\n8 0 1 2 3 4 5 6 7\nCELL_TYPES 1\n12\n";
+const char* const vtk_surface =
+    "# vtk DataFile Version 2.0\na\nASCII\nDATASET POLYDATA\nPOINTS 4 float\n0 0 0 1 0 0 0 1 0 1 1 0\nPOLYGONS 1 4\n3 "
+    "0 "
+    "1 2\nTRIANGLE_STRIPS 1 5\n4 0 1 2 3\n";
+
 std::string gmsh() {
     const TemporaryFolder folder;
     mesh::write_gmsh(folder / "body.msh", mesh::make_bar({0, 0, 0}, {100, 20, 20}, {1, 1, 1}), mesh::GmshVersion::v4_1);
@@ -183,6 +196,10 @@ std::vector<Reader> all_readers() {
             written("case", "case.yaml", case_with_all_settings(), [](const fs::path& f) { pipeline::read_case(f); }),
             written("inp", "body.inp", deck, read_body),
             written("msh", "body.msh", gmsh(), read_body),
+            written("msh1", "one.msh", gmsh_1, read_body),
+            written("strips", "strips.ply", ply_strips, [](const fs::path& f) { mesh::read_surface(f); }),
+            written("vtk", "body.vtk", vtk_grid, read_body),
+            written("vtk_surface", "surface.vtk", vtk_surface, read_body),
             written("medit", "body.mesh", medit, read_body),
             tetgen(),
             written("mha", "body.mha", meta_image(), read_body),

@@ -184,6 +184,21 @@ TEST_F(ReadSurface, TellsWhereAPlyIsWrong) {
                      {"x, y and z"}));
 }
 
+TEST_F(ReadSurface, PlyStripsTurnEveryOtherTriangleAndEndAtMinusOne) {
+    const std::string head =
+        "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\nelement "
+        "tristrips 1\nproperty list int int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n1 1 0\n";
+    const Surface both = read("a.ply", head + "4 0 1 2 3\n");
+    EXPECT_EQ(both.triangles.rows(), 2);
+    EXPECT_NEAR(area_vectors(both).col(2).sum(), 1, 1e-12);  // both look up
+    const Surface rows = read("b.ply", head + "7 0 1 2 -1 1 3 2\n");
+    EXPECT_EQ(rows.triangles.rows(), 2);
+    EXPECT_NEAR(area_vectors(rows).col(2).sum(), 1, 1e-12);
+    EXPECT_EQ(read("c.ply", head + "6 0 1 2 2 3 1\n").triangles.rows(), 2);  // a repeated corner makes none
+    EXPECT_TRUE(says(refusal("d.ply", head + "3 0 1 7\n"), {"vertex 7", "0 to 3"}));
+    EXPECT_TRUE(says(refusal("e.ply", head + "9 0 1 2\n"), {"the file ends here"}));
+}
+
 TEST_F(ReadSurface, AHostileCountTakesNoMemory) {
     const std::string head =
         "ply\nformat binary_little_endian 1.0\nelement vertex 4000000000\nproperty double x\nproperty double y\n"

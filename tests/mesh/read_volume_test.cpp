@@ -174,6 +174,16 @@ TEST_F(ReadVolume, GmshSaysWhatIsWrong) {
         {"node 1", "twice"}));
 }
 
+TEST_F(ReadVolume, GmshOfFormatOne) {
+    const std::string nodes = "$NOD\n4\n" + corner_rows + "$ENDNOD\n";
+    const BodyFile body = read("one.msh", nodes + "$ELM\n2\n1 2 7 1 3 1 2 3\n2 4 7 1 4 1 2 3 4\n$ENDELM\n");
+    EXPECT_NEAR(element_volumes(*body.volume).sum(), corner_volume, 1e-12);
+    EXPECT_TRUE(says(refusal("a.msh", nodes), {"nothing", "$ELM"}));
+    EXPECT_TRUE(says(refusal("b.msh", "$NOD\n4\n" + corner_rows), {"$ENDNOD"}));
+    EXPECT_TRUE(says(refusal("c.msh", nodes + "$ELM\n1\n2 4 7 1 5 1 2 3 4 4\n$ENDELM\n"), {"tells 5 nodes", "has 4"}));
+    EXPECT_TRUE(says(refusal("d.msh", nodes + "$ELM\n1\n2 5 7 1 8 1 2 3 4 1 2 3 4\n$ENDELM\n"), {"hexahedron"}));
+}
+
 TEST_F(ReadVolume, ElementsInsideOutAreTurned) {
     const std::string one = "1 4 2 1 1 1 3 2 4\n";  // the other way round, and so are all: a convention
     BodyFile body = read("a.msh", gmsh_2 + gmsh_2_nodes + gmsh_2_elements(one));

@@ -61,7 +61,12 @@ public:
         : file_(file), content_(read_text(file)), numbers_(content_, file) {}
 
     Elements read() {
-        read_format();
+        const std::string_view first = numbers_.next_word();
+        if (first == "$NOD") {
+            read_version_1();
+            return std::move(elements_);
+        }
+        read_format(first);
         for (std::string_view word = numbers_.next_word(); !word.empty(); word = numbers_.next_word()) {
             if (word.front() != '$')
                 throw InvalidInput(fmt::format("{}: {} stands where a section ($Nodes, $Elements, ...) should begin.",
@@ -72,10 +77,12 @@ public:
     }
 
 private:
-    void read_format() {
-        if (numbers_.next_word() != "$MeshFormat")
-            throw InvalidInput(fmt::format("{}: does not begin with $MeshFormat. Save it from Gmsh as MSH 4.1 or 2.2.",
-                                           file_.string()));
+    void read_format(std::string_view first) {
+        if (first != "$MeshFormat")
+            throw InvalidInput(fmt::format(
+                "{}: begins neither with $MeshFormat nor with $NOD (format 1). Save it from Gmsh as MSH 4.1 "
+                "or 2.2.",
+                file_.string()));
         const std::string version(numbers_.next_word());
         if (version != "2.2" && version != "4.1" && version != "2" && version != "2.1")
             throw InvalidInput(
@@ -125,6 +132,45 @@ private:
         for (double& coordinate : at) coordinate = numbers_.next_double("a coordinate");
     }
 
+    // ---- Version 1 ----------------------------------------------------------------------------------------------
+
+    void read_version_1() {
+        read_nodes_2();
+        end_section_1("NOD");
+        if (const std::string_view word = numbers_.next_word(); word != "$ELM")
+            throw InvalidInput(fmt::format("{}: {} stands where $ELM, the elements, should begin. Save the mesh again.",
+                                           numbers_.where(), word.empty() ? "nothing" : cited(word)));
+        std::int64_t left = numbers_.next_count("the number of elements", 8);
+        for (; left > 0; --left) read_element_1();
+        end_section_1("ELM");
+    }
+
+    /// number, type, physical group, geometry, number of nodes, nodes
+    void read_element_1() {
+        const std::int64_t number = numbers_.next_int("an element's number");
+        const ElementType& type = gmsh_type(numbers_.next_int("an element's type"), numbers_);
+        const int group = numbers_.next_int("a physical group"), geometry = numbers_.next_int("a geometry");
+        if (const int nodes = numbers_.next_int("a number of nodes"); nodes != type.nodes)
+            throw InvalidInput(
+                fmt::format("{}: element {} tells {} nodes, a {} of its type has {}. Save the mesh again.",
+                            numbers_.where(), number, nodes, type.name, type.nodes));
+        add_element(number, type, read_corners(type), group != 0 ? group : geometry);
+    }
+
+    void end_section_1(const std::string& name) {
+        if (numbers_.next_word() != "$END" + name)
+            throw InvalidInput(
+                fmt::format("{}: $END{} should stand there. The file is cut off, or a count is wrong: save "
+                            "or copy it again.",
+                            numbers_.where(), name));
+    }
+
+    std::vector<std::int64_t> read_corners(const ElementType& type) {
+        std::vector<std::int64_t> nodes(static_cast<std::size_t>(type.nodes));
+        for (std::int64_t& node : nodes) node = numbers_.next_int("a node of an element");
+        return nodes;
+    }
+
     // ---- Version 2.2 --------------------------------------------------------------------------------------------
 
     void read_nodes_2() {
@@ -159,9 +205,7 @@ private:
             const int tag = numbers_.next_int("a tag");
             if (t < 2) groups[static_cast<std::size_t>(t)] = tag;
         }
-        std::vector<std::int64_t> nodes(static_cast<std::size_t>(type.nodes));
-        for (std::int64_t& node : nodes) node = numbers_.next_int("a node of an element");
-        add_element(number, type, std::move(nodes), groups[0] != 0 ? groups[0] : groups[1]);
+        add_element(number, type, read_corners(type), groups[0] != 0 ? groups[0] : groups[1]);
     }
 
     void add_element(std::int64_t number, const ElementType& type, std::vector<std::int64_t> nodes,
