@@ -15,6 +15,7 @@
 #include "mesh/read_surface.h"
 #include "mesh/solver/deck.h"
 #include "mesh/solver/vtk_cells.h"
+#include "mesh/well_formed.h"
 
 namespace palpate::mesh {
 
@@ -30,7 +31,9 @@ namespace {
 
 BodyFile of_surface(const fs::path& file, const ReadBodyOptions&) {
     BodyFile body;
-    body.surface = read_surface(file);
+    int unused = 0;
+    body.surface = well_formed(read_surface(file), file.string(), &unused);
+    if (unused > 0) body.notes.push_back(fmt::format("{} vertices that no triangle uses are left out", unused));
     return body;
 }
 

@@ -64,11 +64,10 @@ std::vector<mesh::Region> patched(const std::vector<mesh::Region>& supports, con
 
 void choose_supports(Subject& subject) {
     if (!subject.settings.supports.empty()) {
-        const double longest = mesh::bounding_box(subject.surface.vertices).longest_side();
         const double told = subject.settings.edge_length;
         const double edge = told > 0      ? told
                             : subject.set ? reference_edge_length(subject.surface)
-                                          : default_edge_share * longest;
+                                          : default_edge_length(subject.surface);
         subject.supports = patched(subject.settings.supports, subject.surface, edge, subject.notes);
     } else if (subject.set) {
         subject.supports = subject.set->supports;
