@@ -7,11 +7,34 @@
 #include <map>
 #include <set>
 
+#include "mesh/errors.h"
+#include "mesh/io/isolated.h"
 #include "mesh/topology/self_intersections.h"
 #include "mesh/topology/shells.h"
 #include "mesh/topology/weld.h"
 
 namespace palpate::mesh {
+
+/// What a check comes to.
+struct Findings {
+    SurfaceReport report;
+    std::vector<FaultPlace> places;
+};
+
+template <class Archive>
+void serialize(Archive& archive, FaultPlace& place) {
+    archive(place.fault, place.at, place.triangles);
+}
+
+template <class Archive>
+void serialize(Archive& archive, Findings& found) {
+    SurfaceReport& r = found.report;
+    archive(r.vertices, r.triangles, r.duplicate_vertices, r.degenerate_triangles, r.duplicate_triangles,
+            r.boundary_edges, r.holes, r.non_manifold_edges, r.non_manifold_vertices, r.inconsistent_edges,
+            r.self_intersections, r.components, r.closed, r.outward, r.volume, r.area, r.box.min, r.box.max,
+            found.places);
+}
+
 namespace {
 
 constexpr double weld_distance = 1e-6;  // share of the diagonal
@@ -145,6 +168,27 @@ bool is_outward(const Surface& surface, const SurfaceReport& report) {
                        [](const Shell& shell) { return shell.is_cavity() ? shell.volume < 0 : shell.volume > 0; });
 }
 
+SurfaceReport count_faults(const Surface& surface, std::vector<FaultPlace>* places) {
+    SurfaceReport report;
+    report.box = bounding_box(surface.vertices);
+    const WeldResult welded = weld(surface, weld_distance * report.box.diagonal());
+    report.vertices = static_cast<int>(welded.surface.vertices.rows());
+    report.triangles = static_cast<int>(welded.surface.triangles.rows());
+    report.duplicate_vertices = welded.merged;
+
+    const Proper proper = proper_triangles(welded.surface, report, places);
+    check_edges(proper, report);
+    report.non_manifold_vertices = count_non_manifold_vertices(proper);
+    const std::vector<int> parts = connected_parts(proper.surface);
+    report.components = parts.empty() ? 0 : *std::max_element(parts.begin(), parts.end()) + 1;
+    report.self_intersections = count_self_intersections(proper);
+    report.area = area(proper.surface);
+    report.volume = signed_volume(proper.surface);
+    report.outward = is_outward(proper.surface, report);
+    if (places) std::ranges::stable_sort(*places, {}, [](const FaultPlace& place) { return place.fault; });
+    return report;
+}
+
 }  // namespace
 
 bool SurfaceReport::sound() const {
@@ -165,25 +209,16 @@ const char* name_of(Fault fault) {
 }
 
 SurfaceReport check_surface(const Surface& surface, std::vector<FaultPlace>* places) {
-    SurfaceReport report;
-    if (surface.triangles.rows() == 0) return report;
-    report.box = bounding_box(surface.vertices);
-    const WeldResult welded = weld(surface, weld_distance * report.box.diagonal());
-    report.vertices = static_cast<int>(welded.surface.vertices.rows());
-    report.triangles = static_cast<int>(welded.surface.triangles.rows());
-    report.duplicate_vertices = welded.merged;
-
-    const Proper proper = proper_triangles(welded.surface, report, places);
-    check_edges(proper, report);
-    report.non_manifold_vertices = count_non_manifold_vertices(proper);
-    const std::vector<int> parts = connected_parts(proper.surface);
-    report.components = parts.empty() ? 0 : *std::max_element(parts.begin(), parts.end()) + 1;
-    report.self_intersections = count_self_intersections(proper);
-    report.area = area(proper.surface);
-    report.volume = signed_volume(proper.surface);
-    report.outward = is_outward(proper.surface, report);
-    if (places) std::ranges::stable_sort(*places, {}, [](const FaultPlace& place) { return place.fault; });
-    return report;
+    if (surface.triangles.rows() == 0) return {};
+    Findings found = isolated_as<Findings>("The check of the surface", "Remesh or simplify it in a mesh editor first.",
+                                           limits_for(static_cast<double>(surface.triangles.rows()), 1e-3), [&] {
+                                               Findings in_child;
+                                               in_child.report =
+                                                   count_faults(surface, places ? &in_child.places : nullptr);
+                                               return in_child;
+                                           });
+    if (places) *places = std::move(found.places);
+    return found.report;
 }
 
 std::vector<std::string> describe_faults(const SurfaceReport& report) {

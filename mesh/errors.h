@@ -15,6 +15,11 @@ struct SolverFailure : std::runtime_error {
     using std::runtime_error::runtime_error;
 };
 
+/// A limit of time or memory was reached: a second try comes no further.
+struct LimitReached : SolverFailure {
+    using SolverFailure::SolverFailure;
+};
+
 /// A file that cannot be opened, read or written. Exit code 3.
 struct IoError : std::runtime_error {
     using std::runtime_error::runtime_error;

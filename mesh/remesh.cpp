@@ -9,6 +9,7 @@
 
 #include "mesh/check_surface.h"
 #include "mesh/errors.h"
+#include "mesh/io/isolated.h"
 #include "mesh/repair/steps.h"
 #include "mesh/topology/cgal_mesh.h"
 #include "mesh/topology/creases.h"
@@ -110,6 +111,41 @@ std::string reason(const Attempt& tried, double allowed) {
     return fmt::format("the volume changes by {:.1f} % (allowed: {:.0f} %)", 100 * tried.volume_change, 100 * allowed);
 }
 
+double target_length(const Surface& surface, const RemeshOptions& options) {
+    return options.edge_length > 0 ? options.edge_length : 0.06 * bounding_box(surface.vertices).longest_side();
+}
+
+double triangles_of(const Surface& surface, double length) {
+    return area(surface) / (std::sqrt(3.0) / 4 * length * length);
+}
+
+Surface remeshed(const Surface& surface, const RemeshOptions& options) {
+    if (surface.triangles.rows() == 0 || !cgal::is_mesh(cgal::to_soup(surface)) || !(signed_volume(surface) > 0))
+        throw InvalidInput("Remeshing: the surface is not closed and outward. Repair it first.");
+    const double target = target_length(surface, options);
+    const Creases creases = find_creases(surface, options.crease_angle);
+
+    // Chords cut volume off in proportion to their length squared: that tells the next length to try.
+    double length = target;
+    std::string last;
+    for (int i = 0; i < attempts; ++i) {
+        if (const double triangles = triangles_of(surface, length); triangles > most_triangles) {
+            last += fmt::format("{}at {:.4g} mm there would be {:.0f} triangles ({:.0f} are allowed)",
+                                last.empty() ? "" : ", and ", length, triangles, most_triangles);
+            break;
+        }
+        const Attempt tried = attempt_around_thin_places(surface, creases, length, options.iterations);
+        if (tried.sound && tried.volume_change <= options.volume_change) return tried.surface;
+        last = fmt::format("at {:.4g} mm {}", length, reason(tried, options.volume_change));
+        const double wanted = std::sqrt(0.8 * options.volume_change / std::max(tried.volume_change, 1e-12));
+        length *= std::clamp(wanted, 0.4, tried.sound ? 0.9 : 0.75);
+    }
+    throw SolverFailure(
+        fmt::format("Remeshing found no sound triangles for an edge length of {:.4g} mm: {}. Thicken or "
+                    "remove its thinnest places, or give another edge length.",
+                    target, last));
+}
+
 }  // namespace
 
 void RemeshOptions::validate() const {
@@ -130,32 +166,12 @@ void RemeshOptions::validate() const {
 
 Surface remesh(const Surface& surface, const RemeshOptions& options) {
     options.validate();
-    if (surface.triangles.rows() == 0 || !cgal::is_mesh(cgal::to_soup(surface)) || !(signed_volume(surface) > 0))
-        throw InvalidInput("Remeshing: the surface is not closed and outward. Repair it first.");
-    const double target =
-        options.edge_length > 0 ? options.edge_length : 0.06 * bounding_box(surface.vertices).longest_side();
-    const Creases creases = find_creases(surface, options.crease_angle);
-
-    // Chords cut volume off in proportion to their length squared: that tells the next length to try.
-    double length = target;
-    std::string last;
-    for (int i = 0; i < attempts; ++i) {
-        if (const double triangles = area(surface) / (std::sqrt(3.0) / 4 * length * length);
-            triangles > most_triangles) {
-            last += fmt::format("{}at {:.4g} mm there would be {:.0f} triangles ({:.0f} are allowed)",
-                                last.empty() ? "" : ", and ", length, triangles, most_triangles);
-            break;
-        }
-        const Attempt tried = attempt_around_thin_places(surface, creases, length, options.iterations);
-        if (tried.sound && tried.volume_change <= options.volume_change) return tried.surface;
-        last = fmt::format("at {:.4g} mm {}", length, reason(tried, options.volume_change));
-        const double wanted = std::sqrt(0.8 * options.volume_change / std::max(tried.volume_change, 1e-12));
-        length *= std::clamp(wanted, 0.4, tried.sound ? 0.9 : 0.75);
-    }
-    throw SolverFailure(
-        fmt::format("Remeshing found no sound triangles for an edge length of {:.4g} mm: {}. Thicken or "
-                    "remove its thinnest places, or give another edge length.",
-                    target, last));
+    if (surface.triangles.rows() == 0) throw InvalidInput("Remeshing: the surface has no triangles.");
+    const double triangles = static_cast<double>(surface.triangles.rows()) +
+                             std::min(triangles_of(surface, target_length(surface, options)), most_triangles);
+    constexpr double seconds_each = 0.01;  // seven lengths, five tries each, at 50 us a triangle and iteration
+    return isolated_as<Surface>("Remeshing", "Simplify the surface in a mesh editor, or give a larger edge length.",
+                                limits_for(triangles, seconds_each), [&] { return remeshed(surface, options); });
 }
 
 }  // namespace palpate::mesh

@@ -7,6 +7,7 @@
 
 #include "mesh/check_surface.h"
 #include "mesh/errors.h"
+#include "mesh/io/isolated.h"
 #include "mesh/repair/cap_flat_holes.h"
 #include "mesh/repair/drop_fins.h"
 #include "mesh/repair/guarded.h"
@@ -17,7 +18,34 @@
 #include "mesh/topology/weld.h"
 
 namespace palpate::mesh {
+
+template <class Archive>
+void serialize(Archive& archive, RepairResult& result) {
+    archive(result.surface, result.steps, result.distance, result.volume, result.wrapped);
+}
+
 namespace {
+
+double median_of(Eigen::VectorXd values) {
+    std::nth_element(values.begin(), values.begin() + values.size() / 2, values.end());
+    return values[values.size() / 2];
+}
+
+/// No triangle with an area is left once corners within `distance` count as one.
+[[noreturn]] void throw_nothing_left(const Surface& input, double distance) {
+    const Eigen::RowVector3d median(median_of(input.vertices.col(0)), median_of(input.vertices.col(1)),
+                                    median_of(input.vertices.col(2)));
+    const Eigen::VectorXd away = (input.vertices.rowwise() - median).rowwise().norm();
+    Eigen::Index furthest = 0;
+    if (away.maxCoeff(&furthest) <= 1000 * median_of(away))
+        throw InvalidInput("Repair: no triangle of the surface has an area. Give a surface that encloses a volume.");
+    const Vec3 at = input.vertices.row(furthest);
+    throw InvalidInput(fmt::format(
+        "Repair: vertex {} (from 1) at ({:.4g}, {:.4g}, {:.4g}) lies so far away from the others that these are a "
+        "point beside it: corners within {:.3g} mm, a millionth of the diagonal, count as one. Move or remove it, and "
+        "export the surface again.",
+        furthest + 1, at.x(), at.y(), at.z(), distance));
+}
 
 /// The surface on its way, with what is wrong with it and what was done.
 class Repair {
@@ -44,6 +72,7 @@ public:
     void orient_and_stitch_sheets() {
         const SurfaceReport before = report_;
         take(orient_and_stitch(surface_));
+        if (surface_.triangles.rows() == 0) throw_nothing_left(input_, options_.weld * box_.diagonal());
         if (before.duplicate_triangles > 0)
             say(fmt::format("{} twins of triangles dropped", before.duplicate_triangles));
         if (before.degenerate_triangles > report_.degenerate_triangles)
@@ -59,7 +88,8 @@ public:
     void fill_small_holes() {
         if (report_.boundary_edges == 0) return;
         const int holes = report_.holes;
-        const auto filled = guarded([&] { return fill_holes(surface_, options_.largest_hole * box_.diagonal()); });
+        const auto filled = guarded(surface_.triangles.rows(),
+                                    [&] { return fill_holes(surface_, options_.largest_hole * box_.diagonal()); });
         if (filled) take(*filled);
         if (report_.holes < holes) say(fmt::format("{} holes filled", holes - report_.holes));
         cap_large_flat_holes();
@@ -68,7 +98,7 @@ public:
     void unite_overlapping_shells() {
         if (report_.self_intersections == 0 || report_.components < 2 || !report_.closed) return;
         const int parts = report_.components;
-        const auto united = guarded([&] { return unite_shells(surface_); });
+        const auto united = guarded(surface_.triangles.rows(), [&] { return unite_shells(surface_); });
         if (!united) return;  // the next steps see to it
         take(*united);
         united_ = true;
@@ -79,7 +109,7 @@ public:
         if (report_.self_intersections + report_.degenerate_triangles == 0) return;
         whole_ = surface_;
         const int crossings = report_.self_intersections, degenerate = report_.degenerate_triangles;
-        const auto without = guarded([&] { return remove_crossings(surface_); });
+        const auto without = guarded(surface_.triangles.rows(), [&] { return remove_crossings(surface_); });
         if (!without) return;
         take(*without);
         if (report_.self_intersections < crossings)
@@ -181,25 +211,7 @@ void require_volume(const SurfaceReport& report) {
                     report.volume, report.area));
 }
 
-}  // namespace
-
-void RepairOptions::validate() const {
-    if (!(weld > 0 && weld <= 0.01))
-        throw InvalidInput(
-            fmt::format("Repair: weld is {}; more than 0 and up to 0.01 of the diagonal is allowed.", weld));
-    if (!(largest_hole >= 0 && largest_hole <= 1))
-        throw InvalidInput(fmt::format("Repair: largest_hole is {}; 0 to 1 of the diagonal is allowed.", largest_hole));
-    if (!(largest_flat_hole >= 0 && largest_flat_hole <= 1))
-        throw InvalidInput(
-            fmt::format("Repair: largest_flat_hole is {}; 0 to 1 of the diagonal is allowed.", largest_flat_hole));
-    if (!(allowed_distance > 0 && allowed_distance <= 1))
-        throw InvalidInput(fmt::format(
-            "Repair: allowed_distance is {}; more than 0 and up to 1 of the diagonal is allowed.", allowed_distance));
-}
-
-RepairResult repair_surface(const Surface& surface, const RepairOptions& options) {
-    options.validate();
-    require_triangles(surface);
+RepairResult repair(const Surface& surface, const RepairOptions& options) {
     RepairResult result;
     Repair repair(surface, options, result);
     const bool was_sound = repair.sound() && !options.wrap;
@@ -233,6 +245,32 @@ RepairResult repair_surface(const Surface& surface, const RepairOptions& options
                         "given one",
                         result.volume, result.distance));
     return result;
+}
+
+}  // namespace
+
+void RepairOptions::validate() const {
+    if (!(weld > 0 && weld <= 0.01))
+        throw InvalidInput(
+            fmt::format("Repair: weld is {}; more than 0 and up to 0.01 of the diagonal is allowed.", weld));
+    if (!(largest_hole >= 0 && largest_hole <= 1))
+        throw InvalidInput(fmt::format("Repair: largest_hole is {}; 0 to 1 of the diagonal is allowed.", largest_hole));
+    if (!(largest_flat_hole >= 0 && largest_flat_hole <= 1))
+        throw InvalidInput(
+            fmt::format("Repair: largest_flat_hole is {}; 0 to 1 of the diagonal is allowed.", largest_flat_hole));
+    if (!(allowed_distance > 0 && allowed_distance <= 1))
+        throw InvalidInput(fmt::format(
+            "Repair: allowed_distance is {}; more than 0 and up to 1 of the diagonal is allowed.", allowed_distance));
+}
+
+RepairResult repair_surface(const Surface& surface, const RepairOptions& options) {
+    options.validate();
+    require_triangles(surface);
+    ChildLimits limits = limits_for(static_cast<double>(surface.triangles.rows()), 5e-3);
+    limits.seconds += 80;  // for some steps that come to no end, after which others serve
+    return isolated_as<RepairResult>("The repair of the surface",
+                                     "Mend the surface in a mesh editor: remesh it there, or simplify it.", limits,
+                                     [&] { return repair(surface, options); });
 }
 
 }  // namespace palpate::mesh

@@ -73,9 +73,11 @@ void Baselines::fit(const Problem& problem, std::vector<std::string>& notes, con
             neighbour = fits_[law];
         } catch (const SolverFailure& e) {
             failure = e.what();
+            is_large_lost_ |= law > 0 && !options_->law;
             notes.push_back(fmt::format("Under the law {} the body has no equilibrium: {}", name, failure));
         }
     }
+    is_large_lost_ &= !neighbour;
     if (std::ranges::none_of(fits_, [](const auto& found) { return found.has_value(); })) {
         throw SolverFailure("no law finds an equilibrium in every state: " + failure);
     }

@@ -25,6 +25,8 @@ public:
     double evidence(int law) const { return fits_[law] ? fits_[law]->log_evidence : -INFINITY; }
     /// Under the law that explains most.
     const Refit& best() const;
+    /// Were laws of large deformation tried, and none found its equilibria?
+    bool lost_large_deformation() const { return is_large_lost_; }
 
 private:
     Explanation start(const Problem& problem, int law, const Eigen::VectorXd& theta) const;
@@ -34,6 +36,7 @@ private:
     const BodyModel* model_;
     const DiagnoseOptions* options_;
     std::vector<std::optional<Refit>> fits_;
+    bool is_large_lost_ = false;
 };
 
 }  // namespace palpate::identify

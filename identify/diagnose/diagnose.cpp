@@ -9,6 +9,7 @@
 
 #include "identify/diagnose/baselines.h"
 #include "identify/diagnose/crushing.h"
+#include "identify/diagnose/independent_readings.h"
 #include "identify/diagnose/judge.h"
 #include "identify/diagnose/search.h"
 #include "identify/effects/catalogue.h"
@@ -64,6 +65,8 @@ public:
         for (int law = 0; law < baselines_.laws(); ++law) {
             result_.law_evidence.push_back(baselines_.evidence(law) - baseline().log_evidence);
         }
+        result_.independent = independent_readings(result_.problem);
+        result_.lost_large_deformation = baselines_.lost_large_deformation();
         judge(model_, options_, result_);
         tell_what_a_mesh_leaves();
         return std::move(result_);

@@ -74,6 +74,7 @@ struct Candidate {
     std::string objection = {};   // of its refit
     double probability = 0;       // among all candidates and none
     double predicted_rms_mm = 0;  // what the screen expects to be left
+    bool is_unfitted = false;     // its refit found no equilibrium: the ln Bayes factor is the screen's
     std::optional<Refit> refit = std::nullopt;
     std::optional<HeldOut> held_out = std::nullopt;
     Told told = {};  // its numbers; in an explanation of several those that it has there
@@ -109,6 +110,8 @@ struct Diagnosis {
     Outliers outliers;                 // readings as the set numbers them
     Problem problem;                   // without the outliers
     std::optional<NextProbe> next_probe;
+    int independent = 0;                  // readings, see independent_readings()
+    bool lost_large_deformation = false;  // none of its laws found its equilibria
     bool noise_known = true;
     double noise = 0;                // 1 sigma, told or estimated, rms [mm]
     std::vector<std::string> notes;  // what a user should know, in words

@@ -8,6 +8,16 @@
 
 namespace palpate::identify {
 
+std::vector<int> held_out_groups(const Problem& problem) {
+    std::vector<int> probe(problem.rows()), action(problem.rows());
+    for (Eigen::Index n = 0; n < problem.rows(); ++n) {
+        action[n] = problem.action[n];
+        probe[n] = problem.probe[action[n]];
+    }
+    const bool is_one = std::ranges::all_of(probe, [&](int p) { return p == probe.front() || p == -1; });
+    return is_one ? action : probe;
+}
+
 HeldOut leave_probes_out(const Problem& problem, const Refit& fit) {
     // All unknowns as one linear model about their priors' means: d + A (x - mean) = A x' + nuisances + noise.
     const Eigen::Index own = fit.columns.cols(), all = own + fit.nuisances.columns.cols();
@@ -17,8 +27,7 @@ HeldOut leave_probes_out(const Problem& problem, const Refit& fit) {
     precisions << fit.prior_sd.cwiseAbs2().cwiseInverse(), fit.nuisances.precisions;
     const Eigen::VectorXd d = fit.error + fit.columns * (fit.explanation.all() - fit.prior_mean);
 
-    std::vector<int> group(problem.rows());
-    for (Eigen::Index n = 0; n < problem.rows(); ++n) group[n] = problem.probe[problem.action[n]];
+    const std::vector<int> group = held_out_groups(problem);
     const LeftOut left = leave_out(Whitening(fit.V->weights(), A, precisions), d, group);
     const auto N = static_cast<double>(problem.rows());
     return {std::sqrt(left.error.cwiseProduct(problem.sigma).squaredNorm() / N), std::sqrt(left.chi_square / N), {}};

@@ -12,6 +12,9 @@ struct HeldOut {
 };
 HeldOut leave_probes_out(const Problem& problem, const Refit& fit);
 
+/// What is left out together, for each row (N): a probe's readings; where all loads are one probe's, a load's.
+std::vector<int> held_out_groups(const Problem& problem);
+
 /// A fit's explanation in another problem of the same body.
 struct Foretold {
     Explanation explanation;     // numbers that go with the new probes are as likely as any; effects that cannot show

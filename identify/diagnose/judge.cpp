@@ -76,9 +76,33 @@ std::string objection_of_effects(const Diagnosis& diagnosis, const Explained& ex
     return {};
 }
 
+/// As many numbers as readings that are independent of each other explain whatever was measured.
+std::string objection_of_few_readings(const Diagnosis& diagnosis, const Explained& explained) {
+    Eigen::Index numbers = explained.fit.explanation.theta.size();
+    for (std::size_t e = 0; e < explained.fit.explanation.effects.size(); ++e)
+        if (explained.has(explained.fit.explanation.effects[e]->name()))
+            numbers += std::ssize(explained.fit.numbers[e]);
+    if (numbers < diagnosis.independent) return {};
+    return fmt::format(
+        "with the stiffness it has {} numbers, and the set {} independent readings: so many numbers explain whatever "
+        "was measured. Read more markers, or load other places",
+        numbers, diagnosis.independent);
+}
+
+/// What is right predicts a probe left out better than nothing does. What its nuisances and its own numbers excuse
+/// there does not count.
+std::string objection_of_held_out(const Diagnosis& diagnosis, const Explained& explained) {
+    constexpr double chance = 1.1;
+    const double with = explained.held_out.rms_mm, without = diagnosis.baseline_held_out.rms_mm;
+    if (with <= chance * without) return {};
+    return fmt::format("probes left out are predicted worse with it, to {:.3g} mm instead of {:.3g} mm", with, without);
+}
+
 std::string objection_to(const Diagnosis& diagnosis, const Explained& explained, const DiagnoseOptions& options) {
     if (leaves_too_much(diagnosis.baseline, explained))
         return "it leaves too much, beyond the noise, of what it should explain, as errors of a mesh do";
+    if (std::string few = objection_of_few_readings(diagnosis, explained); !few.empty()) return few;
+    if (std::string worse = objection_of_held_out(diagnosis, explained); !worse.empty()) return worse;
     const double unseen = explained.held_out.whitened_rms, gap = unseen / explained.fit.whitened_rms;
     constexpr double chance = 10;  // over the number of rows: an allowance for small sets
     if (unseen > 1 && gap > options.most_gap + chance / static_cast<double>(diagnosis.problem.rows())) {
@@ -99,10 +123,12 @@ std::string objection_to(const Diagnosis& diagnosis, const Explained& explained,
 
 /// Likely explanations that explain enough and do not fall behind the likeliest, by evidence. Those with an effect that
 /// is refused for what it came out as (`refused`) are no rivals.
+/// Nor is anything claimed that stands beneath what could not be fitted (`unfitted`, its evidence by the screen).
 std::vector<const Explained*> explain_alike(const std::vector<const Explained*>& by_evidence,
-                                            const std::set<const Explained*>& refused, const DiagnoseOptions& options) {
+                                            const std::set<const Explained*>& refused, double unfitted,
+                                            const DiagnoseOptions& options) {
     std::vector<const Explained*> alike;
-    double most = -INFINITY;
+    double most = unfitted;
     for (const Explained* one : by_evidence) {
         if (!is_likely(*one, options) || refused.contains(one)) continue;
         most = std::max(most, one->log_bayes_factor);
@@ -182,7 +208,16 @@ void judge(const BodyModel& model, const DiagnoseOptions& options, Diagnosis& di
     const bool something = std::ranges::any_of(by_evidence, [&](const Explained* one) {
         return is_likely(*one, options) && one->objection.empty() && one->log_bayes_factor > 0.5 * most;
     });
-    const std::vector<const Explained*> alike = explain_alike(by_evidence, refused, options);
+    double unfitted = -INFINITY;
+    for (const Candidate& c : diagnosis.ranking)
+        if (c.is_unfitted) unfitted = std::max(unfitted, c.log_bayes_factor);
+    std::vector<const Explained*> alike = explain_alike(by_evidence, refused, unfitted, options);
+    if (diagnosis.lost_large_deformation && !alike.empty()) {
+        diagnosis.notes.emplace_back(
+            "Nothing is claimed: no law of large deformation has been fitted, and what small strain lacks looks like "
+            "an effect.");
+        alike.clear();
+    }
     if (alike.size() > 1) {
         diagnosis.verdict = Verdict::ambiguous;
         diagnosis.next_probe = separate(model, diagnosis.problem, alike, options.refit);

@@ -35,17 +35,18 @@ public:
     std::vector<Own> own;
 };
 
-void add_contact(Collector& all, const BodyModel& model, const Setting& setting, const Problem& problem, int k,
-                 const Action& action, const mesh::Contact& contact, const NuisanceOptions& options) {
+void add_contact(Collector& all, const BodyModel& model, const Setting& setting, int k, const Action& action,
+                 const mesh::Contact& contact, const NuisanceOptions& options) {
     const double r = effective_radius(model, contact);
     const Vec3 normal = model.normal_near(contact.point, 1.2 * r), a = normal.unitOrthogonal(), b = normal.cross(a);
-    const std::string where = fmt::format("of probe {} at ({:.4g}, {:.4g}, {:.4g})", problem.probe[k],
-                                          contact.point.x(), contact.point.y(), contact.point.z());
+    // However loads are numbered: what touches a place with the same tip does so in one way.
+    const std::string where = fmt::format("of radius {:.4g} mm at ({:.4g}, {:.4g}, {:.4g})", r, contact.point.x(),
+                                          contact.point.y(), contact.point.z());
 
     // Shifts and radius, each a difference over the radius.
     std::vector<int> columns{all.add("contact " + where + " shifted", options.shift),
                              all.add("contact " + where + " shifted across", options.shift),
-                             all.add("radius " + where, options.radius)};
+                             all.add("radius of the contact " + where, options.radius)};
     all.own.push_back({k,
                        [&model, setting, contact, r, a, b](const Eigen::VectorXd& q) {
                            const auto force = [&](const Vec3& shift, double scale) {
@@ -83,7 +84,7 @@ void add_contact(Collector& all, const BodyModel& model, const Setting& setting,
                            [&model, setting, contact](const Eigen::VectorXd& q) -> Eigen::MatrixXd {
                                return model.contact_force(q, setting, contact);
                            },
-                           {all.add("gain next to the support " + where, options.gain_at_support)}});
+                           {all.add("gain next to the support, of the contact " + where, options.gain_at_support)}});
     }
 }
 
@@ -175,7 +176,7 @@ Nuisances make_nuisances(const BodyModel& model, const Problem& problem, const E
     Collector all;
     for (int k = 0; k < static_cast<int>(problem.actions.size()); ++k) {
         for (const mesh::Contact& contact : played.actions[k].contacts) {
-            add_contact(all, model, setting, problem, k, played.actions[k], contact, options);
+            add_contact(all, model, setting, k, played.actions[k], contact, options);
         }
     }
     const Eigen::MatrixXd sectors = clamp_sectors(model, options.clamp_sectors);

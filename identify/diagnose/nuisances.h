@@ -21,12 +21,12 @@ struct NuisanceOptions {
 struct Nuisances {
     Eigen::MatrixXd columns;
     Eigen::VectorXd precisions;
-    std::vector<std::string> names;  // "contact of probe 3 shifted", ...
+    std::vector<std::string> names;  // "contact of radius 2 mm at (0, 0, 8) shifted", ...
 };
 
-/// For each contact of a probe, whatever its levels and times, two shifts along the surface, its radius and the
-/// softness of the body round it; the stiffness of sectors of pieces that a support's border cuts; a gain of its own
-/// for a probe next to a support. Their signatures are taken at the played configurations.
+/// For each place that is touched, whatever probes, loads and times, two shifts of the contact along the surface, its
+/// radius and the softness of the body round it; the stiffness of sectors of pieces that a support's border cuts; a
+/// gain of its own for a place next to a support. Their signatures are taken at the played configurations.
 Nuisances make_nuisances(const BodyModel& model, const Problem& problem, const Explanation& explanation,
                          const Played& played, int threads, const NuisanceOptions& options = {});
 

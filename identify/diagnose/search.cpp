@@ -31,6 +31,8 @@ std::vector<Candidate> Search::ranking() const {
     for (const Explained& single : tried_) {
         if (single.effects.size() > 1) continue;
         const auto own = std::ranges::find(result, single.effects.front(), &Candidate::effect);
+        own->is_unfitted = false;
+        own->objection.clear();
         own->log_bayes_factor = single.log_bayes_factor;
         own->refit = single.fit;
         own->held_out = single.held_out;
@@ -151,6 +153,10 @@ void Search::confirm_single_effects() {
             if (auto found = refit_with(base, screened)) {
                 if (claims(*found)) claimed = std::max(claimed, found->log_bayes_factor);
                 tried_.push_back(std::move(*found));
+            } else {
+                candidate.is_unfitted = true;
+                candidate.objection = "its fit found no equilibrium";
+                candidate.log_bayes_factor += baselines_.evidence(law) - baselines_.best().log_evidence;
             }
             ++refitted;
         }
@@ -168,6 +174,43 @@ void Search::confirm_single_effects() {
     for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
     std::ranges::stable_sort(order, std::greater{}, [&](std::size_t i) { return tried_[i].log_bayes_factor; });
     for (std::size_t i = 0; i < std::min<std::size_t>(2, order.size()); ++i) try_other_laws(order[i]);
+    for (int other = 0; other < baselines_.laws(); ++other) {
+        if (other != law && !screened_[other].empty()) confirm_under(other);
+    }
+}
+
+/// Where nothing explains the readings under the law that promised most, something may under this one: what leads its
+/// screen, and what outwits it.
+void Search::confirm_under(int law) {
+    constexpr int most_refits = 2;
+    const Refit& base = *baselines_.under(law);
+    const double behind = baselines_.best().log_evidence - baselines_.evidence(law);
+    int refitted = 0;
+    for (const Screened& screened : screened_[law]) {
+        if (something_claims() || is_enough(baselines_.best(), options_)) return;
+        const auto tried = std::ranges::find_if(
+            tried_, [&](const Explained& one) { return one.effects.size() == 1 && one.has(screened.effect->name()); });
+        if (tried != tried_.end() && tried->fit.explanation.law == law) continue;
+        const double leads = leader() ? leader()->log_bayes_factor : 0;
+        const bool may_lead = refitted < most_refits && screened.log_bayes_factor >= options_.least_screen &&
+                              screened.at_most() - behind > leads;
+        if (!may_lead && !screened.effect->outwits_screen()) continue;
+        report(progress_, fmt::format("refit with {}, law {}", screened.effect->name(), model_.laws()[law]), 0.77);
+        ++refitted;
+        std::optional<Explained> found = refit_with(base, screened);
+        if (found) keep_better(std::move(*found));
+    }
+}
+
+/// In the place of an explanation by the same effect, if it explains more.
+void Search::keep_better(Explained found) {
+    const auto before = std::ranges::find_if(
+        tried_, [&](const Explained& tried) { return tried.effects.size() == 1 && tried.effects == found.effects; });
+    if (before == tried_.end()) {
+        tried_.push_back(std::move(found));
+    } else if (found.log_bayes_factor > before->log_bayes_factor) {
+        *before = std::move(found);
+    }
 }
 
 /// What is missing may bend the baseline's stiffness far away from how the body answers to loads, and the fits with it:
@@ -192,16 +235,7 @@ void Search::confirm_at_the_answer_to_loads(int law) {
     const std::vector<Screened> screened = screen_at(*there, {});
     for (std::size_t i = 0; i < std::min(most_refits, screened.size()); ++i) {
         report(progress_, "refit with " + screened[i].effect->name(), 0.7);
-        std::optional<Explained> found = refit_with(*there, screened[i]);
-        if (!found) continue;
-        const auto before = std::ranges::find_if(tried_, [&](const Explained& tried) {
-            return tried.effects.size() == 1 && tried.effects == found->effects;
-        });
-        if (before == tried_.end()) {
-            tried_.push_back(std::move(*found));
-        } else if (found->log_bayes_factor > before->log_bayes_factor) {
-            *before = std::move(*found);
-        }
+        if (std::optional<Explained> found = refit_with(*there, screened[i])) keep_better(std::move(*found));
     }
 }
 

@@ -35,6 +35,8 @@ private:
     void confirm_single_effects();
     void confirm_at_the_answer_to_loads(int law);
     void try_other_laws(std::size_t tried);
+    void confirm_under(int law);
+    void keep_better(Explained found);
     std::optional<Explained> carry_over(const Explained& single, int law) const;
     bool extend(std::size_t from, int most);
     bool claims(const Explained& explained) const;

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <set>
+#include <map>
 
 #include "identify/effects/catalogue.h"
 
@@ -10,14 +10,18 @@ namespace palpate::identify {
 namespace {
 
 /// The force sensor reads too much or too little, differently from probe to probe. What all probes share is exactly
-/// another stiffness, and is left to it.
+/// another stiffness, and is left to it. Loads along one line at one place, each of its own size, are a curve of the
+/// body's whatever their numbers as probes: they share a gain unless a load is repeated.
 class ForceGainEffect : public Effect {
 public:
     const EffectDescription& description() const override {
         static const EffectDescription text{
             .name = "force-gain",
             .kind = EffectKind::measurement,
-            .meaning = "The true force of a probe is its reported one times a gain of its own.",
+            .meaning =
+                "The true force of a probe is its reported one times a gain of its own; probes that press one place "
+                "ever "
+                "harder share one, unless a load is repeated.",
             .parameters = {"probe<N> [-]: true over reported force of that probe"},
             .reveals = "whole probes that are off in proportion to their load, in no order of place or direction",
             .confused_with = {"stiffening", "anisotropy"},
@@ -28,7 +32,9 @@ public:
 
     std::vector<EffectNumber> numbers(const BodyModel&, const Problem& problem) const override {
         std::vector<EffectNumber> result;
-        for (const int probe : probes(problem)) {
+        const std::map<int, int> gains = gain_of_probes(problem);
+        for (const auto& [probe, gain] : gains) {
+            if (probe != gain) continue;
             result.push_back({.name = fmt::format("probe{}", probe), .unit = "1", .prior_sd = 0.3, .logarithm = true});
         }
         // a single gain is a common one
@@ -61,9 +67,16 @@ public:
 
     MeasurementSet corrected(const MeasurementSet& set, const skeleton::Effect& told) const override {
         MeasurementSet result = set;
+        const std::map<int, int> gains = gain_of_probes(make_problem(set, 1));
         for (LoadState& state : result.states) {
-            const auto gain = std::ranges::find(told.parameters, fmt::format("probe{}", state.probe),
-                                                &skeleton::EffectParameter::name);
+            const auto own = gains.find(state.probe);
+            if (own == gains.end()) continue;
+            // told of any of the probes that share it
+            const auto gain = std::ranges::find_if(told.parameters, [&](const skeleton::EffectParameter& parameter) {
+                return std::ranges::any_of(gains, [&](const auto& other) {
+                    return other.second == own->second && parameter.name == fmt::format("probe{}", other.first);
+                });
+            });
             if (gain == told.parameters.end()) continue;
             for (mesh::Contact& contact : state.contacts) contact.force *= gain->value;
         }
@@ -71,12 +84,49 @@ public:
     }
 
 private:
-    static std::vector<int> probes(const Problem& problem) {
-        std::set<int> found;
-        for (std::size_t k = 0; k < problem.actions.size(); ++k) {
-            if (problem.loaded(static_cast<int>(k))) found.insert(problem.probe[k]);
+    using Loads = std::vector<int>;  // of a probe, as actions
+
+    /// The first probe of those that share a gain, of each.
+    static std::map<int, int> gain_of_probes(const Problem& problem) {
+        std::map<int, Loads> loads;
+        for (int k = 0; k < static_cast<int>(problem.actions.size()); ++k) {
+            if (problem.loaded(k)) loads[problem.probe[k]].push_back(k);
         }
-        return {found.begin(), found.end()};
+        std::map<int, int> gains;
+        for (const auto& [probe, own] : loads) {
+            const auto first = std::ranges::find_if(gains, [&](const auto& other) {
+                return other.first == other.second &&
+                       are_a_curve(problem.actions[loads.at(other.first).front()], problem.actions[own.front()]);
+            });
+            const bool is_repeated =
+                first != gains.end() && std::ranges::any_of(gains, [&](const auto& other) {
+                    return other.second == first->first && share_a_load(problem, loads.at(other.first), own);
+                });
+            gains[probe] = first == gains.end() || is_repeated ? probe : first->first;
+        }
+        return gains;
+    }
+
+    /// Forces at the same places along the same lines?
+    static bool are_a_curve(const Action& a, const Action& b) {
+        constexpr double parallel = 0.999;  // cosine: within 2.6 degrees
+        return std::ranges::equal(a.contacts, b.contacts, [](const mesh::Contact& one, const mesh::Contact& other) {
+            return (one.point - other.point).norm() <= 1e-3 * one.radius + 1e-6 &&
+                   std::abs(one.force.dot(other.force)) >= parallel * one.force.norm() * other.force.norm();
+        });
+    }
+
+    /// Is there a load in both, of the same size?
+    static bool share_a_load(const Problem& problem, const Loads& a, const Loads& b) {
+        constexpr double alike = 0.02;  // of the force: what a hand or a robot repeats to
+        const auto is_same = [](const mesh::Contact& one, const mesh::Contact& other) {
+            return (one.force - other.force).norm() <= alike * one.force.norm();
+        };
+        return std::ranges::any_of(a, [&](int k) {
+            return std::ranges::any_of(b, [&](int l) {
+                return std::ranges::equal(problem.actions[k].contacts, problem.actions[l].contacts, is_same);
+            });
+        });
     }
 
     struct Line {
@@ -98,9 +148,12 @@ private:
         return {xy / xx, xy * xy / (xx * yy)};
     }
 
+    /// Among the numbers, of an action's gain.
     static Eigen::Index place_of(const Problem& problem, int k) {
-        const std::vector<int> all = probes(problem);
-        return std::ranges::find(all, problem.probe[k]) - all.begin();
+        const std::map<int, int> gains = gain_of_probes(problem);
+        const int own = gains.at(problem.probe[k]);
+        return std::ranges::count_if(gains,
+                                     [&](const auto& each) { return each.first == each.second && each.first < own; });
     }
 };
 

@@ -15,6 +15,10 @@ namespace palpate::identify {
 
 inline constexpr double missing = std::numeric_limits<double>::quiet_NaN();
 
+// Below what any instrument tells: atomic force microscopes end at 1e-8 mm and 1e-12 N.
+inline constexpr double least_position_noise = 1e-9;  // [mm]
+inline constexpr double least_force_noise = 1e-13;    // [N]
+
 struct Marker {
     int id = 0;                  // as in the files
     Vec3 rest = Vec3::Zero();    // [mm]

@@ -47,15 +47,9 @@ std::filesystem::path path_inside(const YamlFields& fields, const std::string& k
     return folder / path;
 }
 
-double positive(const YamlFields& fields, const std::string& key) {
-    const double value = fields.number(key);
-    if (value <= 0) throw InvalidInput(fmt::format("{}: {} must be above 0.", fields.where(key), value));
-    return value;
-}
-
 MaterialGuess read_material(const YamlFields& fields) {
     MaterialGuess material;
-    if (fields.has("young")) material.young = positive(fields, "young");
+    if (fields.has("young")) material.young = fields.number("young", 1e-9, 1e9);  // MPa; diamond has 1.2e6
     if (fields.has("poisson")) material.poisson = fields.number("poisson");
     if (material.poisson <= -1 || material.poisson >= 0.5)
         throw InvalidInput(fmt::format("{}: {} must lie between -1 and 0.5, both excluded (0.499 for rubber).",
@@ -86,8 +80,10 @@ SetUnits read_set_description(const std::filesystem::path& file, MeasurementSet&
     if (fields.has("gravity")) set.gravity = units.length * fields.vector("gravity");
     if (fields.has("noise")) {
         const YamlFields noise = fields.mapping("noise");
-        if (noise.has("position")) set.position_noise = units.length * positive(noise, "position");
-        if (noise.has("force")) set.force_noise = units.force * positive(noise, "force");
+        if (noise.has("position"))
+            set.position_noise = units.length * noise.number("position", least_position_noise / units.length, 1e6);
+        if (noise.has("force"))
+            set.force_noise = units.force * noise.number("force", least_force_noise / units.force, 1e9);
         noise.finish();
     }
     if (fields.has("material")) set.material = read_material(fields.mapping("material"));

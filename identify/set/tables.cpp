@@ -123,9 +123,11 @@ void TableReader::read_markers(const fs::path& file) {
 Reading TableReader::read_position(const CsvTable& table, int row) const {
     Reading reading{.position = units_.length * vector_if_given(table, row, {"x", "y", "z"}),
                     .sigma = units_.length * table.at(row, "sigma")};
-    if (reading.sigma <= 0)
-        throw InvalidInput(fmt::format("{}, column sigma: {} must be above 0. Leave it empty where it is unknown.",
-                                       table.where(row), table.at(row, "sigma")));
+    if (reading.sigma < least_position_noise)
+        throw InvalidInput(
+            fmt::format("{}, column sigma: {} is below {:g}, less than any instrument's noise. Leave it empty where it "
+                        "is unknown.",
+                        table.where(row), table.at(row, "sigma"), least_position_noise / units_.length));
     if (std::isnan(table.at(row, "marker"))) return reading;
     const int id = table.integer(row, "marker");
     const auto found = marker_of_.find(id);

@@ -7,6 +7,8 @@
 #include <sstream>
 #include <string>
 
+#include "mesh/surface.h"
+
 // Data as bytes, to come back from a child process: of this program on this machine, never of a file.
 
 namespace cereal {
@@ -28,6 +30,11 @@ void load(Archive& archive, Eigen::Matrix<T, rows, columns, options, most_rows, 
 }  // namespace cereal
 
 namespace palpate::mesh {
+
+template <class Archive>
+void serialize(Archive& archive, Surface& surface) {
+    archive(surface.vertices, surface.triangles);
+}
 
 template <class... Parts>
 std::string to_bytes(const Parts&... parts) {

@@ -30,6 +30,8 @@ constexpr std::uint64_t magic = 0x70616c7061746531;  // before the answer, with 
 constexpr int memory_code = 75;
 constexpr int exception_code = 76;
 
+bool is_child = false;
+
 struct Header {
     std::uint64_t magic, size;
 };
@@ -75,6 +77,7 @@ void cling_to(pid_t parent, int pipe) {
 [[noreturn]] void live(const std::function<std::string()>& work, const ChildLimits& limits, double base, pid_t parent,
                        int pipe) {
     cling_to(parent, pipe);
+    is_child = true;
     for (const int signal : {SIGSEGV, SIGBUS, SIGABRT, SIGFPE, SIGILL, SIGXCPU, SIGPIPE, SIGINT, SIGTERM})
         std::signal(signal, SIG_DFL);
     const int nowhere = open("/dev/null", O_RDWR);
@@ -135,6 +138,8 @@ int wait_for(pid_t child) {
 
 }  // namespace
 
+bool is_child_process() { return is_child; }
+
 ChildResult run_in_child(const std::function<std::string()>& work, const ChildLimits& limits) {
     const auto deadline = Clock::now() + std::chrono::microseconds(static_cast<long long>(limits.seconds * 1e6));
     const double base = address_space();
@@ -144,12 +149,15 @@ ChildResult run_in_child(const std::function<std::string()>& work, const ChildLi
     {
         // One at a time: another child must not inherit our writing end, or we would never see it close.
         static std::mutex one_at_a_time;
-        const std::lock_guard lock(one_at_a_time);
+        std::unique_lock lock(one_at_a_time);
         if (pipe2(ends, O_CLOEXEC) != 0)
             throw SolverFailure(fmt::format(
                 "No pipe to a child process can be made: {}. Close open files and try again.", std::strerror(errno)));
         child = fork();
-        if (child == 0) live(work, limits, base, parent, ends[1]);
+        if (child == 0) {
+            lock.unlock();  // it may begin children of its own
+            live(work, limits, base, parent, ends[1]);
+        }
         close(ends[1]);
     }
     if (child < 0) {

@@ -19,6 +19,9 @@ struct ChildResult {
     std::string answer;  // what `work` returned, when it answered
 };
 
+/// Is this process a child that run_in_child() began?
+bool is_child_process();
+
 /// Runs `work` in a child process with limits; its crash, hang or greed does no harm here. The child prints
 /// nothing, holds no file of this process open, and ends with it. It begins as a copy of this thread alone: `work` must
 /// not wait for other threads.

@@ -71,6 +71,7 @@ CsvTable::CsvTable(const std::filesystem::path& file, const std::vector<std::str
     : file_(file) {
     const std::string text = read_text(file);
     std::string_view rest = text;
+    require_utf8(text, file.filename().string());
     if (rest.starts_with("\xEF\xBB\xBF")) rest.remove_prefix(3);
 
     for (int line = 1; !rest.empty(); ++line) {

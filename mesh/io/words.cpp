@@ -7,6 +7,8 @@
 #include <cmath>
 #include <numeric>
 
+#include "mesh/errors.h"
+
 namespace palpate::mesh {
 
 namespace {
@@ -41,6 +43,26 @@ std::size_t spelling_distance(std::string_view a, std::string_view b) {
     return last[b.size()];
 }
 
+/// Of the character in UTF-8 that the text begins with; 0: it begins with none.
+std::size_t length_of_character(std::string_view text) {
+    const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
+    const unsigned first = byte(0);
+    if (first < 0x80) return 1;
+    const std::size_t length = first >= 0xC2 && first < 0xE0   ? 2
+                               : first >= 0xE0 && first < 0xF0 ? 3
+                               : first >= 0xF0 && first < 0xF5 ? 4
+                                                               : 0;
+    if (length == 0 || text.size() < length) return 0;
+    for (std::size_t i = 1; i < length; ++i)
+        if ((byte(i) & 0xC0U) != 0x80) return 0;
+    // Neither longer than need be, nor half of a pair of UTF-16, nor beyond the last character.
+    const unsigned second = byte(1);
+    if ((first == 0xE0 && second < 0xA0) || (first == 0xED && second >= 0xA0) || (first == 0xF0 && second < 0x90) ||
+        (first == 0xF4 && second >= 0x90))
+        return 0;
+    return length;
+}
+
 }  // namespace
 
 std::optional<double> parse_number(std::string_view text) {
@@ -50,11 +72,38 @@ std::optional<double> parse_number(std::string_view text) {
 
 std::optional<int> parse_integer(std::string_view text) { return parse<int>(text); }
 
+std::size_t length_in_utf8(std::string_view text) {
+    std::size_t at = 0;
+    while (at < text.size()) {
+        const std::size_t length = length_of_character(text.substr(at));
+        if (length == 0) break;
+        at += length;
+    }
+    return at;
+}
+
+void require_utf8(std::string_view text, const std::string& name) {
+    const std::size_t valid = length_in_utf8(text);
+    if (valid == text.size()) return;
+    const auto line = 1 + std::ranges::count(text.substr(0, valid), '\n');
+    throw InvalidInput(fmt::format(
+        "{}, line {}: the byte 0x{:02X} is no UTF-8. Save the file as UTF-8 (an editor's \"Save with encoding\", or "
+        "iconv -f LATIN1 -t UTF-8).",
+        name, line, static_cast<unsigned char>(text[valid])));
+}
+
 std::string cited(std::string_view text) {
     constexpr std::size_t longest = 60;
-    std::string shown(text.substr(0, longest));
-    for (char& c : shown)
-        if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = '?';
+    std::string shown;
+    for (std::size_t at = 0; at < std::min(text.size(), longest);) {
+        const std::size_t length = length_of_character(text.substr(at));
+        const auto first = static_cast<unsigned char>(text[at]);
+        if (length == 0 || first < 0x20 || first == 0x7f)
+            shown += '?';
+        else
+            shown += text.substr(at, length);
+        at += std::max<std::size_t>(length, 1);
+    }
     return fmt::format("'{}{}'", shown, text.size() > longest ? "..." : "");
 }
 

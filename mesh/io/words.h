@@ -17,7 +17,14 @@ std::optional<double> parse_number(std::string_view text);
 /// The same for a whole number.
 std::optional<int> parse_integer(std::string_view text);
 
-/// Text of a file for use in a message: in quotes, without control characters, cut where it is long.
+/// The length of the longest beginning that is UTF-8 [RFC 3629]; the text's own where all of it is.
+std::size_t length_in_utf8(std::string_view text);
+
+/// @throws InvalidInput naming the line and the byte where a text is no UTF-8. @param name the file's, for the message
+void require_utf8(std::string_view text, const std::string& name);
+
+/// Text of a file for use in a message: in quotes, without control characters and what is no UTF-8, cut where it is
+/// long.
 std::string cited(std::string_view text);
 
 /// " (did you mean 'noise'?)" when one of the known words is spelled nearly like it, else "".

@@ -97,6 +97,7 @@ private:
 
 YamlNode parse_yaml(const std::string& text, const std::filesystem::path& name) {
     const std::string file = name.filename().string();
+    require_utf8(text, file);
     std::istringstream stream(text);
     TreeBuilder builder(file);
     try {

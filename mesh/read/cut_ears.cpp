@@ -27,11 +27,20 @@ std::vector<Flat> flatten(const std::vector<Vec3>& corners) {
     return flat;
 }
 
-/// Is b a convex corner, with no other corner of what is left in the triangle abc?
-bool is_ear(const std::vector<Flat>& flat, const std::vector<int>& left, int a, int b, int c) {
+/// The corners that do not stand out: only they can lie in an ear, and cutting ears makes none.
+std::vector<int> reflex_corners(const std::vector<Flat>& flat) {
+    std::vector<int> reflex;
+    const std::size_t n = flat.size();
+    for (std::size_t i = 0; i < n; ++i)
+        if (turn(flat[(i + n - 1) % n], flat[i], flat[(i + 1) % n]) <= 0) reflex.push_back(static_cast<int>(i));
+    return reflex;
+}
+
+/// Is b a convex corner, with no reflex corner of what is left in the triangle abc?
+bool is_ear(const std::vector<Flat>& flat, const std::vector<int>& reflex, int a, int b, int c) {
     const auto at = [&](int i) { return flat[static_cast<std::size_t>(i)]; };
     if (turn(at(a), at(b), at(c)) <= 0) return false;
-    for (const int p : left) {
+    for (const int p : reflex) {
         if (p == a || p == b || p == c || at(p) == at(a) || at(p) == at(c)) continue;
         if (turn(at(a), at(b), at(p)) >= 0 && turn(at(b), at(c), at(p)) >= 0 && turn(at(c), at(a), at(p)) >= 0)
             return false;
@@ -43,7 +52,7 @@ bool is_ear(const std::vector<Flat>& flat, const std::vector<int>& left, int a, 
 
 std::vector<int> cut_ears(const std::vector<Vec3>& corners) {
     const std::vector<Flat> flat = flatten(corners);
-    std::vector<int> left(corners.size()), triangles;
+    std::vector<int> left(corners.size()), reflex = reflex_corners(flat), triangles;
     std::iota(left.begin(), left.end(), 0);
 
     // The ear with the shortest cut goes first; in long polygons the first one found, for the sake of time.
@@ -54,7 +63,7 @@ std::vector<int> cut_ears(const std::vector<Vec3>& corners) {
         for (std::size_t i = 0; i < left.size(); ++i) {
             const int a = left[(i + left.size() - 1) % left.size()], b = left[i], c = left[(i + 1) % left.size()];
             const double length = (corners[static_cast<std::size_t>(a)] - corners[static_cast<std::size_t>(c)]).norm();
-            if (length >= shortest || !is_ear(flat, left, a, b, c)) continue;
+            if (length >= shortest || !is_ear(flat, reflex, a, b, c)) continue;
             shortest = length;
             best = i;
             if (left.size() > long_polygon) break;
@@ -62,6 +71,7 @@ std::vector<int> cut_ears(const std::vector<Vec3>& corners) {
         // A polygon that crosses itself may have no ear: any corner will do, repair looks after the rest.
         triangles.insert(triangles.end(),
                          {left[(best + left.size() - 1) % left.size()], left[best], left[(best + 1) % left.size()]});
+        std::erase(reflex, left[best]);
         left.erase(left.begin() + static_cast<std::ptrdiff_t>(best));
     }
     triangles.insert(triangles.end(), left.begin(), left.end());

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+
 #include "mesh/errors.h"
 #include "mesh/io/words.h"
 
@@ -13,6 +15,10 @@ std::string where(const Polygons& polygons, std::size_t polygon, const std::file
     return polygons.lines.empty() ? fmt::format("{}, face {} (from 0)", file.string(), polygon)
                                   : fmt::format("{}, line {}", file.string(), polygons.lines[polygon]);
 }
+
+// Cutting ears takes as many steps as the square of a face's corners: a second for the most that is allowed in all.
+constexpr std::size_t most_corners = 10'000;
+constexpr double most_steps = 1e9;
 
 void check(const Polygons& polygons, const std::filesystem::path& file) {
     const auto n = polygons.points.size();
@@ -31,8 +37,16 @@ void check(const Polygons& polygons, const std::filesystem::path& file) {
                                : fmt::format("{}: holds {} vertices but no faces, it is a point cloud. Mesh the points "
                                              "first (for instance Poisson reconstruction in MeshLab).",
                                              file.string(), n));
+    double steps = 0;
     for (std::size_t i = 0; i < polygons.begins.size(); ++i) {
         const auto corners = polygons.polygon(i);
+        if (corners.size() > 4) steps += std::pow(static_cast<double>(corners.size()), 2);
+        if (corners.size() > most_corners || steps > most_steps)
+            throw InvalidInput(fmt::format(
+                "{}: a face with {} corners{}; up to {} are allowed. Cut the faces into triangles where the surface "
+                "was made (Triangulate in Blender or MeshLab), and export it again.",
+                where(polygons, i, file), corners.size(), corners.size() > most_corners ? "" : " behind many like it",
+                most_corners));
         if (corners.size() < 2)
             throw InvalidInput(fmt::format("{}: a face with {} corner(s); three or more are allowed. Remove it.",
                                            where(polygons, i, file), corners.size()));

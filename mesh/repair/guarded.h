@@ -7,8 +7,8 @@
 
 namespace palpate::mesh {
 
-/// What a step comes to in a child process with limits on time (5 minutes) and memory (8 GiB): broken surfaces lead
+/// What a step on so many triangles comes to in a child process with limits on time and memory: broken surfaces lead
 /// CGAL into endless loops and beyond arrays. Nothing where it crashed, did not end, threw, or left no triangle.
-std::optional<Surface> guarded(const std::function<Surface()>& step);
+std::optional<Surface> guarded(Eigen::Index triangles, const std::function<Surface()>& step);
 
 }  // namespace palpate::mesh

@@ -18,9 +18,12 @@ namespace {
 constexpr double allowed_growth = 0.03;  // share of the volume
 constexpr int growth_points = 2500;      // tell that share to 0.34 %, one sigma
 constexpr double allowed_skin = 0.02;    // share of the area
+constexpr int most_wrapped = 100'000;    // triangles of a wrap, for limits on time and memory
 
 Surface wrapped_with(const Surface& surface, double alpha, double offset) {
-    if (const auto wrapped = guarded([&] { return wrap(surface, alpha, offset); })) return *wrapped;
+    if (const auto wrapped =
+            guarded(most_wrapped + surface.triangles.rows(), [&] { return wrap(surface, alpha, offset); }))
+        return *wrapped;
     throw InvalidInput(
         fmt::format("Repair: the surface cannot be wrapped within the limits on time and memory ({} triangles). "
                     "Mend it in a mesh editor, or make it coarser.",

@@ -88,7 +88,7 @@ private:
     void begin_load() {
         const std::string& keyword = now_->keyword;
         if (keyword == "STEP") {
-            deck_.steps.push_back(deck_.steps.empty() ? DeckStep{} : deck_.steps.back());
+            begin_step();
             touched_.clear();
         } else if (deck_.steps.empty()) {
             return;
@@ -101,6 +101,18 @@ private:
         } else if (keyword == "DSLOAD" || keyword == "TEMPERATURE" || keyword == "CFLUX") {
             step().others.push_back(fmt::format("*{}, {}", keyword, now_->where));
         }
+    }
+
+    /// A step goes on with the loads of the step before.
+    void begin_step() {
+        constexpr std::size_t most_loads = 2'000'000;  // 200 MB
+        if (!deck_.steps.empty()) loads_ += 1 + step().forces.size() + step().others.size();
+        if (loads_ > most_loads)
+            throw InvalidInput(fmt::format(
+                "{}: step {}; the steps hold {} loads by now, those that go on counted in each, and up to {} are "
+                "allowed. Put fewer steps into a file, or spread a load over fewer nodes.",
+                now_->where, deck_.steps.size() + 1, loads_, most_loads));
+        deck_.steps.push_back(deck_.steps.empty() ? DeckStep{} : deck_.steps.back());
     }
 
     DeckStep& step() { return deck_.steps.back(); }
@@ -283,6 +295,7 @@ private:
     std::set<std::pair<std::int64_t, std::int64_t>> touched_;  // node and direction, in this step
     std::set<std::string> left_out_;
     int materials_ = 0, instances_ = 0;
+    std::size_t loads_ = 0;  // of all steps but the last
 };
 
 }  // namespace

@@ -56,8 +56,17 @@ private:
         if (depth > deepest)
             throw InvalidInput(
                 fmt::format("{}: includes files {} deep; does one include itself?", root_.string(), depth));
-        files_.push_back(file);
+        // A file that is included twice includes its own twice: what is read grows as a power of the depth.
+        constexpr int most_readings = 1000;
+        constexpr double most_bytes = 4e9;
         const std::string content = read_text(file);
+        bytes_ += static_cast<double>(content.size());
+        if (++readings_ > most_readings || bytes_ > most_bytes)
+            throw InvalidInput(fmt::format(
+                "{}: its includes name {} files and {:.3g} MB by now; up to {} and {:g} MB are allowed. Include each "
+                "file once.",
+                root_.string(), readings_, bytes_ / 1e6, most_readings, most_bytes / 1e6));
+        if (std::ranges::find(files_, file) == files_.end()) files_.push_back(file);
         std::string_view left = content;
         bool goes_on = false;  // a keyword line that ended with a comma
         for (int number = 1; !left.empty(); ++number) {
@@ -111,6 +120,8 @@ private:
         read(file, depth + 1);
     }
 
+    int readings_ = 0;  // of files, each as often as it is included
+    double bytes_ = 0;
     fs::path root_, included_;
     std::vector<fs::path>& files_;
     std::vector<KeywordLine> lines_;

@@ -31,6 +31,8 @@ void fill(Body& body, double edge, double volume_change, const Progress& progres
             body.volume = mesh::tetrahedralise(body.surface, {.edge_length = share * edge});
             if (share < 1) body.notes.push_back(fmt::format("edges of {:.3g} mm: longer ones failed", share * edge));
             return;
+        } catch (const LimitReached&) {
+            throw;
         } catch (const SolverFailure&) {
             if (share == shares.back()) throw;
         }
@@ -56,6 +58,8 @@ Body make_body(const mesh::Surface& surface, const BodyOptions& options, const P
     }
     try {
         fill(body, edge, options.volume_change, progress);
+    } catch (const LimitReached&) {
+        throw;
     } catch (const SolverFailure& failure) {
         if (repaired.wrapped) throw;
         // Sound, but too thin or too crumpled somewhere to be meshed: the last resort is a wrap.

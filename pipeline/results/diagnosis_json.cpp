@@ -112,6 +112,7 @@ json to_json(const identify::Diagnosis& diagnosis, const identify::BodyModel& mo
             {"law", model.laws()[diagnosis.law]},
             {"noise_mm", known(diagnosis.noise)},
             {"noise_known", diagnosis.noise_known},
+            {"independent_readings", diagnosis.independent},
             {"baseline", baseline_of(diagnosis, model)},
             {"outlier_readings", outlier_readings(diagnosis, set)},
             {"notes", diagnosis.notes}};

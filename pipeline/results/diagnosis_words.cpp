@@ -57,7 +57,10 @@ std::string runner_up(const json& diagnosis) {
     const json& ranking = diagnosis["ranking"];
     if (ranking.size() < 2 || !ranking[1]["log_bayes_factor"].is_number()) return {};
     const double behind = ranking[1]["log_bayes_factor"].get<double>() - ranking[0]["log_bayes_factor"].get<double>();
-    return fmt::format(" Runner-up: {}, {} as likely.", ranking[1]["effect"].get<std::string>(), how_likely(behind));
+    const std::string name = ranking[1]["effect"];
+    if (ranking[1].contains("objection"))
+        return fmt::format(" Runner-up: {}, which is no claim: {}.", name, ranking[1]["objection"].get<std::string>());
+    return fmt::format(" Runner-up: {}, {} as likely.", name, how_likely(behind));
 }
 
 std::string missing_effect(const json& diagnosis) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <cstdlib>
 
 namespace palpate::fuzz {
 namespace {
@@ -62,6 +63,11 @@ void mutate_once(std::string& text, std::mt19937_64& random) {
 }
 
 }  // namespace
+
+int inputs(int usual) {
+    const char* asked = std::getenv("PALPATE_FUZZ");
+    return asked != nullptr ? std::atoi(asked) : usual;
+}
 
 std::string mutated(std::string text, std::mt19937_64& random) {
     for (auto times = 1 + random() % 4; times > 0; --times) mutate_once(text, random);

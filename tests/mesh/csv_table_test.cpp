@@ -62,6 +62,10 @@ TEST_F(Csv, RefusesWhatIsNoNumber) {
     EXPECT_TRUE(says(refusal("a,b\n1,\"2,5\"\n"), {"line 2", "'2,5'"}));
 }
 
+TEST_F(Csv, RefusesWhatIsNoUtf8) {
+    EXPECT_TRUE(says(refusal("a,b\n1,2 # \xB5m\n"), {"table.csv, line 2", "0xB5", "UTF-8"}));
+}
+
 TEST_F(Csv, RefusesRowsOfAnotherLength) {
     EXPECT_TRUE(says(refusal("a,b\n1,2\n\n3\n"), {"line 4", "1 cells", "2", "a,b"}));
     EXPECT_TRUE(says(refusal("a,b\n1,2,3\n"), {"line 2", "3 cells"}));

@@ -10,6 +10,7 @@
 #include <cmath>
 #include <cstdint>
 #include <cstring>
+#include <functional>
 #include <numbers>
 
 #include "mesh/check_surface.h"
@@ -275,7 +276,7 @@ TEST_F(ReadLabels, WhatIsWrongIsSaid) {
                      {"../secret.raw", "beside"}));
     Labels flat = ball;
     flat.axes.col(2) = flat.axes.col(1);
-    EXPECT_TRUE(says(refusal("f.mha", meta_image(flat)), {"voxels of", "mm^3", "more than 0"}));
+    EXPECT_TRUE(says(refusal("f.mha", meta_image(flat)), {"voxels of", "nearly in one plane"}));
     EXPECT_TRUE(says(refusal("a.nii", nii.substr(0, 300)), {"a.nii", "announces 348 bytes"}));
     EXPECT_TRUE(says(refusal("b.nii", std::string(400, 'x')), {"no NIfTI file"}));
     EXPECT_TRUE(says(refusal("c.nii.gz", gzipped(nii).substr(0, 200)), {"c.nii.gz", "unpacks"}));
@@ -285,6 +286,44 @@ TEST_F(ReadLabels, WhatIsWrongIsSaid) {
         says(refusal("b.nrrd", "NRRD0004\ntype: uint8\ndimension: 3\nsizes: 2 2 2\nencoding: bzip2\n\n"), {"'bzip2'"}));
     Labels none;
     EXPECT_TRUE(says(refusal("e.mha", meta_image(none)), {"labels nothing"}));
+}
+
+TEST_F(ReadLabels, FramesThatNoScannerHasAreRefused) {
+    const Labels ball = oblique_ball();
+    const auto refused = [&](const Mat3& axes) {
+        Labels other = ball;
+        other.axes = axes;
+        return refusal("a.nii", nifti_2(other, false));
+    };
+    EXPECT_TRUE(says(refused(1e30 * ball.axes), {"a.nii", "1e-06 to 10000 mm", "Mend the head"}));
+    EXPECT_TRUE(says(refused(1e-9 * ball.axes), {"1e-06 to 10000 mm"}));
+    EXPECT_TRUE(says(refused(ball.axes * Vec3(1, 1, 500).asDiagonal()), {"up to 100 times the shortest"}));
+    Mat3 sheared = Mat3::Identity();
+    sheared(0, 1) = 50;
+    sheared(1, 1) = 2;
+    EXPECT_TRUE(says(refused(sheared), {"nearly in one plane", "right angles"}));
+    Labels far = ball;
+    far.origin = Vec3(0, 1e12, 0);
+    EXPECT_TRUE(says(refusal("b.nii", nifti_2(far, false)), {"away from the origin"}));
+}
+
+TEST_F(ReadLabels, WhatIsNoBodyIsRefused) {
+    const auto refused = [&](const std::function<bool(const Vec3&)>& is_inside) {
+        Labels labels;
+        labels.fill(1, is_inside);
+        return refusal("a.mha", meta_image(labels));
+    };
+    const auto is_odd = [](const Vec3& p) { return std::lround(p.sum()) % 2 == 1; };
+    const auto is_box = [](const Vec3& p, const Vec3& size) {
+        return (p.array() > 3.5).all() && (p.array() < 3.5 + size.array()).all();
+    };
+    EXPECT_TRUE(says(refused(is_odd), {"Label 1", "no body", "Segment it anew"}));
+    EXPECT_TRUE(says(refused([&](const Vec3& p) { return is_box(p, {1, 1, 1}); }), {"no body", "8 are needed"}));
+    EXPECT_TRUE(says(refused([&](const Vec3& p) { return is_box(p, {30, 1, 1}); }), {"no body"}));
+    EXPECT_TRUE(says(refused([](const Vec3& p) { return (p - Vec3(5, 5, 5)).norm() < 0.1 || p == Vec3(20, 9, 9); }),
+                     {"no body"}));
+    // Two voxels across are a body.
+    EXPECT_EQ(refused([&](const Vec3& p) { return is_box(p, {30, 2, 2}); }), "");
 }
 
 TEST_F(ReadLabels, GreyValuesAreRefused) {

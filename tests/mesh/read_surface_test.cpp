@@ -6,6 +6,7 @@
 #include <cstring>
 
 #include "mesh/errors.h"
+#include "mesh/read_body.h"
 #include "mesh/surface.h"
 #include "tests/messages.h"
 #include "tests/temporary_folder.h"
@@ -81,6 +82,50 @@ TEST_F(ReadSurface, ConcavePolygonsKeepTheirAreaAndSide) {
     EXPECT_EQ(ell.triangles.rows(), 4);
     EXPECT_DOUBLE_EQ(area(ell), 5);
     EXPECT_GT(area_vectors(ell).col(2).minCoeff(), 0);
+}
+
+/// A face round a comb: every other corner is reflex.
+std::string comb(int teeth) {
+    std::string vertices, face = "f";
+    for (int i = 0; i <= 2 * teeth; ++i)
+        vertices += "v " + std::to_string(i) + " " + std::to_string(i % 2 == 0 ? 1 : 3) + " 0\n";
+    vertices += "v " + std::to_string(2 * teeth) + " 0 0\nv 0 0 0\n";
+    for (int v = 2 * teeth + 3; v >= 1; --v) face += " " + std::to_string(v);
+    return vertices + face + "\n";
+}
+
+TEST_F(ReadSurface, LongFacesAreCutAndEndlessOnesRefused) {
+    const Surface read = this->read("a.obj", comb(2000));
+    EXPECT_EQ(read.triangles.rows(), 4001);
+    EXPECT_NEAR(area(read), 2000 * 4, 1e-9);  // rounding; a tooth is 2 wide and 1 to 3 high
+    EXPECT_TRUE(says(refusal("b.obj", comb(5000)), {"b.obj, line 10004", "10003 corners", "10000", "Triangulate"}));
+    std::string many = comb(4900);
+    const std::string face = many.substr(many.rfind("f "));
+    for (int i = 0; i < 12; ++i) many += face;
+    EXPECT_TRUE(says(refusal("c.obj", many), {"9803 corners", "behind many like it"}));
+}
+
+TEST_F(ReadSurface, VerticesThatNoFaceUsesAreLeftOut) {
+    const BodyFile body =
+        read_body(folder.write("a.obj", obj_vertices + "v 1e9 0 0\n" + obj_tetrahedron.substr(obj_vertices.size())));
+    EXPECT_EQ(body.surface.vertices.rows(), 4);
+    ASSERT_EQ(body.notes.size(), 1U);
+    EXPECT_TRUE(says(body.notes[0], {"1 vertices", "left out"}));
+}
+
+TEST_F(ReadSurface, SizesBeyondMeaningAreRefused) {
+    const auto scaled = [&](double scale, double shift) {
+        Surface box = make_box({0, 0, 0}, {10, 4, 3}, {2, 1, 1});
+        box.vertices = (scale * box.vertices).rowwise() + Eigen::RowVector3d(shift, 0, 0);
+        write_surface(folder / "a.obj", box);
+        return message_of<InvalidInput>([&] { read_body(folder / "a.obj"); });
+    };
+    EXPECT_EQ(scaled(1, 0), "");
+    EXPECT_EQ(scaled(1e-6, 0), "");  // in micrometres of metres
+    EXPECT_TRUE(says(scaled(1e-100, 0), {"a.obj", "spans 1.12e-99", "1e-12 to 1e+12", "--unit"}));
+    EXPECT_TRUE(says(scaled(5e-324, 0), {"a.obj"}));
+    EXPECT_TRUE(says(scaled(1e20, 0), {"1e-12 to 1e+12"}));
+    EXPECT_TRUE(says(scaled(1, 1e12), {"away from the origin", "Move it"}));
 }
 
 TEST_F(ReadSurface, OffWithColoursAndComments) {

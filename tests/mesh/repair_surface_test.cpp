@@ -30,6 +30,18 @@ TEST(RepairSurface, ASoundSurfaceComesBackUnchanged) {
     EXPECT_DOUBLE_EQ(same.volume, signed_volume(hollow_ball()));
 }
 
+TEST(RepairSurface, AVertexFarAwayIsNamed) {
+    Surface stray = cube();
+    const int moved = stray.triangles(0, 0);
+    stray.vertices.row(moved) = Eigen::RowVector3d(0, 1e9, 0);
+    EXPECT_TRUE(
+        says(message_of<InvalidInput>([&] { repair_surface(stray); }),
+             {("vertex " + std::to_string(moved + 1) + " ").c_str(), "1e+09", "so far away", "Move or remove it"}));
+    Surface line = cube();
+    line.vertices.rightCols<2>().setZero();
+    EXPECT_TRUE(says(message_of<InvalidInput>([&] { repair_surface(line); }), {"no triangle", "area"}));
+}
+
 TEST(RepairSurface, WeldingIsSaid) {
     const RepairResult welded = repair_surface(unwelded(cube()));
     EXPECT_EQ(welded.surface.vertices.rows(), cube().vertices.rows());
@@ -197,10 +209,10 @@ TEST(ShareOutside, IsWhatACubeHasBeyondAnother) {
 }
 
 TEST(Guarded, AStepThatCrashesThrowsOrLeavesNothingIsNone) {
-    EXPECT_EQ(guarded([] { return cube(); })->triangles, cube().triangles);
-    EXPECT_FALSE(guarded([]() -> Surface { std::abort(); }));
-    EXPECT_FALSE(guarded([]() -> Surface { throw SolverFailure("no"); }));
-    EXPECT_FALSE(guarded([] { return Surface{}; }));
+    EXPECT_EQ(guarded(12, [] { return cube(); })->triangles, cube().triangles);
+    EXPECT_FALSE(guarded(12, []() -> Surface { std::abort(); }));
+    EXPECT_FALSE(guarded(12, []() -> Surface { throw SolverFailure("no"); }));
+    EXPECT_FALSE(guarded(12, [] { return Surface{}; }));
 }
 
 TEST(Bytes, ComeBackWholeOrNotAtAll) {

@@ -115,6 +115,26 @@ TEST_F(SolverFiles, ADeckMayIncludeFilesOfItsFolder) {
     EXPECT_TRUE(says(deck_refusal("*INCLUDE, INPUT=body.inp\n"), {"include itself"}));
 }
 
+TEST_F(SolverFiles, IncludesThatMultiplyAreRefused) {
+    // Nine levels deep, ten includes in each: a thousand million readings.
+    for (int level = 1; level < 9; ++level) {
+        std::string text;
+        for (int i = 0; i < 10; ++i) text += "*INCLUDE, INPUT=level" + std::to_string(level + 1) + ".inc\n";
+        folder.write("level" + std::to_string(level) + ".inc", text);
+    }
+    folder.write("level9.inc", "** nothing\n");
+    EXPECT_TRUE(
+        says(deck_refusal("*INCLUDE, INPUT=level1.inc\n"), {"body.inp", "1001 files", "Include each file once"}));
+}
+
+TEST_F(SolverFiles, StepsThatCarryOnTooManyLoadsAreRefused) {
+    std::string text = "*NODE, NSET=ALL\n";
+    for (int n = 1; n <= 5000; ++n) text += std::to_string(n) + ", " + std::to_string(n) + ", 0, 0\n";
+    text += "*STEP\n*CLOAD\nALL, 1, 1.0\n*END STEP\n";
+    for (int s = 0; s < 1000; ++s) text += "*STEP\n*END STEP\n";
+    EXPECT_TRUE(says(deck_refusal(text), {"line 5804", "step 401", "2000000", "fewer steps"}));
+}
+
 TEST_F(SolverFiles, FaultyDecksAreRefusedByTheirLine) {
     EXPECT_TRUE(says(deck_refusal("*NODE\n1, 0, zero, 0\n"), {"line 2", "'ZERO'", "coordinate"}));
     EXPECT_TRUE(says(deck_refusal("*ELEMENT, TYPE=C3D7\n"), {"line 1", "C3D7", "allowed"}));

@@ -115,6 +115,17 @@ TEST(YamlFields, RefusesWhatIsNoMapping) {
     EXPECT_TRUE(says(refusal("[1, 2]: 3\n"), {"line 1", "must be a word"}));
 }
 
+TEST(YamlFields, RefusesWhatIsNoUtf8) {
+    EXPECT_TRUE(says(refusal("name: good\nnote: M\xFCnchen\n"), {"case.yaml, line 2", "0xFC", "UTF-8"}));
+    EXPECT_TRUE(says(refusal("\xFF\xFE"
+                             "n\0:\0"),
+                     {"line 1", "0xFF"}));
+    EXPECT_TRUE(says(refusal("a: \xC0\x80\n"), {"0xC0"}));      // longer than need be
+    EXPECT_TRUE(says(refusal("a: \xED\xA0\x80\n"), {"0xED"}));  // half of a pair of UTF-16
+    EXPECT_TRUE(says(refusal("a: \xE2\x82"), {"0xE2"}));        // cut off
+    EXPECT_EQ(fields("name: München \xE2\x82\xAC \xF0\x9F\x98\x80").text("name"), "München € \xF0\x9F\x98\x80");
+}
+
 TEST(YamlFields, RefusesAliases) {
     // A billion laughs: each line holds nine times the line before.
     std::string bomb = "a0: &a0 [x, x, x, x, x, x, x, x, x]\n";

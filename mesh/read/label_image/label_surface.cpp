@@ -15,6 +15,7 @@
 #include <array>
 #include <cmath>
 
+#include "mesh/errors.h"
 #include "mesh/topology/shells.h"
 
 namespace palpate::mesh {
@@ -187,6 +188,33 @@ Surface with_volume(Surface surface, double volume) {
     return surface;
 }
 
+/// A body is more than specks, lines and sheets of single voxels, which have no inside to mesh.
+void require_body(const Surface& parts, double volume_of_parts, double told, const LabelImage& image, int label) {
+    const double voxel = image.voxel_volume();
+    const double side = image.axes.colwise().norm().minCoeff();
+    const auto refuse = [&](const std::string& what) {
+        throw InvalidInput(fmt::format(
+            "Label {} of the image is no body: {}. Segment it anew, or give a finer image (voxels of {:.3g} mm here).",
+            label, what, side));
+    };
+    if (parts.triangles.rows() == 0 || !(volume_of_parts > 0)) refuse("it encloses nothing");
+    constexpr double fewest_voxels = 8;  // two along each side
+    if (volume_of_parts < fewest_voxels * voxel)
+        refuse(fmt::format("its surface encloses the volume of {:.3g} voxels, {:g} are needed", volume_of_parts / voxel,
+                           fewest_voxels));
+    constexpr double least_share = 0.5;
+    if (volume_of_parts < least_share * told)
+        refuse(
+            fmt::format("its surface encloses {:.0f} % of its voxels' volume, so little do they hang together; "
+                        "{:.0f} % are needed",
+                        100 * volume_of_parts / told, 100 * least_share));
+    // V / A is half of a sheet's thickness, a quarter of a rod's: one voxel thick, both are lost in the smoothing.
+    constexpr double thinnest = 0.45;
+    if (const double thickness = 2 * volume_of_parts / area(parts); thickness < thinnest * side)
+        refuse(fmt::format("it is {:.2g} voxels thick in the mean (2 V / A), {:g} are needed", thickness / side,
+                           thinnest));
+}
+
 }  // namespace
 
 Surface surface_of_label(const LabelImage& image, int label, std::vector<std::string>& notes) {
@@ -201,6 +229,7 @@ Surface surface_of_label(const LabelImage& image, int label, std::vector<std::st
     const Surface steps = without_small_parts(all, notes);
     // What was left out is left out of the volume too; contours cut the corners of voxels off all parts alike.
     const double volume = told * signed_volume(steps) / signed_volume(all);
+    require_body(steps, signed_volume(steps), told, image, label);
     const Surface surface = with_volume(smoothed(steps), volume);
     notes.push_back(
         fmt::format("The surface of label {}, {} voxels of {:.3g} mm^3, smoothed; its volume is {:.4g} mm^3.", label,

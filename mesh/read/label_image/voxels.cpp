@@ -28,6 +28,32 @@ T stored(const char* at, bool is_swapped) {
     return value;
 }
 
+/// From an electron microscope's voxel to one of a survey: what any instrument images lies between.
+constexpr double least_spacing = 1e-6, largest_spacing = 1e4;  // [mm]
+constexpr double slenderest_voxel = 100;                       // longest side through shortest
+constexpr double flattest_voxel = 0.1;                         // volume through that of a box with its sides
+
+void require_voxels_with_shape(const LabelImage& image, const std::filesystem::path& file) {
+    const Vec3 sides = image.axes.colwise().norm();
+    const auto refuse = [&](const std::string& what) {
+        throw InvalidInput(
+            fmt::format("{}: its spacing and directions make voxels of {:.3g} x {:.3g} x {:.3g} mm, {}. Mend the head.",
+                        file.string(), sides.x(), sides.y(), sides.z(), what));
+    };
+    if (!(sides.minCoeff() >= least_spacing && sides.maxCoeff() <= largest_spacing))
+        refuse(fmt::format("{:g} to {:g} mm is allowed along each axis", least_spacing, largest_spacing));
+    if (sides.maxCoeff() > slenderest_voxel * sides.minCoeff())
+        refuse(fmt::format("the longest side up to {:g} times the shortest is allowed", slenderest_voxel));
+    if (!(image.voxel_volume() >= flattest_voxel * sides.prod()))
+        refuse(
+            fmt::format("whose sides lie nearly in one plane: {:.2g} of the volume that they would have at right "
+                        "angles, {:g} and more is allowed",
+                        image.voxel_volume() / sides.prod(), flattest_voxel));
+    if (!(image.origin.cwiseAbs().maxCoeff() <= 1e6 * sides.maxCoeff()))
+        refuse(fmt::format("{:.3g} mm away from the origin, up to a million voxels is allowed",
+                           image.origin.cwiseAbs().maxCoeff()));
+}
+
 }  // namespace
 
 double LabelImage::value(std::int64_t voxel) const {
@@ -63,10 +89,7 @@ std::size_t checked_bytes(const LabelImage& image, const std::filesystem::path& 
             fmt::format("{}: an image of {} x {} x {} voxels; up to {:g} in all are allowed. Crop it round "
                         "the organ, or resample it.",
                         file.string(), image.size[0], image.size[1], image.size[2], most_voxels));
-    if (!image.axes.allFinite() || !image.origin.allFinite() || !(image.voxel_volume() > 0))
-        throw InvalidInput(fmt::format(
-            "{}: its spacing and directions make voxels of {:.3g} mm^3; more than 0 is allowed. Mend the head.",
-            file.string(), image.voxel_volume()));
+    require_voxels_with_shape(image, file);
     return static_cast<std::size_t>(image.count()) * static_cast<std::size_t>(image.type.bytes);
 }
 
