@@ -224,7 +224,8 @@ RepairResult repair(const Surface& surface, const RepairOptions& options) {
         repair.remove_self_intersections();
         repair.fill_small_holes();
         repair.turn_shells_outward();
-        if (options.wrap || !repair.sound() || repair.distance() > repair.allowed_distance()) repair.wrap_all();
+        const bool is_mended = repair.sound() && repair.distance() <= repair.allowed_distance();
+        if (options.wrap || (options.may_wrap && !is_mended)) repair.wrap_all();
     }
     if (!repair.sound())
         throw InvalidInput(

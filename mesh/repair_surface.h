@@ -14,6 +14,7 @@ struct RepairOptions {
     double largest_flat_hole = 0.6;  // the same for holes whose border lies in a plane, [0, 1]
     double allowed_distance = 0.02;  // the result may lie this far from the input, as a share of the diagonal
     bool wrap = false;               // wrap it, sound or not
+    bool may_wrap = true;            // false: refused where nothing else makes it sound
     void validate() const;
 };
 
