@@ -112,16 +112,42 @@ public:
     }
 
     Ladder run(const std::vector<std::string>& effects, const Diagnosis* diagnosis) {
-        for (std::size_t rung = 0; rung <= effects.size(); ++rung) {
+        std::vector<std::string> added;
+        add_step(added, diagnosis);
+        for (std::size_t rung = 1; rung <= effects.size(); ++rung) {
             report(progress_, fmt::format("ladder, step {}", rung),
                    static_cast<double>(rung) / static_cast<double>(effects.size() + 1));
-            add_step({effects.begin(), effects.begin() + static_cast<std::ptrdiff_t>(rung)}, diagnosis);
+            added.push_back(effects[rung - 1]);
+            const UniformFit near = near_;
+            const Verdict verdict = result_.verdict;
+            add_step(added, diagnosis);
+            if (!options_.only_better || !is_worse(added.back())) continue;
+            added.pop_back();
+            result_.steps.pop_back();
+            near_ = near;
+            result_.verdict = verdict;
         }
-        finish(effects, diagnosis);
+        finish(added, diagnosis);
         return std::move(result_);
     }
 
 private:
+    /// Does the last step predict held-out probes worse than the one before, on the body or on the skeleton?
+    bool is_worse(const std::string& name) {
+        const LadderStep& now = result_.steps.back();
+        const LadderStep& before = result_.steps[result_.steps.size() - 2];
+        constexpr double chance = 1.1;
+        const auto worse = [&](const char* what, const StepError& then, const StepError& since) {
+            if (!(since.held_out_rms_mm > chance * then.held_out_rms_mm)) return false;
+            result_.notes.push_back(fmt::format(
+                "{} is not added: with it the {} is off by {:.3g} mm on probes held out, {:.3g} mm without it.", name,
+                what, since.held_out_rms_mm, then.held_out_rms_mm));
+            return true;
+        };
+        return (now.reference && before.reference && worse("body", *before.reference, *now.reference)) ||
+               worse("model", before.skeleton, now.skeleton);
+    }
+
     /// The body explained with these effects and no others.
     Diagnosis explain(const MeasurementSet& set, const std::vector<std::string>& effects,
                       const Diagnosis* diagnosis) const {

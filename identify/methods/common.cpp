@@ -27,8 +27,8 @@ std::vector<StateReadings> telling_readings(const skeleton::Model& model, const 
     if (std::ranges::none_of(readings, &StateReadings::tells_stiffness)) {
         throw InvalidInput(
             fmt::format("measurement set '{}' has no state with both a load and a labelled reading: stiffness "
-                        "shows only under a force or a known gravity; add a row with a force to "
-                        "probes.csv and its markers to positions.csv",
+                        "shows only under a force or a known weight; add a row with a force to probes.csv and its "
+                        "markers to positions.csv, or tell 'density' and 'gravity' in set.yaml",
                         set.name));
     }
     return readings;

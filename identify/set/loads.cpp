@@ -110,4 +110,10 @@ std::optional<Vec3> known_gravity(const MeasurementSet& set, const LoadState& st
     return set.gravity;
 }
 
+bool is_known_to_act(const MeasurementSet& set, const LoadState& state) {
+    const bool pushed = std::ranges::any_of(state.contacts, [](const mesh::Contact& c) { return !c.force.isZero(0); });
+    const bool is_heavy = !known_gravity(set, state).value_or(Vec3::Zero()).isZero(0);
+    return pushed || is_heavy || known_pressure(state) != 0;
+}
+
 }  // namespace palpate::identify

@@ -10,6 +10,7 @@
 #include "mesh/contact.h"
 #include "mesh/region.h"
 #include "mesh/surface.h"
+#include "mesh/volume_mesh.h"
 
 namespace palpate::identify {
 
@@ -67,6 +68,7 @@ struct MeasurementSet {
     std::string name;
     std::filesystem::path folder;
     mesh::Surface rest_surface;
+    std::optional<mesh::VolumeMesh> rest_volume;  // tetrahedra behind it, where the file of the body holds them
     std::vector<mesh::Region> supports;
     std::optional<double> density;         // [tonne/mm^3]
     bool continuous = false;               // history: one body through all states, in order

@@ -9,15 +9,6 @@
 #include "skeleton/attach.h"
 
 namespace palpate::identify {
-namespace {
-
-bool is_known_to_act(const MeasurementSet& set, const LoadState& state) {
-    const bool pushed = std::ranges::any_of(state.contacts, [](const mesh::Contact& c) { return !c.force.isZero(0); });
-    const bool is_heavy = !known_gravity(set, state).value_or(Vec3::Zero()).isZero(0);
-    return pushed || is_heavy || known_pressure(state) != 0;
-}
-
-}  // namespace
 
 std::vector<skeleton::Attachment> marker_attachments(const skeleton::Model& model, const std::vector<Marker>& markers) {
     std::vector<skeleton::Attachment> points;

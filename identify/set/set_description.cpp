@@ -90,9 +90,12 @@ SetUnits read_set_description(const std::filesystem::path& file, MeasurementSet&
 
     const std::filesystem::path surface = path_inside(fields, "rest_surface", set.folder);
     fields.finish();
-    const mesh::BodyFile rest = mesh::read_body(surface);
-    set.rest_surface = rest.surface;
-    if (!rest.is_in_mm) set.rest_surface.vertices *= units.length;
+    mesh::BodyFile rest = mesh::read_body(surface);
+    const double scale = rest.is_in_mm ? 1 : units.length;
+    set.rest_surface = std::move(rest.surface);
+    set.rest_surface.vertices *= scale;
+    set.rest_volume = std::move(rest.volume);
+    if (set.rest_volume) set.rest_volume->nodes *= scale;
     return units;
 }
 

@@ -46,15 +46,17 @@ std::string density_text(double density) {
     return fmt::format("{}", shown);
 }
 
+const char* rest_file(const MeasurementSet& set) { return set.rest_volume ? "rest.vtu" : "rest.vtp"; }
+
 /// Of a set that is written into `folder`.
 std::string description(const MeasurementSet& set, const fs::path& folder) {
     std::string text = fmt::format(
         "format: palpate-measurements/1\n"
         "name: {}\n"
         "units: {{length: mm, force: N, time: s}}\n"
-        "rest_surface: rest.vtp\n"
+        "rest_surface: {}\n"
         "supports:\n{}",
-        yaml_text(set.name), mesh::regions_to_yaml_in(folder, set.supports));
+        yaml_text(set.name), rest_file(set), mesh::regions_to_yaml_in(folder, set.supports));
     if (set.density) text += fmt::format("density: {}  # kg/m^3\n", density_text(*set.density));
     text += fmt::format("history: {}\n", set.continuous ? "continuous" : "fresh");
     if (set.gravity) text += fmt::format("gravity: [{}]  # mm/s^2\n", fmt::join(*set.gravity, ", "));
@@ -163,7 +165,10 @@ void write_measurement_set(const fs::path& folder, const MeasurementSet& set,
     std::error_code ignored;
     try {
         fs::create_directories(temporary);
-        mesh::write_vtp(temporary / "rest.vtp", set.rest_surface);
+        if (set.rest_volume)
+            mesh::write_vtu(temporary / rest_file(set), *set.rest_volume);
+        else
+            mesh::write_vtp(temporary / rest_file(set), set.rest_surface);
         mesh::write_text(temporary / "set.yaml", description(set, temporary));
         mesh::write_text(temporary / "probes.csv", probes_table(set.states));
         mesh::write_text(temporary / "markers.csv", markers_table(set));

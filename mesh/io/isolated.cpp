@@ -40,7 +40,7 @@ std::string with_errors_told(const std::function<std::string()>& work) {
 }  // namespace
 
 ChildLimits limits_for(double triangles, double seconds) {
-    constexpr double seconds_of_any = 20, mebibytes_of_any = 2048, mebibytes_each = 0.05, most_mebibytes = 12288;
+    constexpr double seconds_of_any = 5, mebibytes_of_any = 2048, mebibytes_each = 0.05, most_mebibytes = 12288;
     return {seconds_of_any + seconds * triangles,
             std::min(mebibytes_of_any + mebibytes_each * triangles, most_mebibytes)};
 }

@@ -11,6 +11,7 @@
 #include "mesh/errors.h"
 #include "mesh/read_body.h"
 #include "mesh/support_points.h"
+#include "pipeline/case/weight.h"
 #include "pipeline/reference/body.h"
 #include "pipeline/reference/reference_body.h"
 
@@ -47,6 +48,7 @@ void read_set(Subject& subject) {
     const Case& c = subject.settings;
     subject.set = read_measurements(*c.measurements, subject.notes, c.edge_length);
     subject.surface = subject.set->rest_surface;
+    subject.volume = subject.set->rest_volume;
     for (const auto& entry : std::filesystem::recursive_directory_iterator(subject.set->folder)) {
         if (entry.is_regular_file() && entry.path().filename() != "truth.json") subject.files.push_back(entry.path());
     }
@@ -123,6 +125,7 @@ identify::MeasurementSet read_measurements(const std::filesystem::path& path, st
     for (identify::LoadState& state : labelled.set.states) {
         std::erase_if(state.readings, [](const identify::Reading& reading) { return reading.marker < 0; });
     }
+    take_weight_as_load(labelled.set, notes);
     return std::move(labelled.set);
 }
 

@@ -1,7 +1,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <map>
 
+#include "identify/diagnose/independent_readings.h"
 #include "mesh/held_parts.h"
 #include "mesh/io/atomic_file.h"
 #include "mesh/io/vtk_files.h"
@@ -22,6 +25,43 @@ std::string describe_set(const identify::MeasurementSet& set) {
     if (!set.recordings.empty()) text += fmt::format(", {} recordings of motion", set.recordings.size());
     if (!set.position_noise) text += "; no noise is stated";
     return text + ".\n";
+}
+
+/// How the loads are numbered: within a probe one body goes through them in time, between probes it is as new.
+std::string describe_numbering(const identify::Problem& problem) {
+    std::map<int, int> loads;  // of each probe
+    for (std::size_t k = 0; k < problem.actions.size(); ++k)
+        if (problem.loaded(static_cast<int>(k))) ++loads[problem.probe[k]];
+    if (loads.size() == 1 && loads.begin()->second > 1)
+        return fmt::format(
+            "All {} loads are of probe {}: one body went through them in the order of time, which creep and yield "
+            "remember, and loads are held out one by one. Number those as probes of their own before which the body "
+            "was at rest.\n",
+            loads.begin()->second, loads.begin()->first);
+    return {};
+}
+
+/// What the readings can tell at most.
+std::string describe_telling(const identify::Problem& problem, int independent) {
+    constexpr int few = 12;  // the largest effect has six numbers: stiffness and two of that kind
+    std::string text = fmt::format("{} measured coordinates, which tell {} numbers independent of each other",
+                                   problem.rows(), independent);
+    if (independent > few) return text + ".\n";
+    return text +
+           ": too few for most effects, whatever the noise. Read more markers, or load other places and directions.\n";
+}
+
+/// Before a fit: what the readings are good for. Nothing where none is labelled.
+void add_preflight(const identify::MeasurementSet& set, Outcome& outcome) {
+    if (std::ranges::none_of(set.states, [](const auto& state) { return !state.readings.empty(); })) return;
+    // Where nobody tells the noise: a hundredth of how far the markers move.
+    const identify::Problem raw = identify::make_problem(set, 1);
+    const double moved = std::sqrt(raw.displacement().squaredNorm() / static_cast<double>(raw.rows()));
+    const identify::Problem problem =
+        identify::make_problem(set, set.position_noise.value_or(std::max(0.01 * moved, 1e-9)));
+    const int independent = identify::independent_readings(problem);
+    outcome.text += describe_telling(problem, independent) + describe_numbering(problem);
+    outcome.json["independent_readings"] = independent;
 }
 
 /// Where faults of each kind are, the first few of them.
@@ -128,6 +168,7 @@ Outcome check(const CheckOptions& options, const Common& common) {
         outcome.json["set"] = {{"states", subject.set->states.size()}, {"markers", subject.set->markers.size()}};
     }
     add_supports(subject, outcome);
+    if (subject.set) add_preflight(*subject.set, outcome);
     if (!options.output.empty()) {
         write_faults(options.output, subject.surface, places);
         mesh::write_text(options.output / "check.json", outcome.json.dump(2) + "\n");

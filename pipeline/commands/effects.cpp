@@ -10,7 +10,7 @@ using nlohmann::json;
 
 std::string kind_of(const identify::Effect& effect) { return effect.is_of_body() ? "body" : "measurement"; }
 
-json to_json(const identify::Effect& effect) {
+json effect_json(const identify::Effect& effect) {
     const identify::EffectDescription& text = effect.description();
     return {{"effect", text.name},
             {"kind", kind_of(effect)},
@@ -36,14 +36,14 @@ std::string in_full(const identify::Effect& effect) {
 Outcome effects(const EffectsOptions& options, const Common&) {
     if (!options.name.empty()) {
         const auto effect = identify::find_effect(options.name);
-        return {.text = in_full(*effect), .json = to_json(*effect)};
+        return {.text = in_full(*effect), .json = effect_json(*effect)};
     }
     Outcome outcome;
     outcome.json = {{"effects", json::array()}};
     for (const auto& effect : identify::catalogue()) {
         outcome.text +=
             fmt::format("{:<18} {:<12} {}\n", effect->name(), kind_of(*effect), effect->description().meaning);
-        outcome.json["effects"].push_back(to_json(*effect));
+        outcome.json["effects"].push_back(effect_json(*effect));
     }
     outcome.text += "\npalpate effects NAME tells one in full.\n";
     return outcome;

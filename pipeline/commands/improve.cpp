@@ -52,7 +52,8 @@ Outcome improve(const ImproveCommandOptions& options, const Common& common) {
     const std::string kind = judged_on(options);
     const ModelAndSet given = read_model_and_set(options.model, options.set);
     const identify::LadderOptions how{.identify = identify_options(options.say, common),
-                                      .diagnose = diagnose_options(given.model, common)};
+                                      .diagnose = diagnose_options(given.model, common),
+                                      .only_better = options.automatic};
     how.identify.validate();
     const auto body = body_to_judge(kind, given, options.say.edge_length.value_or(0));
     std::optional<identify::Diagnosis> found;

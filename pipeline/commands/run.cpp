@@ -3,6 +3,7 @@
 #include <optional>
 
 #include "fem/elastic_body.h"
+#include "mesh/errors.h"
 #include "mesh/held_parts.h"
 #include "mesh/io/atomic_file.h"
 #include "mesh/io/region_yaml.h"
@@ -292,6 +293,8 @@ private:
             if (!held_out_.states.empty()) {
                 result["fitted"] = error_json(fit_);
                 result["held_out"] = error_json(held_out_);
+                result["held_out"]["worst_probes"] =
+                    worst_probes_json(identify::compare(model_, held_out_, common_.threads), held_out_);
             }
             if (subject_.set) {
                 inquiry.compare_reference(result, model_, comparison);

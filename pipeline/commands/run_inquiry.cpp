@@ -102,7 +102,8 @@ void RunInquiry::compare_reference(json& compare, const skeleton::Model& model,
 
 json RunInquiry::improve(const skeleton::Model& model, const json& diagnosis) {
     if (diagnosis.is_null()) return nullptr;
-    identify::LadderOptions how{.identify = subject_.settings.identify, .diagnose = diagnose_options(model, common_)};
+    identify::LadderOptions how{
+        .identify = subject_.settings.identify, .diagnose = diagnose_options(model, common_), .only_better = true};
     how.identify.threads = common_.threads;
     how.diagnose.without = subject_.settings.diagnose.without;
     const auto effects = diagnosis["explanation"].get<std::vector<std::string>>();
@@ -119,8 +120,9 @@ json RunInquiry::improve(const skeleton::Model& model, const json& diagnosis) {
     });
     json result = json::parse(mesh::read_text(folder / "ladder.json"));
     const json& steps = result["steps"];
+    for (const json& note : result["notes"]) Console::notice(note.get<std::string>());
     tell_stage(folder_, "improve", ran,
-               steps.size() < 2 ? "nothing to add"
+               steps.size() < 2 ? (effects.empty() ? "nothing to add" : "nothing added")
                                 : fmt::format("{:.3g} to {:.3g} mm rms", steps.front()["rms_mm"].get<double>(),
                                               steps.back()["rms_mm"].get<double>()));
     return result;

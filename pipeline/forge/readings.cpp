@@ -10,19 +10,19 @@ namespace {
 
 using identify::RandomStream;
 
-enum Purpose : std::uint64_t { noise, outliers, missing, unlabelled };
+enum class Purpose : std::uint64_t { noise, outliers, missing, unlabelled };
 
 RandomStream stream(std::uint64_t seed, const identify::LoadState& state, Purpose purpose) {
     const auto probe = static_cast<std::uint64_t>(state.probe);
-    return {seed, 4 * probe + purpose, std::bit_cast<std::uint64_t>(state.time)};
+    return {seed, 4 * probe + static_cast<std::uint64_t>(purpose), std::bit_cast<std::uint64_t>(state.time)};
 }
 
 }  // namespace
 
 std::vector<identify::Reading> read_markers(const identify::LoadState& state, const Points& positions,
                                             const ReadingFaults& faults, std::uint64_t seed) {
-    RandomStream noisy = stream(seed, state, noise), wild = stream(seed, state, outliers),
-                 lost = stream(seed, state, missing), nameless = stream(seed, state, unlabelled);
+    RandomStream noisy = stream(seed, state, Purpose::noise), wild = stream(seed, state, Purpose::outliers),
+                 lost = stream(seed, state, Purpose::missing), nameless = stream(seed, state, Purpose::unlabelled);
     struct Nameless {
         double order;
         identify::Reading reading;

@@ -79,8 +79,11 @@ Body make_body(const mesh::Surface& surface, const BodyOptions& options, const P
 
 Body make_body(const Subject& subject, const BodyOptions& options, const Progress& progress) {
     if (!subject.volume) return make_body(subject.surface, options, progress);
-    const mesh::VolumeMesh& given = *subject.volume;
-    if (const mesh::SurfaceReport boundary = mesh::check_surface(subject.surface);
+    return ready_made_body(*subject.volume, subject.surface, options);
+}
+
+Body ready_made_body(const mesh::VolumeMesh& given, const mesh::Surface& surface, const BodyOptions& options) {
+    if (const mesh::SurfaceReport boundary = mesh::check_surface(surface);
         boundary.non_manifold_edges > 0 || boundary.self_intersections > 0) {
         throw InvalidInput(fmt::format(
             "the boundary of the mesh meets itself along {} edges and crosses itself in {} places, which no body does: "
@@ -89,7 +92,7 @@ Body make_body(const Subject& subject, const BodyOptions& options, const Progres
     }
     Body body;
     body.is_ready_made = true;
-    body.repaired = body.surface = subject.surface;
+    body.repaired = body.surface = surface;
     body.volume = options.linear_elements ? given : mesh::to_quadratic(given);
     body.notes.push_back(fmt::format(
         "the mesh is used as it is: {} tetrahedra of {} nodes{}", given.tetrahedra.rows(), given.tetrahedra.cols(),

@@ -31,8 +31,11 @@ struct Body {
 /// @throws InvalidInput, SolverFailure with what to do.
 Body make_body(const mesh::Surface& surface, const BodyOptions& options, const Progress& progress = {});
 
-/// The same of a subject; a ready-made mesh is used as it is, with midside nodes unless linear elements were asked for.
-/// @throws InvalidInput where the boundary of a ready-made mesh crosses itself or meets itself along an edge.
+/// A ready-made mesh behind its boundary as a body: used as it is, with midside nodes unless linear elements were asked
+/// for. @throws InvalidInput where the boundary crosses itself or meets itself along an edge.
+Body ready_made_body(const mesh::VolumeMesh& mesh, const mesh::Surface& boundary, const BodyOptions& options);
+
+/// The body of a subject, ready-made where it has a mesh. @throws InvalidInput, SolverFailure.
 Body make_body(const Subject& subject, const BodyOptions& options, const Progress& progress = {});
 
 /// Elements by default: 6 % of the longest side, and shorter where the body is thinner (`edge_for_thickness`) [mm].

@@ -20,13 +20,17 @@ constexpr double default_density = 1000;  // [kg/m^3]
 std::unique_ptr<identify::ReferenceBody> fill(const identify::MeasurementSet& set, double edge_length,
                                               const Progress& progress, std::vector<std::string>& notes) {
     const double edge = edge_length > 0 ? edge_length : reference_edge_length(set.rest_surface);
-    // Curving the elements gives back what their chords cut off.
-    const Body body = make_body(set.rest_surface, {.edge_length = edge, .volume_change = 0.06}, progress);
+    // Curving the elements gives back what their chords cut off. Tetrahedra that are given stay: those who measured on
+    // them, by another solver, made their errors too.
+    const Body body = set.rest_volume
+                          ? ready_made_body(*set.rest_volume, set.rest_surface, {})
+                          : make_body(set.rest_surface, {.edge_length = edge, .volume_change = 0.06}, progress);
     identify::ReferenceBodyOptions options;
     options.density = set.density.value_or(default_density * fem::tonne_per_mm3);
     if (set.material && set.material->young > 0) options.young = set.material->young;
     if (set.material && !std::isnan(set.material->poisson)) options.poisson = set.material->poisson;
-    const mesh::VolumeMesh curved = mesh::curve_to(body.volume, body.repaired);
+    const mesh::VolumeMesh curved = set.rest_volume ? body.volume : mesh::curve_to(body.volume, body.repaired);
+    if (set.rest_volume) notes.push_back("The body of the diagnosis is the set's own: " + body.notes.front() + ".");
     std::ranges::move(mesh::too_little_held(set.supports, curved), std::back_inserter(notes));
     return std::make_unique<identify::ReferenceBody>(curved, set.supports, set.markers, options);
 }

@@ -22,6 +22,7 @@ struct Reference {
 };
 
 /// Repairs and remeshes the set's rest surface, fills it with quadratic tetrahedra, and curves them to the surface.
+/// Tetrahedra of the set's own are used as they are.
 /// Density and a first guess of Young's modulus are the set's.
 /// @param edge_length of the tetrahedra [mm]; 0: the default
 Reference make_reference(const identify::MeasurementSet& set, double edge_length, const Progress& progress = {});

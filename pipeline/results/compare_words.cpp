@@ -46,6 +46,22 @@ std::string noise_words(const json& compare) {
     return fmt::format(" The noise is {:.3g} mm: {}.", error["noise_mm"].get<double>(), left);
 }
 
+/// Where a model that was fitted well fails on what it has not seen.
+std::string held_out_words(const json& compare) {
+    if (!compare.contains("held_out") || !compare["held_out"].contains("worst_probes")) return {};
+    constexpr double far = 2;  // times the error on the probes that were fitted
+    const json fitted = compare["fitted"]["relative"], unseen = compare["held_out"]["relative"];
+    if (!fitted.is_number() || !unseen.is_number() || unseen.get<double>() < far * fitted.get<double>()) return {};
+    std::string text;
+    for (const json& probe : compare["held_out"]["worst_probes"]) {
+        text += fmt::format("{}probe {} at {} by {}", text.empty() ? " Worst of these: " : ", ",
+                            probe["probe"].get<int>(), place(probe["at"]), percent(probe["relative"].get<double>()));
+        if (probe["from_support_mm"].is_number())
+            text += fmt::format(", {:.3g} mm from what is held", probe["from_support_mm"].get<double>());
+    }
+    return text.empty() ? text : text + ". Probes next to these would tell the links there.";
+}
+
 std::string reference_words(const json& compare) {
     const json baseline = compare.value("baseline", json()), reference = compare.value("reference", json());
     if (!baseline.is_object() || !reference.is_object()) return {};
@@ -98,7 +114,7 @@ std::string compare_in_words(const json& compare) {
         text += fmt::format(" On the probes that were fitted it is off by {}, on those kept from the fit by {}.",
                             share(compare["fitted"]), share(compare["held_out"]));
     }
-    text += noise_words(compare);
+    text += held_out_words(compare) + noise_words(compare);
     if (compare.contains("not_borne")) {
         text += fmt::format(" The model does not bear the whole load of probes {}: it is played as far as it does.",
                             fmt::join(compare["not_borne"].get<std::vector<int>>(), ", "));

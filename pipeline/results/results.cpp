@@ -1,6 +1,8 @@
 #include "pipeline/results/results.h"
 
+#include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "pipeline/results/damping.h"
 #include "pipeline/results/json_values.h"
@@ -68,6 +70,33 @@ json to_json(const identify::Comparison& c, const identify::MeasurementSet& set)
                                    {"towards", numbers(w.towards)}});
     }
     result["markers"] = marker_errors(c, set);
+    return result;
+}
+
+json worst_probes_json(const identify::Comparison& comparison, const identify::MeasurementSet& set) {
+    constexpr std::size_t told = 3;
+    std::vector<identify::ProbeError> worst;
+    std::ranges::copy_if(comparison.probes, std::back_inserter(worst),
+                         [](const identify::ProbeError& p) { return std::isfinite(p.relative); });
+    std::ranges::stable_sort(worst, std::greater{}, &identify::ProbeError::relative);
+    const Points& surface = set.rest_surface.vertices;
+    const std::vector<char> held = mesh::contains(set.supports, surface);
+    json result = json::array();
+    for (const identify::ProbeError& probe : worst) {
+        if (result.size() == told) break;
+        const auto state = std::ranges::find_if(set.states, [&](const identify::LoadState& s) {
+            return s.probe == probe.probe && s.time == probe.time && !s.contacts.empty();
+        });
+        if (state == set.states.end()) continue;
+        const Vec3 at = state->contacts.front().point;
+        double gap = INFINITY;
+        for (Eigen::Index v = 0; v < surface.rows(); ++v)
+            if (held[static_cast<std::size_t>(v)]) gap = std::min(gap, (surface.row(v).transpose() - at).norm());
+        result.push_back({{"probe", probe.probe},
+                          {"relative", probe.relative},
+                          {"at", numbers(at)},
+                          {"from_support_mm", known(gap)}});
+    }
     return result;
 }
 

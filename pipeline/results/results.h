@@ -13,6 +13,8 @@ namespace palpate::pipeline {
 
 /// Machine-read results, as `--json` prints them and files hold them.
 nlohmann::json to_json(const identify::Comparison& comparison, const identify::MeasurementSet& set);
+/// Its worst probes, as a share of their displacement: where they press, and how far from the material that is held.
+nlohmann::json worst_probes_json(const identify::Comparison& comparison, const identify::MeasurementSet& set);
 nlohmann::json to_json(const mesh::SurfaceReport& report);
 nlohmann::json summary_json(const identify::IdentifyResult& result);
 

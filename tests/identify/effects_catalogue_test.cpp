@@ -178,7 +178,8 @@ INSTANTIATE_TEST_SUITE_P(Catalogue, EveryEffect, testing::ValuesIn(catalogue()),
 Problem doubling_loads() {
     Problem problem;
     for (int k = 0; k < 6; ++k) {
-        problem.actions.push_back({.contacts = {{.force = Vec3(0, 0, -std::pow(2.0, k)), .radius = 1}}});
+        problem.actions.push_back(
+            {.contacts = {{.point = Vec3(10 * k, 0, 0), .force = Vec3(0, 0, -std::pow(2.0, k)), .radius = 1}}});
         problem.probe.push_back(k + 1);
     }
     return problem;
@@ -245,6 +246,28 @@ TEST(ForceGain, IsAClaimWhereGainsComeAndGo) {
     alternating << 0.2, -0.2, 0.2, -0.2, 0.2, -0.2;
     EXPECT_EQ(find_effect("force-gain")->objection(doubling_loads(), alternating, false), "");
     EXPECT_THAT(find_effect("force-gain")->objection(doubling_loads(), alternating, true), HasSubstr("noise already"));
+}
+
+TEST(ForceGain, LoadsAlongOneLineShareOneUnlessOneIsRepeated) {
+    Problem curve = doubling_loads();
+    for (Action& action : curve.actions) action.contacts.front().point.setZero();
+    const Effect& gain = *find_effect("force-gain");
+    const SkeletonBody body(make_lattice({2, 1, 1}), {}, 1);
+    EXPECT_TRUE(gain.numbers(body, curve).empty());  // one gain is a stiffness
+    curve.actions.push_back(curve.actions[2]);
+    curve.probe.push_back(9);
+    const auto numbers = gain.numbers(body, curve);
+    ASSERT_EQ(numbers.size(), 2U);
+    EXPECT_EQ(numbers[0].name, "probe1");
+    EXPECT_EQ(numbers[1].name, "probe9");
+    Eigen::VectorXd values(2);
+    values << std::log(1.5), std::log(0.5);
+    for (int k = 0; k < 7; ++k)
+        EXPECT_NEAR(gain.act(curve, k, curve.actions[k], values).contacts.front().force.z(),
+                    (k < 6 ? 1.5 : 0.5) * curve.actions[k].contacts.front().force.z(), 1e-12);  // rounding
+    // Along another line it is another way of loading.
+    curve.actions[6].contacts.front().force = Vec3(1, 0, 0);
+    EXPECT_EQ(gain.numbers(body, curve).size(), 2U);
 }
 
 TEST(Catalogue, RefusesASecondEffectOfAName) {

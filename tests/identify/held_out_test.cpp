@@ -25,6 +25,16 @@ TEST_F(Diagnosed, LeavingProbesOutWhitensToOne) {
     EXPECT_NEAR(sum / 4, 0.97, 4 * std::sqrt(2 / (4 * 648.0)) + 0.03);
 }
 
+TEST(HeldOutGroups, AreProbesAndOfOneProbeItsLoads) {
+    Problem problem;
+    problem.probe = {1, 1, 2};
+    problem.action = {0, 1, 1, 2};
+    problem.measured.setZero(4);
+    EXPECT_EQ(held_out_groups(problem), (std::vector<int>{1, 1, 1, 2}));
+    problem.probe = {1, 1, -1};  // the last without load
+    EXPECT_EQ(held_out_groups(problem), (std::vector<int>{0, 1, 1, 2}));
+}
+
 class HeldOutProbes : public Diagnosed {
 protected:
     /// Errors on probes 3 and 7, of a fit to the others.

@@ -6,7 +6,7 @@ follows E I theta'' = -F cos(theta), theta(0) = 0, theta'(l) = 0. [Timoshenko & 
 The equation is integrated by the classic Runge-Kutta method and shot at theta'(l) = 0 by bisection. Stretch and shear
 are nothing in a strip 200 times as long as thick; it is four times as wide as thick, so that its width bends freely.
 
-    make.py FOLDER
+    samples/aluminium-strip/make_set.py samples/aluminium-strip
 """
 
 import math
@@ -81,7 +81,7 @@ def main(folder):
     top = THICKNESS / 2
     (folder / "rest.stl").write_text(box_stl())
     (folder / "set.yaml").write_text(f"""format: palpate-measurements/1
-name: aluminium strip under tip loads
+name: aluminium-strip
 rest_surface: rest.stl
 supports:
   - box: {{min: [-1, -5, -2], max: [0.01, 5, 2]}}
