@@ -15,6 +15,13 @@ enum class Dilatation {
     mean,  // P2/P0: the divergence is replaced by its mean over the element, which does not lock near nu = 0.5
 };
 
+/// What serves quadratic elements: the mean near nu = 0.5, where the full one locks (3 % too stiff at 0.45). A body of a
+/// single element in thickness bends too easily with the mean, by up to 12 %.
+inline Dilatation dilatation_for(double poisson) {
+    constexpr double near_incompressible = 0.45;
+    return poisson >= near_incompressible ? Dilatation::mean : Dilatation::full;
+}
+
 /// Stiffness matrix K of a linearly elastic body (3n x 3n), symmetric, both halves [N/mm];
 /// degree of freedom 3 i + c is component c of node i.
 /// @throws InvalidInput for linear elements with nu > 0.4, which lock (26 % too stiff at nu = 0.49).

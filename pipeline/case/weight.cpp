@@ -2,12 +2,14 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/LU>
 #include <Eigen/QR>
 
 #include <algorithm>
 #include <cmath>
 
-#include "identify/diagnose/fit.h"
+#include "identify/diagnose/refit.h"
+#include "identify/effects/catalogue.h"
 #include "identify/set/loads.h"
 #include "mesh/errors.h"
 #include "pipeline/reference/reference_body.h"
@@ -22,11 +24,16 @@ bool is_unloaded(const identify::MeasurementSet& set, const identify::LoadState&
            !identify::is_known_to_act(set, state);
 }
 
-/// How the markers answer to gravity along each axis, linearly, in the order of the problem's rows over sigma (N x 3).
-Eigen::MatrixXd answers_to_gravity(const identify::BodyModel& body, identify::Problem problem) {
+identify::Explanation bare(const identify::BodyModel& body) {
     identify::Explanation explanation;
     explanation.theta.resize(std::ssize(body.parameters()));
     for (Eigen::Index p = 0; p < explanation.theta.size(); ++p) explanation.theta[p] = body.parameters()[p].start;
+    return explanation;
+}
+
+/// How the markers answer to gravity along each axis, linearly, in the order of the problem's rows over sigma (N x 3).
+Eigen::MatrixXd answers_to_gravity(const identify::BodyModel& body, identify::Problem problem) {
+    const identify::Explanation explanation = bare(body);
     Eigen::MatrixXd answers(problem.rows(), 3);
     for (int axis = 0; axis < 3; ++axis) {
         for (identify::Action& action : problem.actions) action.gravity = standard_gravity * Vec3::Unit(axis);
@@ -35,6 +42,46 @@ Eigen::MatrixXd answers_to_gravity(const identify::BodyModel& body, identify::Pr
         answers.col(axis) = moved.cwiseQuotient(problem.sigma);
     }
     return answers;
+}
+
+/// Frames stand upright mostly: the axis that a vector may lie along, within what is known of it (P, the inverse of its
+/// covariance); else its own direction.
+Vec3 upright(const Vec3& v, const Mat3& P) {
+    constexpr double likely = 6;  // chi^2 of two numbers, 95 %
+    Vec3 best = v.normalized();
+    double least = likely;
+    for (int axis = 0; axis < 3; ++axis) {
+        const double along = P.row(axis).dot(v);
+        const double off = v.dot(P * v) - along * along / P(axis, axis);
+        if (off >= least) continue;
+        least = off;
+        best.setZero();
+        best[axis] = std::copysign(1.0, along);
+    }
+    return best;
+}
+
+/// The direction of gravity in large deformation: what sags far comes nearer, too, which small strain takes for a pull
+/// along the body. `linear`: gravity in small strain, over the standard one.
+Vec3 direction_of(const identify::BodyModel& body, const identify::Problem& problem, const Vec3& linear) {
+    identify::Explanation explanation = bare(body);
+    explanation.law = 1;  // of large deformation
+    for (Eigen::Index p = 0; p < explanation.theta.size(); ++p)
+        if (body.parameters()[p].stiffens) explanation.theta[p] -= std::log(linear.norm());
+    const auto gravity = identify::find_effect("gravity");
+    const auto numbers = gravity->numbers(body, problem);
+    const Vec3 start = standard_gravity * linear.normalized();
+    explanation.effects = {gravity};
+    explanation.values = {gravity->values(
+        numbers, {"gravity", {{"gx", start.x(), "mm/s^2"}, {"gy", start.y(), "mm/s^2"}, {"gz", start.z(), "mm/s^2"}}})};
+    try {
+        const identify::Refit fit = identify::refit(body, problem, explanation, {});
+        const Vec3 found = fit.explanation.values.front();
+        const Mat3 covariance = fit.covariance.bottomRightCorner<3, 3>();
+        return found.isZero(0) ? start.normalized() : upright(found, covariance.inverse());
+    } catch (const SolverFailure&) {
+        return start.normalized();
+    }
 }
 
 }  // namespace
@@ -53,11 +100,12 @@ void take_weight_as_load(identify::MeasurementSet& set, std::vector<std::string>
     const Eigen::Vector3d along = A.completeOrthogonalDecomposition().solve(moved);
     constexpr double most = 0.5;  // of the squared displacement: something else moved it more
     if (along.isZero(0) || (moved - A * along).squaredNorm() > most * moved.squaredNorm()) return;
-    set.gravity = standard_gravity * along.normalized();
+    const Vec3 down = direction_of(*reference.body, problem, along);
+    set.gravity = standard_gravity * down;
     notes.push_back(
         fmt::format("No state has a load: the body's weight is taken as the load, {:.0f} mm/s^2 along ({:.3f}, {:.3f}, "
                     "{:.3f}), where the readings sag to ('gravity' in set.yaml says otherwise).",
-                    standard_gravity, along.normalized().x(), along.normalized().y(), along.normalized().z()));
+                    standard_gravity, down.x(), down.y(), down.z()));
 }
 
 }  // namespace palpate::pipeline

@@ -18,7 +18,7 @@ YOUNG, LENGTH, WIDTH, THICKNESS = 70e3, 400.0, 8.0, 2.0  # MPa, mm
 BENDING = YOUNG * WIDTH * THICKNESS**3 / 12  # N mm^2
 LOADS = [0.06 * i for i in range(1, 22)]  # N
 NOISE = 0.1  # mm, of a motion capture system
-MARKERS = [(1, 200.0), (2, 300.0), (3, 398.0)]  # number, place along the strip [mm]
+MARKERS = [(1, 50.0), (2, 100.0), (3, 200.0), (4, 300.0), (5, 398.0)]  # number, place along the strip [mm]
 LOADED = 398.0  # mm
 STEPS = 2000
 

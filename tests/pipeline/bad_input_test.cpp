@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 
+#include <cstdlib>
+
 #include "identify/set/measurement_set.h"
 #include "mesh/errors.h"
 #include "mesh/read_surface.h"
@@ -40,6 +42,18 @@ const std::string box_obj =
 TEST(BadInput, MissingFile) {
     const TemporaryFolder scratch;
     EXPECT_THAT(message_of_run(scratch, scratch / "none.stl"), AllOf(HasSubstr("none.stl"), HasSubstr("no such file")));
+}
+
+TEST(BadInput, FilesThatBrokeTheProgramOnceAreRefused) {
+    const char* data = std::getenv("PALPATE_DATA");
+    if (!data) GTEST_SKIP() << "PALPATE_DATA names no folder with hostile files";
+    const std::filesystem::path folder = std::filesystem::path(data) / "hostile";
+    for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+        const TemporaryFolder scratch;
+        const bool is_deck = std::filesystem::exists(entry.path() / "a0.inp");
+        const std::string message = message_of_run(scratch, is_deck ? entry.path() / "a0.inp" : entry.path());
+        EXPECT_GT(message.size(), 40U) << entry.path() << " is taken: " << message;
+    }
 }
 
 TEST(BadInput, EmptyFile) {
