@@ -116,7 +116,11 @@ public:
         int crawling = 0;
         double now = objective(*at_.V, at_.error, priors_, at_.explanation.all());
         linearise();
-        for (int step = 0; step < most_steps; ++step) {
+        // What still falls by a tenth a step is on its way: it may take some more.
+        constexpr int at_most = 4;  // times as many
+        constexpr double much = 0.1;
+        bool falls = true;
+        for (int step = 0; step < most_steps || (falls && step < at_most * most_steps); ++step) {
             const Eigen::MatrixXd VA = at_.V->apply(at_.columns);
             Eigen::MatrixXd H = at_.columns.transpose() * VA;
             H.diagonal() += priors_.sd.cwiseAbs2().cwiseInverse();
@@ -131,6 +135,7 @@ public:
             ++at_.steps;
             const double before = now;
             if (!advance(limited_move(H, g, priors_, held, move), now)) return;
+            falls = before - now > much * before && !at_.explanation.has_memory();
             linearise();
             constexpr double little = 0.01;
             crawling = is_shortened_ && before - now < little * now ? crawling + 1 : 0;
