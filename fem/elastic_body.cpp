@@ -117,7 +117,8 @@ ElasticBody::ElasticBody(mesh::VolumeMesh mesh, const Material& material, const 
     validate(options);
     check_restraint(mesh, held);
     ElasticBodyStats& stats = impl_->stats;
-    if (mesh.is_quadratic()) stats.dilatation = dilatation_for(material.poisson);
+    constexpr double near_incompressible = 0.45;
+    if (mesh.is_quadratic() && material.poisson >= near_incompressible) stats.dilatation = Dilatation::mean;
     stats.nodes = static_cast<int>(mesh.nodes.rows());
     stats.elements = static_cast<int>(mesh.tetrahedra.rows());
     impl_->mesh = std::move(mesh);

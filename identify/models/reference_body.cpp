@@ -109,9 +109,7 @@ struct ReferenceBody::Impl {
 ReferenceBody::ReferenceBody(const mesh::VolumeMesh& mesh, const std::vector<mesh::Region>& supports,
                              const std::vector<Marker>& markers, const ReferenceBodyOptions& options) {
     const std::vector<char> held = mesh::contains(supports, mesh.nodes);
-    const fem::Dilatation dilatation =
-        options.dilatation.value_or(options.poisson ? fem::dilatation_for(*options.poisson) : fem::Dilatation::mean);
-    impl_ = std::make_unique<Impl>(fem::HyperelasticBody(mesh, held, dilatation), MarkerFrames(mesh, markers),
+    impl_ = std::make_unique<Impl>(fem::HyperelasticBody(mesh, held, options.dilatation), MarkerFrames(mesh, markers),
                                    options.density);
     Impl& i = *impl_;
     i.size = (mesh.nodes.colwise().maxCoeff() - mesh.nodes.colwise().minCoeff()).maxCoeff();

@@ -10,7 +10,7 @@ struct ReferenceBodyOptions {
     double density = 1e-9;               // [tonne/mm^3]
     std::optional<double> young = {};    // a first guess [MPa]
     std::optional<double> poisson = {};  // as it is told, not to be fitted; absent: it is
-    std::optional<fem::Dilatation> dilatation = {};  // absent: what serves the ratio that is told, else the mean
+    fem::Dilatation dilatation = fem::Dilatation::mean;
 };
 
 /// The body of finite elements as a model: laws linear, svk, neo-hooke; parameters ln E and ln(1 - 2 nu).

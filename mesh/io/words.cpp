@@ -85,7 +85,7 @@ std::size_t length_in_utf8(std::string_view text) {
 void require_utf8(std::string_view text, const std::string& name) {
     const std::size_t valid = length_in_utf8(text);
     if (valid == text.size()) return;
-    const auto line = 1 + std::ranges::count(text.substr(0, valid), '\n');
+    const auto line = 1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(valid), '\n');
     throw InvalidInput(fmt::format(
         "{}, line {}: the byte 0x{:02X} is no UTF-8. Save the file as UTF-8 (an editor's \"Save with encoding\", or "
         "iconv -f LATIN1 -t UTF-8).",

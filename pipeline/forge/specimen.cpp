@@ -80,8 +80,7 @@ Specimen finite_element_specimen(const Subject& subject, const ForgeOptions& opt
                         {}};
     specimen.model = std::make_unique<identify::ReferenceBody>(
         specimen.volume, set.supports, set.markers,
-        identify::ReferenceBodyOptions{
-            .density = material.density, .young = material.young, .dilatation = fem::dilatation_for(material.poisson)});
+        identify::ReferenceBodyOptions{.density = material.density, .young = material.young});
     return specimen;
 }
 

@@ -337,7 +337,7 @@ INSTANTIATE_TEST_SUITE_P(AllModels, BodyModelLaws, testing::ValuesIn(all_cases()
 TEST(ReferenceBody, AStripOfOneElementInThicknessBendsAsABeam) {
     // Two tip loads, one each way: F L^3 / 3 E I = 2 * 0.01 * 60^3 / (3 * 1000 * 6 * 1.5^3 / 12) mm apart
     const mesh::VolumeMesh strip = mesh::to_quadratic(mesh::make_bar({0, 0, 0}, {60, 6, 1.5}, {20, 2, 1}));
-    for (const double poisson : {0.0, 0.33, 0.4}) {
+    for (const double poisson : {0.0, 0.33, 0.45, 0.49}) {
         const ReferenceBody body(strip, {mesh::BoxRegion{{-1, -1, -1}, {1e-6, 7, 3}}},
                                  {{1, Vec3(60, 3, 1.5), std::nullopt}}, {.young = 1000.0, .poisson = poisson});
         Explanation bare;
@@ -350,7 +350,8 @@ TEST(ReferenceBody, AStripOfOneElementInThicknessBendsAsABeam) {
             return body.observe(body.equilibrium(bare.setting(), action), bare.setting())(0, 2);
         };
         const double beam = 2 * 0.01 * std::pow(60, 3) / (3 * 1000 * 6 * std::pow(1.5, 3) / 12);
-        EXPECT_NEAR(height(0.01) - height(-0.01), beam, 0.03 * beam) << poisson;  // a clamp that holds the width
+        EXPECT_NEAR(height(0.01) - height(-0.01), beam, 0.05 * beam)
+            << poisson;  // a clamp that holds the width makes it 4 % stiffer at 0.4
     }
 }
 

@@ -61,13 +61,13 @@ TEST_F(MeasurementSetFiles, ThatNameMissingFilesAreRefused) {
 }
 
 TEST_F(MeasurementSetFiles, WithImpossibleNumbersInTheYamlAreRefused) {
-    EXPECT_TRUE(says(refusal("set.yaml", yaml + "noise: {position: 0}\n"), {"line 7", "noise.position", "above 0"}));
+    EXPECT_TRUE(says(refusal("set.yaml", yaml + "noise: {position: 0}\n"), {"line 7", "noise.position", "outside [1e-09"}));
     EXPECT_TRUE(says(refusal("set.yaml", yaml + "noise: {force: -1}\n"), {"line 7", "noise.force", "-1"}));
     EXPECT_TRUE(
         says(refusal("set.yaml", yaml + "density: 1.05e-9\n"), {"line 7", "density", "1.05e-09", "[1, 30000]"}));
     EXPECT_TRUE(says(refusal("set.yaml", yaml + "history: old\n"), {"line 7", "history", "'fresh', 'continuous'"}));
     EXPECT_TRUE(says(refusal("set.yaml", yaml + "gravity: -9810\n"), {"line 7", "gravity", "list of three numbers"}));
-    EXPECT_TRUE(says(refusal("set.yaml", yaml + "material: {young: 0}\n"), {"material.young", "above 0"}));
+    EXPECT_TRUE(says(refusal("set.yaml", yaml + "material: {young: 0}\n"), {"material.young", "outside [1e-09"}));
     EXPECT_TRUE(says(refusal("set.yaml", yaml + "material: {poisson: 0.5}\n"), {"material.poisson", "0.5"}));
     EXPECT_TRUE(says(refusal("set.yaml", yaml + "material: {yuong: 1}\n"), {"material.yuong", "did you mean 'young'"}));
 }
@@ -99,7 +99,7 @@ TEST_F(MeasurementSetFiles, WithReadingsOfUnknownThingsAreRefused) {
     EXPECT_TRUE(says(refusal("positions.csv", positions + "0,0,8,1,1,1,\n"), {"line 6", "marker 8", "markers.csv"}));
     EXPECT_TRUE(
         says(refusal("positions.csv", positions + "0,0,7,1,1,1,\n"), {"line 6", "marker 7", "already", "probe 0"}));
-    EXPECT_TRUE(says(refusal("positions.csv", positions + "0,0,3,1,1,1,0\n"), {"line 6", "sigma", "above 0"}));
+    EXPECT_TRUE(says(refusal("positions.csv", positions + "0,0,3,1,1,1,0\n"), {"line 6", "sigma", "below 1e-09"}));
 }
 
 TEST_F(MeasurementSetFiles, WithBadKnownLoadsAreRefused) {

@@ -318,7 +318,7 @@ TEST_F(ReadLabels, WhatIsNoBodyIsRefused) {
         return (p.array() > 3.5).all() && (p.array() < 3.5 + size.array()).all();
     };
     EXPECT_TRUE(says(refused(is_odd), {"Label 1", "no body", "Segment it anew"}));
-    EXPECT_TRUE(says(refused([&](const Vec3& p) { return is_box(p, {1, 1, 1}); }), {"no body", "8 are needed"}));
+    EXPECT_TRUE(says(refused([&](const Vec3& p) { return is_box(p, {1, 1, 1}); }), {"no body", "4 are needed"}));
     EXPECT_TRUE(says(refused([&](const Vec3& p) { return is_box(p, {30, 1, 1}); }), {"no body"}));
     EXPECT_TRUE(says(refused([](const Vec3& p) { return (p - Vec3(5, 5, 5)).norm() < 0.1 || p == Vec3(20, 9, 9); }),
                      {"no body"}));

@@ -198,7 +198,7 @@ void require_body(const Surface& parts, double volume_of_parts, double told, con
             label, what, side));
     };
     if (parts.triangles.rows() == 0 || !(volume_of_parts > 0)) refuse("it encloses nothing");
-    constexpr double fewest_voxels = 8;  // two along each side
+    constexpr double fewest_voxels = 4;  // a contour cuts the corners: of a cube of two voxels a side 6 are left
     if (volume_of_parts < fewest_voxels * voxel)
         refuse(fmt::format("its surface encloses the volume of {:.3g} voxels, {:g} are needed", volume_of_parts / voxel,
                            fewest_voxels));
