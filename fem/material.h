@@ -1,7 +1,5 @@
 #pragma once
 
-#include <algorithm>
-
 namespace palpate::fem {
 
 inline constexpr double tonne_per_mm3 = 1e-12;  // one kg/m^3
@@ -12,9 +10,7 @@ struct Material {
     double poisson = 0.45;  // [-], (-1, 0.5)
     double density = 1e-9;  // [tonne/mm^3], >= 0; 1000 kg/m^3 = 1e-9 tonne/mm^3
 
-    double shear_modulus() const { return young / (2 * (1 + poisson)); }  // mu [MPa]
-    /// Of lambda what does not lock quadratic elements, that of nu = 0.4 at most: 4 mu [MPa].
-    double unlocked_lambda() const { return std::min(lame_lambda(), 4 * shear_modulus()); }
+    double shear_modulus() const { return young / (2 * (1 + poisson)); }                          // mu [MPa]
     double lame_lambda() const { return young * poisson / ((1 + poisson) * (1 - 2 * poisson)); }  // [MPa]
 
     /// @throws InvalidInput naming the value and the range.

@@ -74,11 +74,12 @@ std::vector<std::vector<int>> neighbours_of(const mesh::VolumeMesh& mesh, const 
 ///
 /// With S_ab = sum_q g_q(3i+a) g_q(3j+b) the block of nodes i, j is
 ///   K_ab = mu (tr S delta_ab + S_ba) + lambda S_ab,
-/// where for P2/P0 a part of the last term is lambda m(3i+a) m(3j+b) with the element's mean gradients m.
+/// where for P2/P0 the last term is lambda m(3i+a) m(3j+b) with the element's mean gradients m.
 template <int nodes>
 struct ColumnGather {
     const ElementGradients& gradients;
-    double mu, pointwise, mean;  // of lambda, what answers to the divergence and to its mean
+    double mu, lambda;
+    Dilatation dilatation;
 
     /// `place` (nodes): where node j's rows begin in each column, or -1; `stride`: entries of a column.
     void add(int element, int i, const int* place, double* columns, int stride) const {
@@ -97,8 +98,9 @@ struct ColumnGather {
             for (int a = 0; a < 3; ++a) {
                 double* column = columns + static_cast<std::size_t>(a) * stride + place[j];
                 for (int b = 0; b < 3; ++b) {
-                    column[b] += mu * ((a == b ? trace : 0) + S[b][3 * j + a]) + pointwise * S[a][3 * j + b] +
-                                 mean * m[3 * i + a] * m[3 * j + b];
+                    const double divergence = dilatation == Dilatation::mean ? m[3 * i + a] * m[3 * j + b]  //
+                                                                             : S[a][3 * j + b];
+                    column[b] += mu * ((a == b ? trace : 0) + S[b][3 * j + a]) + lambda * divergence;
                 }
             }
         }
@@ -111,9 +113,7 @@ void fill_values(const mesh::VolumeMesh& mesh, const Material& material, Dilatat
                  const NodeElements& elements, const std::vector<int>& number, const std::vector<int>& numbered,
                  const std::vector<std::vector<int>>& rows, ColumnsOf&& columns_of) {
     const ElementGradients gradients = element_gradients(mesh);
-    const double lambda = material.lame_lambda();
-    const double pointwise = dilatation == Dilatation::mean ? material.unlocked_lambda() : lambda;
-    const ColumnGather<nodes> gather{gradients, material.shear_modulus(), pointwise, lambda - pointwise};
+    const ColumnGather<nodes> gather{gradients, material.shear_modulus(), material.lame_lambda(), dilatation};
     const auto count = static_cast<int>(numbered.size());
     tbb::enumerable_thread_specific<std::vector<int>> place_by([&] { return std::vector<int>(count, -1); });
     tbb::parallel_for(tbb::blocked_range<int>(0, count, 256), [&](const tbb::blocked_range<int>& range) {

@@ -80,7 +80,10 @@ Specimen finite_element_specimen(const Subject& subject, const ForgeOptions& opt
                         {}};
     specimen.model = std::make_unique<identify::ReferenceBody>(
         specimen.volume, set.supports, set.markers,
-        identify::ReferenceBodyOptions{.density = material.density, .young = material.young});
+        identify::ReferenceBodyOptions{
+            .density = material.density,
+            .young = material.young,
+            .dilatation = dilatation_for(body.surface, edge > 0 ? edge : default_edge, material.poisson)});
     return specimen;
 }
 

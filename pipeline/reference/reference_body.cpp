@@ -28,7 +28,10 @@ std::unique_ptr<identify::ReferenceBody> fill(const identify::MeasurementSet& se
     identify::ReferenceBodyOptions options;
     options.density = set.density.value_or(default_density * fem::tonne_per_mm3);
     if (set.material && set.material->young > 0) options.young = set.material->young;
-    if (set.material && !std::isnan(set.material->poisson)) options.poisson = set.material->poisson;
+    if (set.material && !std::isnan(set.material->poisson)) {
+        options.poisson = set.material->poisson;
+        options.dilatation = dilatation_for(set.rest_surface, edge, *options.poisson);
+    }
     const mesh::VolumeMesh curved = set.rest_volume ? body.volume : mesh::curve_to(body.volume, body.repaired);
     if (set.rest_volume) notes.push_back("The body of the diagnosis is the set's own: " + body.notes.front() + ".");
     std::ranges::move(mesh::too_little_held(set.supports, curved), std::back_inserter(notes));
@@ -44,6 +47,12 @@ double reference_edge_length(const mesh::Surface& surface) {
     constexpr double nodes = 2500;
     const double edge = std::clamp(std::cbrt(13.5 * volume / nodes), 0.07 * longest_side, 0.12 * longest_side);
     return edge_for_thickness(surface, edge, nodes);
+}
+
+fem::Dilatation dilatation_for(const mesh::Surface& surface, double edge_length, double poisson) {
+    constexpr double unlocked = 0.4;
+    const double thickness = 2 * std::abs(mesh::signed_volume(surface)) / mesh::area(surface);
+    return poisson <= unlocked && edge_length > thickness ? fem::Dilatation::full : fem::Dilatation::mean;
 }
 
 Reference make_reference(const identify::MeasurementSet& set, double edge_length, const Progress& progress) {
