@@ -78,7 +78,10 @@ std::string objection_of_effects(const Diagnosis& diagnosis, const Explained& ex
 
 /// As many numbers as readings that are independent of each other explain whatever was measured.
 std::string objection_of_few_readings(const Diagnosis& diagnosis, const Explained& explained) {
-    Eigen::Index numbers = explained.fit.explanation.theta.size();
+    constexpr double fixed = 0.1;  // a prior of less, as that of a ratio that is told, leaves nothing to be fitted
+    Eigen::Index numbers = 0;
+    for (Eigen::Index p = 0; p < explained.fit.explanation.theta.size(); ++p)
+        numbers += explained.fit.prior_sd[p] > fixed;
     for (std::size_t e = 0; e < explained.fit.explanation.effects.size(); ++e)
         if (explained.has(explained.fit.explanation.effects[e]->name()))
             numbers += std::ssize(explained.fit.numbers[e]);
@@ -89,9 +92,10 @@ std::string objection_of_few_readings(const Diagnosis& diagnosis, const Explaine
         numbers, diagnosis.independent);
 }
 
-/// What is right predicts a probe left out better than nothing does. What its nuisances and its own numbers excuse
-/// there does not count.
+/// What is right predicts a probe left out better than nothing does, whatever the nuisances excuse there.
 std::string objection_of_held_out(const Diagnosis& diagnosis, const Explained& explained) {
+    // Numbers that only the probe left out tells, as its gain, are unknown there: it errs as much as without the
+    // effect, and by chance a little more.
     constexpr double chance = 1.1;
     const double with = explained.held_out.rms_mm, without = diagnosis.baseline_held_out.rms_mm;
     if (with <= chance * without) return {};
