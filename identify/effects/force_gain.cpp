@@ -93,7 +93,9 @@ private:
             if (problem.loaded(k)) loads[problem.probe[k]].push_back(k);
         }
         std::map<int, int> gains;
-        for (const auto& [probe, own] : loads) {
+        for (const auto& entry : loads) {
+            const int probe = entry.first;
+            const Loads& own = entry.second;
             const auto first = std::ranges::find_if(gains, [&](const auto& other) {
                 return other.first == other.second &&
                        are_a_curve(problem.actions[loads.at(other.first).front()], problem.actions[own.front()]);

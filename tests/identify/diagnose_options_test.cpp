@@ -175,6 +175,63 @@ TEST_F(Diagnosed, WhatBendsToEachProbeIsNoClaim) {
     EXPECT_THAT(found.tried.front().objection, HasSubstr("those left out"));
 }
 
+/// A clear case judged once more, with one thing about it changed.
+class JudgedAgain : public Diagnosed {
+protected:
+    JudgedAgain() {
+        found_ = diagnose(twin(truth("gravity", half_g)));
+        found_.tried = {found_.explained.value()};
+    }
+    Verdict verdict() {
+        found_.explanation.clear();
+        found_.explained.reset();
+        judge(*model_, {}, found_);
+        return found_.verdict;
+    }
+    Diagnosis found_;
+};
+
+TEST_F(JudgedAgain, ItIsAClaim) { EXPECT_EQ(verdict(), Verdict::missing_effect); }
+
+TEST_F(JudgedAgain, AsManyNumbersAsIndependentReadingsAreNone) {
+    found_.independent = 6;  // stiffness, ratio and gravity's three
+    EXPECT_EQ(verdict(), Verdict::missing_effect);
+    found_.independent = 5;
+    EXPECT_EQ(verdict(), Verdict::unexplained);
+    EXPECT_THAT(found_.tried.front().objection, HasSubstr("5 numbers, and the set 5 independent readings"));
+}
+
+TEST_F(JudgedAgain, WhatMakesProbesLeftOutWorseIsNone) {
+    found_.baseline_held_out.rms_mm = 0.9 * found_.tried.front().held_out.rms_mm;
+    EXPECT_EQ(verdict(), Verdict::unexplained);
+    EXPECT_THAT(found_.tried.front().objection, HasSubstr("predicted worse with it"));
+}
+
+TEST_F(JudgedAgain, WithoutAnyLawOfLargeDeformationItIsNone) {
+    found_.lost_large_deformation = true;
+    EXPECT_EQ(verdict(), Verdict::unexplained);
+    EXPECT_TRUE(found_.explanation.empty());
+    EXPECT_THAT(found_.notes, Contains(HasSubstr("no law of large deformation")));
+}
+
+TEST_F(JudgedAgain, BeneathALeaderThatCouldNotBeFittedItIsNone) {
+    Candidate leader{.effect = find_effect("contact"), .log_bayes_factor = 1e7, .is_unfitted = true};
+    found_.ranking.push_back(leader);
+    EXPECT_EQ(verdict(), Verdict::unexplained);
+    EXPECT_EQ(found_.ranking.front().effect->name(), "contact");  // and it is shown
+}
+
+TEST_F(Diagnosed, OneMarkerUnderOneLoadNamesNothing) {
+    MeasurementSet set = twin(truth("gravity", half_g));
+    const int kept = set.states[1].probe;
+    std::erase_if(set.states, [&](const LoadState& state) { return state.probe != kept; });
+    for (LoadState& state : set.states)
+        std::erase_if(state.readings, [](const Reading& reading) { return reading.marker != 0; });
+    const Diagnosis found = diagnose(set);
+    EXPECT_LE(found.independent, 3);
+    EXPECT_TRUE(found.explanation.empty());
+}
+
 TEST_F(Diagnosed, NumbersDoNotDependOnThreads) {
     const MeasurementSet set = twin(truth("gravity", half_g));
     DiagnoseOptions one, two;
