@@ -61,7 +61,8 @@ TEST_F(MeasurementSetFiles, ThatNameMissingFilesAreRefused) {
 }
 
 TEST_F(MeasurementSetFiles, WithImpossibleNumbersInTheYamlAreRefused) {
-    EXPECT_TRUE(says(refusal("set.yaml", yaml + "noise: {position: 0}\n"), {"line 7", "noise.position", "outside [1e-09"}));
+    EXPECT_TRUE(
+        says(refusal("set.yaml", yaml + "noise: {position: 0}\n"), {"line 7", "noise.position", "outside [1e-09"}));
     EXPECT_TRUE(says(refusal("set.yaml", yaml + "noise: {force: -1}\n"), {"line 7", "noise.force", "-1"}));
     EXPECT_TRUE(
         says(refusal("set.yaml", yaml + "density: 1.05e-9\n"), {"line 7", "density", "1.05e-09", "[1, 30000]"}));
