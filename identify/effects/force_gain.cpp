@@ -19,9 +19,8 @@ public:
             .name = "force-gain",
             .kind = EffectKind::measurement,
             .meaning =
-                "The true force of a probe is its reported one times a gain of its own; probes that press one place "
-                "ever "
-                "harder share one, unless a load is repeated.",
+                "The true force of a probe is its reported one times a gain of its own; loads of different size along "
+                "one line at one place share one.",
             .parameters = {"probe<N> [-]: true over reported force of that probe"},
             .reveals = "whole probes that are off in proportion to their load, in no order of place or direction",
             .confused_with = {"stiffening", "anisotropy"},

@@ -19,11 +19,6 @@ namespace {
 
 constexpr double standard_gravity = 9806.65;  // [mm/s^2]
 
-bool is_unloaded(const identify::MeasurementSet& set, const identify::LoadState& state) {
-    return std::ranges::all_of(state.contacts, [](const mesh::Contact& c) { return c.force.isZero(0); }) &&
-           !identify::is_known_to_act(set, state);
-}
-
 identify::Explanation bare(const identify::BodyModel& body) {
     identify::Explanation explanation;
     explanation.theta.resize(std::ssize(body.parameters()));
@@ -90,7 +85,7 @@ void take_weight_as_load(identify::MeasurementSet& set, std::vector<std::string>
     const bool is_material_told = set.density || (set.material && std::isfinite(set.material->young));
     const bool is_read = std::ranges::any_of(set.states, [](const auto& state) { return !state.readings.empty(); });
     if (!is_material_told || !is_read || !set.recordings.empty() ||
-        !std::ranges::all_of(set.states, [&](const auto& state) { return is_unloaded(set, state); }))
+        std::ranges::any_of(set.states, [&](const auto& state) { return identify::is_known_to_act(set, state); }))
         return;
     const Reference reference = make_reference(set, 0);
     if (!reference.body) return;
