@@ -134,15 +134,16 @@ void set_zones(const Body& body, const std::vector<Site>& sites, int zones, std:
 }  // namespace
 
 void BuildOptions::validate() const {
-    if (spheres < 0 || spheres > 20000) {
+    if (spheres < 0 || spheres > most_spheres) {
         throw InvalidInput(
-            fmt::format("spheres is {}: allowed are 1 to 20000, or 0 to let the body's shape decide", spheres));
+            fmt::format("spheres is {}: allowed are 1 to {}, or 0 to let the body's shape decide", spheres, most_spheres));
     }
     if (!(coverage >= 0) || !std::isfinite(coverage)) {
         throw InvalidInput(fmt::format(
             "coverage is {} mm: allowed are positive lengths, or 0 for 5 % of the body's longest side", coverage));
     }
-    if (zones < 1 || zones > 1000) throw InvalidInput(fmt::format("zones is {}: allowed are 1 to 1000", zones));
+    if (zones < 1 || zones > most_zones)
+        throw InvalidInput(fmt::format("zones is {}: allowed are 1 to {}", zones, most_zones));
 }
 
 Model build_skeleton(const mesh::Surface& surface, const mesh::VolumeMesh& volume, const fem::Material& material,

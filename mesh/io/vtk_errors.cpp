@@ -1,5 +1,6 @@
 #include "mesh/io/vtk_errors.h"
 
+#include <SMP/Common/vtkSMPToolsAPI.h>
 #include <vtkLogger.h>
 #include <vtkNew.h>
 #include <vtkOutputWindow.h>
@@ -21,17 +22,20 @@ public:
     void DisplayDebugText(const char*) override {}
 };
 
-bool install_silent_window() {
+bool prepare_vtk() {
     vtkNew<SilentWindow> window;
     vtkOutputWindow::SetInstance(window);
     vtkLogger::SetStderrVerbosity(vtkLogger::VERBOSITY_OFF);
+    // <vtkSMPTools.h> is no C++20. A child process that is forked while VTK begins a thread may inherit a lock that
+    // nobody will open.
+    vtk::detail::smp::vtkSMPToolsAPI::GetInstance().SetBackend("Sequential");
     return true;
 }
 
 }  // namespace
 
 VtkErrors::VtkErrors() {
-    [[maybe_unused]] static const bool installed = install_silent_window();
+    [[maybe_unused]] static const bool prepared = prepare_vtk();
     error_in_this_thread = false;
 }
 

@@ -16,11 +16,14 @@ namespace palpate::pipeline {
 
 /// How a reference simulation probes a body.
 struct ProbeOptions {
-    int probes = 12;          // places that are touched, [1, 10000]
+    static constexpr int most_probes = 10000, least_markers = 3, most_markers = 100000;
+    static constexpr double most_share = 0.5;  // of the longest side
+
+    int probes = 12;          // places that are touched, [1, most_probes]
     int held_out = 0;         // of them, how many are kept from the fit, spread evenly
-    int markers = 150;        // surface points that are read, [3, 100000]
-    double displacement = 0;  // largest, as a share of the longest side, [0, 0.5]; 0: by how far the law reaches
-    double radius = 0.06;     // of a contact patch, as a share of the longest side, (0, 0.5]
+    int markers = 150;        // surface points that are read, [least_markers, most_markers]
+    double displacement = 0;  // largest, as a share of the longest side, [0, most_share]; 0: by how far the law reaches
+    double radius = 0.06;     // of a contact patch, as a share of the longest side, (0, most_share]
     double noise = 0;         // 1 sigma added to every reading [mm]
     void validate() const;
     /// What is asked for, else 0.5 % in small strain and 5 % in large deformation.
@@ -77,19 +80,12 @@ struct Case {
     Expectation expect;
 };
 
-/// What the command line says on top of a case.
-struct CaseOverrides {
-    std::string unit;  // mm, cm, m; empty: not said
-    std::optional<double> longest, young, poisson, density, edge_length, noise, displacement, coverage;
-    std::optional<int> spheres, zones, probes, markers, particles, label;
-    std::string parameters, method, domain, links;  // empty: not said
-    std::optional<std::uint64_t> seed;
-    bool linear_elements = false, no_reference = false, sphere_curve = false;
-};
+class CaseOverrides;
 
 /// A case from a case.yaml, a measurement set (folder or set.yaml) or a bare mesh, told apart by what they are.
 /// @throws IoError, InvalidInput.
-Case read_case(const std::filesystem::path& input, const CaseOverrides& overrides = {});
+Case read_case(const std::filesystem::path& input, const CaseOverrides& overrides);
+Case read_case(const std::filesystem::path& input);
 
 /// The case with every setting, defaults included, as YAML that read_case reads back.
 std::string to_yaml(const Case& settings);

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "pipeline/case/case.h"
+#include "pipeline/case/overrides.h"
 #include "pipeline/console.h"
 #include "pipeline/forge/options.h"
 #include "pipeline/quality/ladder.h"
@@ -73,9 +73,6 @@ Outcome probe(const ProbeCommandOptions& options, const Common& common);
 struct IdentifyCommandOptions {
     std::filesystem::path model, set, output;
     CaseOverrides say;
-    std::string law = "automatic";
-    std::vector<std::string> fixed;
-    std::optional<double> search_low, search_high;
 };
 Outcome identify(const IdentifyCommandOptions& options, const Common& common);
 

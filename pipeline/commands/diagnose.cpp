@@ -16,7 +16,7 @@ Outcome diagnose(const DiagnoseCommandOptions& options, const Common& common) {
     const ModelAndSet given = read_model_and_set(options.model, options.set);
     identify::DiagnoseOptions how = diagnose_options(given.model, common);
     how.without = options.without;
-    const auto body = body_to_judge(options.body, given, options.say.edge_length.value_or(0));
+    const auto body = body_to_judge(options.body, given, options.say.on_defaults().edge_length);
     const identify::Diagnosis found = identify::diagnose(*body, given.set, how, Console::progress());
 
     Outcome outcome;

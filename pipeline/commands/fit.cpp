@@ -2,7 +2,6 @@
 
 #include "mesh/errors.h"
 #include "mesh/io/atomic_file.h"
-#include "pipeline/case/names.h"
 #include "pipeline/commands/bodies.h"
 #include "pipeline/results/compare_words.h"
 #include "pipeline/results/identification.h"
@@ -25,7 +24,7 @@ void compare_reference(nlohmann::json& result, const CompareOptions& options, co
         return;
     }
     try {
-        const auto body = reference_of(given.set, options.say.edge_length.value_or(0));
+        const auto body = reference_of(given.set, options.say.on_defaults().edge_length);
         identify::DiagnoseOptions how = diagnose_options(given.model, common);
         how.screen = false;
         add_reference(result, *body, identify::diagnose(*body, given.set, how, Console::progress()), given.set,
@@ -47,15 +46,7 @@ Outcome identify(const IdentifyCommandOptions& options, const Common& common) {
     refuse_to_overwrite(output, common.force);
     const auto [model, set] = read_model_and_set(options.model, options.set);
 
-    identify::IdentifyOptions how;
-    if (!options.say.parameters.empty()) how.scope = parse(scopes, options.say.parameters, "--parameters");
-    if (!options.say.method.empty()) how.method = parse(methods, options.say.method, "--method");
-    if (!options.say.domain.empty()) how.domain = parse(domains, options.say.domain, "--domain");
-    for (const std::string& kind : options.fixed) how.fixed.push_back(parse(stiffnesses, kind, "--fixed"));
-    how.law = parse(law_choices, options.law, "--law");
-    if (options.say.particles) how.particles = *options.say.particles;
-    if (options.search_low) how.search_low = *options.search_low;
-    if (options.search_high) how.search_high = *options.search_high;
+    identify::IdentifyOptions how = options.say.on_defaults().identify;
     how.seed = common.seed.value_or(how.seed);
     how.threads = common.threads;
     identify::IdentifyResult found = identify::identify(model, set, how, Console::progress());

@@ -2,7 +2,6 @@
 
 #include "identify/diagnose/ladder.h"
 #include "identify/effects/catalogue.h"
-#include "pipeline/case/names.h"
 #include "pipeline/commands/bodies.h"
 #include "pipeline/results/diagnosis_json.h"
 #include "pipeline/results/diagnosis_words.h"
@@ -14,10 +13,7 @@ namespace {
 namespace fs = std::filesystem;
 
 identify::IdentifyOptions identify_options(const CaseOverrides& say, const Common& common) {
-    identify::IdentifyOptions how;
-    if (!say.parameters.empty()) how.scope = parse(scopes, say.parameters, "--parameters");
-    if (!say.method.empty()) how.method = parse(methods, say.method, "--method");
-    if (say.particles) how.particles = *say.particles;
+    identify::IdentifyOptions how = say.on_defaults().identify;
     how.seed = common.seed.value_or(how.seed);
     how.threads = common.threads;
     return how;
@@ -55,7 +51,7 @@ Outcome improve(const ImproveCommandOptions& options, const Common& common) {
                                       .diagnose = diagnose_options(given.model, common),
                                       .only_better = options.automatic};
     how.identify.validate();
-    const auto body = body_to_judge(kind, given, options.say.edge_length.value_or(0));
+    const auto body = body_to_judge(kind, given, options.say.on_defaults().edge_length);
     std::optional<identify::Diagnosis> found;
     if (options.automatic) found = diagnose_aloud(*body, given.set, how.diagnose);
     const std::vector<std::string>& effects = found ? found->explanation : options.add;

@@ -3,6 +3,7 @@
 #include "mesh/errors.h"
 #include "mesh/io/atomic_file.h"
 #include "mesh/read_surface.h"
+#include "pipeline/case/settings.h"
 #include "pipeline/commands/common.h"
 #include "pipeline/shell/templates.h"
 
@@ -20,6 +21,23 @@ mesh::Surface example_body() {
     return bar;
 }
 
+/// The template, its placeholders replaced by the settings.
+std::string commented_case() {
+    const std::vector<Example> examples{
+        {"unit", "mm"},           {"material.young", "0.1"}, {"material.poisson", "0.45"}, {"material.density", "1000"},
+        {"probing.probes", "24"}, {"probing.held_out", "4"}};
+    std::string text(new_case_text);
+    const auto fill_in = [&](const std::string& name, const std::string& lines) {
+        const std::string placeholder = "{" + name + "}";
+        text.replace(text.find(placeholder), placeholder.size(), lines);
+    };
+    for (const char* section : {"material", "volume", "skeleton", "probing", "identify", "diagnose", "expect"})
+        fill_in(section, example_section_yaml(section, examples));
+    for (const char* place : {"unit", "longest", "label", "seed"})
+        fill_in(place, example_yaml(setting_at(place), examples));
+    return text;
+}
+
 }  // namespace
 
 Outcome new_case(const NewOptions& options, const Common&) {
@@ -27,7 +45,7 @@ Outcome new_case(const NewOptions& options, const Common&) {
     if (fs::exists(folder) && !(fs::is_directory(folder) && fs::is_empty(folder))) {
         throw InvalidInput(fmt::format("{}: exists already; choose another name", folder.string()));
     }
-    mesh::write_text(folder / "case.yaml", std::string(new_case_text));
+    mesh::write_text(folder / "case.yaml", commented_case());
     mesh::write_surface(folder / "body.stl", example_body());
     const std::string file = (folder / "case.yaml").string();
     return {.text = fmt::format("{}: a case with every setting explained, and body.stl, a small bar to try it on: put "

@@ -24,22 +24,25 @@ struct Probing {
     std::uint64_t seed = 1;
 };
 
+/// What is said, on the defaults of probes that are not fitted to at once.
+Case probe_settings(const ProbeCommandOptions& options, Case settings) {
+    if (!options.say.has("probing.probes")) settings.probing.probes = ProbeOptions{}.probes;
+    settings.probing.held_out = 0;
+    return settings;
+}
+
 Probing probing_of_model(const ProbeCommandOptions& options) {
     Probing probing;
-    if (options.say.probes) probing.how.probes = *options.say.probes;
-    if (options.say.markers) probing.how.markers = *options.say.markers;
-    if (options.say.displacement) probing.how.displacement = *options.say.displacement;
+    const Case settings = probe_settings(options, options.say.on_defaults());
+    probing.how = settings.probing;
     probing.how.validate();
-    probing.seed = options.say.seed.value_or(1);
+    probing.seed = settings.identify.seed;
     probing.specimen = skeleton_specimen(skeleton::read_model(options.input), probing.how, options.forge, probing.seed);
     return probing;
 }
 
 Probing probing_of_body(const ProbeCommandOptions& options) {
-    Case settings = read_case(options.input, options.say);
-    if (!options.say.probes) settings.probing.probes = ProbeOptions{}.probes;
-    settings.probing.held_out = 0;
-    const Subject subject = read_subject(settings);
+    const Subject subject = read_subject(probe_settings(options, read_case(options.input, options.say)));
     Console::notices(subject.notes);
     Console::notices(subject.assumptions);
     return {finite_element_specimen(subject, options.forge, Console::progress()), subject.settings.probing,
@@ -78,7 +81,7 @@ Outcome probe_from(const ProbeCommandOptions& options, const fs::path& output) {
     const Case settings = read_case(options.input, options.say);
     const ForeignOptions how{.folder = options.from,
                              .array = options.array,
-                             .faults = {.noise = options.say.noise.value_or(0),
+                             .faults = {.noise = options.say.on_defaults().probing.noise,
                                         .missing = options.forge.missing,
                                         .unlabelled = options.forge.unlabelled},
                              .seed = settings.identify.seed};
@@ -137,8 +140,7 @@ Outcome probe(const ProbeCommandOptions& options, const Common& common) {
     const bool is_model = options.input.extension() == ".json";
     const Probing probing = is_model ? probing_of_model(options) : probing_of_body(options);
     const Specimen& specimen = probing.specimen;
-    if (options.say.noise) how.noise = options.say.noise;
-    if (!how.noise && probing.how.noise > 0) how.noise = probing.how.noise;
+    if (options.say.has("probing.noise") || probing.how.noise > 0) how.noise = probing.how.noise;
 
     Console::notices(specimen.notes);
     const Forged forged = forge(specimen, probing.how, how, probing.seed, common.threads, Console::progress());

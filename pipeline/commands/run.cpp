@@ -10,6 +10,7 @@
 #include "mesh/io/vtk_files.h"
 #include "mesh/io/words.h"
 #include "mesh/read_surface.h"
+#include "pipeline/case/settings.h"
 #include "pipeline/commands/run_curve.h"
 #include "pipeline/commands/run_inquiry.h"
 #include "pipeline/commands/run_summary.h"
@@ -74,16 +75,7 @@ private:
             return;
         }
         const bool ran = folder_.stage(
-            {"mesh",
-             {{"unit", c.unit},
-              {"longest", c.longest},
-              {"label", c.label.value_or(0)},
-              {"edge", c.edge_length},
-              {"linear", c.linear_elements}},
-             subject_.files,
-             {},
-             {"mesh/body.vtu", "mesh/surface.vtp"}},
-            [&] {
+            {"mesh", settings_of_stage(c, "mesh"), subject_.files, {}, {"mesh/body.vtu", "mesh/surface.vtp"}}, [&] {
                 const Body body = make_body(subject_, {c.edge_length, c.linear_elements}, Console::progress());
                 for (const std::string& note : body.notes) Console::notice("Repair: " + note);
                 mesh::write_vtu(folder_.path() / "mesh/body.vtu", body.volume);
@@ -123,9 +115,7 @@ private:
         }
         const bool ran =
             folder_.stage({"skeleton",
-                           {{"spheres", c.skeleton.spheres},
-                            {"coverage", c.skeleton.coverage},
-                            {"zones", c.skeleton.zones},
+                           {{"settings", settings_of_stage(c, "skeleton")},
                             {"young", subject_.material.young},
                             {"poisson", subject_.material.poisson},
                             {"density", subject_.material.density},
@@ -182,12 +172,7 @@ private:
         const ProbeOptions& p = c.probing;
         const bool ran = folder_.stage(
             {"measurements",
-             {{"probes", p.probes},
-              {"markers", p.markers},
-              {"displacement", p.displacement},
-              {"radius", p.radius},
-              {"noise", p.noise},
-              {"seed", c.identify.seed}},
+             {{"settings", settings_of_stage(c, "measurements")}, {"seed", c.identify.seed}},
              {},
              {"skeleton"},
              {"measurements", "reference/reference.pvd"}},
@@ -258,8 +243,7 @@ private:
         options.threads = common_.threads;
         // Our own reference is linear, and says so.
         if (!subject_.set) options.law = identify::LawChoice::linear;
-        json settings = identify_settings(options);
-        if (!subject_.set) settings["held_out"] = c.probing.held_out;
+        const json settings{{"settings", settings_of_stage(c, "identify")}, {"seed", options.seed}};
         const bool ran = folder_.stage(
             {"identify",
              settings,

@@ -6,6 +6,7 @@
 #include "mesh/errors.h"
 #include "mesh/io/atomic_file.h"
 #include "mesh/io/region_yaml.h"
+#include "pipeline/case/settings.h"
 #include "pipeline/commands/run_summary.h"
 #include "pipeline/results/diagnosis_json.h"
 #include "pipeline/results/identification.h"
@@ -42,7 +43,7 @@ RunInquiry::RunInquiry(RunFolder& folder, const Subject& subject, const identify
 
 json RunInquiry::settings() const {
     const Case& c = subject_.settings;
-    return {{"reference", c.diagnose.reference},
+    return {{"settings", settings_of_stage(c, "diagnose")},
             {"edge", c.edge_length},
             {"density", set_.density.value_or(0)},
             {"young", subject_.material.young},
@@ -66,11 +67,9 @@ const identify::Diagnosis& RunInquiry::diagnosed(const skeleton::Model& model) {
 json RunInquiry::diagnose(const skeleton::Model& model) {
     json result;
     if (why_none_.empty()) {
-        json settings = this->settings();
-        settings["without"] = subject_.settings.diagnose.without;
         why_none_ = reason_of_failure([&] {
             const bool ran =
-                folder_.stage({"diagnose", settings, subject_.files, {"skeleton"}, {"diagnose/diagnosis.json"}}, [&] {
+                folder_.stage({"diagnose", settings(), subject_.files, {"skeleton"}, {"diagnose/diagnosis.json"}}, [&] {
                     result = to_json(diagnosed(model), reference(), set_);
                     mesh::write_text(folder_.path() / "diagnose/diagnosis.json", result.dump(2) + "\n");
                     return json{{"verdict", result["verdict"]}};
@@ -108,7 +107,8 @@ json RunInquiry::improve(const skeleton::Model& model, const json& diagnosis) {
     how.diagnose.without = subject_.settings.diagnose.without;
     const auto effects = diagnosis["explanation"].get<std::vector<std::string>>();
     json settings = this->settings();
-    settings["identify"] = identify_settings(how.identify);
+    settings["identify"] = settings_of_stage(subject_.settings, "identify");
+    settings["seed"] = how.identify.seed;
     settings["effects"] = effects;
     const fs::path folder = folder_.path() / "improve";
     const bool ran = folder_.stage({"improve", settings, subject_.files, {"skeleton", "diagnose"}, {"improve"}}, [&] {

@@ -96,7 +96,7 @@ Description describe_set(const fs::path& path) {
 }
 
 Description describe_case(const fs::path& file) {
-    const Case c = read_case(file, {});
+    const Case c = read_case(file);
     Description told{.kind = "a case, '" + c.name + "'", .lines = {}, .next = "palpate run " + file.string()};
     told.lines.push_back(c.mesh ? "about the mesh " + c.mesh->string()
                                 : "about the measurements " + c.measurements->string());

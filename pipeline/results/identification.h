@@ -14,7 +14,4 @@ void write_identification(const std::filesystem::path& folder, const identify::I
 /// One page for the terminal: what was identified from what, how the fit and the particles went, the parameters.
 std::string identification_in_words(const identify::IdentifyResult& found);
 
-/// What the result of an identification depends on, beside its inputs.
-nlohmann::json identify_settings(const identify::IdentifyOptions& options);
-
 }  // namespace palpate::pipeline

@@ -4,6 +4,6 @@
 
 namespace palpate::pipeline {
 
-extern const std::string_view new_case_text;  // new_case.yaml of this folder
+extern const std::string_view new_case_text;  // new_case.yaml of this folder: {section} and {setting} stand for lines
 
 }  // namespace palpate::pipeline

@@ -13,17 +13,7 @@ void Verbs::add_identify(CLI::App& app) {
     sub->add_option("SET", identify.set, "The measurements")->required();
     sub->add_option("-o,--output", identify.output,
                     "Folder for model.json, posterior.csv, history.pvd; identified by default");
-    add_identify_flags(sub, identify.say);
-    sub->add_option("--fixed", identify.fixed, "A kind of stiffness that stays as the model has it; repeatable")
-        ->expected(1)
-        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
-        ->group("Identification");
-    sub->add_option("--law", identify.law, "Law of equilibrium; by fit by default")
-        ->check(CLI::IsMember({"automatic", "linear", "large-rotation"}))
-        ->group("Identification");
-    sub->add_option("--search-low", identify.search_low, "burion2008: lower end of the box, in start stiffnesses")
-        ->group("Identification");
-    sub->add_option("--search-high", identify.search_high, "burion2008: upper end of the box")->group("Identification");
+    add_flags_of(sub, identify.say, "Identification");
 }
 
 void Verbs::add_compare(CLI::App& app) {
@@ -39,7 +29,7 @@ void Verbs::add_compare(CLI::App& app) {
         ->check(CLI::NonNegativeNumber);
     sub->add_flag("--no-reference", compare.no_reference,
                   "Leave the body in finite elements out: fast, but without an error budget");
-    add_edge_length(sub, compare.say);
+    add_flag(sub, compare.say, "volume.edge_length");
 }
 
 void Verbs::add_diagnose(CLI::App& app) {
@@ -54,7 +44,7 @@ void Verbs::add_diagnose(CLI::App& app) {
         ->expected(1)
         ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
     add_body(sub, diagnose.body, "by default");
-    add_edge_length(sub, diagnose.say);
+    add_flag(sub, diagnose.say, "volume.edge_length");
 }
 
 void Verbs::add_improve(CLI::App& app) {
@@ -73,8 +63,8 @@ void Verbs::add_improve(CLI::App& app) {
     what->add_flag("--auto", improve.automatic, "What a diagnosis names");
     what->require_option(1);
     add_body(sub, improve.body, "by default, but for what links alone have");
-    add_identify_flags(sub, improve.say);
-    add_edge_length(sub, improve.say);
+    add_flags_of(sub, improve.say, "Identification");
+    add_flag(sub, improve.say, "volume.edge_length");
 }
 
 void Verbs::add_effects(CLI::App& app) {

@@ -1,21 +1,22 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <string>
+#include <string_view>
 
-#include "pipeline/case/case.h"
+#include "pipeline/case/overrides.h"
+
+// Flags that several commands share.
 
 namespace palpate::pipeline {
 
-// Flags that several verbs share, each group for one part of a case.
+/// The flag of a setting of the case, by its place in case.yaml.
+void add_flag(CLI::App* verb, CaseOverrides& say, std::string_view place);
 
-void add_body_flags(CLI::App* verb, CaseOverrides& say);
-void add_skeleton_flags(CLI::App* verb, CaseOverrides& say);
-void add_probing_flags(CLI::App* verb, CaseOverrides& say);
-void add_identify_flags(CLI::App* verb, CaseOverrides& say);
-/// Size of the elements of a reference body.
-void add_edge_length(CLI::App* verb, CaseOverrides& say);
+/// The flags of all settings of a group: "Body", "Skeleton", "Probing", "Identification", "Diagnosis".
+void add_flags_of(CLI::App* verb, CaseOverrides& say, std::string_view group);
 
-/// `when`: the reference is it, "by default".
+/// `when`: the reference body is the default.
 void add_body(CLI::App* verb, std::string& body, const std::string& when);
 
 }  // namespace palpate::pipeline

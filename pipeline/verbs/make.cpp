@@ -16,19 +16,13 @@ void Verbs::add_run(CLI::App& app) {
                 run.output =
                     std::filesystem::path(std::filesystem::weakly_canonical(run.input).stem().string() + "-run");
             }
-            run.say.seed = common.seed;
+            if (common.seed) run.say.set("seed", static_cast<double>(*common.seed));
             return commands::run(run, common);
         });
     sub->add_option("INPUT", run.input, "A case.yaml, a measurement set (folder or set.yaml), or a mesh")->required();
     sub->add_option("-o,--output", run.output, "The run folder; <input>-run by default");
-    add_body_flags(sub, run.say);
-    add_skeleton_flags(sub, run.say);
-    add_probing_flags(sub, run.say);
-    add_identify_flags(sub, run.say);
-    sub->add_flag("--sphere-curve", run.say.sphere_curve,
-                  "Measure what fewer and more spheres would do: takes several times as long")
-        ->group("Skeleton");
-    sub->add_flag("--no-reference", run.say.no_reference, "Do not ask what the model lacks: fast")->group("Diagnosis");
+    for (const char* group : {"Body", "Skeleton", "Probing", "Identification", "Diagnosis"})
+        add_flags_of(sub, run.say, group);
 }
 
 void Verbs::add_check(CLI::App& app) {
@@ -38,7 +32,7 @@ void Verbs::add_check(CLI::App& app) {
                      [this] { return commands::check(check, common); });
     sub->add_option("INPUT", check.input, "A case.yaml, a measurement set, or a mesh")->required();
     sub->add_option("-o,--output", check.output, "A folder for the report, and for files that show where faults are");
-    add_body_flags(sub, check.say);
+    add_flags_of(sub, check.say, "Body");
 }
 
 void Verbs::add_mesh(CLI::App& app) {
@@ -51,7 +45,7 @@ void Verbs::add_mesh(CLI::App& app) {
     sub->add_option("--to", mesh.format,
                     "vtu; inp: Abaqus, CalculiX; msh, msh22: Gmsh 4.1, 2.2; by the output's name by default")
         ->check(CLI::IsMember({"vtu", "inp", "msh", "msh22"}));
-    add_body_flags(sub, mesh.say);
+    add_flags_of(sub, mesh.say, "Body");
 }
 
 void Verbs::add_skeleton(CLI::App& app) {
@@ -64,14 +58,15 @@ void Verbs::add_skeleton(CLI::App& app) {
                      });
     sub->add_option("INPUT", skeleton.input, "A mesh, a case.yaml, or a measurement set")->required();
     sub->add_option("-o,--output", skeleton.output, "The model; model.json by default");
-    add_body_flags(sub, skeleton.say);
-    add_skeleton_flags(sub, skeleton.say);
+    add_flags_of(sub, skeleton.say, "Body");
+    for (const char* place : {"skeleton.spheres", "skeleton.coverage", "skeleton.links", "skeleton.zones"})
+        add_flag(sub, skeleton.say, place);
     auto* measured = sub->add_flag("--quality", with_quality,
                                    "Measures how well skeletons follow the body, at several numbers of spheres")
                          ->group("Quality");
     sub->add_option("--quality-spheres", quality.spheres, "These numbers, in place of 8,16,32,64,128,256,512")
         ->delimiter(',')
-        ->check(CLI::Range(1, 20000))
+        ->check(CLI::Range(1, skeleton::BuildOptions::most_spheres))
         ->needs(measured)
         ->group("Quality");
     sub->add_option("--quality-probes", quality.fit, "Probes that are fitted to; 12 more judge")

@@ -99,21 +99,14 @@ void Verbs::add_probe(CLI::App& app) {
                      "  palpate probe liver.stl --to inp -o deck    # for your own solver; then (cd deck && ccx body)\n"
                      "  palpate probe liver.stl --from deck -o set  # and what it computed\n",
                      [this] {
-                         probe.say.seed = common.seed;
+                         if (common.seed) probe.say.set("seed", static_cast<double>(*common.seed));
                          return commands::probe(probe, common);
                      });
     sub->add_option("INPUT", probe.input, "A mesh, a case.yaml, a measurement set, or a model.json")->required();
     sub->add_option("-o,--output", probe.output, "The set's folder; measurements by default");
-    add_body_flags(sub, probe.say);
+    add_flags_of(sub, probe.say, "Body");
     add_law_flags(sub, probe.forge);
-    add_probing_flags(sub, probe.say);
-    sub->add_option("--markers", probe.say.markers, "Number of surface points that are read; 150 by default")
-        ->check(CLI::Range(3, 100000))
-        ->group("Probing");
-    sub->add_option("--displacement", probe.say.displacement,
-                    "Largest, as a share of the longest side; 0.05 by default, 0.005 in small strain")
-        ->check(CLI::Range(1e-9, 0.5))
-        ->group("Probing");
+    add_flags_of(sub, probe.say, "Probing");
     add_sequence_flags(sub, probe.forge);
     add_fault_flags(sub, probe.forge);
     add_solver_flags(sub, probe);

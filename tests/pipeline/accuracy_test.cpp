@@ -1,6 +1,7 @@
 // What a second mesh says of a reference's error, against what a much finer one says.
 
 #include "pipeline/reference/accuracy.h"
+#include "pipeline/case/overrides.h"
 
 #include <gtest/gtest.h>
 
@@ -20,7 +21,7 @@ struct AccuracyOfAReference : ::testing::Test {
     Subject subject() const {
         mesh::write_surface(folder / "bar.stl", mesh::make_box({0, 0, 0}, {60, 16, 12}, {6, 2, 2}));
         CaseOverrides say;
-        say.linear_elements = linear_elements;
+        say.set("volume.linear_elements", linear_elements ? "true" : "false");
         Subject subject = read_subject(read_case(folder / "bar.stl", say));
         // a clamp that every mesh holds alike: what else differs between meshes would hide what elements do
         subject.supports = {mesh::BoxRegion{Vec3(-1, -1, -1), Vec3(1e-6, 17, 13)}};

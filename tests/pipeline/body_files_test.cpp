@@ -24,12 +24,12 @@ mesh::VolumeMesh coarse_bar() { return mesh::make_bar({0, 0, 0}, {60, 20, 20}, {
 
 CaseOverrides in_cm() {
     CaseOverrides say;
-    say.unit = "cm";
+    say.set("unit", "cm");
     return say;
 }
 
 CaseOverrides of_label(int label, CaseOverrides say = {}) {
-    say.label = label;
+    say.set("label", label);
     return say;
 }
 
@@ -55,7 +55,7 @@ TEST(BodyFiles, AReadyMadeMeshIsUsedAsItIs) {
     EXPECT_TRUE(body.is_quadratic());
     EXPECT_THAT(outcome.json["repair"].dump(), HasSubstr("used as it is"));
     CaseOverrides linear;
-    linear.linear_elements = true;
+    linear.set("volume.linear_elements", "true");
     commands::mesh_body({.input = scratch / "bar.msh", .output = scratch / "linear.vtu", .say = linear}, {});
     EXPECT_FALSE(mesh::read_vtu(scratch / "linear.vtu").is_quadratic());
 }

@@ -112,7 +112,7 @@ TEST_F(Foreign, LengthsAreInTheUnitOfTheMesh) {
     commands::ProbeCommandOptions how = options();
     how.input = folder / "cm.vtu";
     mesh::write_vtu(how.input, in_cm);
-    how.say.unit = "cm";
+    how.say.set("unit", "cm");
     const MeasurementSet set = take(how);
     EXPECT_NEAR(mesh::bounding_box(set.rest_surface.vertices).longest_side(), 40, 1e-9);
     EXPECT_NEAR(set.states.front().contacts.front().radius, 2, 1e-12);
@@ -213,8 +213,8 @@ TEST(OwnSolver, CalculixMakesTheSetThatOurElementsMake) {
     const TemporaryFolder folder;
     mesh::write_vtu(folder / "bar.vtu", mesh::make_bar({0, 0, 0}, {60, 20, 20}, {6, 2, 2}));
     commands::ProbeCommandOptions how{.input = folder / "bar.vtu", .output = folder / "deck", .say = {}};
-    how.say.probes = 3;
-    how.say.poisson = 0.4;
+    how.say.set("probing.probes", 3);
+    how.say.set("material.poisson", 0.4);
     how.forge.law = fem::Law::linear;
     how.to = "inp";
     commands::probe(how, {});

@@ -24,10 +24,10 @@ constexpr double noise = 0.05;
 
 CaseOverrides coarse() {
     CaseOverrides say;
-    say.edge_length = edge;
-    say.spheres = 6;
-    say.particles = 40;
-    say.parameters = "uniform";
+    say.set("volume.edge_length", edge);
+    say.set("skeleton.spheres", 6);
+    say.set("identify.particles", 40);
+    say.set("identify.parameters", "uniform");
     return say;
 }
 
@@ -158,7 +158,7 @@ TEST_F(HeavyBeam, AStageThatIsDoneAgainAloneEndsTheSame) {
 TEST_F(HeavyBeam, TheBetterModelLacksNothing) {
     commands::CompareOptions options{
         .model = path("run/improve/model.json"), .set = path("set"), .output = {}, .tolerance = {}};
-    options.say.edge_length = edge;
+    options.say.set("volume.edge_length", edge);
     const json compare = commands::compare(options, {}).json;
     EXPECT_LT(compare["reference"]["whitened_rms"].get<double>(), 1.2);
     EXPECT_LT(compare["budget"]["missing_physics"].get<double>(), 0.2);

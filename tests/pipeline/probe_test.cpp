@@ -36,9 +36,9 @@ protected:
     commands::ProbeCommandOptions options(const ForgeOptions& forge, const std::string& name) const {
         commands::ProbeCommandOptions result{
             .input = scratch_ / "bar.stl", .output = scratch_ / name, .say = {}, .forge = forge};
-        result.say.edge_length = 12;
-        result.say.probes = 8;
-        result.say.markers = 40;
+        result.say.set("volume.edge_length", 12);
+        result.say.set("probing.probes", 8);
+        result.say.set("probing.markers", 40);
         return result;
     }
     MeasurementSet probe(const ForgeOptions& forge, const std::string& name = "set", int threads = 1) const {
@@ -118,7 +118,7 @@ TEST_F(Probe, InSmallStrainDisplacementIsLinearInTheLoad) {
     auto how = options({.law = fem::Law::linear}, "one");
     commands::probe(how, {});
     how.output = scratch_ / "two";
-    how.say.displacement = 0.002;
+    how.say.set("probing.displacement", 0.002);
     commands::probe(how, {});
     const MeasurementSet one = identify::read_measurement_set(scratch_ / "one"),
                          two = identify::read_measurement_set(scratch_ / "two");
@@ -293,7 +293,7 @@ TEST_F(Probe, ThreadsAndRepetitionChangeNoNumber) {
 
 TEST_F(Probe, ASeedMovesProbesAndEffects) {
     auto how = options({.hide = {"gravity"}}, "other");
-    how.say.seed = 7;
+    how.say.set("seed", 7);
     commands::probe(how, {});
     hide({"gravity"});
     EXPECT_NE(text("set/probes.csv"), text("other/probes.csv"));
@@ -330,7 +330,7 @@ TEST_F(Probe, TellsThatTheBodyDoesNotBearWhatIsHidden) {
 
 TEST_F(Probe, RefusesLinearElements) {
     auto how = options({}, "refused");
-    how.say.linear_elements = true;
+    how.say.set("volume.linear_elements", "true");
     EXPECT_TRUE(says(message_of<InvalidInput>([&] { commands::probe(how, {}); }), {"--linear-elements"}));
 }
 
@@ -338,8 +338,8 @@ TEST_F(Probe, RefusesLinearElements) {
 
 TEST_F(Probe, ASkeletonCanBeTheTruth) {
     commands::SkeletonOptions make{.input = scratch_ / "bar.stl", .output = scratch_ / "model.json", .say = {}};
-    make.say.spheres = 6;
-    make.say.edge_length = 12;
+    make.say.set("skeleton.spheres", 6);
+    make.say.set("volume.edge_length", 12);
     commands::skeleton(make, {});
     const auto twin = [&](const ForgeOptions& forge, const std::string& name) {
         auto how = options(forge, name);

@@ -189,7 +189,7 @@ protected:
     commands::SkeletonOptions options(const std::vector<int>& spheres) const {
         mesh::write_surface(scratch_ / "bar.stl", mesh::make_box({0, 0, 0}, {60, 20, 20}, {6, 2, 2}));
         commands::SkeletonOptions result{.input = scratch_ / "bar.stl", .output = scratch_ / "arm.json", .say = {}};
-        result.say.edge_length = 10;
+        result.say.set("volume.edge_length", 10);
         result.quality = QualityOptions{.spheres = spheres, .fit = 12, .held_out = 4};
         return result;
     }

@@ -34,11 +34,11 @@ using ::testing::Not;
 
 commands::RunOptions beam_options(const std::filesystem::path& from, const std::filesystem::path& to) {
     commands::RunOptions options{.input = from / "beam.stl", .output = to, .say = {}};
-    options.say.edge_length = 14;
-    options.say.spheres = 6;
-    options.say.probes = 6;
-    options.say.particles = 40;
-    options.say.parameters = "uniform";
+    options.say.set("volume.edge_length", 14);
+    options.say.set("skeleton.spheres", 6);
+    options.say.set("probing.probes", 6);
+    options.say.set("identify.particles", 40);
+    options.say.set("identify.parameters", "uniform");
     return options;
 }
 
@@ -93,7 +93,7 @@ TEST(SphereCurve, IsMeasuredWhereItIsAskedFor) {
     const TemporaryFolder scratch;
     std::filesystem::copy(beam_run(), scratch / "run", std::filesystem::copy_options::recursive);
     commands::RunOptions options = beam_options(beam_run().parent_path(), scratch / "run");
-    options.say.sphere_curve = true;
+    options.say.set("skeleton.sphere_curve", "true");
     commands::run(options, {});
     const json curve = json::parse(mesh::read_text(scratch / "run/skeleton/sphere_curve.json"));
     std::map<int, bool> rungs;
@@ -101,7 +101,7 @@ TEST(SphereCurve, IsMeasuredWhereItIsAskedFor) {
     EXPECT_EQ(rungs, (std::map<int, bool>{{1, false}, {3, false}, {6, true}, {12, false}}));
     EXPECT_THAT(mesh::read_text(scratch / "run/report.html"), HasSubstr("id=\"spheres\""));
 
-    options.say.sphere_curve = false;
+    options.say.set("skeleton.sphere_curve", "false");
     commands::run(options, {});
     EXPECT_FALSE(std::filesystem::exists(scratch / "run/skeleton/sphere_curve.json"));
     EXPECT_FALSE(json::parse(mesh::read_text(scratch / "run/run.json"))["stages"].contains("sphere_curve"));

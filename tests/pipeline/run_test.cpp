@@ -19,11 +19,11 @@ using nlohmann::json;
 commands::RunOptions small_run(const TemporaryFolder& scratch) {
     mesh::write_surface(scratch / "beam.stl", mesh::make_box({0, 0, 0}, {100, 20, 20}, {10, 2, 2}));
     commands::RunOptions options{.input = scratch / "beam.stl", .output = scratch / "run", .say = {}};
-    options.say.edge_length = 12;
-    options.say.spheres = 8;
-    options.say.probes = 10;
-    options.say.particles = 40;
-    options.say.parameters = "uniform";
+    options.say.set("volume.edge_length", 12);
+    options.say.set("skeleton.spheres", 8);
+    options.say.set("probing.probes", 10);
+    options.say.set("identify.particles", 40);
+    options.say.set("identify.parameters", "uniform");
     return options;
 }
 
@@ -72,7 +72,7 @@ TEST(Run, RepeatsNothingWhoseInputsAreUnchanged) {
     EXPECT_EQ(before, record(scratch));
 
     // Other particles: identification and what follows from it are done again, and nothing else.
-    options.say.particles = 50;
+    options.say.set("identify.particles", 50);
     commands::run(options, {});
     const json after = record(scratch);
     for (const char* same : {"mesh", "skeleton", "measurements"}) EXPECT_EQ(before[same], after[same]) << same;

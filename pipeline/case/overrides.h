@@ -1,0 +1,31 @@
+#pragma once
+
+#include <map>
+#include <string>
+#include <string_view>
+
+#include "pipeline/case/case.h"
+
+namespace palpate::pipeline {
+
+/// What the command line says on top of a case: settings by their place in case.yaml ("skeleton.spheres"), with values
+/// as YAML writes them.
+class CaseOverrides {
+public:
+    /// @throws std::logic_error where there is no such setting.
+    void set(std::string_view place, std::string value);
+    void set(std::string_view place, double value);
+    bool has(std::string_view place) const;
+    /// @throws InvalidInput naming the flag, the value and what is allowed.
+    void apply(Case& settings) const;
+    /// Defaults, but for what is said.
+    Case on_defaults() const;
+
+private:
+    std::map<std::string, std::string, std::less<>> said_;
+};
+
+/// Why a flag of this setting cannot take the value, in words; empty: it can.
+std::string objection_to_value(std::string_view place, const std::string& value);
+
+}  // namespace palpate::pipeline
