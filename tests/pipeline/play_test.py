@@ -105,7 +105,11 @@ class Browser:
             if self.call("Runtime.evaluate", expression="typeof player !== 'undefined'")["result"].get("value"):
                 break
             time.sleep(0.05)
-        self.run("await new Promise((r) => setTimeout(r, 300));")
+        self.still()
+
+    def still(self):
+        """Waits until the body stands still."""
+        self.run("p.quiet = 0; for (let i = 0; i < 800 && p.moving; ++i) await new Promise((r) => setTimeout(r, 25));")
 
     def mouse(self, kind, x, y, buttons=1):
         self.call("Input.dispatchMouseEvent", type=kind, x=x, y=y, button="left", buttons=buttons, clickCount=1)
@@ -159,8 +163,8 @@ def displacement_in(file):
 
 def open_hand(browser):
     """A point of the body that stands free, on the screen."""
+    browser.still()
     return browser.run("""
-      for (let i = 0; i < 200 && (p.moving || i < 5); ++i) await new Promise((r) => setTimeout(r, 50));
       const c = p.at('canvas'), v = p.points[0], s = row3(p.skin ?? p.rest, v);
       const towards = s.map((x, i) => x + 0.06 * (p.camera.target[i] - x));
       const [x, y] = p.camera.project(towards, c.clientWidth, c.clientHeight), b = c.getBoundingClientRect();
@@ -181,7 +185,7 @@ def drag(browser, name, by):
     for i in range(1, 13):
         browser.mouse("mouseMoved", x + by[0] * i / 12, y + by[1] * i / 12)
         time.sleep(0.03)
-    browser.run("await new Promise((r) => setTimeout(r, 1500));")
+    browser.still()
     browser.picture(f"{name}-during")
     return x + by[0], y + by[1]
 
@@ -245,7 +249,7 @@ def check_model(browser, run, page, scratch):
     print(f"stiffness: {felt:.6g} N/mm told, {found:.6g} by a little more force")
     expect(abs(felt - found) < 0.01 * found, f"the stiffness told is {felt} N/mm, but {found} is felt")
     browser.mouse("mouseReleased", *end)
-    browser.run("await new Promise((r) => setTimeout(r, 2500));")
+    browser.still()
     browser.picture("drag-after")
     expect(browser.run("return p.touches.length") == 0, "something is held after the drag")
 
@@ -253,9 +257,10 @@ def check_model(browser, run, page, scratch):
     browser.run("p.at('canvas').focus();")
     for key in ("n", "Enter", "ArrowDown", "ArrowDown", "ArrowDown", "PageDown"):
         browser.key(key)
-    browser.run("await new Promise((r) => setTimeout(r, 1600));")
+    browser.still()
     strength = browser.run("return p.feel()?.strength ?? 0;")
     expect(strength > 1e-6, "keys do not pull")
+    browser.run("for (let i = 0; i < 400 && !p.at('spoken').textContent; ++i) await new Promise((r) => setTimeout(r, 25));")
     expect("newton" in browser.run("return p.at('spoken').textContent;"), "the force is not spoken")
     link = browser.run("return p.link();")
     browser.key("Escape")
@@ -298,10 +303,12 @@ def check_ladder(browser, run, page):
     expect(rises > hangs + 0.1, "the body does not rise without gravity")
     expect(without["rms"] > 2 * whole["rms"], "the error does not rise without gravity")
     loaded = browser.run("return p.data.sets[p.set].states.findIndex((s) => s.readings.length && s.contacts.some((c) => c[5] !== 0));")
-    browser.run(f"p.chooseProbe({loaded}); p.at('colour').value = 'error'; await new Promise((r) => setTimeout(r, 2500));")
+    browser.run(f"p.chooseProbe({loaded}); p.at('colour').value = 'error';")
+    browser.still()
     expect("rms" in browser.run("return p.at('told').textContent;"), "the error of a probe is not told")
     browser.picture("probe-without-gravity")
-    browser.run("p.at('effect-gravity').click(); await new Promise((r) => setTimeout(r, 2500));")
+    browser.run("p.at('effect-gravity').click();")
+    browser.still()
     browser.picture("probe-with-gravity")
     worst = browser.run("p.settle(); return p.markerErrors().rms;")
     expect(worst < 0.5, f"a replayed probe is {worst} mm off")
