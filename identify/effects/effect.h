@@ -123,6 +123,10 @@ public:
     /// effect.
     virtual double left_by_idealisation() const { return 5e-4; }
 
+    /// Is it of single readings, which are found and set aside one by one (diagnose/outliers), not fitted? It has no
+    /// numbers of the fit then.
+    virtual bool sets_readings_aside() const { return false; }
+
     /// By default the signatures of all numbers at their start, which must be neutral, and the start itself as the
     /// beginning of a refit. Keeps references to the arguments.
     virtual ScreenPlan screen_plan(const BodyModel& model, const Problem& problem, const Explanation& explanation,

@@ -24,6 +24,7 @@ public:
     }
 
     bool is_like_mesh_error() const override { return true; }
+    bool sets_readings_aside() const override { return true; }
 
     std::vector<EffectNumber> numbers(const BodyModel&, const Problem&) const override { return {}; }
 

@@ -30,7 +30,7 @@ protected:
     /// A body and a set in which all effects of bodies and rigs can show.
     EveryEffect() {
         if (effect().name() == "pressure") body_ = SmallBody::hollow();
-        if (effect().name() == "torsion" || effect().name() == "shear") {
+        if (effect().is_of_links()) {
             model_ = body_.skeleton();
         } else {
             model_ = body_.reference();
@@ -94,7 +94,7 @@ TEST_P(EveryEffect, WhatIsToldCanBeTakenBack) {
 }
 
 TEST_P(EveryEffect, HasNumbersWhereItCanShow) {
-    EXPECT_EQ(effect().numbers(*model_, problem_).empty(), effect().name() == "outliers");  // which need none
+    EXPECT_EQ(effect().numbers(*model_, problem_).empty(), effect().sets_readings_aside());
 }
 
 TEST_P(EveryEffect, WhatIsNotToldStartsAsAFitDoes) {
@@ -284,6 +284,11 @@ TEST(Catalogue, RefusesASecondEffectOfAName) {
 TEST(Catalogue, NamesAreAllDifferent) {
     std::set<std::string> names;
     for (const auto& effect : catalogue()) EXPECT_TRUE(names.insert(effect->name()).second) << effect->name();
+}
+
+TEST(Catalogue, OneEffectStandsForSingleReadings) {
+    EXPECT_EQ(std::ranges::count_if(catalogue(), &Effect::sets_readings_aside), 1);
+    EXPECT_EQ(effect_of_single_readings()->name(), "outliers");
 }
 
 TEST(Catalogue, AWrongNameGetsASuggestion) {
