@@ -66,4 +66,8 @@ Eigen::VectorXd Effect::values(const std::vector<EffectNumber>& numbers, const s
 
 MeasurementSet Effect::corrected(const MeasurementSet& set, const skeleton::Effect&) const { return set; }
 
+void Effect::hide(const skeleton::Effect& told, World& world) const {
+    world.setting.effects.add(skeleton::make_physics(told));
+}
+
 }  // namespace palpate::identify

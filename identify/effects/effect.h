@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "identify/diagnose/problem.h"
+#include "identify/effects/hiding.h"
 #include "skeleton/effects/effect.h"
 
 namespace palpate::identify {
@@ -144,6 +145,15 @@ public:
     virtual std::string sentence(const skeleton::Effect& told) const = 0;
     /// The measurements as they would be without this fault, for models that do not know of it.
     virtual MeasurementSet corrected(const MeasurementSet& set, const skeleton::Effect& told) const;
+
+    // How it is hidden in measurements that are made up (palpate probe --hide).
+
+    /// Puts it in force behind them, as it is told; by default its physics.
+    virtual void hide(const skeleton::Effect& told, World& world) const;
+    /// Does the body stand as it does without it, and only its readings differ?
+    virtual bool is_of_readings() const { return false; }
+    /// What has to be done for it to show.
+    virtual HidingNeeds needs() const { return {}; }
 };
 
 }  // namespace palpate::identify

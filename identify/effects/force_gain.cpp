@@ -82,6 +82,8 @@ public:
         return result;
     }
 
+    void hide(const skeleton::Effect& told, World& world) const override { world.gain = number_of(told, "gain"); }
+
 private:
     using Loads = std::vector<int>;  // of a probe, as actions
 

@@ -64,6 +64,13 @@ public:
         }
         return result;
     }
+
+    bool is_of_readings() const override { return true; }
+
+    void hide(const skeleton::Effect& told, World& world) const override {
+        world.shift = {number_of(told, "tx"), number_of(told, "ty"), number_of(told, "tz")};
+        world.turn = {number_of(told, "rx"), number_of(told, "ry"), number_of(told, "rz")};
+    }
 };
 
 }  // namespace

@@ -32,6 +32,14 @@ public:
         return fmt::format("Outliers: {:.1f} % of the readings ({:.0f}) are off by some {:.0f} times the noise.",
                            100 * told.parameters[0].value, told.parameters[1].value, told.parameters[2].value);
     }
+
+    bool is_of_readings() const override { return true; }
+    HidingNeeds needs() const override { return {.noise = true}; }
+
+    void hide(const skeleton::Effect& told, World& world) const override {
+        world.off_share = number_of(told, "share");
+        world.off_width = number_of(told, "width");
+    }
 };
 
 }  // namespace

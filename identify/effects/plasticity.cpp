@@ -92,6 +92,8 @@ public:
                            100 * told.parameters[0].value);
     }
 
+    HidingNeeds needs() const override { return {.release = true}; }
+
 private:
     /// Is the body read without load after a load?
     static bool returns_to_rest(const Problem& problem) {

@@ -101,6 +101,8 @@ public:
                            100 * told.parameters[0].value, told.parameters[1].value);
     }
 
+    HidingNeeds needs() const override { return {.dwells = true}; }
+
 private:
     /// Times at which something of a load's duration shows, ascending; fewer than two: nothing does.
     static std::vector<double> telling_times(const Problem& problem) {

@@ -52,6 +52,13 @@ public:
                            told.parameters[0].value);
     }
 
+    HidingNeeds needs() const override { return {.told_poisson = true}; }
+
+    void hide(const skeleton::Effect& told, World& world) const override {
+        Effect::hide(told, world);  // which refuses what is out of range
+        world.setting.theta[compressibility] = std::log(1 - 2 * number_of(told, "poisson"));  // Young's modulus stays
+    }
+
 private:
     static constexpr Eigen::Index compressibility = 1;  // place in the reference body's theta
     static std::ptrdiff_t place_in(const BodyModel& model) {
