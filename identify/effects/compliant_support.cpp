@@ -92,6 +92,15 @@ public:
                            told.parameters[0].value);
     }
 
+    std::optional<std::uint64_t> stream() const override { return 1; }
+
+    std::vector<Draft> drafts(Drawing& drawing, const ToldNumbers& told) const override {
+        // A block of the body's size and material is about as stiff as this.
+        const double block = drawing.stiffness * drawing.model.size();  // [N/mm]
+        const auto at = [=](double x) { return told.effect({{"stiffness", block / x}}); };
+        return {{.at = at, .is_told = told.has("stiffness")}};
+    }
+
 private:
     /// Forces over displacements of the set, rms [N/mm].
     static double typical_stiffness(const Problem& problem) {

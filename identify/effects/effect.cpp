@@ -70,4 +70,10 @@ void Effect::hide(const skeleton::Effect& told, World& world) const {
     world.setting.effects.add(skeleton::make_physics(told));
 }
 
+std::vector<skeleton::KnownParameter> Effect::numbers_to_hide() const {
+    return skeleton::find_known_effect(name())->parameters;
+}
+
+std::vector<Draft> Effect::drafts(Drawing&, const ToldNumbers&) const { return {}; }
+
 }  // namespace palpate::identify

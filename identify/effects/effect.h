@@ -1,8 +1,10 @@
 #pragma once
 
 #include <cmath>
+#include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -154,6 +156,14 @@ public:
     virtual bool is_of_readings() const { return false; }
     /// What has to be done for it to show.
     virtual HidingNeeds needs() const { return {}; }
+    /// Its numbers as they are told for that; by default those of its physics.
+    virtual std::vector<skeleton::KnownParameter> numbers_to_hide() const;
+    /// The stream of random numbers that its own are drawn from, part of what a seed means: 0 to 15 are taken. None:
+    /// nothing is drawn; one number may be left out, which is then how strong it is.
+    virtual std::optional<std::uint64_t> stream() const { return std::nullopt; }
+    /// What is told is taken, the rest drawn. Several: other places for it, for where it can hardly be felt in the
+    /// first one. @pre stream() @throws InvalidInput for an effect that cannot be on this body.
+    virtual std::vector<Draft> drafts(Drawing& drawing, const ToldNumbers& told) const;
 };
 
 }  // namespace palpate::identify

@@ -61,6 +61,17 @@ public:
         return fmt::format("Gravity is missing: {:.2f} m/s^2 along ({:.2f}, {:.2f}, {:.2f}).", g.norm() / 1000, way.x(),
                            way.y(), way.z());
     }
+
+    std::optional<std::uint64_t> stream() const override { return 0; }
+
+    std::vector<Draft> drafts(Drawing& drawing, const ToldNumbers& told) const override {
+        const Vec3 direction = random_direction(drawing.random);
+        const auto at = [=](double x) {
+            const Vec3 g = told.vector({"gx", "gy", "gz"}, x * direction);
+            return told.effect({{"gx", g.x()}, {"gy", g.y()}, {"gz", g.z()}});
+        };
+        return {{.at = at, .start = 9810, .is_told = told.has_any({"gx", "gy", "gz"}), .acts_at_rest = true}};
+    }
 };
 
 }  // namespace

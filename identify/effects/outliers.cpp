@@ -40,6 +40,16 @@ public:
         world.off_share = number_of(told, "share");
         world.off_width = number_of(told, "width");
     }
+
+    std::vector<skeleton::KnownParameter> numbers_to_hide() const override { return {{"share", "1"}, {"width", "1"}}; }
+    std::optional<std::uint64_t> stream() const override { return 15; }
+
+    std::vector<Draft> drafts(Drawing&, const ToldNumbers& told) const override {
+        const double share = told.positive_value("share", 0.06, 0.5);
+        told.positive_value("width", 1, 1e6);
+        const auto at = [=](double x) { return told.effect({{"share", share}, {"width", x}}); };
+        return {{.at = at, .start = 25, .is_told = told.has("width")}};
+    }
 };
 
 }  // namespace

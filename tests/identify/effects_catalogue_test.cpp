@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <map>
 #include <set>
 
 #include "identify/diagnose/judge.h"
@@ -284,6 +285,15 @@ TEST(Catalogue, RefusesASecondEffectOfAName) {
 TEST(Catalogue, NamesAreAllDifferent) {
     std::set<std::string> names;
     for (const auto& effect : catalogue()) EXPECT_TRUE(names.insert(effect->name()).second) << effect->name();
+}
+
+TEST(Catalogue, EachEffectDrawsFromTheStreamThatItAlwaysDid) {  // digits of a seed hang on them
+    const std::map<std::string, std::uint64_t> streams{
+        {"gravity", 0},    {"compliant-support", 1}, {"pressure", 2},    {"prestress", 3},
+        {"volume", 4},     {"torsion", 5},           {"shear", 6},       {"stiffening", 7},
+        {"anisotropy", 8}, {"viscosity", 9},         {"plasticity", 10}, {"inclusion", 11},
+        {"contact", 12},   {"misalignment", 13},     {"force-gain", 14}, {"outliers", 15}};
+    for (const auto& [name, stream] : streams) EXPECT_EQ(find_effect(name)->stream(), stream) << name;
 }
 
 TEST(Catalogue, OneEffectStandsForSingleReadings) {
