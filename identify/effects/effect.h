@@ -31,10 +31,7 @@ struct Signatures {
     std::function<InAction(int k, const Eigen::VectorXd& q)> in_action;
 };
 
-enum class EffectKind {
-    body,         // the body has it: it goes into the model
-    measurement,  // a fault of the measurement: it goes into how the readings are understood
-};
+using skeleton::EffectKind;
 
 /// What `palpate effects` tells.
 struct EffectDescription {

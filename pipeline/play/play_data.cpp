@@ -110,7 +110,8 @@ bool is_taken_off(const skeleton::Effect& effect) {
 
 /// Does a switch of it change what is played?
 bool is_played(const skeleton::Effect& effect) {
-    return is_of_measurement(effect) ? is_taken_off(effect) : effect.name != "volume";
+    if (is_of_measurement(effect)) return is_taken_off(effect);
+    return skeleton::find_known_effect(effect.name)->not_played.empty();
 }
 
 /// Sets as they are understood with each choice of a model's faults of the measurement, and with loads as they have

@@ -7,7 +7,6 @@
 #include <cmath>
 #include <deque>
 #include <mutex>
-#include <string_view>
 
 #include "mesh/errors.h"
 #include "mesh/io/words.h"
@@ -17,10 +16,7 @@ namespace palpate::skeleton {
 
 namespace {
 
-// Constant from the start: static objects of other files may ask before this file's are made.
-constexpr std::array<std::string_view, 3> measurement_effects{"misalignment", "force-gain", "outliers"};
-
-// All effects of a body, those of users after those that are known from the start.
+// All effects, those of users after those that are known from the start.
 class Registry {
 public:
     static Registry& instance() {
@@ -35,17 +31,22 @@ public:
 
     void add(KnownEffect effect) {
         const std::scoped_lock lock(mutex_);
-        if (find_unlocked(effect.name) || !is_body_effect(effect.name))
+        if (find_unlocked(effect.name))
             throw InvalidInput(
                 fmt::format("effect {} is known already; give yours another name", mesh::cited(effect.name)));
         effects_.push_back(std::move(effect));
     }
 
+    // Those of bodies first, then those of measurements.
     std::vector<std::string> names() const {
         const std::scoped_lock lock(mutex_);
         std::vector<std::string> names;
         names.reserve(effects_.size());
-        for (const KnownEffect& effect : effects_) names.push_back(effect.name);
+        for (const EffectKind kind : {EffectKind::body, EffectKind::measurement}) {
+            for (const KnownEffect& effect : effects_) {
+                if (effect.kind == kind) names.push_back(effect.name);
+            }
+        }
         return names;
     }
 
@@ -63,12 +64,12 @@ private:
 };
 
 const KnownEffect& find_effect(const std::string& name) {
-    if (const KnownEffect* known = find_known_effect(name)) return *known;
-    if (!is_body_effect(name))
+    const KnownEffect* known = find_known_effect(name);
+    if (known && known->kind == EffectKind::body) return *known;
+    if (known)
         throw InvalidInput(
             fmt::format("effect '{}' is about the measurement, not the body: no model can play it", name));
-    std::vector<std::string> names = Registry::instance().names();
-    names.insert(names.end(), measurement_effects.begin(), measurement_effects.end());
+    const std::vector<std::string> names = Registry::instance().names();
     throw InvalidInput(fmt::format("effect {} is not known{}; known are {}", mesh::cited(name),
                                    mesh::suggestion(name, names), mesh::listed(names)));
 }
@@ -135,7 +136,8 @@ bool register_effect(KnownEffect effect) {
 const KnownEffect* find_known_effect(const std::string& name) { return Registry::instance().find(name); }
 
 bool is_body_effect(const std::string& name) {
-    return std::ranges::find(measurement_effects, name) == measurement_effects.end();
+    const KnownEffect* known = find_known_effect(name);
+    return !known || known->kind == EffectKind::body;
 }
 
 fem::Effects make_physics(const Effect& effect) {

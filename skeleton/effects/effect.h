@@ -24,6 +24,14 @@ struct Effect {
 
 // --- What effects there are ---------------------------------------------------------------------------------------
 
+/// Whose an effect is.
+enum class EffectKind {
+    body,         // the body has it: it goes into the model
+    measurement,  // a fault of the measurement: it goes into how the readings are understood, models only record it
+};
+/// As files and users have it.
+inline const char* kind_name(EffectKind kind) { return kind == EffectKind::body ? "body" : "measurement"; }
+
 /// What a parameter may be.
 enum class Range { any, positive, not_negative, poisson };
 
@@ -48,12 +56,15 @@ private:
     std::map<std::string, double> values_;
 };
 
-/// An effect of the body: what it is told, and how its physics is made of these numbers. `make` gets what is in range
-/// and complete but for optional ones; it throws InvalidInput, in words, for what does not go together.
+/// An effect in one row: what it is told, how its physics is made of these numbers, and what is special about it.
+/// `make` gets what is in range and complete but for optional ones; it throws InvalidInput, in words, for what does not
+/// go together. A fault of the measurement has none.
 struct KnownEffect {
     std::string name;
     std::vector<KnownParameter> parameters;
     std::function<fem::Effects(const EffectNumbers&)> make;
+    EffectKind kind = EffectKind::body;
+    std::string not_played = {};  // why no skeleton shows it: "acts on solids alone"; empty: it does
 };
 
 /// Makes an effect known, to all models of this program: a static object of any source file may do so,
@@ -64,8 +75,8 @@ bool register_effect(KnownEffect effect);
 /// The effect of that name; null when there is none. It stays where it is.
 const KnownEffect* find_known_effect(const std::string& name);
 
-/// Is an effect the body's, whether known or not? `misalignment`, `force-gain` and `outliers` are faults of a
-/// measurement: a model records them, and plays without.
+/// Is an effect the body's, whether known or not? Others are faults of a measurement: a model records them, and plays
+/// without.
 bool is_body_effect(const std::string& name);
 
 // --- Their physics ------------------------------------------------------------------------------------------------

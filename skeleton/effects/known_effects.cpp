@@ -128,9 +128,15 @@ std::vector<KnownEffect> known_effects() {
         {"prestress", {{"sxx", "1"}, {"syy", "1"}, {"szz", "1"}, {"sxy", "1"}, {"syz", "1"}, {"sxz", "1"}}, prestress},
         {"viscosity", {{"creep", "1", not_negative}, {"tau", "s", positive}}, viscosity},
         {"plasticity", {{"yield", "1", positive}, {"hardening", "1", not_negative}}, plasticity},
-        {"volume", {{"poisson", "1", Range::poisson}}, volume},
+        {.name = "volume",
+         .parameters = {{"poisson", "1", Range::poisson}},
+         .make = volume,
+         .not_played = "acts on solids alone: a skeleton's volumes have stiffnesses of their own"},
         {"torsion", {{"torsion", "1", not_negative}}, torsion},
         {"shear", {{"shear", "1", not_negative}}, shear},
+        {"misalignment", {}, {}, EffectKind::measurement},
+        {"force-gain", {}, {}, EffectKind::measurement},
+        {"outliers", {}, {}, EffectKind::measurement},
     };
 }
 

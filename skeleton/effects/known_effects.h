@@ -4,7 +4,7 @@
 
 namespace palpate::skeleton {
 
-/// The effects of a body that are known from the start.
+/// The effects that are known from the start.
 std::vector<KnownEffect> known_effects();
 
 }  // namespace palpate::skeleton

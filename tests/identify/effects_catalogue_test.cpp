@@ -67,8 +67,11 @@ TEST_P(EveryEffect, IsConfusedWithOthersThatHaveNames) {
 
 TEST_P(EveryEffect, IsFoundByItsName) { EXPECT_EQ(find_effect(effect().name())->name(), effect().name()); }
 
-TEST_P(EveryEffect, IsOfTheBodyWhereModelsPlayIt) {
-    EXPECT_EQ(effect().is_of_body(), skeleton::is_body_effect(effect().name()));
+TEST_P(EveryEffect, HasARowOfPhysicsOfItsKind) {
+    const skeleton::KnownEffect* row = skeleton::find_known_effect(effect().name());
+    ASSERT_NE(row, nullptr);
+    EXPECT_EQ(row->kind, effect().description().kind);
+    EXPECT_EQ(static_cast<bool>(row->make), effect().is_of_body());
 }
 
 TEST_P(EveryEffect, HasNumbersWithNamesUnitsAndWidths) {
