@@ -5,6 +5,7 @@
 
 #include "identify/effects/catalogue.h"
 #include "mesh/errors.h"
+#include "skeleton/effects/link_effects.h"
 
 namespace palpate::identify {
 namespace {
@@ -55,7 +56,7 @@ public:
     std::optional<std::uint64_t> stream() const override { return 5; }
 
     bool enforce(const Eigen::VectorXd& values, Setting& setting) const override {
-        setting.effects.torsion += values[0];
+        setting.effects.of_model.push_back(skeleton::in_links({.torsion = values[0]}));
         return true;
     }
 
@@ -84,7 +85,7 @@ public:
     std::optional<std::uint64_t> stream() const override { return 6; }
 
     bool enforce(const Eigen::VectorXd& values, Setting& setting) const override {
-        setting.effects.shear += values[0];
+        setting.effects.of_model.push_back(skeleton::in_links({.shear = values[0]}));
         return true;
     }
 

@@ -11,6 +11,7 @@
 #include "mesh/errors.h"
 #include "mesh/io/words.h"
 #include "skeleton/effects/known_effects.h"
+#include "skeleton/effects/link_effects.h"
 
 namespace palpate::skeleton {
 
@@ -53,6 +54,7 @@ public:
 private:
     Registry() {
         for (KnownEffect& effect : known_effects()) effects_.push_back(std::move(effect));
+        for (KnownEffect& effect : known_link_effects()) effects_.push_back(std::move(effect));
     }
     const KnownEffect* find_unlocked(const std::string& name) const {
         const auto found = std::ranges::find(effects_, name, &KnownEffect::name);

@@ -87,10 +87,6 @@ fem::Effects plasticity(const EffectNumbers& numbers) {
 // Recorded only: a solid has Poisson's ratio in its law, and links have no volume that could resist.
 fem::Effects volume(const EffectNumbers&) { return {}; }
 
-fem::Effects torsion(const EffectNumbers& numbers) { return {.torsion = numbers["torsion"]}; }
-
-fem::Effects shear(const EffectNumbers& numbers) { return {.shear = numbers["shear"]}; }
-
 }  // namespace
 
 std::vector<KnownEffect> known_effects() {
@@ -132,8 +128,6 @@ std::vector<KnownEffect> known_effects() {
          .parameters = {{"poisson", "1", Range::poisson}},
          .make = volume,
          .not_played = "acts on solids alone: a skeleton's volumes have stiffnesses of their own"},
-        {"torsion", {{"torsion", "1", not_negative}}, torsion},
-        {"shear", {{"shear", "1", not_negative}}, shear},
         {"misalignment", {}, {}, EffectKind::measurement},
         {"force-gain", {}, {}, EffectKind::measurement},
         {"outliers", {}, {}, EffectKind::measurement},

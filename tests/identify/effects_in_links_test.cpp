@@ -7,6 +7,7 @@
 #include "lattice.h"
 #include "skeleton/effects/anisotropy.h"
 #include "skeleton/effects/inclusion.h"
+#include "skeleton/effects/link_effects.h"
 #include "skeleton/effects/prestress.h"
 #include "skeleton/effects/stiffening.h"
 #include "small_body.h"
@@ -132,8 +133,7 @@ protected:
                          std::make_shared<skeleton::Inclusion>(skeleton::Inclusion::sphere({22, 5, 5}, 8, 3))},
             .pressure = 0.01,
             .plasticity = fem::Plasticity{0.02, 0.5},
-            .torsion = 0.4,
-            .shear = 0.3};
+            .of_model = {skeleton::in_links({.torsion = 0.4, .shear = 0.3})}};
         Action pushed{.contacts = {SmallBody::probes(0.12)[1].contacts[0]}};
         action_.memory = model_.remember(model_.equilibrium(setting_, pushed, nullptr), setting_, pushed);
         action_.contacts = {SmallBody::probes()[1].contacts[0], SmallBody::probes(0.05)[3].contacts[0]};

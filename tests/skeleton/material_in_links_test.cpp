@@ -4,6 +4,7 @@
 
 #include "skeleton/effects/anisotropy.h"
 #include "skeleton/effects/inclusion.h"
+#include "skeleton/effects/link_effects.h"
 #include "skeleton/effects/prestress.h"
 #include "skeleton/effects/stiffening.h"
 #include "skeleton/links/placed_links.h"
@@ -276,7 +277,8 @@ TEST(InclusionInLinks, IsScaledStiffness) {
 
 TEST(InclusionInLinks, ScalesAllThatBelongsToALink) {
     const Model model = make_lattice({4, 2, 2});
-    const fem::Effects effects{.material = {std::make_shared<Stiffening>(0.5, 1)}, .torsion = 0.3, .shear = 0.2};
+    const fem::Effects effects{.material = {std::make_shared<Stiffening>(0.5, 1)},
+                               .of_model = {in_links({.torsion = 0.3, .shear = 0.2})}};
     fem::Effects scaled = effects;
     scaled.material.push_back(std::make_shared<Inclusion>(Inclusion::sphere({0, 0, 0}, 1e3, 6)));
     Load load = force_at(model, 3, {1, 2, -3});
