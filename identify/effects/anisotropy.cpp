@@ -1,4 +1,4 @@
-#include "skeleton/effects/anisotropy.h"
+#include "fem/effects/anisotropy.h"
 
 #include <fmt/format.h>
 #include <Eigen/LU>
@@ -136,7 +136,7 @@ public:
 
 private:
     static std::shared_ptr<const fem::MaterialEffect> fibres(double k, const Vec3& n) {
-        return std::make_shared<skeleton::Anisotropy>(std::vector<skeleton::Fibre>{{k, n}});
+        return std::make_shared<fem::Anisotropy>(std::vector<fem::Fibre>{{k, n}});
     }
 };
 

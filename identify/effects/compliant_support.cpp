@@ -1,4 +1,4 @@
-#include "skeleton/effects/compliant_support.h"
+#include "fem/effects/compliant_support.h"
 
 #include <fmt/format.h>
 #include <Eigen/Geometry>
@@ -48,7 +48,7 @@ public:
 
     bool enforce(const Eigen::VectorXd& values, Setting& setting) const override {
         setting.effects.points.push_back(
-            std::make_shared<skeleton::CompliantSupport>(std::exp(values[0]), std::exp(values[1])));
+            std::make_shared<fem::CompliantSupport>(std::exp(values[0]), std::exp(values[1])));
         return true;
     }
 

@@ -1,4 +1,4 @@
-#include "skeleton/effects/contact.h"
+#include "fem/effects/contact.h"
 
 #include <fmt/format.h>
 
@@ -94,7 +94,7 @@ public:
 
     bool enforce(const Eigen::VectorXd& values, Setting& setting) const override {
         setting.effects.points.push_back(
-            std::make_shared<skeleton::Contact>(values.head<3>().normalized(), values[3], std::exp(values[4])));
+            std::make_shared<fem::Contact>(values.head<3>().normalized(), values[3], std::exp(values[4])));
         return true;
     }
 

@@ -1,4 +1,4 @@
-#include "skeleton/effects/gravity.h"
+#include "fem/effects/gravity.h"
 
 #include <fmt/format.h>
 
@@ -39,7 +39,7 @@ public:
     }
 
     bool enforce(const Eigen::VectorXd& values, Setting& setting) const override {
-        setting.effects.points.push_back(std::make_shared<skeleton::Gravity>(g0 * values.head<3>()));
+        setting.effects.points.push_back(std::make_shared<fem::Gravity>(g0 * values.head<3>()));
         return true;
     }
 

@@ -1,4 +1,4 @@
-#include "skeleton/effects/inclusion.h"
+#include "fem/effects/inclusion.h"
 
 #include <fmt/format.h>
 
@@ -81,8 +81,8 @@ public:
     }
 
     bool enforce(const Eigen::VectorXd& values, Setting& setting) const override {
-        setting.effects.material.push_back(std::make_shared<skeleton::Inclusion>(
-            skeleton::Inclusion::sphere(values.head<3>(), std::exp(values[3]), std::exp(values[4]))));
+        setting.effects.material.push_back(std::make_shared<fem::Inclusion>(
+            fem::Inclusion::sphere(values.head<3>(), std::exp(values[3]), std::exp(values[4]))));
         return true;
     }
 

@@ -1,4 +1,4 @@
-#include "skeleton/effects/prestress.h"
+#include "fem/effects/prestress.h"
 
 #include <fmt/format.h>
 
@@ -34,7 +34,7 @@ public:
     bool enforce(const Eigen::VectorXd& values, Setting& setting) const override {
         Mat3 S;
         S << values[0], values[3], values[5], values[3], values[1], values[4], values[5], values[4], values[2];
-        setting.effects.material.push_back(std::make_shared<skeleton::Prestress>(S));
+        setting.effects.material.push_back(std::make_shared<fem::Prestress>(S));
         return true;
     }
 

@@ -1,4 +1,4 @@
-#include "skeleton/effects/stiffening.h"
+#include "fem/effects/stiffening.h"
 
 #include <fmt/format.h>
 
@@ -41,7 +41,7 @@ public:
     }
 
     bool enforce(const Eigen::VectorXd& values, Setting& setting) const override {
-        setting.effects.material.push_back(std::make_shared<skeleton::Stiffening>(values[0], values[1]));
+        setting.effects.material.push_back(std::make_shared<fem::Stiffening>(values[0], values[1]));
         return true;
     }
 
@@ -65,7 +65,7 @@ public:
 
     bool enforce(const Eigen::VectorXd& values, Setting& setting) const override {
         const double c2 = usual * std::sinh(values[0]);
-        setting.effects.material.push_back(std::make_shared<skeleton::Stiffening>(c2, c2 * std::exp(values[1])));
+        setting.effects.material.push_back(std::make_shared<fem::Stiffening>(c2, c2 * std::exp(values[1])));
         return true;
     }
 

@@ -11,7 +11,7 @@ using nlohmann::json;
 json effect_json(const identify::Effect& effect) {
     const identify::EffectDescription& text = effect.description();
     return {{"effect", text.name},
-            {"kind", skeleton::kind_name(text.kind)},
+            {"kind", fem::kind_name(text.kind)},
             {"meaning", text.meaning},
             {"parameters", text.parameters},
             {"reveals", text.reveals},
@@ -39,8 +39,8 @@ Outcome effects(const EffectsOptions& options, const Common&) {
     Outcome outcome;
     outcome.json = {{"effects", json::array()}};
     for (const auto& effect : identify::catalogue()) {
-        outcome.text += fmt::format("{:<18} {:<12} {}\n", effect->name(),
-                                    skeleton::kind_name(effect->description().kind), effect->description().meaning);
+        outcome.text += fmt::format("{:<18} {:<12} {}\n", effect->name(), fem::kind_name(effect->description().kind),
+                                    effect->description().meaning);
         outcome.json["effects"].push_back(effect_json(*effect));
     }
     outcome.text += "\npalpate effects NAME tells one in full.\n";

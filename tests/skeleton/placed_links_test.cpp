@@ -2,17 +2,22 @@
 
 #include <gtest/gtest.h>
 
-#include "skeleton/effects/anisotropy.h"
-#include "skeleton/effects/inclusion.h"
+#include "fem/effects/anisotropy.h"
+#include "fem/effects/inclusion.h"
+#include "fem/effects/prestress.h"
+#include "fem/effects/stiffening.h"
 #include "skeleton/effects/link_effects.h"
-#include "skeleton/effects/prestress.h"
-#include "skeleton/effects/stiffening.h"
 #include "skeleton/statics.h"
 #include "test_effects.h"
 
 namespace palpate::skeleton {
 namespace {
 
+using fem::Anisotropy;
+using fem::Fibre;
+using fem::Inclusion;
+using fem::Prestress;
+using fem::Stiffening;
 using testing::make_lattice;
 using testing::random_state;
 using testing::random_vector;
