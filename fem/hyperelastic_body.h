@@ -4,7 +4,7 @@
 #include <memory>
 #include <vector>
 
-#include "fem/effects.h"
+#include "fem/effects/effects.h"
 #include "fem/material.h"
 #include "fem/stiffness.h"
 #include "mesh/volume_mesh.h"

@@ -32,10 +32,9 @@ public:
         result_.problem = make_problem(set, first_noise(set));
         moved_ = rms(result_.problem.displacement());
         for (const auto& effect : catalogue()) {
-            const bool left_out = std::ranges::find(options.without, effect->name()) != options.without.end();
             const bool known =
                 std::ranges::find(options.known, effect->name(), &skeleton::Effect::name) != options.known.end();
-            if (!left_out && !known) effects_.push_back(effect);
+            if (!options.leaves_out(*effect) && !known) effects_.push_back(effect);
             if (known && effect->has_memory() && !result_.problem.by_stage) {
                 result_.problem = result_.problem.stage_by_stage();
             }
@@ -159,8 +158,8 @@ private:
 
     /// Readings that are off by themselves, as a fit sees them; true where some were set aside.
     bool set_outliers_aside(const Refit& fit, double least) {
-        if (!outliers_wanted() || !result_.outliers.readings.empty()) return false;
-        tell("outliers", 0.4);
+        if (options_.leaves_out(*single_readings_) || !result_.outliers.readings.empty()) return false;
+        tell(single_readings_->name(), 0.4);
         const Outliers found = find_outliers(result_.problem, fit.residual);
         if (found.log_bayes_factor < std::max(least, options_.least_outliers)) return false;
         const int before = result_.problem.readings();
@@ -186,7 +185,7 @@ private:
         const Diagnosis before = result_;
         const Baselines baselines = baselines_;
         const double least =
-            is_enough(baseline(), options_) ? least_next_to_noise(outliers_, result_.problem, options_) : 0;
+            is_enough(baseline(), options_) ? least_next_to_noise(*single_readings_, result_.problem, options_) : 0;
         if (!set_outliers_aside(baseline(), least)) return;
         baselines_.refit(result_.problem, true);
         if (!options_.screen || is_enough(baseline(), options_)) {
@@ -203,7 +202,8 @@ private:
         const Diagnosis before = result_;
         const Refit leads = leading();
         const bool is_explained = explained() && is_enough(leads, options_);
-        const double least = is_explained ? least_next_to_effect(outliers_, *leader(), result_.problem, options_) : 0;
+        const double least =
+            is_explained ? least_next_to_effect(*single_readings_, *leader(), result_.problem, options_) : 0;
         if (!set_outliers_aside(leads, least)) return false;
         if (!is_enough(without_them(leads), options_)) {
             result_ = before;
@@ -222,9 +222,7 @@ private:
                      options_.refit, &start);
     }
 
-    bool outliers_wanted() const { return std::ranges::find(options_.without, "outliers") == options_.without.end(); }
-
-    const Effect& outliers_ = *find_effect("outliers");
+    const std::shared_ptr<const Effect> single_readings_ = effect_of_single_readings();
     const BodyModel& model_;
     const DiagnoseOptions& options_;
     const Progress& progress_;
@@ -255,6 +253,10 @@ Eigen::VectorXd variances_of_told(const Effect& effect, const std::vector<Effect
 }
 
 }  // namespace
+
+bool DiagnoseOptions::leaves_out(const Effect& effect) const {
+    return std::ranges::find(without, effect.name()) != without.end();
+}
 
 void DiagnoseOptions::validate() const {
     for (const std::string& name : without) find_effect(name);

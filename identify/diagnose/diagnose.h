@@ -43,6 +43,8 @@ struct DiagnoseOptions {
     double resolution = 0.01;             // of the displacement: what nobody told of noise is no less, as of a mesh
     double idealised = 60;  // ln Bayes factor that an effect's idealisation may leave to another, at least
     RefitOptions refit;
+    /// Is an effect left out of the catalogue?
+    bool leaves_out(const Effect& effect) const;
     void validate() const;  // @throws InvalidInput naming option, value and bound
 };
 

@@ -14,14 +14,15 @@ namespace {
 
 /// Outliers as a candidate: they have no numbers of the fit.
 Candidate outlier_candidate(const Diagnosis& diagnosis) {
-    Candidate candidate{.effect = find_effect("outliers"),
+    Candidate candidate{.effect = effect_of_single_readings(),
                         .screened = diagnosis.outliers.log_bayes_factor,
                         .log_bayes_factor = diagnosis.outliers.log_bayes_factor};
     if (diagnosis.outliers.readings.empty()) return candidate;
     const auto count = static_cast<double>(diagnosis.outliers.readings.size());
     const double all = count + diagnosis.problem.readings();
     candidate.told.effect = {
-        "outliers", {{"share", count / all, "1"}, {"readings", count, "1"}, {"width", diagnosis.outliers.width, "1"}}};
+        candidate.effect->name(),
+        {{"share", count / all, "1"}, {"readings", count, "1"}, {"width", diagnosis.outliers.width, "1"}}};
     candidate.told.sd = {std::sqrt(count) / all, 0, 0};
     candidate.predicted_rms_mm = diagnosis.baseline.rms_mm;
     candidate.held_out = diagnosis.baseline_held_out;
@@ -237,12 +238,12 @@ void judge(const BodyModel& model, const DiagnoseOptions& options, Diagnosis& di
 
     // By evidence; with an explanation its first effect leads.
     std::vector<Candidate>& ranking = diagnosis.ranking;
-    const bool outliers_left_out = std::ranges::find(options.without, "outliers") != options.without.end();
-    if (!outliers_left_out) ranking.push_back(outlier_candidate(diagnosis));
+    const auto single_readings = effect_of_single_readings();
+    if (!options.leaves_out(*single_readings)) ranking.push_back(outlier_candidate(diagnosis));
     share_out_probability(ranking);
     std::ranges::stable_sort(ranking, std::greater{}, &Candidate::log_bayes_factor);
     if (diagnosis.explained) name_effects(diagnosis);
-    if (outliers && diagnosis.verdict != Verdict::unexplained) diagnosis.explanation.emplace_back("outliers");
+    if (outliers && diagnosis.verdict != Verdict::unexplained) diagnosis.explanation.push_back(single_readings->name());
     if (diagnosis.explanation.empty()) return;
     const auto named = std::ranges::find_if(
         ranking, [&](const Candidate& c) { return c.effect->name() == diagnosis.explanation.front(); });

@@ -65,7 +65,7 @@ std::vector<skeleton::Effect> told(const Diagnosis& diagnosis) {
         result.push_back(fit.explanation.effects[e]->told(fit.numbers[e], fit.explanation.values[e]));
     }
     for (const Candidate& candidate : diagnosis.ranking) {
-        const bool set_aside = candidate.effect->name() == "outliers" && !diagnosis.outliers.readings.empty();
+        const bool set_aside = candidate.effect->sets_readings_aside() && !diagnosis.outliers.readings.empty();
         if (set_aside) result.push_back(candidate.told.effect);
     }
     return result;
@@ -79,10 +79,16 @@ MeasurementSet understood(const MeasurementSet& set, const std::vector<skeleton:
     return result;
 }
 
+/// Is one among these effects that sets readings aside?
+bool set_readings_aside(const std::vector<std::string>& effects) {
+    return std::ranges::any_of(effects,
+                               [](const std::string& name) { return find_effect(name)->sets_readings_aside(); });
+}
+
 void refuse_what_cannot_show(const Effect& effect, const BodyModel& body, const MeasurementSet& set) {
     const Problem problem = make_problem(set, 1);
     const bool spread = effect.has_memory() && !problem.by_stage;
-    const bool is_fitted = effect.name() != "outliers";  // they are found, reading by reading
+    const bool is_fitted = !effect.sets_readings_aside();
     if (!is_fitted || !effect.numbers(body, spread ? problem.stage_by_stage() : problem).empty()) return;
     throw InvalidInput(
         effect.is_of_links()
@@ -154,7 +160,7 @@ private:
         DiagnoseOptions options = options_.diagnose;
         options.screen = false;
         for (const std::string& name : effects) options.known.push_back(start_of(name, diagnosis));
-        if (std::ranges::find(effects, "outliers") == effects.end()) options.without.emplace_back("outliers");
+        if (!set_readings_aside(effects)) options.without.push_back(effect_of_single_readings()->name());
         if (diagnosis) {
             options.law = diagnosis->law;
             options.near = {&diagnosis->problem, effects.empty() ? &diagnosis->baseline : &diagnosis->best()};
@@ -240,7 +246,7 @@ private:
         options.law = found.law;
         options.known = told(found);
         options.near = {&found.problem, &found.best()};
-        if (found.outliers.readings.empty()) options.without.emplace_back("outliers");
+        if (found.outliers.readings.empty()) options.without.push_back(effect_of_single_readings()->name());
         return diagnose(body_, part, options);
     }
 
@@ -253,7 +259,7 @@ private:
         const RefitOptions& how = options_.diagnose.refit;
         const Refit& fit = found.best();
         Unseen result{held_out, predict(body_, make_problem(held_out, found.noise), fit, how)};
-        if (std::ranges::find(effects, "outliers") == effects.end()) return result;
+        if (!set_readings_aside(effects)) return result;
         const Outliers off = find_outliers(make_problem(held_out, found.noise), result.predicted.residual);
         result.set = without_readings(held_out, off.readings);
         result.predicted = predict(body_, make_problem(result.set, found.noise), fit, how);

@@ -1,4 +1,4 @@
-#include "skeleton/effects/anisotropy.h"
+#include "fem/effects/anisotropy.h"
 
 #include <fmt/format.h>
 #include <Eigen/LU>
@@ -118,9 +118,25 @@ public:
                            1 + p[0].value / young_over_shear, p[1].value, p[2].value, p[3].value);
     }
 
+    std::optional<std::uint64_t> stream() const override { return 8; }
+
+    std::vector<Draft> drafts(Drawing& drawing, const ToldNumbers& told) const override {
+        constexpr int directions = 3;  // that are tried: fibres across a beam hardly show
+        std::vector<Draft> drafts;
+        for (int i = 0; i < directions; ++i) {
+            const Vec3 n = told.vector({"nx", "ny", "nz"}, random_direction(drawing.random));
+            const auto at = [=](double x) {
+                return told.effect({{"k", x}, {"nx", n.x()}, {"ny", n.y()}, {"nz", n.z()}});
+            };
+            drafts.push_back({.at = at, .start = 3, .most = 15, .is_told = told.has("k")});
+        }
+        if (told.has_any({"nx", "ny", "nz"})) drafts.resize(1);
+        return drafts;
+    }
+
 private:
     static std::shared_ptr<const fem::MaterialEffect> fibres(double k, const Vec3& n) {
-        return std::make_shared<skeleton::Anisotropy>(std::vector<skeleton::Fibre>{{k, n}});
+        return std::make_shared<fem::Anisotropy>(std::vector<fem::Fibre>{{k, n}});
     }
 };
 

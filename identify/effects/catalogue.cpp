@@ -48,12 +48,19 @@ bool register_effect(std::shared_ptr<const Effect> effect) {
     return true;
 }
 
+std::shared_ptr<const Effect> effect_named(const std::string& name) {
+    const auto found = std::ranges::find(catalogue(), name, [](const auto& effect) { return effect->name(); });
+    return found == catalogue().end() ? nullptr : *found;
+}
+
+std::shared_ptr<const Effect> effect_of_single_readings() {
+    return *std::ranges::find_if(catalogue(), &Effect::sets_readings_aside);
+}
+
 std::shared_ptr<const Effect> find_effect(const std::string& name) {
+    if (auto effect = effect_named(name)) return effect;
     std::string names;
-    for (const auto& effect : catalogue()) {
-        if (effect->name() == name) return effect;
-        names += (names.empty() ? "" : ", ") + effect->name();
-    }
+    for (const auto& effect : catalogue()) names += (names.empty() ? "" : ", ") + effect->name();
     const auto nearest = std::ranges::min_element(
         catalogue(), {}, [&](const auto& effect) { return edits_between(name, effect->name()); });
     throw InvalidInput(

@@ -18,6 +18,10 @@ bool register_effect(std::shared_ptr<const Effect> effect);
 
 /// @throws InvalidInput naming the effects that there are, and the one that is spelled most alike.
 std::shared_ptr<const Effect> find_effect(const std::string& name);
+/// The effect of that name; null: there is none.
+std::shared_ptr<const Effect> effect_named(const std::string& name);
+/// The one that stands for readings which are off by themselves.
+std::shared_ptr<const Effect> effect_of_single_readings();
 
 // Each effect, from its own file.
 std::shared_ptr<const Effect> gravity_effect();

@@ -1,4 +1,4 @@
-#include "skeleton/effects/compliant_support.h"
+#include "fem/effects/compliant_support.h"
 
 #include <fmt/format.h>
 #include <Eigen/Geometry>
@@ -48,7 +48,7 @@ public:
 
     bool enforce(const Eigen::VectorXd& values, Setting& setting) const override {
         setting.effects.points.push_back(
-            std::make_shared<skeleton::CompliantSupport>(std::exp(values[0]), std::exp(values[1])));
+            std::make_shared<fem::CompliantSupport>(std::exp(values[0]), std::exp(values[1])));
         return true;
     }
 
@@ -90,6 +90,15 @@ public:
     std::string sentence(const skeleton::Effect& told) const override {
         return fmt::format("The support gives way: it is as stiff as springs of {:.3g} N/mm in all.",
                            told.parameters[0].value);
+    }
+
+    std::optional<std::uint64_t> stream() const override { return 1; }
+
+    std::vector<Draft> drafts(Drawing& drawing, const ToldNumbers& told) const override {
+        // A block of the body's size and material is about as stiff as this.
+        const double block = drawing.stiffness * drawing.model.size();  // [N/mm]
+        const auto at = [=](double x) { return told.effect({{"stiffness", block / x}}); };
+        return {{.at = at, .is_told = told.has("stiffness")}};
     }
 
 private:

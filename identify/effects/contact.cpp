@@ -1,17 +1,59 @@
-#include "skeleton/effects/contact.h"
+#include "fem/effects/contact.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 
 #include "identify/diagnose/fit.h"
 #include "identify/effects/catalogue.h"
 #include "identify/effects/plane_scan.h"
+#include "mesh/errors.h"
 
 namespace palpate::identify {
 namespace {
+
+/// Where a plane would be in the way.
+struct Side {
+    Vec3 towards;         // of unit length
+    double reach = 0;     // of the body at rest along it [mm]
+    double furthest = 0;  // how far a probe pushes the body beyond that, at most [mm]
+    double pushed = 0;    // the same, rms over the rows [mm]
+};
+
+Side side_of(const Drawing& drawing, const Vec3& direction) {
+    Side side{.towards = direction.normalized()};
+    side.reach = (drawing.model.skin() * side.towards).maxCoeff();
+    int rows = 0;
+    for (const std::vector<Eigen::VectorXd>& path : drawing.bare) {
+        for (const Eigen::VectorXd& q : path) {
+            const Points there = drawing.model.skin_positions(q, drawing.setting);
+            const double beyond = std::max(0.0, (there * side.towards).maxCoeff() - side.reach);
+            side.furthest = std::max(side.furthest, beyond);
+            side.pushed += beyond * beyond;
+            ++rows;
+        }
+    }
+    side.pushed = std::sqrt(side.pushed / rows);
+    return side;
+}
+
+/// The sides that the probes push the body to most, of 26 round it.
+std::vector<Side> sides_in_the_way(const Drawing& drawing, int count) {
+    std::vector<Side> sides;
+    for (const int z : {-1, 0, 1}) {
+        for (const int y : {-1, 0, 1}) {
+            for (const int x : {-1, 0, 1}) {
+                if (x != 0 || y != 0 || z != 0) sides.push_back(side_of(drawing, Vec3(x, y, z)));
+            }
+        }
+    }
+    std::ranges::stable_sort(sides, std::greater<>(), &Side::pushed);
+    sides.resize(static_cast<std::size_t>(count));
+    return sides;
+}
 
 /// A plane that the body meets when it moves: it pushes back there, and never pulls.
 class ContactEffect : public Effect {
@@ -52,7 +94,7 @@ public:
 
     bool enforce(const Eigen::VectorXd& values, Setting& setting) const override {
         setting.effects.points.push_back(
-            std::make_shared<skeleton::Contact>(values.head<3>().normalized(), values[3], std::exp(values[4])));
+            std::make_shared<fem::Contact>(values.head<3>().normalized(), values[3], std::exp(values[4])));
         return true;
     }
 
@@ -101,6 +143,44 @@ public:
         const auto& p = told.parameters;
         return fmt::format("The body meets a plane with normal ({:.2f}, {:.2f}, {:.2f}) at {:.2f} mm along it.",
                            p[0].value, p[1].value, p[2].value, p[3].value);
+    }
+
+    std::optional<std::uint64_t> stream() const override { return 12; }
+
+    std::vector<Draft> drafts(Drawing& drawing, const ToldNumbers& told) const override {
+        if (drawing.model.skin().rows() == 0) throw InvalidInput("effect 'contact' needs a skin, the model has none");
+        if (drawing.is_skeleton() && drawing.in_small_strain()) {
+            throw InvalidInput(
+                "effect 'contact' is one-sided, which a skeleton's linear law cannot be; leave --linear out");
+        }
+        // One of the six sides that are pushed to most; then the others.
+        constexpr int places = 3;  // that are tried, until it can be felt
+        std::vector<Side> sides = sides_in_the_way(drawing, 6);
+        const auto first = static_cast<std::size_t>(drawing.random.uniform() * static_cast<double>(sides.size()));
+        std::swap(sides[0], sides[first]);
+        sides.resize(places);
+        if (told.has_any({"nx", "ny", "nz"})) {
+            const Vec3 n = told.vector({"nx", "ny", "nz"}, Vec3::Zero());
+            if (n.isZero(0))
+                throw InvalidInput("effect 'contact': the normal (nx, ny, nz) is zero; it needs a direction");
+            sides = {side_of(drawing, -n)};
+        }
+        // Stiff against the body: pressed by E/20 it gives way by 0.05 % of the size.
+        const double stiffness = 100 * drawing.stiffness / drawing.model.size();
+        std::vector<Draft> drafts;
+        for (const Side& side : sides) {
+            const auto at = [=](double x) {
+                const double gap = (1 - x) * side.furthest;
+                const Vec3 n = -side.towards;
+                return told.effect({{"nx", n.x()},
+                                    {"ny", n.y()},
+                                    {"nz", n.z()},
+                                    {"offset", -(side.reach + gap)},
+                                    {"stiffness", stiffness}});
+            };
+            drafts.push_back({.at = at, .start = 0.6, .most = 1, .is_told = told.has("offset"), .is_local = true});
+        }
+        return drafts;
     }
 
 private:

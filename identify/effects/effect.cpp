@@ -66,4 +66,14 @@ Eigen::VectorXd Effect::values(const std::vector<EffectNumber>& numbers, const s
 
 MeasurementSet Effect::corrected(const MeasurementSet& set, const skeleton::Effect&) const { return set; }
 
+void Effect::hide(const skeleton::Effect& told, World& world) const {
+    world.setting.effects.add(skeleton::make_physics(told));
+}
+
+std::vector<skeleton::KnownParameter> Effect::numbers_to_hide() const {
+    return skeleton::find_known_effect(name())->parameters;
+}
+
+std::vector<Draft> Effect::drafts(Drawing&, const ToldNumbers&) const { return {}; }
+
 }  // namespace palpate::identify

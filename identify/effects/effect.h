@@ -1,12 +1,15 @@
 #pragma once
 
 #include <cmath>
+#include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "identify/diagnose/problem.h"
+#include "identify/effects/hiding.h"
 #include "skeleton/effects/effect.h"
 
 namespace palpate::identify {
@@ -28,10 +31,7 @@ struct Signatures {
     std::function<InAction(int k, const Eigen::VectorXd& q)> in_action;
 };
 
-enum class EffectKind {
-    body,         // the body has it: it goes into the model
-    measurement,  // a fault of the measurement: it goes into how the readings are understood
-};
+using skeleton::EffectKind;
 
 /// What `palpate effects` tells.
 struct EffectDescription {
@@ -123,6 +123,10 @@ public:
     /// effect.
     virtual double left_by_idealisation() const { return 5e-4; }
 
+    /// Is it of single readings, which are found and set aside one by one (diagnose/outliers), not fitted? It has no
+    /// numbers of the fit then.
+    virtual bool sets_readings_aside() const { return false; }
+
     /// By default the signatures of all numbers at their start, which must be neutral, and the start itself as the
     /// beginning of a refit. Keeps references to the arguments.
     virtual ScreenPlan screen_plan(const BodyModel& model, const Problem& problem, const Explanation& explanation,
@@ -140,6 +144,23 @@ public:
     virtual std::string sentence(const skeleton::Effect& told) const = 0;
     /// The measurements as they would be without this fault, for models that do not know of it.
     virtual MeasurementSet corrected(const MeasurementSet& set, const skeleton::Effect& told) const;
+
+    // How it is hidden in measurements that are made up (palpate probe --hide).
+
+    /// Puts it in force behind them, as it is told; by default its physics.
+    virtual void hide(const skeleton::Effect& told, World& world) const;
+    /// Does the body stand as it does without it, and only its readings differ?
+    virtual bool is_of_readings() const { return false; }
+    /// What has to be done for it to show.
+    virtual HidingNeeds needs() const { return {}; }
+    /// Its numbers as they are told for that; by default those of its physics.
+    virtual std::vector<skeleton::KnownParameter> numbers_to_hide() const;
+    /// The stream of random numbers that its own are drawn from, part of what a seed means: 0 to 15 are taken. None:
+    /// nothing is drawn; one number may be left out, which is then how strong it is.
+    virtual std::optional<std::uint64_t> stream() const { return std::nullopt; }
+    /// What is told is taken, the rest drawn. Several: other places for it, for where it can hardly be felt in the
+    /// first one. @pre stream() @throws InvalidInput for an effect that cannot be on this body.
+    virtual std::vector<Draft> drafts(Drawing& drawing, const ToldNumbers& told) const;
 };
 
 }  // namespace palpate::identify

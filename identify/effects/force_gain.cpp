@@ -5,6 +5,7 @@
 #include <map>
 
 #include "identify/effects/catalogue.h"
+#include "mesh/errors.h"
 
 namespace palpate::identify {
 namespace {
@@ -80,6 +81,22 @@ public:
             for (mesh::Contact& contact : state.contacts) contact.force *= gain->value;
         }
         return result;
+    }
+
+    void hide(const skeleton::Effect& told, World& world) const override { world.gain = number_of(told, "gain"); }
+
+    std::vector<skeleton::KnownParameter> numbers_to_hide() const override { return {{"gain", "1"}}; }
+    std::optional<std::uint64_t> stream() const override { return 14; }
+
+    std::vector<Draft> drafts(Drawing& drawing, const ToldNumbers& told) const override {
+        if (drawing.bare.size() < 3) {
+            throw InvalidInput("effect 'force-gain' is of every second probe: ask for two probes at least");
+        }
+        constexpr double most = 100;
+        told.positive_value("gain", 1, most);
+        const double sign = drawing.random.uniform() < 0.5 ? -1 : 1;
+        const auto at = [=](double x) { return told.effect({{"gain", std::exp(sign * x)}}); };
+        return {{.at = at, .start = 0.3, .most = std::log(4.0), .is_told = told.has("gain")}};
     }
 
 private:

@@ -1,4 +1,4 @@
-#include "skeleton/effects/gravity.h"
+#include "fem/effects/gravity.h"
 
 #include <fmt/format.h>
 
@@ -39,7 +39,7 @@ public:
     }
 
     bool enforce(const Eigen::VectorXd& values, Setting& setting) const override {
-        setting.effects.points.push_back(std::make_shared<skeleton::Gravity>(g0 * values.head<3>()));
+        setting.effects.points.push_back(std::make_shared<fem::Gravity>(g0 * values.head<3>()));
         return true;
     }
 
@@ -60,6 +60,17 @@ public:
         const Vec3 way = g.norm() > 0 ? Vec3(g.normalized()) : Vec3(Vec3::Zero());
         return fmt::format("Gravity is missing: {:.2f} m/s^2 along ({:.2f}, {:.2f}, {:.2f}).", g.norm() / 1000, way.x(),
                            way.y(), way.z());
+    }
+
+    std::optional<std::uint64_t> stream() const override { return 0; }
+
+    std::vector<Draft> drafts(Drawing& drawing, const ToldNumbers& told) const override {
+        const Vec3 direction = random_direction(drawing.random);
+        const auto at = [=](double x) {
+            const Vec3 g = told.vector({"gx", "gy", "gz"}, x * direction);
+            return told.effect({{"gx", g.x()}, {"gy", g.y()}, {"gz", g.z()}});
+        };
+        return {{.at = at, .start = 9810, .is_told = told.has_any({"gx", "gy", "gz"}), .acts_at_rest = true}};
     }
 };
 

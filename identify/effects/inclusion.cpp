@@ -1,4 +1,4 @@
-#include "skeleton/effects/inclusion.h"
+#include "fem/effects/inclusion.h"
 
 #include <fmt/format.h>
 
@@ -14,6 +14,28 @@ namespace palpate::identify {
 namespace {
 
 constexpr double flat = 0.01;  // of the largest extent: no place is known better before, in a sheet neither
+
+/// Pieces of the body away from its supports; all of them where it is short.
+std::vector<Vec3> free_pieces(const BodyModel& model) {
+    const Points& pieces = model.pieces();
+    const Points& supports = model.support_points();
+    for (const double away : {0.2, 0.1, 0.0}) {  // of the size
+        std::vector<Vec3> free;
+        for (Eigen::Index p = 0; p < pieces.rows(); ++p) {
+            const double distance = (supports.rowwise() - pieces.row(p)).rowwise().norm().minCoeff();
+            if (distance >= away * model.size()) free.emplace_back(pieces.row(p));
+        }
+        if (!free.empty()) return free;
+    }
+    return {};
+}
+
+/// The longest side of a stout body, less of one that is thin [mm].
+double stout_size(const Drawing& drawing) {
+    const double size = drawing.model.size();
+    const double volume = std::abs(mesh::signed_volume(drawing.set.rest_surface));
+    return volume > 0 ? std::min(size, 1.5 * std::cbrt(volume)) : size;
+}
 
 /// A ball within the body that is stiffer, or softer, than the rest.
 class InclusionEffect : public Effect {
@@ -59,8 +81,8 @@ public:
     }
 
     bool enforce(const Eigen::VectorXd& values, Setting& setting) const override {
-        setting.effects.material.push_back(std::make_shared<skeleton::Inclusion>(
-            skeleton::Inclusion::sphere(values.head<3>(), std::exp(values[3]), std::exp(values[4]))));
+        setting.effects.material.push_back(std::make_shared<fem::Inclusion>(
+            fem::Inclusion::sphere(values.head<3>(), std::exp(values[3]), std::exp(values[4]))));
         return true;
     }
 
@@ -94,6 +116,30 @@ public:
             "{:.2g} "
             "times as stiff as elsewhere.",
             p[4].value > 1 ? "hard" : "soft", p[0].value, p[1].value, p[2].value, p[3].value, p[4].value);
+    }
+
+    std::optional<std::uint64_t> stream() const override { return 11; }
+
+    std::vector<Draft> drafts(Drawing& drawing, const ToldNumbers& told) const override {
+        constexpr int places = 3;  // that are tried, until it can be felt
+        const double size = stout_size(drawing);
+        const std::vector<Vec3> pieces = free_pieces(drawing.model);
+        const double ratio = told.value("ratio", drawing.random.uniform() < 0.5 ? 8.0 : 1 / 8.0);
+        const bool is_told = told.has_any({"radius", "hx", "hy", "hz"});
+        std::vector<Draft> drafts;
+        for (int place = 0; place < places; ++place) {
+            const auto piece = static_cast<std::size_t>(drawing.random.uniform() * static_cast<double>(pieces.size()));
+            const Vec3 centre = told.vector({"cx", "cy", "cz"}, pieces[piece]);
+            const auto at = [=](double x) {
+                std::vector<std::pair<std::string, double>> values{
+                    {"cx", centre.x()}, {"cy", centre.y()}, {"cz", centre.z()}, {"ratio", ratio}};
+                if (!is_told) values.emplace_back("radius", (0.1 + 0.15 * x) * size);
+                return told.effect(values);
+            };
+            drafts.push_back({.at = at, .start = 0.3, .most = 1, .is_told = is_told, .is_local = true});
+        }
+        if (told.has_any({"cx", "cy", "cz"}) || is_told) drafts.resize(1);
+        return drafts;
     }
 
 private:

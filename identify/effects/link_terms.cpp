@@ -4,6 +4,8 @@
 #include <cmath>
 
 #include "identify/effects/catalogue.h"
+#include "mesh/errors.h"
+#include "skeleton/effects/link_effects.h"
 
 namespace palpate::identify {
 namespace {
@@ -13,8 +15,30 @@ bool has_links(const BodyModel& model) {
     return std::ranges::find(model.parameters(), "flexion", &StiffnessParameter::name) != model.parameters().end();
 }
 
+/// A resistance of the links. Its one number bears the name of the effect.
+class OfLinks : public Effect {
+public:
+    bool is_of_links() const override { return true; }
+
+    std::vector<EffectNumber> numbers(const BodyModel& model, const Problem&) const override {
+        if (!has_links(model)) return {};
+        return {{.name = name(), .unit = "1", .least = 0}};
+    }
+
+    std::vector<Draft> drafts(Drawing& drawing, const ToldNumbers& told) const override {
+        if (!drawing.is_skeleton()) {
+            throw InvalidInput(
+                fmt::format("effect '{}' is of a skeleton's links, and a solid has none; probe a "
+                            "model.json, or hide another effect",
+                            name()));
+        }
+        const auto at = [name = name(), told](double x) { return told.effect({{name, x}}); };
+        return {{.at = at, .most = 100, .is_told = told.has(name())}};
+    }
+};
+
 /// Resistance of the links to twist, which a model of elongation and flexion alone lacks.
-class TorsionEffect : public Effect {
+class TorsionEffect : public OfLinks {
 public:
     const EffectDescription& description() const override {
         static const EffectDescription text{
@@ -29,15 +53,10 @@ public:
         return text;
     }
 
-    bool is_of_links() const override { return true; }
-
-    std::vector<EffectNumber> numbers(const BodyModel& model, const Problem&) const override {
-        if (!has_links(model)) return {};
-        return {{.name = "torsion", .unit = "1", .least = 0}};
-    }
+    std::optional<std::uint64_t> stream() const override { return 5; }
 
     bool enforce(const Eigen::VectorXd& values, Setting& setting) const override {
-        setting.effects.torsion += values[0];
+        setting.effects.of_model.push_back(skeleton::in_links({.torsion = values[0]}));
         return true;
     }
 
@@ -48,7 +67,7 @@ public:
 };
 
 /// Resistance of the links to shear apart from flexion.
-class ShearEffect : public Effect {
+class ShearEffect : public OfLinks {
 public:
     const EffectDescription& description() const override {
         static const EffectDescription text{
@@ -63,15 +82,10 @@ public:
         return text;
     }
 
-    bool is_of_links() const override { return true; }
-
-    std::vector<EffectNumber> numbers(const BodyModel& model, const Problem&) const override {
-        if (!has_links(model)) return {};
-        return {{.name = "shear", .unit = "1", .least = 0}};
-    }
+    std::optional<std::uint64_t> stream() const override { return 6; }
 
     bool enforce(const Eigen::VectorXd& values, Setting& setting) const override {
-        setting.effects.shear += values[0];
+        setting.effects.of_model.push_back(skeleton::in_links({.shear = values[0]}));
         return true;
     }
 

@@ -64,6 +64,33 @@ public:
         }
         return result;
     }
+
+    bool is_of_readings() const override { return true; }
+
+    void hide(const skeleton::Effect& told, World& world) const override {
+        world.shift = {number_of(told, "tx"), number_of(told, "ty"), number_of(told, "tz")};
+        world.turn = {number_of(told, "rx"), number_of(told, "ry"), number_of(told, "rz")};
+    }
+
+    std::vector<skeleton::KnownParameter> numbers_to_hide() const override {
+        return {{"tx", "mm"}, {"ty", "mm"}, {"tz", "mm"}, {"rx", "rad"}, {"ry", "rad"}, {"rz", "rad"}};
+    }
+    std::optional<std::uint64_t> stream() const override { return 13; }
+
+    std::vector<Draft> drafts(Drawing& drawing, const ToldNumbers& told) const override {
+        const double size = drawing.model.size();
+        const Vec3 t0 = random_direction(drawing.random), w0 = random_direction(drawing.random);
+        const bool is_told = told.has_any({"tx", "ty", "tz", "rx", "ry", "rz"});
+        const auto at = [=](double x) {
+            // A turn about the centre moves markers by about a third of the size times its angle.
+            const double s = is_told ? 0 : x;
+            const Vec3 t = told.vector({"tx", "ty", "tz"}, s * size * t0),
+                       w = told.vector({"rx", "ry", "rz"}, 3 * s * w0);
+            return told.effect(
+                {{"tx", t.x()}, {"ty", t.y()}, {"tz", t.z()}, {"rx", w.x()}, {"ry", w.y()}, {"rz", w.z()}});
+        };
+        return {{.at = at, .start = 0.005, .most = 0.2, .is_told = is_told}};
+    }
 };
 
 }  // namespace

@@ -24,12 +24,31 @@ public:
     }
 
     bool is_like_mesh_error() const override { return true; }
+    bool sets_readings_aside() const override { return true; }
 
     std::vector<EffectNumber> numbers(const BodyModel&, const Problem&) const override { return {}; }
 
     std::string sentence(const skeleton::Effect& told) const override {
         return fmt::format("Outliers: {:.1f} % of the readings ({:.0f}) are off by some {:.0f} times the noise.",
                            100 * told.parameters[0].value, told.parameters[1].value, told.parameters[2].value);
+    }
+
+    bool is_of_readings() const override { return true; }
+    HidingNeeds needs() const override { return {.noise = true}; }
+
+    void hide(const skeleton::Effect& told, World& world) const override {
+        world.off_share = number_of(told, "share");
+        world.off_width = number_of(told, "width");
+    }
+
+    std::vector<skeleton::KnownParameter> numbers_to_hide() const override { return {{"share", "1"}, {"width", "1"}}; }
+    std::optional<std::uint64_t> stream() const override { return 15; }
+
+    std::vector<Draft> drafts(Drawing&, const ToldNumbers& told) const override {
+        const double share = told.positive_value("share", 0.06, 0.5);
+        told.positive_value("width", 1, 1e6);
+        const auto at = [=](double x) { return told.effect({{"share", share}, {"width", x}}); };
+        return {{.at = at, .start = 25, .is_told = told.has("width")}};
     }
 };
 

@@ -92,6 +92,16 @@ public:
                            100 * told.parameters[0].value);
     }
 
+    HidingNeeds needs() const override { return {.release = true}; }
+
+    std::optional<std::uint64_t> stream() const override { return 10; }
+
+    std::vector<Draft> drafts(Drawing&, const ToldNumbers& told) const override {
+        const auto at = [=](double x) { return told.effect({{"yield", 0.3 / x}, {"hardening", 0.3}}); };
+        // Nothing below the yield point, much above it, and soon no equilibrium.
+        return {{.at = at, .most = 100, .slope = 6, .growth = 1.3, .is_told = told.has("yield")}};
+    }
+
 private:
     /// Is the body read without load after a load?
     static bool returns_to_rest(const Problem& problem) {

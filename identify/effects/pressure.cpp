@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "identify/effects/catalogue.h"
+#include "mesh/errors.h"
 
 namespace palpate::identify {
 namespace {
@@ -44,6 +45,20 @@ public:
 
     std::string sentence(const skeleton::Effect& told) const override {
         return fmt::format("The cavities are under a pressure of {:.3g} kPa.", 1000 * told.parameters[0].value);
+    }
+
+    std::optional<std::uint64_t> stream() const override { return 2; }
+
+    std::vector<Draft> drafts(Drawing& drawing, const ToldNumbers& told) const override {
+        if (!drawing.model.has_cavities()) {
+            throw InvalidInput(
+                "effect 'pressure' acts in closed cavities, and this body has none; give a surface with a "
+                "closed shell inside, or hide another effect");
+        }
+        const double unit = 0.02 * drawing.stiffness;
+        const double sign = drawing.random.uniform() < 0.3 ? -1 : 1;  // mostly it is pumped up
+        const auto at = [=](double x) { return told.effect({{"pressure", x * sign * unit}}); };
+        return {{.at = at, .is_told = told.has("pressure"), .acts_at_rest = true}};
     }
 };
 

@@ -1,4 +1,4 @@
-#include "skeleton/effects/prestress.h"
+#include "fem/effects/prestress.h"
 
 #include <fmt/format.h>
 
@@ -34,7 +34,7 @@ public:
     bool enforce(const Eigen::VectorXd& values, Setting& setting) const override {
         Mat3 S;
         S << values[0], values[3], values[5], values[3], values[1], values[4], values[5], values[4], values[2];
-        setting.effects.material.push_back(std::make_shared<skeleton::Prestress>(S));
+        setting.effects.material.push_back(std::make_shared<fem::Prestress>(S));
         return true;
     }
 
@@ -43,6 +43,23 @@ public:
         return fmt::format(
             "The body is under stress at rest: ({:.2g}, {:.2g}, {:.2g}) along the axes, over its shear modulus.",
             p[0].value, p[1].value, p[2].value);
+    }
+
+    std::optional<std::uint64_t> stream() const override { return 3; }
+
+    std::vector<Draft> drafts(Drawing& drawing, const ToldNumbers& told) const override {
+        const Vec3 normal = drawing.random.normals(3).normalized(), shear = drawing.random.normals(3).normalized();
+        const std::vector<std::string> names{"sxx", "syy", "szz", "sxy", "syz", "sxz"};
+        const bool is_told = told.has_any(names);
+        const auto at = [=](double x) {
+            const double s = is_told ? 0 : x;
+            std::vector<std::pair<std::string, double>> values;
+            values.reserve(names.size());
+            for (int i = 0; i < 3; ++i) values.emplace_back(names[i], s * normal[i]);
+            for (int i = 0; i < 3; ++i) values.emplace_back(names[i + 3], 0.5 * s * shear[i]);
+            return told.effect(values);
+        };
+        return {{.at = at, .start = 0.05, .most = 1, .is_told = is_told, .acts_at_rest = true}};
     }
 };
 

@@ -1,4 +1,4 @@
-#include "skeleton/effects/stiffening.h"
+#include "fem/effects/stiffening.h"
 
 #include <fmt/format.h>
 
@@ -7,6 +7,7 @@
 
 #include "identify/diagnose/fit.h"
 #include "identify/effects/catalogue.h"
+#include "mesh/errors.h"
 
 namespace palpate::identify {
 namespace {
@@ -40,7 +41,7 @@ public:
     }
 
     bool enforce(const Eigen::VectorXd& values, Setting& setting) const override {
-        setting.effects.material.push_back(std::make_shared<skeleton::Stiffening>(values[0], values[1]));
+        setting.effects.material.push_back(std::make_shared<fem::Stiffening>(values[0], values[1]));
         return true;
     }
 
@@ -64,7 +65,7 @@ public:
 
     bool enforce(const Eigen::VectorXd& values, Setting& setting) const override {
         const double c2 = usual * std::sinh(values[0]);
-        setting.effects.material.push_back(std::make_shared<skeleton::Stiffening>(c2, c2 * std::exp(values[1])));
+        setting.effects.material.push_back(std::make_shared<fem::Stiffening>(c2, c2 * std::exp(values[1])));
         return true;
     }
 
@@ -102,6 +103,21 @@ public:
         };
         plan.start = [](Eigen::Index, const Eigen::VectorXd&) { return Eigen::Vector2d(0.2, std::log(usual_ratio)); };
         return plan;
+    }
+
+    std::optional<std::uint64_t> stream() const override { return 7; }
+
+    std::vector<Draft> drafts(Drawing& drawing, const ToldNumbers& told) const override {
+        if (drawing.in_small_strain()) {
+            throw InvalidInput("effect 'stiffening' does not show in small strain; leave --linear out");
+        }
+        const bool is_told = told.has_any({"c2", "c3"});
+        const auto at = [=](double x) {
+            // Soft tissue and rubber: the third coefficient some ten times the second.
+            const double c = is_told ? 0 : x;
+            return told.effect({{"c2", c}, {"c3", 10 * c}});
+        };
+        return {{.at = at, .start = 3, .most = 300, .is_told = is_told}};
     }
 };
 

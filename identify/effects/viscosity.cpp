@@ -101,6 +101,19 @@ public:
                            100 * told.parameters[0].value, told.parameters[1].value);
     }
 
+    HidingNeeds needs() const override { return {.dwells = true}; }
+
+    std::optional<std::uint64_t> stream() const override { return 9; }
+
+    std::vector<Draft> drafts(Drawing& drawing, const ToldNumbers& told) const override {
+        // Between the first and the last reading, so that both show.
+        const std::vector<double>& dwell = drawing.dwell;
+        const double tau = dwell.size() > 1 ? std::sqrt(dwell.front() * dwell.back()) : 1;
+        const double drawn = tau * std::exp(drawing.random.uniform() - 0.5);
+        const auto at = [=](double x) { return told.effect({{"creep", x}, {"tau", drawn}}); };
+        return {{.at = at, .start = 0.5, .most = 5, .is_told = told.has("creep")}};
+    }
+
 private:
     /// Times at which something of a load's duration shows, ascending; fewer than two: nothing does.
     static std::vector<double> telling_times(const Problem& problem) {

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "identify/effects/catalogue.h"
+#include "mesh/errors.h"
 
 namespace palpate::identify {
 namespace {
@@ -50,6 +51,33 @@ public:
     std::string sentence(const skeleton::Effect& told) const override {
         return fmt::format("The body keeps its volume otherwise than declared: Poisson's ratio is {:.3f}.",
                            told.parameters[0].value);
+    }
+
+    HidingNeeds needs() const override { return {.told_poisson = true}; }
+
+    void hide(const skeleton::Effect& told, World& world) const override {
+        Effect::hide(told, world);  // which refuses what is out of range
+        world.setting.theta[compressibility] = std::log(1 - 2 * number_of(told, "poisson"));  // Young's modulus stays
+    }
+
+    std::optional<std::uint64_t> stream() const override { return 4; }
+
+    /// Poisson's ratio. What is not quite incompressible changes little when it becomes so, more when it becomes a
+    /// sponge.
+    std::vector<Draft> drafts(Drawing& drawing, const ToldNumbers& told) const override {
+        if (drawing.is_skeleton()) {
+            throw InvalidInput(
+                "effect 'volume' is of a solid: the links of a skeleton have no volume that could resist; "
+                "hide another effect, or probe a mesh");
+        }
+        const double now = 1 - 2 * *drawing.poisson;
+        const bool stiffer = drawing.random.uniform() < 0.5 || now > 0.3;
+        const auto at = [=](double x) {
+            const double furthest = stiffer ? 0.002 : 0.6;  // nu = 0.499, 0.2
+            const double then = std::pow(now, 1 - x) * std::pow(furthest, x);
+            return told.effect({{"poisson", 0.5 * (1 - then)}});
+        };
+        return {{.at = at, .start = 0.5, .most = 1, .is_told = told.has("poisson")}};
     }
 
 private:

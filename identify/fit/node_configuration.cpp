@@ -62,7 +62,7 @@ double reach(const skeleton::Model& model, int sphere) {
 
 void require_fixed_supports(const skeleton::Model& model) {
     for (const skeleton::Effect& effect : model.effects) {
-        if (!skeleton::is_body_effect(effect.name) || !fem::release_supports(make_physics(effect))) continue;
+        if (!skeleton::is_body_effect(effect.name) || !fem::release_supports(skeleton::make_physics(effect))) continue;
         throw InvalidInput(
             fmt::format("method burion2008 takes held spheres to stay where they are, but the model's effect '{}' lets "
                         "them move: take it out of the model, or use method tempered",

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "fem/effects.h"
+#include "fem/effects/effects.h"
 #include "mesh/contact.h"
 #include "mesh/types.h"
 

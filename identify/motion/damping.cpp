@@ -258,8 +258,8 @@ bool weighs(const skeleton::Model& model, const MeasurementSet& set) {
     const auto known = [&](const LoadState& state) {
         return !known_gravity(set, state).value_or(Vec3::Zero()).isZero(0);
     };
-    return std::ranges::any_of(model.effects,
-                               [](const skeleton::Effect& effect) { return effect.name == "gravity"; }) ||
+    const auto pulls = [](const auto& potential) { return potential->acts_on() == fem::ActsOn::material; };
+    return std::ranges::any_of(skeleton::physics_of(model.effects).points, pulls) ||
            std::ranges::any_of(set.states, known);
 }
 

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "fem/effects.h"
+#include "fem/effects/effects.h"
 #include "identify/set/measurement_set.h"
 
 namespace palpate::identify {

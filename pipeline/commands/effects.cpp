@@ -8,12 +8,10 @@ namespace {
 
 using nlohmann::json;
 
-std::string kind_of(const identify::Effect& effect) { return effect.is_of_body() ? "body" : "measurement"; }
-
 json effect_json(const identify::Effect& effect) {
     const identify::EffectDescription& text = effect.description();
     return {{"effect", text.name},
-            {"kind", kind_of(effect)},
+            {"kind", fem::kind_name(text.kind)},
             {"meaning", text.meaning},
             {"parameters", text.parameters},
             {"reveals", text.reveals},
@@ -41,8 +39,8 @@ Outcome effects(const EffectsOptions& options, const Common&) {
     Outcome outcome;
     outcome.json = {{"effects", json::array()}};
     for (const auto& effect : identify::catalogue()) {
-        outcome.text +=
-            fmt::format("{:<18} {:<12} {}\n", effect->name(), kind_of(*effect), effect->description().meaning);
+        outcome.text += fmt::format("{:<18} {:<12} {}\n", effect->name(), fem::kind_name(effect->description().kind),
+                                    effect->description().meaning);
         outcome.json["effects"].push_back(effect_json(*effect));
     }
     outcome.text += "\npalpate effects NAME tells one in full.\n";

@@ -2,7 +2,10 @@
 #include <fmt/ranges.h>
 
 #include <iterator>
+#include <optional>
+#include <utility>
 
+#include "fem/effects/gravity.h"
 #include "mesh/io/atomic_file.h"
 #include "pipeline/exports/four_influences.h"
 #include "pipeline/exports/programs.h"
@@ -27,15 +30,19 @@ std::string numpy_array(const char* name, const Rows& rows, const char* number =
     return text + fmt::format("]).reshape(-1, {})\n", rows.cols());
 }
 
+/// The weight that an effect of a body is [mm/s^2]; none: it is something else, which a scene does not hold.
+std::optional<Vec3> weight_of(const skeleton::Effect& effect) {
+    fem::Effects physics = skeleton::make_physics(effect);
+    const auto points = std::exchange(physics.points, {});
+    const auto* weight = points.size() == 1 ? dynamic_cast<const fem::Gravity*>(points.front().get()) : nullptr;
+    if (!weight || !physics.empty()) return std::nullopt;
+    return weight->g();
+}
+
 Vec3 sofa_gravity(const skeleton::Model& model) {
     Vec3 g = Vec3::Zero();
     for (const skeleton::Effect& effect : model.effects) {
-        if (effect.name != "gravity") continue;
-        for (const skeleton::EffectParameter& parameter : effect.parameters) {
-            if (parameter.name == "gx") g.x() += parameter.value;
-            if (parameter.name == "gy") g.y() += parameter.value;
-            if (parameter.name == "gz") g.z() += parameter.value;
-        }
+        if (skeleton::is_body_effect(effect.name)) g += weight_of(effect).value_or(Vec3::Zero());
     }
     return g;
 }
@@ -91,7 +98,8 @@ std::vector<std::string> write_sofa(const std::filesystem::path& file, const ske
     }
     mesh::write_text(file, text + sofa_law);
 
-    std::vector<std::string> left_out = effects_left_out(model, {"gravity"});
+    std::vector<std::string> left_out =
+        effects_left_out(model, [](const auto& effect) { return weight_of(effect).has_value(); });
     if (full) left_out.emplace_back("the scene keeps no volumes");
     left_out.emplace_back("the scene spreads the mass evenly over the spheres");
     return left_out;

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <algorithm>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -8,11 +8,12 @@
 
 namespace palpate::pipeline {
 
-/// Words for each effect of a body that another program's file does not hold; `held`: those that it does.
-inline std::vector<std::string> effects_left_out(const skeleton::Model& model, const std::vector<std::string>& held) {
+/// Words for each effect of a body that another program's file does not hold; `holds`: does it hold that one?
+inline std::vector<std::string> effects_left_out(const skeleton::Model& model,
+                                                 const std::function<bool(const skeleton::Effect&)>& holds) {
     std::vector<std::string> words;
     for (const skeleton::Effect& effect : model.effects) {
-        if (!skeleton::is_body_effect(effect.name) || std::ranges::find(held, effect.name) != held.end()) continue;
+        if (!skeleton::is_body_effect(effect.name) || holds(effect)) continue;
         words.push_back("effect '" + effect.name + "' is left out");
     }
     return words;

@@ -3,7 +3,7 @@
 #include <optional>
 #include <vector>
 
-#include "fem/effects.h"
+#include "fem/effects/effects.h"
 #include "identify/set/measurement_set.h"
 #include "mesh/contact.h"
 #include "pipeline/forge/options.h"

@@ -3,37 +3,36 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 
+#include "identify/effects/catalogue.h"
 #include "mesh/errors.h"
 #include "mesh/io/words.h"
-#include "pipeline/forge/drafts/kinds.h"
 
 namespace palpate::pipeline {
 namespace {
 
-std::vector<const DraftKind*> all_kinds() {
-    std::vector<const DraftKind*> all;
-    for (const auto* kinds : {&body_kinds(), &material_kinds(), &placed_kinds(), &measurement_kinds()}) {
-        for (const DraftKind& kind : *kinds) all.push_back(&kind);
+/// The effect of that name that draws its numbers; null: there is none.
+std::shared_ptr<const identify::Effect> drawn_effect(const std::string& name) {
+    auto effect = identify::effect_named(name);
+    return effect && effect->stream() ? effect : nullptr;
+}
+
+/// Effects that draw their numbers, in the order of their streams.
+std::vector<std::string> drawn_effects() {
+    std::multimap<std::uint64_t, std::string> by_stream;
+    for (const auto& effect : identify::catalogue()) {
+        if (effect->stream()) by_stream.emplace(*effect->stream(), effect->name());
     }
-    return all;
-}
-
-/// Null: none of those that can be drawn.
-const DraftKind* find_kind(const std::string& name) {
-    const auto all = all_kinds();
-    const auto found = std::ranges::find(all, name, &DraftKind::name);
-    return found == all.end() ? nullptr : *found;
-}
-
-std::vector<skeleton::KnownParameter> numbers_of(const DraftKind& kind) {
-    return kind.numbers.empty() ? skeleton::find_known_effect(kind.name)->parameters : kind.numbers;
+    std::vector<std::string> names;
+    for (const auto& entry : by_stream) names.push_back(entry.second);
+    return names;
 }
 
 /// The known effects in one list; what is spelled nearly like one of them is pointed to.
 [[noreturn]] void refuse_unknown(const std::string& name) {
-    std::vector<std::string> names{"none"};
-    for (const DraftKind* kind : all_kinds()) names.push_back(kind->name);
+    std::vector<std::string> names = drawn_effects();
+    names.insert(names.begin(), "none");
     throw InvalidInput(fmt::format("effect {} is not known{}; known are {}", mesh::cited(name),
                                    mesh::suggestion(name, names), mesh::listed(names)));
 }
@@ -62,14 +61,14 @@ Draft draft_of_own(const Wish& wish) {
 }  // namespace
 
 void check_wish(const Wish& wish) {
-    const DraftKind* kind = find_kind(wish.effect);
-    if (!kind) {
+    const auto effect = drawn_effect(wish.effect);
+    if (!effect) {
         if (!skeleton::find_known_effect(wish.effect)) refuse_unknown(wish.effect);
         skeleton::make_physics(draft_of_own(wish).at(1));
         return;
     }
     std::vector<std::string> names;
-    for (const skeleton::KnownParameter& number : numbers_of(*kind)) names.push_back(number.name);
+    for (const skeleton::KnownParameter& number : effect->numbers_to_hide()) names.push_back(number.name);
     for (const skeleton::EffectParameter& number : wish.given) {
         if (std::ranges::find(names, number.name) != names.end()) continue;
         throw InvalidInput(fmt::format("effect '{}': {} is not known{}; known are {}", wish.effect,
@@ -80,22 +79,23 @@ void check_wish(const Wish& wish) {
 
 std::vector<Draft> drafts_of(const Specimen& specimen, const Plan& plan, const Wish& wish, const Rhythm& rhythm,
                              std::uint64_t seed) {
-    const DraftKind* kind = find_kind(wish.effect);
-    if (!kind) return {draft_of_own(wish)};
+    const auto effect = drawn_effect(wish.effect);
+    if (!effect) return {draft_of_own(wish)};
     // Each effect draws from a stream of its own, so that others beside it change nothing.
-    const auto all = all_kinds();
-    const auto place = static_cast<std::uint64_t>(std::ranges::find(all, kind) - all.begin());
     constexpr std::uint64_t apart = 1'000'000;  // from the streams of the readings
-    Drawing drawing{specimen, plan, wish, rhythm, identify::RandomStream(seed, apart + place, 0)};
-    return kind->draw(drawing, Told(wish, numbers_of(*kind)));
-}
-
-Vec3 random_direction(identify::RandomStream& random) {
-    Vec3 direction;
-    do {
-        direction = random.normals(3);
-    } while (direction.norm() < 1e-6);
-    return direction.normalized();
+    std::optional<double> poisson;
+    if (specimen.material) poisson = specimen.material->poisson;
+    identify::Drawing drawing{
+        .model = *specimen.model,
+        .setting = specimen.setting,
+        .set = specimen.set,
+        .stiffness = specimen.stiffness,
+        .poisson = poisson,
+        .dwell = rhythm.dwell,
+        .bare = plan.bare,
+        .random = identify::RandomStream(seed, apart + *effect->stream(), 0),
+    };
+    return effect->drafts(drawing, {wish.effect, wish.given, effect->numbers_to_hide()});
 }
 
 }  // namespace palpate::pipeline

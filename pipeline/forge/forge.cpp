@@ -73,8 +73,10 @@ private:
     }
 
     void hide_all() {
-        if (is_among("outliers", wishes_) && forged_.noise == 0) {
-            throw InvalidInput("effect 'outliers' is told in sigmas of the noise, and there is none; say --noise");
+        const Wish* in_sigmas = first_with(&identify::HidingNeeds::noise, wishes_);
+        if (in_sigmas && forged_.noise == 0) {
+            throw InvalidInput(fmt::format("effect '{}' is told in sigmas of the noise, and there is none; say --noise",
+                                           in_sigmas->effect));
         }
         for (std::size_t w = 0; w < wishes_.size(); ++w) {
             report(progress_, "hiding " + wishes_[w].effect,
@@ -149,13 +151,11 @@ private:
     }
 
     ReadingFaults faults() const {
-        ReadingFaults faults{.noise = forged_.noise, .missing = options_.missing, .unlabelled = options_.unlabelled};
-        for (const Hidden& hidden : forged_.hidden) {
-            if (hidden.effect.name != "outliers") continue;
-            faults.outlier_share = hidden.effect.parameters[0].value;
-            faults.outlier_width = hidden.effect.parameters[1].value;
-        }
-        return faults;
+        return {.noise = forged_.noise,
+                .outlier_share = world_.off_share,
+                .outlier_width = world_.off_width,
+                .missing = options_.missing,
+                .unlabelled = options_.unlabelled};
     }
 
     void write_set() {
@@ -176,7 +176,7 @@ private:
             }
         }
         forged_.strength = strength_of(specimen_, bare, hidden);
-        for (const Hidden& one : forged_.hidden) forged_.strength.add(outlier_variance(one.effect, forged_.noise));
+        forged_.strength.add(world_.scatter(forged_.noise));
     }
 
     void tell_material() {
@@ -184,7 +184,7 @@ private:
         identify::MaterialGuess guess;
         if (!forged_.is_blind || options_.tell_material) {
             guess = {specimen_.material->young, specimen_.material->poisson};
-        } else if (is_among("volume", wishes_)) {
+        } else if (first_with(&identify::HidingNeeds::told_poisson, wishes_)) {
             // A body of another Poisson's ratio lacks nothing, unless somebody said what it should be.
             guess.poisson = specimen_.material->poisson;
             forged_.notes.push_back(

@@ -1,24 +1,18 @@
 #include "pipeline/forge/play.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <atomic>
 #include <cmath>
 
+#include "identify/effects/catalogue.h"
 #include "identify/parallel.h"
 #include "mesh/errors.h"
-#include "skeleton/state.h"
 
 namespace palpate::pipeline {
 namespace {
 
 using identify::Action;
 using identify::Memory;
-
-double number(const skeleton::Effect& effect, const std::string& name) {
-    return std::ranges::find(effect.parameters, name, &skeleton::EffectParameter::name)->value;
-}
 
 /// What a body has been through, and how it stands.
 struct Life {
@@ -103,30 +97,21 @@ private:
 
 }  // namespace
 
-Points World::see(const Specimen& specimen, const Points& markers) const {
-    if (shift.isZero(0) && turn.isZero(0)) return markers;
-    Eigen::RowVector3d centre = Eigen::RowVector3d::Zero();
-    for (const identify::Marker& marker : specimen.set.markers) centre += marker.rest.transpose();
-    centre /= static_cast<double>(specimen.set.markers.size());
-    const Mat3 R = skeleton::rotation(turn);
-    return ((markers.rowwise() - centre) * R.transpose()).rowwise() + (centre + shift.transpose());
-}
-
 World world_of(const Specimen& specimen, const std::vector<skeleton::Effect>& effects) {
     World world{.setting = specimen.setting};
     for (const skeleton::Effect& effect : effects) {
-        if (effect.name == "misalignment") {
-            world.shift = {number(effect, "tx"), number(effect, "ty"), number(effect, "tz")};
-            world.turn = {number(effect, "rx"), number(effect, "ry"), number(effect, "rz")};
-        } else if (effect.name == "force-gain") {
-            world.gain = number(effect, "gain");
-        } else if (skeleton::is_body_effect(effect.name)) {
+        if (const auto known = identify::effect_named(effect.name)) {
+            known->hide(effect, world);
+        } else {  // a user's, of which no diagnosis knows
             world.setting.effects.add(skeleton::make_physics(effect));
-            // ln(1 - 2 nu) of finite elements, at the same Young's modulus
-            if (effect.name == "volume") world.setting.theta[1] = std::log(1 - 2 * number(effect, "poisson"));
         }
     }
     return world;
+}
+
+bool moves_body(const skeleton::Effect& effect) {
+    const auto known = identify::effect_named(effect.name);
+    return !known || !known->is_of_readings();
 }
 
 std::vector<Path> play(const Specimen& specimen, const World& world, const std::vector<Course>& courses,
@@ -154,7 +139,8 @@ std::vector<Points> seen(const Specimen& specimen, const World& world, const std
             if (paths[c].empty()) {
                 result.emplace_back(Points::Constant(markers, 3, identify::missing));
             } else {
-                result.push_back(world.see(specimen, specimen.model->observe(paths[c][row], world.setting)));
+                result.push_back(
+                    world.see(specimen.set.markers, specimen.model->observe(paths[c][row], world.setting)));
             }
         }
     }

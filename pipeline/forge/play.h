@@ -3,31 +3,21 @@
 #include <limits>
 #include <vector>
 
+#include "identify/effects/hiding.h"
 #include "pipeline/forge/course.h"
 #include "pipeline/forge/specimen.h"
 #include "skeleton/effects/effect.h"
 
 namespace palpate::pipeline {
 
-/// What is in force on a specimen beside what its probes are told to do, and how it is seen.
-struct World {
-    identify::Setting setting;
-    double gain = 1;            // every second probe (2, 4, ...) presses so many times as hard as it reports
-    Vec3 shift = Vec3::Zero();  // of the readings' frame [mm]
-    Vec3 turn = Vec3::Zero();   // of it about the centre of the markers at rest, a rotation vector [rad]
+using identify::World;
 
-    /// Marker positions as they are read: y = c + shift + R(turn) (x - c).
-    Points see(const Specimen& specimen, const Points& markers) const;
-};
-
-/// The specimen with effects and faults of the measurement in force; outliers are no part of it.
+/// The specimen with effects and faults of the measurement in force.
 /// @throws InvalidInput for an effect that is not known, cannot be on this specimen, or has an impossible number.
 World world_of(const Specimen& specimen, const std::vector<skeleton::Effect>& effects);
 
 /// Does the body stand otherwise with this effect, or do only its readings differ?
-inline bool moves_body(const skeleton::Effect& effect) {
-    return skeleton::is_body_effect(effect.name) || effect.name == "force-gain";
-}
+bool moves_body(const skeleton::Effect& effect);
 
 /// How a course went: a configuration a row. None: the body found no equilibrium in some row.
 using Path = std::vector<Eigen::VectorXd>;

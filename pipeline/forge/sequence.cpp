@@ -1,19 +1,37 @@
 #include "pipeline/forge/sequence.h"
 
+#include <fmt/format.h>
+
+#include <cctype>
+
 namespace palpate::pipeline {
+namespace {
+
+/// With a capital letter: "Plasticity".
+std::string as_first_word(std::string name) {
+    name.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(name.front())));
+    return name;
+}
+
+}  // namespace
 
 Sequence sequence_of(const ForgeOptions& options, const std::vector<Wish>& wishes) {
-    const bool yields = is_among("plasticity", wishes), creeps = is_among("viscosity", wishes);
-    Sequence sequence{{options.unload.value_or(yields), options.dwell}, options.continuous.value_or(yields), {}};
-    if (yields && !(options.unload && options.continuous)) {
-        sequence.notes.emplace_back(
-            "Plasticity shows in what stays: one body goes through all probes, let go after each (--no-unload, "
-            "--no-continuous say otherwise).");
+    const Wish* stays = first_with(&identify::HidingNeeds::release, wishes);
+    const Wish* creeps = first_with(&identify::HidingNeeds::dwells, wishes);
+    const bool released = stays != nullptr;
+    Sequence sequence{{options.unload.value_or(released), options.dwell}, options.continuous.value_or(released), {}};
+    if (stays && !(options.unload && options.continuous)) {
+        sequence.notes.push_back(
+            fmt::format("{} shows in what stays: one body goes through all probes, let go after each (--no-unload, "
+                        "--no-continuous say otherwise).",
+                        as_first_word(stays->effect)));
     }
     if (creeps && options.dwell.empty()) {
         sequence.rhythm.dwell = {0.1, 4, 20};
-        sequence.notes.emplace_back(
-            "Viscosity shows in time: each load is read 0.1, 4 and 20 s after it was put on (--dwell says otherwise).");
+        sequence.notes.push_back(
+            fmt::format("{} shows in time: each load is read 0.1, 4 and 20 s after it was put on (--dwell says "
+                        "otherwise).",
+                        as_first_word(creeps->effect)));
     }
     return sequence;
 }

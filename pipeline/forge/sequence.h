@@ -15,8 +15,8 @@ struct Sequence {
     std::vector<std::string> notes;  // what nobody asked for, in words
 };
 
-/// Plasticity shows in what stays, so one body goes through all probes and is let go after each; viscosity at times
-/// 0.1, 4 and 20 s after a load was put on; unless told otherwise.
+/// What shows in what stays, as plasticity does, has one body go through all probes, let go after each; what shows in
+/// time, as viscosity, is read 0.1, 4 and 20 s after a load was put on; unless told otherwise.
 Sequence sequence_of(const ForgeOptions& options, const std::vector<Wish>& wishes);
 
 }  // namespace palpate::pipeline

@@ -26,12 +26,6 @@ double rms(const Eigen::VectorXd& values) {
 
 double rms(const std::vector<Points>& readings) { return rms(stacked(readings)); }
 
-double outlier_variance(const skeleton::Effect& effect, double noise) {
-    if (effect.name != "outliers") return 0;
-    const double share = effect.parameters[0].value, width = effect.parameters[1].value * noise;
-    return share * width * width;
-}
-
 Strength strength_of(const Specimen& specimen, const std::vector<Points>& bare, const std::vector<Points>& hidden) {
     const auto markers = static_cast<Eigen::Index>(specimen.set.markers.size());
     Points rest(markers, 3);

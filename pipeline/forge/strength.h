@@ -3,7 +3,6 @@
 #include <vector>
 
 #include "pipeline/forge/specimen.h"
-#include "skeleton/effects/effect.h"
 
 namespace palpate::pipeline {
 
@@ -21,8 +20,5 @@ Strength strength_of(const Specimen& specimen, const std::vector<Points>& bare, 
 
 /// rms over all coordinates [mm].
 double rms(const std::vector<Points>& readings);
-
-/// What outliers add to the readings' mean square [mm^2]; none by other effects.
-double outlier_variance(const skeleton::Effect& effect, double noise);
 
 }  // namespace palpate::pipeline

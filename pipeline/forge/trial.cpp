@@ -70,7 +70,7 @@ bool Trial::played(const skeleton::Effect& effect, const std::vector<int>& which
 Strength Trial::compared(const skeleton::Effect& effect) const {
     const World world = world_of(specimen_, {effect});
     Strength strength = strength_of(specimen_, bare_, seen(specimen_, world, courses_, paths_));
-    strength.add(outlier_variance(effect, noise_));
+    strength.add(world.scatter(noise_));
     return strength;
 }
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "identify/effects/catalogue.h"
 #include "mesh/errors.h"
 #include "mesh/io/words.h"
 
@@ -84,8 +85,12 @@ std::vector<Wish> read_wishes(const std::vector<std::string>& wishes) {
     return result;
 }
 
-bool is_among(const std::string& effect, const std::vector<Wish>& wishes) {
-    return std::ranges::find(wishes, effect, &Wish::effect) != wishes.end();
+const Wish* first_with(bool identify::HidingNeeds::*need, const std::vector<Wish>& wishes) {
+    const auto found = std::ranges::find_if(wishes, [&](const Wish& wish) {
+        const auto known = identify::effect_named(wish.effect);
+        return known && known->needs().*need;
+    });
+    return found == wishes.end() ? nullptr : &*found;
 }
 
 std::string to_wish(const skeleton::Effect& effect) {

@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "identify/effects/hiding.h"
 #include "skeleton/effects/effect.h"
 
 namespace palpate::pipeline {
@@ -20,8 +21,8 @@ std::string slip_in(const std::string& wish);
 /// wished for twice, "none" beside others.
 std::vector<Wish> read_wishes(const std::vector<std::string>& wishes);
 
-/// Is an effect wished for?
-bool is_among(const std::string& effect, const std::vector<Wish>& wishes);
+/// The first wish for an effect that needs this to show; null: there is none.
+const Wish* first_with(bool identify::HidingNeeds::*need, const std::vector<Wish>& wishes);
 
 /// An effect as it would be wished for: "gravity:gx=0,gy=-4387.2,gz=0". Read back, it is the same.
 std::string to_wish(const skeleton::Effect& effect);

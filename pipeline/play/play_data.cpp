@@ -100,7 +100,19 @@ std::optional<identify::MeasurementSet> measurements_of(const fs::path& run, std
 
 bool is_of_measurement(const skeleton::Effect& effect) { return !skeleton::is_body_effect(effect.name); }
 
-bool creeps(const skeleton::Effect& effect) { return effect.name == "viscosity"; }
+bool creeps(const skeleton::Effect& effect) { return skeleton::physics_of({effect}).creep.has_value(); }
+
+/// Can it be taken off a set? Readings that were set aside are not recorded.
+bool is_taken_off(const skeleton::Effect& effect) {
+    const auto known = identify::effect_named(effect.name);
+    return is_of_measurement(effect) && known && !known->sets_readings_aside();
+}
+
+/// Does a switch of it change what is played?
+bool is_played(const skeleton::Effect& effect) {
+    if (is_of_measurement(effect)) return is_taken_off(effect);
+    return skeleton::find_known_effect(effect.name)->not_played.empty();
+}
 
 /// Sets as they are understood with each choice of a model's faults of the measurement, and with loads as they have
 /// crept where it creeps: their numbers in `sets`, by the effects' names joined by commas. Outliers that were set aside
@@ -108,7 +120,7 @@ bool creeps(const skeleton::Effect& effect) { return effect.name == "viscosity";
 json understood_sets(const skeleton::Model& model, const identify::MeasurementSet& set, json& sets) {
     std::vector<skeleton::Effect> effects;
     for (const skeleton::Effect& effect : model.effects) {
-        if (creeps(effect) || (is_of_measurement(effect) && effect.name != "outliers")) effects.push_back(effect);
+        if (creeps(effect) || is_taken_off(effect)) effects.push_back(effect);
     }
     json numbers = json::object();
     for (unsigned chosen = 0; chosen < 1U << effects.size(); ++chosen) {
@@ -131,17 +143,16 @@ json understood_sets(const skeleton::Model& model, const identify::MeasurementSe
 
 /// What the page says of an effect: its meaning, and its numbers.
 ordered_json effect_json(const skeleton::Effect& effect) {
-    const auto& all = identify::catalogue();
-    const auto known = std::ranges::find(all, effect.name, [](const auto& one) { return one->name(); });
+    const auto known = identify::effect_named(effect.name);
     std::vector<std::string> numbers;
     numbers.reserve(effect.parameters.size());
     for (const skeleton::EffectParameter& parameter : effect.parameters) {
         numbers.push_back(fmt::format("{} = {:.4g}{}", parameter.name, parameter.value,
                                       parameter.unit == "1" || parameter.unit.empty() ? "" : " " + parameter.unit));
     }
-    return {{"name", effect.name},      {"meaning", known == all.end() ? "" : (*known)->description().meaning},
+    return {{"name", effect.name},      {"meaning", known ? known->description().meaning : ""},
             {"numbers", numbers},       {"fault", is_of_measurement(effect)},
-            {"creeps", creeps(effect)}, {"played", effect.name != "outliers" && effect.name != "volume"}};
+            {"creeps", creeps(effect)}, {"played", is_played(effect)}};
 }
 
 /// Fields of a model's file that differ from those of the first.

@@ -22,7 +22,7 @@ json parameters_json(const identify::Candidate& candidate) {
 json to_json(const identify::Candidate& candidate, const identify::BodyModel& model) {
     const identify::EffectDescription& description = candidate.effect->description();
     json result = {{"effect", description.name},
-                   {"kind", candidate.effect->is_of_body() ? "body" : "measurement"},
+                   {"kind", fem::kind_name(description.kind)},
                    {"probability", candidate.probability},
                    {"log_bayes_factor", known(candidate.log_bayes_factor)},
                    {"screened_log_bayes_factor", known(candidate.screened)},

@@ -1,60 +1,17 @@
 #pragma once
 
-#include <functional>
-#include <map>
 #include <string>
 #include <vector>
 
-#include "fem/effects.h"
+#include "fem/effects/known_effect.h"
+
+// The one registry of effects, fem::EffectRegistry, with what links alone have: as models and all above see it.
 
 namespace palpate::skeleton {
 
-/// A number of an effect.
-struct EffectParameter {
-    std::string name;  // "gx"
-    double value = 0;
-    std::string unit;  // "mm/s^2"; "1" where there is none, or none is told
-};
-
-/// A physical effect that a model has beyond its links: a name of the catalogue and its numbers.
-struct Effect {
-    std::string name;
-    std::vector<EffectParameter> parameters;
-};
-
-// --- What effects there are ---------------------------------------------------------------------------------------
-
-/// What a parameter may be.
-enum class Range { any, positive, not_negative, poisson };
-
-struct KnownParameter {
-    std::string name, unit;  // unit "1": none
-    Range range = Range::any;
-    bool optional = false;
-};
-
-/// The numbers of an effect by name; what is not told is missing.
-class EffectNumbers {
-public:
-    explicit EffectNumbers(std::map<std::string, double> values) : values_(std::move(values)) {}
-    bool has(const std::string& name) const { return values_.contains(name); }
-    /// @pre it is told, or not optional.
-    double operator[](const std::string& name) const { return values_.at(name); }
-    Vec3 vector(const std::string& x, const std::string& y, const std::string& z) const {
-        return {(*this)[x], (*this)[y], (*this)[z]};
-    }
-
-private:
-    std::map<std::string, double> values_;
-};
-
-/// An effect of the body: what it is told, and how its physics is made of these numbers. `make` gets what is in range
-/// and complete but for optional ones; it throws InvalidInput, in words, for what does not go together.
-struct KnownEffect {
-    std::string name;
-    std::vector<KnownParameter> parameters;
-    std::function<fem::Effects(const EffectNumbers&)> make;
-};
+/// An effect that a model has beyond its links.
+using Effect = fem::ToldEffect;
+using fem::EffectKind, fem::EffectNumbers, fem::EffectParameter, fem::KnownEffect, fem::KnownParameter, fem::Range;
 
 /// Makes an effect known, to all models of this program: a static object of any source file may do so,
 ///   const bool known = register_effect({"swelling", {{"strain", "1"}}, make_swelling});
@@ -64,11 +21,9 @@ bool register_effect(KnownEffect effect);
 /// The effect of that name; null when there is none. It stays where it is.
 const KnownEffect* find_known_effect(const std::string& name);
 
-/// Is an effect the body's, whether known or not? `misalignment`, `force-gain` and `outliers` are faults of a
-/// measurement: a model records them, and plays without.
+/// Is an effect the body's, whether known or not? Others are faults of a measurement: a model records them, and plays
+/// without.
 bool is_body_effect(const std::string& name);
-
-// --- Their physics ------------------------------------------------------------------------------------------------
 
 /// The physics of an effect. @throws InvalidInput for a name that is no effect of a body, a parameter that is missing,
 /// unknown, in another unit or out of range.

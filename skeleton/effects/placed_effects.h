@@ -3,7 +3,7 @@
 #include <array>
 #include <vector>
 
-#include "fem/effects.h"
+#include "fem/effects/effects.h"
 #include "skeleton/effects/cavities.h"
 #include "skeleton/effects/point_sets.h"
 #include "skeleton/state.h"

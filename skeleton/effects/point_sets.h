@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "fem/point_potential.h"
+#include "fem/effects/point_potential.h"
 #include "skeleton/model.h"
 
 namespace palpate::skeleton {

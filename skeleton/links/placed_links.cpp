@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cassert>
 
+#include "skeleton/effects/link_effects.h"
 #include "skeleton/links/shear.h"
 #include "skeleton/links/uniaxial.h"
 #include "skeleton/statics.h"
@@ -21,8 +22,8 @@ PlacedLinks::PlacedLinks(const Model& model, const fem::Effects& effects)
       links_(model.links),
       rest_(rest_state(model)),
       plasticity_(effects.plasticity),
-      torsion_(effects.torsion),
-      shear_(effects.shear),
+      torsion_(link_effects(effects).torsion),
+      shear_(link_effects(effects).shear),
       plain_(effects.material.empty() && !plasticity_ && torsion_ == 0 && shear_ == 0) {
     directions_.reserve(links_.size());
     for (const Link& link : links_) directions_.push_back(rest_direction(model, link));

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "fem/effects.h"
+#include "fem/effects/effects.h"
 #include "skeleton/links/link_fibre.h"
 
 namespace palpate::skeleton {

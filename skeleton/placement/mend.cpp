@@ -4,12 +4,12 @@
 #include <limits>
 #include <map>
 
+#include "skeleton/placement/sections.h"
+
 namespace palpate::skeleton {
 namespace {
 
 using Bits = std::uint64_t;
-
-constexpr double sliver = 0.05;  // of the mean area: smaller borders carry no link, as in find_sections
 
 // What a way within its cell goes round from the cell's site to each tetrahedron (m), and for cells that close on
 // themselves the place opposite to the site.

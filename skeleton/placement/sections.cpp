@@ -9,8 +9,6 @@
 namespace palpate::skeleton {
 namespace {
 
-constexpr double sliver = 0.05;  // of the mean area
-
 // Integrals over the faces between two cells, projected on the plane across the link: faces that lean against it
 // count less and those that look back count negative, so that the teeth of a jagged border cancel.
 struct Integrals {

@@ -21,6 +21,9 @@ struct Section {
     bool is_lump() const { return dimensions >= 2.5; }
 };
 
+/// Of the mean area: what is smaller is a sliver, and carries no link.
+inline constexpr double sliver = 0.05;
+
 /// The sections between all pairs of cells that meet, but for slivers that no connection depends on, and for pairs of
 /// held sites.
 std::vector<Section> find_sections(const TetGraph& graph, const Core& core, const std::vector<int>& owner,

@@ -24,11 +24,11 @@ std::vector<std::string> what_is_not_played(const skeleton::Model& model) {
     if (model.law == skeleton::Law::linear)
         words.emplace_back("the model follows the linear law; it is played in large rotation");
     for (const skeleton::Effect& effect : model.effects) {
-        if (!skeleton::is_body_effect(effect.name))
+        const skeleton::KnownEffect* known = skeleton::find_known_effect(effect.name);
+        if (!known) continue;
+        if (known->kind == skeleton::EffectKind::measurement)
             words.push_back(fmt::format("effect '{}' is about the measurement, not the body", effect.name));
-        if (effect.name == "volume")
-            words.emplace_back(
-                "effect 'volume' acts on solids alone: a skeleton's volumes have stiffnesses of their own");
+        if (!known->not_played.empty()) words.push_back(fmt::format("effect '{}' {}", effect.name, known->not_played));
     }
     return words;
 }

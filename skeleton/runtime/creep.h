@@ -3,7 +3,7 @@
 #include <optional>
 #include <vector>
 
-#include "fem/effects.h"
+#include "fem/effects/effects.h"
 #include "skeleton/runtime/contacts.h"
 
 namespace palpate::runtime {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "skeleton/effects/link_effects.h"
 #include "skeleton/links/shear.h"
 #include "skeleton/links/uniaxial.h"
 #include "skeleton/runtime/kernels/tables.h"
@@ -13,13 +14,14 @@ Fibres::Fibres(const skeleton::Model& model, const fem::Effects& effects, const 
     : plasticity_(effects.plasticity) {
     std::ranges::copy_if(effects.material, std::back_inserter(material_),
                          [](const auto& effect) { return !effect->is_scale(); });
+    const double shear = skeleton::link_effects(effects).shear;
     for (std::size_t l = 0; l < model.links.size(); ++l) {
         const skeleton::Link& link = model.links[l];
         OfLink own;
         own.a = link.a;
         own.b = link.b;
         own.length = link.length;
-        own.shear = effects.shear * k[l][0];
+        own.shear = shear * k[l][0];
         own.direction = skeleton::rest_direction(model, link);
         own.middle = 0.5 * (model.spheres[link.a].center + model.spheres[link.b].center);
         own.offsets = skeleton::fibre_offsets(link, own.direction);
@@ -30,7 +32,7 @@ Fibres::Fibres(const skeleton::Model& model, const fem::Effects& effects, const 
 }
 
 bool Fibres::needed(const fem::Effects& effects) {
-    return effects.shear != 0 || effects.plasticity ||
+    return skeleton::link_effects(effects).shear != 0 || effects.plasticity ||
            std::ranges::any_of(effects.material, [](const auto& effect) { return !effect->is_scale(); });
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "skeleton/effects/link_effects.h"
 #include "skeleton/links/full_link.h"
 
 namespace palpate::runtime {
@@ -15,13 +16,14 @@ constexpr int torsion = static_cast<int>(skeleton::Stiffness::torsion);
 // Stiffnesses with what effects make of them: a link's scale, and its twist.
 std::vector<skeleton::Stiffnesses> stiffnesses_in_force(const skeleton::Model& model, const fem::Effects& effects) {
     const skeleton::PlacedLinks placed(model, effects);
+    const double twist = skeleton::link_effects(effects).torsion;
     std::vector<skeleton::Stiffnesses> all;
     for (std::size_t l = 0; l < model.links.size(); ++l) {
         skeleton::Stiffnesses k = model.links[l].stiffness;
         skeleton::Stiffnesses one = skeleton::Stiffnesses::Zero(k.size());
         one[torsion] = 1;
         const double scale = placed.rest_stiffness(l, one)[torsion];
-        k[torsion] += effects.torsion * k[flexion];
+        k[torsion] += twist * k[flexion];
         all.push_back(scale * k);
     }
     return all;

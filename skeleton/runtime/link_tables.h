@@ -1,6 +1,6 @@
 #pragma once
 
-#include "fem/effects.h"
+#include "fem/effects/effects.h"
 #include "skeleton/links/placed_links.h"
 #include "skeleton/runtime/kernels/tables.h"
 

@@ -2,7 +2,7 @@
 
 #include <array>
 
-#include "fem/effects.h"
+#include "fem/effects/effects.h"
 #include "skeleton/runtime/carried.h"
 
 namespace palpate::runtime {

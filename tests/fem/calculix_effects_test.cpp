@@ -2,12 +2,12 @@
 
 #include "beam.h"
 #include "calculix.h"
+#include "fem/effects/anisotropy.h"
+#include "fem/effects/contact.h"
+#include "fem/effects/inclusion.h"
+#include "fem/effects/stiffening.h"
 #include "hollow.h"
 #include "point_potentials.h"
-#include "skeleton/effects/anisotropy.h"
-#include "skeleton/effects/contact.h"
-#include "skeleton/effects/inclusion.h"
-#include "skeleton/effects/stiffening.h"
 
 namespace palpate::fem {
 namespace {
@@ -60,7 +60,7 @@ TEST(CalculiX, StiffensAlike) {
     const Eigen::VectorXd theirs = calculix::run(input, bar.nodes).back();
     const BodySetting plain{Law::neo_hooke, material, {}};
     BodySetting stiffening = plain;
-    stiffening.effects.material = {std::make_shared<skeleton::Stiffening>(c2, c3)};
+    stiffening.effects.material = {std::make_shared<Stiffening>(c2, c3)};
     EXPECT_LT(apart(bar.body.equilibrium(stiffening, f).u, theirs), three_digits);
     EXPECT_GT(relative(bar.body.equilibrium(plain, f).u, theirs), 0.1);
 }
@@ -87,8 +87,8 @@ TEST(CalculiX, OrthotropicBodiesBendAlike) {
     const Eigen::VectorXd theirs = calculix::run(input, bar.nodes).back();
     const BodySetting plain{Law::linear, material, {}};
     BodySetting fibres = plain;
-    fibres.effects.material = {std::make_shared<skeleton::Anisotropy>(
-        std::vector<skeleton::Fibre>{{k(0), axes.col(0)}, {k(1), axes.col(1)}, {k(2), axes.col(2)}})};
+    fibres.effects.material = {std::make_shared<Anisotropy>(
+        std::vector<Fibre>{{k(0), axes.col(0)}, {k(1), axes.col(1)}, {k(2), axes.col(2)}})};
     EXPECT_LT(apart(bar.body.equilibrium(fibres, f).u, theirs), 1e-5);  // seven digits
     EXPECT_GT(relative(bar.body.equilibrium(plain, f).u, theirs), 0.1);
 }
@@ -106,8 +106,8 @@ TEST(CalculiX, InclusionsStiffenAlike) {
     std::string sets = "*ELSET, ELSET=HARD\n";
     std::string rest = "*ELSET, ELSET=SOFTER\n";
     for (const int i : {1, 2, 5}) {
-        slices.push_back(std::make_shared<skeleton::Inclusion>(
-            skeleton::Inclusion::box({(i + 0.5) * cell, 0, 0}, {cell / 2, 100, 100}, ratio)));
+        slices.push_back(
+            std::make_shared<Inclusion>(Inclusion::box({(i + 0.5) * cell, 0, 0}, {cell / 2, 100, 100}, ratio)));
     }
     for (Eigen::Index e = 0; e < bar.beam.mesh.tetrahedra.rows(); ++e) {
         double x = 0;
@@ -171,7 +171,7 @@ TEST(CalculiX, PlanesAreSpringsOnOneSide) {
     const Eigen::VectorXd theirs = calculix::run(input, bar.nodes).back();
     const BodySetting free{Law::neo_hooke, material, {}};
     BodySetting leaning = free;
-    leaning.effects.points = {std::make_shared<skeleton::Contact>(Vec3(0, 0, 1), -gap, k)};
+    leaning.effects.points = {std::make_shared<Contact>(Vec3(0, 0, 1), -gap, k)};
     EXPECT_LT(apart(bar.body.equilibrium(leaning, f).u, theirs), three_digits);
     EXPECT_GT(relative(bar.body.equilibrium(free, f).u, theirs), 0.5);
 }
@@ -203,7 +203,7 @@ TEST(CalculiX, BallsComeToRestOnAPlaneAlike) {
     const HyperelasticBody body(mesh, held, Dilatation::full);
     BodySetting setting{Law::neo_hooke, material, {.points = {std::make_shared<Weight>(Vec3(0, 0, -g))}}};
     EXPECT_GT(relative(body.equilibrium(setting, none).u, theirs), 0.5);
-    setting.effects.points.push_back(std::make_shared<skeleton::Contact>(Vec3(0, 0, 1), ground, k));
+    setting.effects.points.push_back(std::make_shared<Contact>(Vec3(0, 0, 1), ground, k));
     // They sum over points of the bent skin, we over nodes by their area at rest; on a mesh twice as coarse it is 7 %.
     EXPECT_LT(apart(body.equilibrium(setting, none).u, theirs), 0.02);
 }

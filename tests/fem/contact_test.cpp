@@ -1,14 +1,12 @@
 // A plane that a body leans on: what it bears, and that it does not pull.
 
-#include "skeleton/effects/contact.h"
+#include "fem/effects/contact.h"
 
 #include "beam.h"
 #include "point_potentials.h"
 
 namespace palpate::fem {
 namespace {
-
-using skeleton::Contact;
 
 TEST(Contact, TermsAreDerivativesAndOneSided) {
     const Contact plane(Vec3(0, 3, 4), 2.0, 0.7);

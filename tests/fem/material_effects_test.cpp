@@ -4,19 +4,14 @@
 #include <cmath>
 
 #include "beam.h"
+#include "fem/effects/anisotropy.h"
+#include "fem/effects/inclusion.h"
+#include "fem/effects/prestress.h"
+#include "fem/effects/stiffening.h"
 #include "point_potentials.h"
-#include "skeleton/effects/anisotropy.h"
-#include "skeleton/effects/inclusion.h"
-#include "skeleton/effects/prestress.h"
-#include "skeleton/effects/stiffening.h"
 
 namespace palpate::fem {
 namespace {
-
-using skeleton::Anisotropy;
-using skeleton::Inclusion;
-using skeleton::Prestress;
-using skeleton::Stiffening;
 
 const Mat3 some_stress = (Mat3() << 0.2, 0.05, -0.1, 0.05, -0.3, 0.02, -0.1, 0.02, 0.1).finished();
 const Mat3 some_gradient = (Mat3() << 1.2, 0.1, -0.05, 0.03, 0.85, 0.08, -0.1, 0.04, 1.12).finished();
@@ -24,7 +19,7 @@ const Mat3 some_gradient = (Mat3() << 1.2, 0.1, -0.05, 0.03, 0.85, 0.08, -0.1, 0
 std::shared_ptr<const MaterialEffect> stiffening() { return std::make_shared<Stiffening>(0.8, 3.0); }
 std::shared_ptr<const MaterialEffect> fibres() {
     return std::make_shared<Anisotropy>(
-        std::vector<skeleton::Fibre>{{2.0, Vec3(1, 2, -1)}, {0.5, Vec3(0, 1, 3)}, {1.0, Vec3(1, 0, 0.5)}});
+        std::vector<Fibre>{{2.0, Vec3(1, 2, -1)}, {0.5, Vec3(0, 1, 3)}, {1.0, Vec3(1, 0, 0.5)}});
 }
 std::shared_ptr<const MaterialEffect> prestress() { return std::make_shared<Prestress>(some_stress); }
 std::shared_ptr<const MaterialEffect> inclusion() {
@@ -195,9 +190,7 @@ TEST(Stiffening, StretchesABarAsItsEnergySays) {
 TEST(Anisotropy, AddsItsModulusAlongTheFibre) {
     const double k = 3;
     const BodySetting setting{
-        Law::linear,
-        soft,
-        {.material = {std::make_shared<Anisotropy>(std::vector<skeleton::Fibre>{{k, Vec3::UnitX()}})}}};
+        Law::linear, soft, {.material = {std::make_shared<Anisotropy>(std::vector<Fibre>{{k, Vec3::UnitX()}})}}};
     // sigma = (E + k mu) strain along it, and Poisson's ratio is that of the rest; springs take a millionth.
     const auto [along, across] = stretches(setting, 0.01);
     EXPECT_NEAR((along - 1) * (soft.young + k * mu) / 0.01, 1, 1e-5);
@@ -218,9 +211,7 @@ TEST(Anisotropy, AcrossTheFibreTheMaterialIsAsSoftAsBefore) {
     // But for the fibre's share in contracting: the compliance is S - S n n n n S / (1 / (k mu) + n n S n n).
     const double k = 5, E = soft.young, nu = soft.poisson;
     const BodySetting setting{
-        Law::linear,
-        soft,
-        {.material = {std::make_shared<Anisotropy>(std::vector<skeleton::Fibre>{{k, Vec3::UnitY()}})}}};
+        Law::linear, soft, {.material = {std::make_shared<Anisotropy>(std::vector<Fibre>{{k, Vec3::UnitY()}})}}};
     const double expected = 0.01 * (1 / E - nu * nu / (E * E) / (1 / (k * mu) + 1 / E));
     EXPECT_NEAR((stretches(setting, 0.01).first - 1) / expected, 1, 1e-5);
 }

@@ -5,12 +5,12 @@
 #include <Eigen/Geometry>
 #include <random>
 
-#include "skeleton/effects/anisotropy.h"
-#include "skeleton/effects/compliant_support.h"
-#include "skeleton/effects/gravity.h"
-#include "skeleton/effects/inclusion.h"
-#include "skeleton/effects/prestress.h"
-#include "skeleton/effects/stiffening.h"
+#include "fem/effects/anisotropy.h"
+#include "fem/effects/compliant_support.h"
+#include "fem/effects/gravity.h"
+#include "fem/effects/inclusion.h"
+#include "fem/effects/prestress.h"
+#include "fem/effects/stiffening.h"
 #include "skeleton/state.h"
 #include "small_body.h"
 
@@ -50,12 +50,11 @@ protected:
     /// Of points, and in the material.
     static fem::Effects effects(const Vec3& g, double ln_k) {
         const Mat3 stress = Vec3(0.01, -0.005, 0.004).asDiagonal();  // far from what would make the bar buckle
-        return {.points = {std::make_shared<skeleton::Gravity>(g),
-                           std::make_shared<skeleton::CompliantSupport>(std::exp(ln_k))},
-                .material = {std::make_shared<skeleton::Stiffening>(0.5, 2),
-                             std::make_shared<skeleton::Anisotropy>(std::vector<skeleton::Fibre>{{0.5, Vec3(1, 2, 0)}}),
-                             std::make_shared<skeleton::Inclusion>(skeleton::Inclusion::sphere(Vec3(24, 6, 4), 8, 2)),
-                             std::make_shared<skeleton::Prestress>(stress)}};
+        return {.points = {std::make_shared<fem::Gravity>(g), std::make_shared<fem::CompliantSupport>(std::exp(ln_k))},
+                .material = {std::make_shared<fem::Stiffening>(0.5, 2),
+                             std::make_shared<fem::Anisotropy>(std::vector<fem::Fibre>{{0.5, Vec3(1, 2, 0)}}),
+                             std::make_shared<fem::Inclusion>(fem::Inclusion::sphere(Vec3(24, 6, 4), 8, 2)),
+                             std::make_shared<fem::Prestress>(stress)}};
     }
 
     bool is_nonlinear() const { return model_->is_nonlinear(setting_); }

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <map>
 #include <set>
 
 #include "identify/diagnose/judge.h"
@@ -30,7 +31,7 @@ protected:
     /// A body and a set in which all effects of bodies and rigs can show.
     EveryEffect() {
         if (effect().name() == "pressure") body_ = SmallBody::hollow();
-        if (effect().name() == "torsion" || effect().name() == "shear") {
+        if (effect().is_of_links()) {
             model_ = body_.skeleton();
         } else {
             model_ = body_.reference();
@@ -66,8 +67,11 @@ TEST_P(EveryEffect, IsConfusedWithOthersThatHaveNames) {
 
 TEST_P(EveryEffect, IsFoundByItsName) { EXPECT_EQ(find_effect(effect().name())->name(), effect().name()); }
 
-TEST_P(EveryEffect, IsOfTheBodyWhereModelsPlayIt) {
-    EXPECT_EQ(effect().is_of_body(), skeleton::is_body_effect(effect().name()));
+TEST_P(EveryEffect, HasARowOfPhysicsOfItsKind) {
+    const skeleton::KnownEffect* row = skeleton::find_known_effect(effect().name());
+    ASSERT_NE(row, nullptr);
+    EXPECT_EQ(row->kind, effect().description().kind);
+    EXPECT_EQ(static_cast<bool>(row->make), effect().is_of_body());
 }
 
 TEST_P(EveryEffect, HasNumbersWithNamesUnitsAndWidths) {
@@ -94,7 +98,7 @@ TEST_P(EveryEffect, WhatIsToldCanBeTakenBack) {
 }
 
 TEST_P(EveryEffect, HasNumbersWhereItCanShow) {
-    EXPECT_EQ(effect().numbers(*model_, problem_).empty(), effect().name() == "outliers");  // which need none
+    EXPECT_EQ(effect().numbers(*model_, problem_).empty(), effect().sets_readings_aside());
 }
 
 TEST_P(EveryEffect, WhatIsNotToldStartsAsAFitDoes) {
@@ -284,6 +288,20 @@ TEST(Catalogue, RefusesASecondEffectOfAName) {
 TEST(Catalogue, NamesAreAllDifferent) {
     std::set<std::string> names;
     for (const auto& effect : catalogue()) EXPECT_TRUE(names.insert(effect->name()).second) << effect->name();
+}
+
+TEST(Catalogue, EachEffectDrawsFromTheStreamThatItAlwaysDid) {  // digits of a seed hang on them
+    const std::map<std::string, std::uint64_t> streams{
+        {"gravity", 0},    {"compliant-support", 1}, {"pressure", 2},    {"prestress", 3},
+        {"volume", 4},     {"torsion", 5},           {"shear", 6},       {"stiffening", 7},
+        {"anisotropy", 8}, {"viscosity", 9},         {"plasticity", 10}, {"inclusion", 11},
+        {"contact", 12},   {"misalignment", 13},     {"force-gain", 14}, {"outliers", 15}};
+    for (const auto& [name, stream] : streams) EXPECT_EQ(find_effect(name)->stream(), stream) << name;
+}
+
+TEST(Catalogue, OneEffectStandsForSingleReadings) {
+    EXPECT_EQ(std::ranges::count_if(catalogue(), &Effect::sets_readings_aside), 1);
+    EXPECT_EQ(effect_of_single_readings()->name(), "outliers");
 }
 
 TEST(Catalogue, AWrongNameGetsASuggestion) {

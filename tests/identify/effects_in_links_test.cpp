@@ -3,12 +3,13 @@
 #include <random>
 
 #include "domains.h"
+#include "fem/effects/anisotropy.h"
+#include "fem/effects/inclusion.h"
+#include "fem/effects/prestress.h"
+#include "fem/effects/stiffening.h"
 #include "identify/fit/position_domain.h"
 #include "lattice.h"
-#include "skeleton/effects/anisotropy.h"
-#include "skeleton/effects/inclusion.h"
-#include "skeleton/effects/prestress.h"
-#include "skeleton/effects/stiffening.h"
+#include "skeleton/effects/link_effects.h"
 #include "small_body.h"
 
 // The skeleton's fits with effects in force that are in its links and its cavities: every derivative is that of whole
@@ -125,15 +126,13 @@ protected:
         setting_ = bare_truth(model_, GetParam()).setting();
         setting_.theta.array() += 0.1;
         const Mat3 S = Vec3(0.05, -0.1, 0.02).asDiagonal();
-        setting_.effects = {
-            .material = {std::make_shared<skeleton::Stiffening>(0.5, 2),
-                         std::make_shared<skeleton::Anisotropy>(std::vector<skeleton::Fibre>{{2, {1, 1, 0}}}),
-                         std::make_shared<skeleton::Prestress>(S),
-                         std::make_shared<skeleton::Inclusion>(skeleton::Inclusion::sphere({22, 5, 5}, 8, 3))},
-            .pressure = 0.01,
-            .plasticity = fem::Plasticity{0.02, 0.5},
-            .torsion = 0.4,
-            .shear = 0.3};
+        setting_.effects = {.material = {std::make_shared<fem::Stiffening>(0.5, 2),
+                                         std::make_shared<fem::Anisotropy>(std::vector<fem::Fibre>{{2, {1, 1, 0}}}),
+                                         std::make_shared<fem::Prestress>(S),
+                                         std::make_shared<fem::Inclusion>(fem::Inclusion::sphere({22, 5, 5}, 8, 3))},
+                            .pressure = 0.01,
+                            .plasticity = fem::Plasticity{0.02, 0.5},
+                            .of_model = {skeleton::in_links({.torsion = 0.4, .shear = 0.3})}};
         Action pushed{.contacts = {SmallBody::probes(0.12)[1].contacts[0]}};
         action_.memory = model_.remember(model_.equilibrium(setting_, pushed, nullptr), setting_, pushed);
         action_.contacts = {SmallBody::probes()[1].contacts[0], SmallBody::probes(0.05)[3].contacts[0]};

@@ -1,4 +1,4 @@
-#include "skeleton/effects/compliant_support.h"
+#include "fem/effects/compliant_support.h"
 
 #include <gtest/gtest.h>
 
@@ -8,6 +8,7 @@
 namespace palpate::skeleton {
 namespace {
 
+using fem::CompliantSupport;
 using testing::compliant_support;
 using testing::force_at;
 using testing::gravity;

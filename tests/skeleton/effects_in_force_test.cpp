@@ -1,14 +1,20 @@
 #include <gtest/gtest.h>
 
-#include "skeleton/effects/anisotropy.h"
-#include "skeleton/effects/inclusion.h"
-#include "skeleton/effects/prestress.h"
-#include "skeleton/effects/stiffening.h"
+#include "fem/effects/anisotropy.h"
+#include "fem/effects/inclusion.h"
+#include "fem/effects/prestress.h"
+#include "fem/effects/stiffening.h"
+#include "skeleton/effects/link_effects.h"
 #include "test_effects.h"
 
 namespace palpate::skeleton {
 namespace {
 
+using fem::Anisotropy;
+using fem::Fibre;
+using fem::Inclusion;
+using fem::Prestress;
+using fem::Stiffening;
 using testing::compliant_support;
 using testing::force_at;
 using testing::gravity;
@@ -157,30 +163,30 @@ const auto fibres = std::make_shared<Anisotropy>(std::vector<Fibre>{{3, {1, 1, 0
 const auto prestress = std::make_shared<Prestress>(Vec3(0.05, -0.1, 0.02).asDiagonal());
 const auto inclusion = std::make_shared<Inclusion>(Inclusion::sphere({15, 5, 5}, 8, 5));
 
-INSTANTIATE_TEST_SUITE_P(Effects, EachEffect,
-                         ::testing::Values(InForce{"None", {}, {}}, InForce{"Gravity", {gravity({100, -2e5, 9e5})}, {}},
-                                           InForce{"CompliantSupport", {compliant_support(8)}, {}},
-                                           InForce{"Skin", {}, {.points = {slope}}},
-                                           InForce{"Stiffening", {}, {.material = {stiffening}}},
-                                           InForce{"Anisotropy", {}, {.material = {fibres}}},
-                                           InForce{"Prestress", {}, {.material = {prestress}}},
-                                           InForce{"Inclusion", {}, {.material = {inclusion}}},
-                                           InForce{"Plasticity", {}, {.plasticity = fem::Plasticity{0.02, 0.3}}},
-                                           InForce{"TorsionAndShear", {}, {.torsion = 0.7, .shear = 0.4}},
-                                           InForce{"Pressure", {}, {.pressure = 0.05}},
-                                           InForce{"All",
-                                                   {compliant_support(8), gravity({100, -2e5, 9e5}), {"outliers", {}}},
-                                                   {.points = {slope},
-                                                    .material = {stiffening, fibres, prestress, inclusion},
-                                                    .pressure = 0.05,
-                                                    .plasticity = fem::Plasticity{0.02, 0.3},
-                                                    .torsion = 0.7,
-                                                    .shear = 0.4}}),
-                         [](const auto& tested) { return tested.param.name; });
+INSTANTIATE_TEST_SUITE_P(
+    Effects, EachEffect,
+    ::testing::Values(InForce{"None", {}, {}}, InForce{"Gravity", {gravity({100, -2e5, 9e5})}, {}},
+                      InForce{"CompliantSupport", {compliant_support(8)}, {}}, InForce{"Skin", {}, {.points = {slope}}},
+                      InForce{"Stiffening", {}, {.material = {stiffening}}},
+                      InForce{"Anisotropy", {}, {.material = {fibres}}},
+                      InForce{"Prestress", {}, {.material = {prestress}}},
+                      InForce{"Inclusion", {}, {.material = {inclusion}}},
+                      InForce{"Plasticity", {}, {.plasticity = fem::Plasticity{0.02, 0.3}}},
+                      InForce{"TorsionAndShear", {}, {.of_model = {in_links({.torsion = 0.7, .shear = 0.4})}}},
+                      InForce{"Pressure", {}, {.pressure = 0.05}},
+                      InForce{"All",
+                              {compliant_support(8), gravity({100, -2e5, 9e5}), {"outliers", {}}},
+                              {.points = {slope},
+                               .material = {stiffening, fibres, prestress, inclusion},
+                               .pressure = 0.05,
+                               .plasticity = fem::Plasticity{0.02, 0.3},
+                               .of_model = {in_links({.torsion = 0.7, .shear = 0.4})}}}),
+    [](const auto& tested) { return tested.param.name; });
 
 TEST(EffectsByTheLinearLaw, AreTheLimitOfSmallDisplacements) {
     const Model model = with_effects(hollow_lattice(), {gravity({100, -2e5, 9e5})});
-    const fem::Effects extra{.points = {slope}, .material = {stiffening, fibres}, .pressure = 0.05, .shear = 0.4};
+    const fem::Effects extra{
+        .points = {slope}, .material = {stiffening, fibres}, .pressure = 0.05, .of_model = {in_links({.shear = 0.4})}};
     const Load load = force_at(model, 3, {1, 2, -3});
     const auto difference = [&](double times) {
         const Eigen::VectorXd k = times * stiffness_vector(model);

@@ -1,4 +1,4 @@
-#include "skeleton/effects/gravity.h"
+#include "fem/effects/gravity.h"
 
 #include <gtest/gtest.h>
 

@@ -2,6 +2,7 @@
 
 #include <thread>
 
+#include "skeleton/effects/link_effects.h"
 #include "test_effects.h"
 #include "tests/messages.h"
 
@@ -44,8 +45,8 @@ TEST(KnownEffects, TellTheirNumbers) {
     EXPECT_EQ(physics.points.size(), 3u);    // gravity, support, contact
     EXPECT_EQ(physics.material.size(), 4u);  // stiffening, anisotropy, inclusion, prestress
     EXPECT_EQ(physics.pressure, 0.01);
-    EXPECT_EQ(physics.torsion, 0.5);
-    EXPECT_EQ(physics.shear, 0.5);
+    EXPECT_EQ(link_effects(physics).torsion, 0.5);
+    EXPECT_EQ(link_effects(physics).shear, 0.5);
     EXPECT_EQ(physics.creep->creep, 0.7);
     EXPECT_EQ(physics.creep->tau, 20);
     EXPECT_EQ(physics.plasticity->yield, 0.05);

@@ -2,16 +2,22 @@
 
 #include <numbers>
 
-#include "skeleton/effects/anisotropy.h"
-#include "skeleton/effects/inclusion.h"
-#include "skeleton/effects/prestress.h"
-#include "skeleton/effects/stiffening.h"
+#include "fem/effects/anisotropy.h"
+#include "fem/effects/inclusion.h"
+#include "fem/effects/prestress.h"
+#include "fem/effects/stiffening.h"
+#include "skeleton/effects/link_effects.h"
 #include "skeleton/links/placed_links.h"
 #include "test_effects.h"
 
 namespace palpate::skeleton {
 namespace {
 
+using fem::Anisotropy;
+using fem::Fibre;
+using fem::Inclusion;
+using fem::Prestress;
+using fem::Stiffening;
 using testing::at_sphere;
 using testing::force_at;
 using testing::make_chain;
@@ -276,7 +282,8 @@ TEST(InclusionInLinks, IsScaledStiffness) {
 
 TEST(InclusionInLinks, ScalesAllThatBelongsToALink) {
     const Model model = make_lattice({4, 2, 2});
-    const fem::Effects effects{.material = {std::make_shared<Stiffening>(0.5, 1)}, .torsion = 0.3, .shear = 0.2};
+    const fem::Effects effects{.material = {std::make_shared<Stiffening>(0.5, 1)},
+                               .of_model = {in_links({.torsion = 0.3, .shear = 0.2})}};
     fem::Effects scaled = effects;
     scaled.material.push_back(std::make_shared<Inclusion>(Inclusion::sphere({0, 0, 0}, 1e3, 6)));
     Load load = force_at(model, 3, {1, 2, -3});

@@ -2,16 +2,22 @@
 
 #include <gtest/gtest.h>
 
-#include "skeleton/effects/anisotropy.h"
-#include "skeleton/effects/inclusion.h"
-#include "skeleton/effects/prestress.h"
-#include "skeleton/effects/stiffening.h"
+#include "fem/effects/anisotropy.h"
+#include "fem/effects/inclusion.h"
+#include "fem/effects/prestress.h"
+#include "fem/effects/stiffening.h"
+#include "skeleton/effects/link_effects.h"
 #include "skeleton/statics.h"
 #include "test_effects.h"
 
 namespace palpate::skeleton {
 namespace {
 
+using fem::Anisotropy;
+using fem::Fibre;
+using fem::Inclusion;
+using fem::Prestress;
+using fem::Stiffening;
 using testing::make_lattice;
 using testing::random_state;
 using testing::random_vector;
@@ -171,12 +177,12 @@ INSTANTIATE_TEST_SUITE_P(Effects, LinksWith,
                                            Tested{"Prestress", {.material = {prestress}}},
                                            Tested{"Inclusion", {.material = {inclusion}}},
                                            Tested{"Plasticity", {.plasticity = fem::Plasticity{0.02, 0.3}}},
-                                           Tested{"Torsion", {.torsion = 0.7}}, Tested{"Shear", {.shear = 0.4}},
+                                           Tested{"Torsion", {.of_model = {in_links({.torsion = 0.7})}}},
+                                           Tested{"Shear", {.of_model = {in_links({.shear = 0.4})}}},
                                            Tested{"All",
                                                   {.material = {stiffening, fibres, prestress, inclusion},
                                                    .plasticity = fem::Plasticity{0.02, 0.3},
-                                                   .torsion = 0.7,
-                                                   .shear = 0.4}}),
+                                                   .of_model = {in_links({.torsion = 0.7, .shear = 0.4})}}}),
                          [](const auto& tested) { return tested.param.name; });
 
 }  // namespace

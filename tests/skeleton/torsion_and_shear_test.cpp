@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include "skeleton/effects/link_effects.h"
 #include "skeleton/links/placed_links.h"
 #include "skeleton/links/shear.h"
 #include "test_effects.h"
@@ -21,8 +22,9 @@ TEST(TorsionInLinks, IsAShareOfFlexion) {
     for (const Law law : {Law::linear, Law::large_rotation}) {
         const Model tested = with_law(model, law);
         const Eigen::VectorXd expected = StaticsSolver(tested).solve(k, load, {1e-12}).step;
-        const Eigen::VectorXd step =
-            StaticsSolver(tested, {.torsion = share}).solve(stiffness_vector(model), load, {1e-12}).step;
+        const Eigen::VectorXd step = StaticsSolver(tested, {.of_model = {in_links({.torsion = share})}})
+                                         .solve(stiffness_vector(model), load, {1e-12})
+                                         .step;
         EXPECT_LT((step - expected).norm(), 1e-9);  // forces known to 1e-12 of 4 N, over stiffnesses of 1 N/mm
     }
 }
@@ -50,7 +52,7 @@ TEST(ShearInLinks, AddsToWhatEndsThatStayParallelWithstand) {
     const Model link = make_chain(1);
     const double share = 0.3, L = 10;
     const Vec3 k = link.links[0].stiffness;
-    const PlacedLinks links(link, {.shear = share});
+    const PlacedLinks links(link, {.of_model = {in_links({.shear = share})}});
     const Mat12 H = links.hessian(0, k, rest_state(link));
     EXPECT_NEAR(H(7, 7), 2 * k[1] / (L * L) + share * k[0], 1e-12);
     EXPECT_NEAR(H(8, 8), 2 * k[1] / (L * L) + share * k[0], 1e-12);
@@ -64,7 +66,9 @@ TEST(ShearInLinks, StiffensACantileverInBothLaws) {
         const Model tested = with_law(bar, law);
         double last = StaticsSolver(tested).solve(stiffness_vector(bar), load).step[25];
         for (const double share : {0.5, 2.0, 8.0}) {
-            const double tip = StaticsSolver(tested, {.shear = share}).solve(stiffness_vector(bar), load).step[25];
+            const double tip = StaticsSolver(tested, {.of_model = {in_links({.shear = share})}})
+                                   .solve(stiffness_vector(bar), load)
+                                   .step[25];
             EXPECT_LT(tip, last);
             last = tip;
         }

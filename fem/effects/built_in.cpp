@@ -1,15 +1,15 @@
-#include "skeleton/effects/known_effects.h"
+#include "fem/effects/built_in.h"
 
+#include "fem/effects/anisotropy.h"
+#include "fem/effects/compliant_support.h"
+#include "fem/effects/contact.h"
+#include "fem/effects/gravity.h"
+#include "fem/effects/inclusion.h"
+#include "fem/effects/prestress.h"
+#include "fem/effects/stiffening.h"
 #include "mesh/errors.h"
-#include "skeleton/effects/anisotropy.h"
-#include "skeleton/effects/compliant_support.h"
-#include "skeleton/effects/contact.h"
-#include "skeleton/effects/gravity.h"
-#include "skeleton/effects/inclusion.h"
-#include "skeleton/effects/prestress.h"
-#include "skeleton/effects/stiffening.h"
 
-namespace palpate::skeleton {
+namespace palpate::fem {
 
 namespace {
 
@@ -23,32 +23,28 @@ Vec3 direction(const EffectNumbers& numbers, const std::string& n) {
     return v.normalized();
 }
 
-fem::Effects in_points(std::shared_ptr<const fem::PointPotential> potential) {
-    return {.points = {std::move(potential)}};
-}
+Effects in_points(std::shared_ptr<const PointPotential> potential) { return {.points = {std::move(potential)}}; }
 
-fem::Effects in_material(std::shared_ptr<const fem::MaterialEffect> effect) {
-    return {.material = {std::move(effect)}};
-}
+Effects in_material(std::shared_ptr<const MaterialEffect> effect) { return {.material = {std::move(effect)}}; }
 
-fem::Effects gravity(const EffectNumbers& numbers) {
+Effects gravity(const EffectNumbers& numbers) {
     return in_points(std::make_shared<Gravity>(numbers.vector("gx", "gy", "gz")));
 }
 
-fem::Effects compliant_support(const EffectNumbers& numbers) {
+Effects compliant_support(const EffectNumbers& numbers) {
     const double turning = numbers.has("turning") ? numbers["turning"] : 1;
     return in_points(std::make_shared<CompliantSupport>(numbers["stiffness"], turning));
 }
 
-fem::Effects contact(const EffectNumbers& numbers) {
+Effects contact(const EffectNumbers& numbers) {
     return in_points(std::make_shared<Contact>(direction(numbers, "n"), numbers["offset"], numbers["stiffness"]));
 }
 
-fem::Effects stiffening(const EffectNumbers& numbers) {
+Effects stiffening(const EffectNumbers& numbers) {
     return in_material(std::make_shared<Stiffening>(numbers["c2"], numbers["c3"]));
 }
 
-fem::Effects anisotropy(const EffectNumbers& numbers) {
+Effects anisotropy(const EffectNumbers& numbers) {
     std::vector<Fibre> fibres{{numbers["k"], direction(numbers, "n")}};
     int told = 0;
     for (const char* name : {"k2", "n2x", "n2y", "n2z"}) told += numbers.has(name) ? 1 : 0;
@@ -57,7 +53,7 @@ fem::Effects anisotropy(const EffectNumbers& numbers) {
     return in_material(std::make_shared<Anisotropy>(std::move(fibres)));
 }
 
-fem::Effects inclusion(const EffectNumbers& numbers) {
+Effects inclusion(const EffectNumbers& numbers) {
     const Vec3 centre = numbers.vector("cx", "cy", "cz");
     int sides = 0;
     for (const char* name : {"hx", "hy", "hz"}) sides += numbers.has(name) ? 1 : 0;
@@ -68,7 +64,7 @@ fem::Effects inclusion(const EffectNumbers& numbers) {
                               : Inclusion::box(centre, numbers.vector("hx", "hy", "hz"), numbers["ratio"])));
 }
 
-fem::Effects prestress(const EffectNumbers& numbers) {
+Effects prestress(const EffectNumbers& numbers) {
     Mat3 S;
     S << numbers["sxx"], numbers["sxy"], numbers["sxz"],  //
         numbers["sxy"], numbers["syy"], numbers["syz"],   //
@@ -76,24 +72,20 @@ fem::Effects prestress(const EffectNumbers& numbers) {
     return in_material(std::make_shared<Prestress>(S));
 }
 
-fem::Effects pressure(const EffectNumbers& numbers) { return {.pressure = numbers["pressure"]}; }
+Effects pressure(const EffectNumbers& numbers) { return {.pressure = numbers["pressure"]}; }
 
-fem::Effects viscosity(const EffectNumbers& numbers) { return {.creep = fem::Creep{numbers["creep"], numbers["tau"]}}; }
+Effects viscosity(const EffectNumbers& numbers) { return {.creep = Creep{numbers["creep"], numbers["tau"]}}; }
 
-fem::Effects plasticity(const EffectNumbers& numbers) {
-    return {.plasticity = fem::Plasticity{numbers["yield"], numbers["hardening"]}};
+Effects plasticity(const EffectNumbers& numbers) {
+    return {.plasticity = Plasticity{numbers["yield"], numbers["hardening"]}};
 }
 
 // Recorded only: a solid has Poisson's ratio in its law, and links have no volume that could resist.
-fem::Effects volume(const EffectNumbers&) { return {}; }
-
-fem::Effects torsion(const EffectNumbers& numbers) { return {.torsion = numbers["torsion"]}; }
-
-fem::Effects shear(const EffectNumbers& numbers) { return {.shear = numbers["shear"]}; }
+Effects volume(const EffectNumbers&) { return {}; }
 
 }  // namespace
 
-std::vector<KnownEffect> known_effects() {
+std::vector<KnownEffect> built_in_effects() {
     constexpr Range positive = Range::positive, not_negative = Range::not_negative;
     return {
         {"gravity", {{"gx", "mm/s^2"}, {"gy", "mm/s^2"}, {"gz", "mm/s^2"}}, gravity},
@@ -128,10 +120,14 @@ std::vector<KnownEffect> known_effects() {
         {"prestress", {{"sxx", "1"}, {"syy", "1"}, {"szz", "1"}, {"sxy", "1"}, {"syz", "1"}, {"sxz", "1"}}, prestress},
         {"viscosity", {{"creep", "1", not_negative}, {"tau", "s", positive}}, viscosity},
         {"plasticity", {{"yield", "1", positive}, {"hardening", "1", not_negative}}, plasticity},
-        {"volume", {{"poisson", "1", Range::poisson}}, volume},
-        {"torsion", {{"torsion", "1", not_negative}}, torsion},
-        {"shear", {{"shear", "1", not_negative}}, shear},
+        {.name = "volume",
+         .parameters = {{"poisson", "1", Range::poisson}},
+         .make = volume,
+         .not_played = "acts on solids alone: a skeleton's volumes have stiffnesses of their own"},
+        {"misalignment", {}, {}, EffectKind::measurement},
+        {"force-gain", {}, {}, EffectKind::measurement},
+        {"outliers", {}, {}, EffectKind::measurement},
     };
 }
 
-}  // namespace palpate::skeleton
+}  // namespace palpate::fem

@@ -2,9 +2,9 @@
 
 #include <vector>
 
-#include "fem/material_effect.h"
+#include "fem/effects/material_effect.h"
 
-namespace palpate::skeleton {
+namespace palpate::fem {
 
 /// A family of fibres that resists being stretched and pressed.
 struct Fibre {
@@ -14,13 +14,13 @@ struct Fibre {
 
 /// A material that is stiffer along fibres: w = sum_i k_i/2 (n_i . E n_i)^2 with E = (F^T F - I) / 2. One family makes
 /// it transversely isotropic, two or three, at right angles or not, orthotropic and beyond.
-class Anisotropy : public fem::MaterialEffect {
+class Anisotropy : public MaterialEffect {
 public:
     explicit Anisotropy(std::vector<Fibre> fibres);
-    fem::MaterialTerms terms(const Vec3& X, const Mat3& F, bool with_second) const override;
+    MaterialTerms terms(const Vec3& X, const Mat3& F, bool with_second) const override;
 
 private:
     std::vector<Fibre> fibres_;  // of unit directions
 };
 
-}  // namespace palpate::skeleton
+}  // namespace palpate::fem

@@ -1,14 +1,14 @@
-#include "skeleton/effects/stiffening.h"
+#include "fem/effects/stiffening.h"
 
 #include "fem/large_deformation/point_law.h"
 
-namespace palpate::skeleton {
+namespace palpate::fem {
 
-fem::MaterialTerms Stiffening::terms(const Vec3& /*X*/, const Mat3& F, bool with_second) const {
-    const fem::PointLaw<fem::Law::neo_hooke> law(F);  // its D is x / 2
+MaterialTerms Stiffening::terms(const Vec3& /*X*/, const Mat3& F, bool with_second) const {
+    const PointLaw<Law::neo_hooke> law(F);  // its D is x / 2
     const double x = 2 * law.D;
     const double by_x = x * (2 * c2_ + 3 * c3_ * x), by_x_twice = 2 * c2_ + 6 * c3_ * x;
-    fem::MaterialTerms result;
+    MaterialTerms result;
     result.w = x * x * (c2_ + c3_ * x);
     result.first = 2 * by_x * law.dD;
     if (!with_second) return result;
@@ -21,4 +21,4 @@ fem::MaterialTerms Stiffening::terms(const Vec3& /*X*/, const Mat3& F, bool with
     return result;
 }
 
-}  // namespace palpate::skeleton
+}  // namespace palpate::fem

@@ -1,11 +1,12 @@
 #pragma once
 
+#include <algorithm>
 #include <memory>
 #include <optional>
 #include <vector>
 
-#include "fem/material_effect.h"
-#include "fem/point_potential.h"
+#include "fem/effects/material_effect.h"
+#include "fem/effects/point_potential.h"
 
 namespace palpate::fem {
 
@@ -24,6 +25,13 @@ struct Creep {
     double tau = 1;    // [s], > 0
 };
 
+/// What only one kind of model has, and knows of: a solid passes it by.
+class ModelEffect {
+public:
+    virtual ~ModelEffect() = default;
+    virtual bool is_nothing() const = 0;  // all its numbers are 0
+};
+
 /// What is in force on a body beyond its law and the forces of contacts.
 struct Effects {
     std::vector<std::shared_ptr<const PointPotential>> points{};
@@ -31,24 +39,21 @@ struct Effects {
     double pressure = 0;  // in closed cavities, above that outside [MPa]
     std::optional<Plasticity> plasticity{};
     std::optional<Creep> creep{};  // for whoever puts loads on in time: an equilibrium knows none
-
-    // Of a skeleton's links, a solid has none: resistance to twist as a share of the links' flexion, and to shear
-    // apart from flexion as a share of their elongation [-].
-    double torsion = 0, shear = 0;
+    std::vector<std::shared_ptr<const ModelEffect>> of_model{};
 
     bool empty() const {
-        return points.empty() && material.empty() && pressure == 0 && !plasticity && !creep && torsion == 0 &&
-               shear == 0;
+        const auto is_nothing = [](const auto& effect) { return effect->is_nothing(); };
+        return points.empty() && material.empty() && pressure == 0 && !plasticity && !creep &&
+               std::all_of(of_model.begin(), of_model.end(), is_nothing);
     }
     /// Puts others in force besides; numbers add up.
     void add(const Effects& more) {
         points.insert(points.end(), more.points.begin(), more.points.end());
         material.insert(material.end(), more.material.begin(), more.material.end());
         pressure += more.pressure;
-        torsion += more.torsion;
-        shear += more.shear;
         if (more.plasticity) plasticity = more.plasticity;
         if (more.creep) creep = more.creep;
+        of_model.insert(of_model.end(), more.of_model.begin(), more.of_model.end());
     }
 };
 

@@ -1,10 +1,10 @@
-#include "skeleton/effects/inclusion.h"
+#include "fem/effects/inclusion.h"
 
 #include <algorithm>
 #include <cassert>
 #include <cmath>
 
-namespace palpate::skeleton {
+namespace palpate::fem {
 
 Inclusion::Inclusion(Shape shape, const Vec3& centre, const Vec3& half_widths, double ratio)
     : shape_(shape), centre_(centre), half_widths_(half_widths), log_ratio_(std::log(ratio)) {
@@ -25,4 +25,4 @@ double Inclusion::stiffness(const Vec3& X) const {
     return std::exp(log_ratio_ * std::clamp((1.15 - d) / 0.3, 0.0, 1.0));
 }
 
-}  // namespace palpate::skeleton
+}  // namespace palpate::fem

@@ -1,18 +1,18 @@
 #pragma once
 
-#include "fem/material_effect.h"
+#include "fem/effects/material_effect.h"
 
-namespace palpate::skeleton {
+namespace palpate::fem {
 
 /// A material that is under stress at rest: w = S:E with E = (F^T F - I) / 2, S the second Piola-Kirchhoff stress there
 /// over the shear modulus [-], symmetric. It turns with the body.
-class Prestress : public fem::MaterialEffect {
+class Prestress : public MaterialEffect {
 public:
     explicit Prestress(const Mat3& S);
-    fem::MaterialTerms terms(const Vec3& X, const Mat3& F, bool with_second) const override;
+    MaterialTerms terms(const Vec3& X, const Mat3& F, bool with_second) const override;
 
 private:
     Mat3 S_;
 };
 
-}  // namespace palpate::skeleton
+}  // namespace palpate::fem

@@ -1,14 +1,14 @@
 #pragma once
 
-#include "fem/material_effect.h"
+#include "fem/effects/material_effect.h"
 
-namespace palpate::skeleton {
+namespace palpate::fem {
 
 /// A part of the body that is stiffer or softer than the rest, a sphere or a box along the axes, with a border that is
 /// smooth so that answers follow its place:
 ///   s(X) = ratio^clamp((1.15 - d) / 0.3, 0, 1)
 /// with d = |X - centre| / radius, or max_i |X_i - centre_i| / h_i for half widths h.
-class Inclusion : public fem::MaterialEffect {
+class Inclusion : public MaterialEffect {
 public:
     static Inclusion sphere(const Vec3& centre, double radius, double ratio);  // [mm], [mm] > 0, [-] > 0
     static Inclusion box(const Vec3& centre, const Vec3& half_widths, double ratio);
@@ -24,4 +24,4 @@ private:
     double log_ratio_;
 };
 
-}  // namespace palpate::skeleton
+}  // namespace palpate::fem

@@ -1,8 +1,8 @@
-#include "skeleton/effects/anisotropy.h"
+#include "fem/effects/anisotropy.h"
 
 #include <cassert>
 
-namespace palpate::skeleton {
+namespace palpate::fem {
 
 Anisotropy::Anisotropy(std::vector<Fibre> fibres) : fibres_(std::move(fibres)) {
     for (Fibre& fibre : fibres_) {
@@ -11,8 +11,8 @@ Anisotropy::Anisotropy(std::vector<Fibre> fibres) : fibres_(std::move(fibres)) {
     }
 }
 
-fem::MaterialTerms Anisotropy::terms(const Vec3& /*X*/, const Mat3& F, bool with_second) const {
-    fem::MaterialTerms result;
+MaterialTerms Anisotropy::terms(const Vec3& /*X*/, const Mat3& F, bool with_second) const {
+    MaterialTerms result;
     for (const auto& [k, n] : fibres_) {
         // d (n.E n) / dF = F n n^T
         const Vec3 along = F * n;
@@ -31,4 +31,4 @@ fem::MaterialTerms Anisotropy::terms(const Vec3& /*X*/, const Mat3& F, bool with
     return result;
 }
 
-}  // namespace palpate::skeleton
+}  // namespace palpate::fem

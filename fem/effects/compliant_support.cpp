@@ -1,10 +1,10 @@
-#include "skeleton/effects/compliant_support.h"
+#include "fem/effects/compliant_support.h"
 
 #include <algorithm>
 
-namespace palpate::skeleton {
+namespace palpate::fem {
 
-fem::PointTerms CompliantSupport::terms(const Vec3& X, const Vec3& x) const {
+PointTerms CompliantSupport::terms(const Vec3& X, const Vec3& x) const {
     const Vec3 u = x - X;
     return {.energy = 0.5 * k_ * u.squaredNorm(), .gradient = k_ * u, .hessian = k_ * Mat3::Identity()};
 }
@@ -21,4 +21,4 @@ Eigen::VectorXd CompliantSupport::weights(const Points& rest, const Eigen::Vecto
     return even.array() * (1 + s * (square.array() / mean - 1));
 }
 
-}  // namespace palpate::skeleton
+}  // namespace palpate::fem

@@ -1,11 +1,11 @@
-#include "skeleton/effects/prestress.h"
+#include "fem/effects/prestress.h"
 
-namespace palpate::skeleton {
+namespace palpate::fem {
 
 Prestress::Prestress(const Mat3& S) : S_((S + S.transpose()) / 2) {}
 
-fem::MaterialTerms Prestress::terms(const Vec3& /*X*/, const Mat3& F, bool with_second) const {
-    fem::MaterialTerms result;
+MaterialTerms Prestress::terms(const Vec3& /*X*/, const Mat3& F, bool with_second) const {
+    MaterialTerms result;
     result.first = F * S_;
     result.w = (F.cwiseProduct(result.first).sum() - S_.trace()) / 2;
     if (!with_second) return result;
@@ -13,4 +13,4 @@ fem::MaterialTerms Prestress::terms(const Vec3& /*X*/, const Mat3& F, bool with_
     return result;
 }
 
-}  // namespace palpate::skeleton
+}  // namespace palpate::fem

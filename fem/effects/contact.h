@@ -1,18 +1,18 @@
 #pragma once
 
-#include "fem/point_potential.h"
+#include "fem/effects/point_potential.h"
 
-namespace palpate::skeleton {
+namespace palpate::fem {
 
 /// A rigid plane that the body's surface may touch, without friction, and not pass:
 ///   e = k/2 min(0, n.x - offset)^2 on its area,
 /// n pointing from the plane to where the body is.
-class Contact : public fem::PointPotential {
+class Contact : public PointPotential {
 public:
     /// `n`: of any length above 0; `offset`: of the plane along n / |n| [mm]; `stiffness` k [N/mm^3], > 0.
     Contact(const Vec3& n, double offset, double stiffness) : n_(n.normalized()), offset_(offset), k_(stiffness) {}
-    fem::ActsOn acts_on() const override { return fem::ActsOn::surface; }
-    fem::PointTerms terms(const Vec3& X, const Vec3& x) const override;
+    ActsOn acts_on() const override { return ActsOn::surface; }
+    PointTerms terms(const Vec3& X, const Vec3& x) const override;
     bool is_one_sided() const override { return true; }
 
 private:
@@ -20,4 +20,4 @@ private:
     double offset_, k_;
 };
 
-}  // namespace palpate::skeleton
+}  // namespace palpate::fem

@@ -1,11 +1,11 @@
-#include "skeleton/effects/contact.h"
+#include "fem/effects/contact.h"
 
-namespace palpate::skeleton {
+namespace palpate::fem {
 
-fem::PointTerms Contact::terms(const Vec3& /*X*/, const Vec3& x) const {
+PointTerms Contact::terms(const Vec3& /*X*/, const Vec3& x) const {
     const double gap = n_.dot(x) - offset_;
     if (gap >= 0) return {};
     return {.energy = k_ / 2 * gap * gap, .gradient = k_ * gap * n_, .hessian = k_ * n_ * n_.transpose()};
 }
 
-}  // namespace palpate::skeleton
+}  // namespace palpate::fem

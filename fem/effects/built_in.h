@@ -1,0 +1,12 @@
+#pragma once
+
+#include <vector>
+
+#include "fem/effects/known_effect.h"
+
+namespace palpate::fem {
+
+/// The effects that are known from the start: those of a body of any kind, and faults of a measurement.
+std::vector<KnownEffect> built_in_effects();
+
+}  // namespace palpate::fem
