@@ -15,13 +15,13 @@
 #include <utility>
 
 #include "fem/elements/assembly.h"
-#include "fem/solve/choice.h"
-#include "fem/solve/cholesky.h"
-#include "fem/solve/free_memory.h"
-#include "fem/solve/huge_pages.h"
-#include "fem/solve/multigrid/conjugate_gradients.h"
-#include "fem/solve/multigrid/morton.h"
-#include "fem/solve/restraint.h"
+#include "fem/elements/restraint.h"
+#include "fem/linear_algebra/cholesky/cholesky.h"
+#include "fem/linear_algebra/conjugate_gradients.h"
+#include "fem/linear_algebra/memory/free_memory.h"
+#include "fem/linear_algebra/memory/huge_pages.h"
+#include "fem/linear_algebra/multigrid/morton.h"
+#include "fem/linear_algebra/solver_choice.h"
 #include "mesh/errors.h"
 
 namespace palpate::fem {
@@ -96,17 +96,18 @@ struct ElasticBody::Impl {
     void prepare();
     void make_factor(Elimination elimination);
     void make_multigrid();
-    void solve_together(Block& X) const;
+    void solve_together(MultiVector& X) const;
     template <class Loads>
-    void solve_some(const Loads& loads, std::span<const Eigen::Index> columns, Block& X, Eigen::MatrixXd& U) const;
-    void take(const Block& X, std::span<const Eigen::Index> columns, Eigen::MatrixXd& U) const;
+    void solve_some(const Loads& loads, std::span<const Eigen::Index> columns, MultiVector& X,
+                    Eigen::MatrixXd& U) const;
+    void take(const MultiVector& X, std::span<const Eigen::Index> columns, Eigen::MatrixXd& U) const;
     std::size_t block_of(std::size_t loads) const;
     template <class Loads>
     Eigen::MatrixXd solve(const Loads& loads) const;
     std::vector<Eigen::Index> solving_order(const Eigen::SparseMatrix<double>& loads) const;
     std::vector<Eigen::Index> solving_order(const Eigen::MatrixXd& loads) const;
-    void fill(const Eigen::SparseMatrix<double>& loads, std::span<const Eigen::Index> columns, Block& F) const;
-    void fill(const Eigen::MatrixXd& loads, std::span<const Eigen::Index> columns, Block& F) const;
+    void fill(const Eigen::SparseMatrix<double>& loads, std::span<const Eigen::Index> columns, MultiVector& F) const;
+    void fill(const Eigen::MatrixXd& loads, std::span<const Eigen::Index> columns, MultiVector& F) const;
 };
 
 ElasticBody::ElasticBody(mesh::VolumeMesh mesh, const Material& material, const std::vector<char>& held,
@@ -146,7 +147,7 @@ void ElasticBody::Impl::prepare() {
             "A factor of the stiffness matrix ({} unknowns) would take {:.3g} GB of {:.3g} GB: conjugate gradients "
             "with multigrid instead.",
             stats.free_dofs, needed, allowed);
-    } else if (is_sooner_without_factor(elimination.supernodes, options.loads)) {
+    } else if (is_faster_without_factor(elimination.supernodes, options.loads)) {
         stats.note = fmt::format(
             "A factor of the stiffness matrix ({} unknowns, {:.3g} GB) would take longer than {} load(s) without it: "
             "conjugate gradients with multigrid instead.",
@@ -214,7 +215,7 @@ std::vector<Eigen::Index> ElasticBody::Impl::solving_order(const Eigen::MatrixXd
 }
 
 void ElasticBody::Impl::fill(const Eigen::SparseMatrix<double>& loads, std::span<const Eigen::Index> columns,
-                             Block& F) const {
+                             MultiVector& F) const {
     for (std::size_t j = 0; j < columns.size(); ++j) {
         for (Eigen::SparseMatrix<double>::InnerIterator entry(loads, columns[j]); entry; ++entry) {
             const Eigen::Index node = number[entry.row() / 3];
@@ -223,7 +224,8 @@ void ElasticBody::Impl::fill(const Eigen::SparseMatrix<double>& loads, std::span
     }
 }
 
-void ElasticBody::Impl::fill(const Eigen::MatrixXd& loads, std::span<const Eigen::Index> columns, Block& F) const {
+void ElasticBody::Impl::fill(const Eigen::MatrixXd& loads, std::span<const Eigen::Index> columns,
+                             MultiVector& F) const {
     for (std::size_t i = 0; i < number.size(); ++i) {
         const Eigen::Index node = number[i];
         for (std::size_t j = 0; node >= 0 && j < columns.size(); ++j) {
@@ -232,7 +234,7 @@ void ElasticBody::Impl::fill(const Eigen::MatrixXd& loads, std::span<const Eigen
     }
 }
 
-void ElasticBody::Impl::solve_together(Block& X) const {
+void ElasticBody::Impl::solve_together(MultiVector& X) const {
     if (factor) return factor->solve(X);
     const int iterations = conjugate_gradients(*multigrid, X);
     int most = most_iterations;
@@ -241,7 +243,7 @@ void ElasticBody::Impl::solve_together(Block& X) const {
 }
 
 /// Columns of the displacements, all of their entries.
-void ElasticBody::Impl::take(const Block& X, std::span<const Eigen::Index> columns, Eigen::MatrixXd& U) const {
+void ElasticBody::Impl::take(const MultiVector& X, std::span<const Eigen::Index> columns, Eigen::MatrixXd& U) const {
     constexpr std::size_t chunk = 64;  // nodes, whose rows of X stay in the cache while they go to their columns
     for (std::size_t begin = 0; begin < number.size(); begin += chunk) {
         const std::size_t end = std::min(begin + chunk, number.size());
@@ -255,7 +257,7 @@ void ElasticBody::Impl::take(const Block& X, std::span<const Eigen::Index> colum
 }
 
 template <class Loads>
-void ElasticBody::Impl::solve_some(const Loads& loads, std::span<const Eigen::Index> columns, Block& X,
+void ElasticBody::Impl::solve_some(const Loads& loads, std::span<const Eigen::Index> columns, MultiVector& X,
                                    Eigen::MatrixXd& U) const {
     // Whole vectors of loads, so that each entry of the matrix is read once; those that are zero are done at once.
     const std::size_t width = factor || columns.size() < 3 ? columns.size() : together;
@@ -283,7 +285,7 @@ Eigen::MatrixXd ElasticBody::Impl::solve(const Loads& loads) const {
     use_huge_pages(U.data(), sizeof(double) * U.size());
     const std::vector<Eigen::Index> order = solving_order(loads);
     const std::size_t block = block_of(order.size());
-    tbb::enumerable_thread_specific<Block> X;  // kept from block to block: fresh memory costs
+    tbb::enumerable_thread_specific<MultiVector> X;  // kept from block to block: fresh memory costs
     const auto solve_block = [&](std::size_t begin) {
         const std::size_t end = std::min(begin + block, order.size());
         solve_some(loads, std::span(order).subspan(begin, end - begin), X.local(), U);

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "fem/stiffness.h"
+#include "fem/elements/stiffness.h"
 
 namespace palpate::fem {
 

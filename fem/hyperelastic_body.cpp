@@ -4,9 +4,9 @@
 #include <mutex>
 #include <numeric>
 
-#include "fem/large_deformation/equilibrium.h"
-#include "fem/large_deformation/factored_tangent.h"
-#include "fem/solve/restraint.h"
+#include "fem/elements/restraint.h"
+#include "fem/large_deformation/solve/equilibrium.h"
+#include "fem/large_deformation/solve/factored_tangent.h"
 
 namespace palpate::fem {
 

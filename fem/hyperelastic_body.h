@@ -5,23 +5,23 @@
 #include <vector>
 
 #include "fem/effects/effects.h"
+#include "fem/elements/stiffness.h"
 #include "fem/material.h"
-#include "fem/stiffness.h"
-#include "mesh/volume_mesh.h"
+#include "mesh/core/volume_mesh.h"
 
 namespace palpate::fem {
 
 /// How a body's stress follows from its deformation gradient F; all agree in small strain.
 /// mu: shear modulus, K: bulk modulus; J = det F, E = (F^T F - I) / 2.
-enum class Law {
-    linear,     // small strain: as linear solvers write
-    svk,        // St. Venant-Kirchhoff: mu dev(E):dev(E) + K/2 (tr E)^2
-    neo_hooke,  // mu/2 (J^-2/3 tr F^T F - 3) + K/2 (J - 1)^2
+enum class MaterialLaw {
+    linear,       // small strain: as linear solvers write
+    svk,          // St. Venant-Kirchhoff: mu dev(E):dev(E) + K/2 (tr E)^2
+    neo_hookean,  // mu/2 (J^-2/3 tr F^T F - 3) + K/2 (J - 1)^2
 };
 
 /// What a body is made of and what acts on it besides contact forces.
 struct BodySetting {
-    Law law = Law::neo_hooke;
+    MaterialLaw law = MaterialLaw::neo_hookean;
     Material material;
     Effects effects;
 };

@@ -4,9 +4,9 @@
 
 #include <algorithm>
 
-#include "identify/methods/methods.h"
-#include "identify/set/field.h"
-#include "identify/set/labels/label_readings.h"
+#include "identify/inference/methods/methods.h"
+#include "identify/measurements/field.h"
+#include "identify/measurements/labels/label_readings.h"
 #include "mesh/errors.h"
 
 namespace palpate::identify {

@@ -4,10 +4,10 @@
 #include <string>
 #include <vector>
 
+#include "identify/measurements/measurement_set.h"
 #include "identify/motion/damping.h"
-#include "identify/set/measurement_set.h"
 #include "mesh/progress.h"
-#include "skeleton/model.h"
+#include "skeleton/model/model.h"
 
 namespace palpate::identify {
 
@@ -74,7 +74,7 @@ struct Correlation {
     double value = 0;
 };
 
-/// How far measurements went: beyond, a model extrapolates.
+/// Range of the measurements, beyond which the model extrapolates.
 struct MeasuredRange {
     double force = 0;          // the largest of one contact [N]
     double displacement = 0;   // the largest of a marker [mm]
@@ -111,9 +111,8 @@ struct IdentifyResult {
 struct UniformFit;
 
 /// Finds the stiffness of every link, so that the model follows the measurements. The model gets the most probable
-/// stiffnesses together: their means one by one, of skewed distributions that hang together, are a stiffer body, which
-/// follows the measurements several times worse.
-/// `near`: a uniform fit to other readings of the same model saves some time.
+/// stiffnesses together: marginal means of skewed, correlated distributions give a stiffer body that fits several times
+/// worse. `near`: a uniform fit to other readings of the same model saves some time.
 /// @throws InvalidInput when the set holds no loaded state with readings, or none of what the method needs.
 IdentifyResult identify(const skeleton::Model& model, const MeasurementSet& set, const IdentifyOptions& options,
                         const Progress& progress = {}, const UniformFit* near = nullptr);

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "identify/set/twin.h"
-#include "skeleton/attach.h"
+#include "identify/measurements/twin.h"
+#include "skeleton/model/attach.h"
 
 namespace palpate::samples {
 namespace {

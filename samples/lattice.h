@@ -3,8 +3,8 @@
 #include <string>
 #include <vector>
 
-#include "identify/set/measurement_set.h"
-#include "skeleton/model.h"
+#include "identify/measurements/measurement_set.h"
+#include "skeleton/model/model.h"
 
 namespace palpate::samples {
 

@@ -3,11 +3,11 @@
 #include <filesystem>
 #include <iostream>
 
-#include "identify/set/measurement_set.h"
-#include "mesh/read_surface.h"
+#include "identify/measurements/measurement_set.h"
+#include "mesh/formats/surface/read_surface.h"
 #include "samples/lattice.h"
 #include "samples/organ.h"
-#include "skeleton/model_io.h"
+#include "skeleton/model/io/model_io.h"
 
 int main(int argc, char** argv) {
     using namespace palpate;

@@ -3,7 +3,7 @@
 // Four numbers at a time, one in each lane of a vector unit. For kernels only, in .cpp files: what is here is
 // compiled into each of their versions, for the processors that PALPATE_CLONES names and for any other.
 
-#include "mesh/clones.h"
+#include "mesh/system/clones.h"
 
 namespace palpate::skeleton::lanewise {
 

@@ -37,7 +37,7 @@ Effects compliant_support(const EffectNumbers& numbers) {
 }
 
 Effects contact(const EffectNumbers& numbers) {
-    return in_points(std::make_shared<Contact>(direction(numbers, "n"), numbers["offset"], numbers["stiffness"]));
+    return in_points(std::make_shared<ContactPlane>(direction(numbers, "n"), numbers["offset"], numbers["stiffness"]));
 }
 
 Effects stiffening(const EffectNumbers& numbers) {
@@ -46,10 +46,10 @@ Effects stiffening(const EffectNumbers& numbers) {
 
 Effects anisotropy(const EffectNumbers& numbers) {
     std::vector<Fibre> fibres{{numbers["k"], direction(numbers, "n")}};
-    int told = 0;
-    for (const char* name : {"k2", "n2x", "n2y", "n2z"}) told += numbers.has(name) ? 1 : 0;
-    if (told != 0 && told != 4) throw InvalidInput("a second family of fibres needs all of k2, n2x, n2y and n2z");
-    if (told == 4) fibres.push_back({numbers["k2"], direction(numbers, "n2")});
+    int given = 0;
+    for (const char* name : {"k2", "n2x", "n2y", "n2z"}) given += numbers.has(name) ? 1 : 0;
+    if (given != 0 && given != 4) throw InvalidInput("a second family of fibres needs all of k2, n2x, n2y and n2z");
+    if (given == 4) fibres.push_back({numbers["k2"], direction(numbers, "n2")});
     return in_material(std::make_shared<Anisotropy>(std::move(fibres)));
 }
 
@@ -74,7 +74,7 @@ Effects prestress(const EffectNumbers& numbers) {
 
 Effects pressure(const EffectNumbers& numbers) { return {.pressure = numbers["pressure"]}; }
 
-Effects viscosity(const EffectNumbers& numbers) { return {.creep = Creep{numbers["creep"], numbers["tau"]}}; }
+Effects viscosity(const EffectNumbers& numbers) { return {.creep = CreepLaw{numbers["creep"], numbers["tau"]}}; }
 
 Effects plasticity(const EffectNumbers& numbers) {
     return {.plasticity = Plasticity{numbers["yield"], numbers["hardening"]}};

@@ -2,7 +2,7 @@
 
 namespace palpate::fem {
 
-PointTerms Contact::terms(const Vec3& /*X*/, const Vec3& x) const {
+PointTerms ContactPlane::terms(const Vec3& /*X*/, const Vec3& x) const {
     const double gap = n_.dot(x) - offset_;
     if (gap >= 0) return {};
     return {.energy = k_ / 2 * gap * gap, .gradient = k_ * gap * n_, .hessian = k_ * n_ * n_.transpose()};

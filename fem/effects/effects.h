@@ -20,15 +20,15 @@ struct Plasticity {
 /// The material creeps: under a load that is held since time 0 its compliance grows as
 ///   J(t) / J(0) = 1 + creep (1 - exp(-t / tau)),
 /// all moduli alike, so that a body bears loads as an elastic one bears them times J.
-struct Creep {
+struct CreepLaw {
     double creep = 0;  // [-], >= 0
     double tau = 1;    // [s], > 0
 };
 
-/// What only one kind of model has, and knows of: a solid passes it by.
-class ModelEffect {
+/// An effect specific to one kind of model; ignored by solids.
+class ModelSpecificEffect {
 public:
-    virtual ~ModelEffect() = default;
+    virtual ~ModelSpecificEffect() = default;
     virtual bool is_nothing() const = 0;  // all its numbers are 0
 };
 
@@ -38,8 +38,8 @@ struct Effects {
     std::vector<std::shared_ptr<const MaterialEffect>> material{};
     double pressure = 0;  // in closed cavities, above that outside [MPa]
     std::optional<Plasticity> plasticity{};
-    std::optional<Creep> creep{};  // for whoever puts loads on in time: an equilibrium knows none
-    std::vector<std::shared_ptr<const ModelEffect>> of_model{};
+    std::optional<CreepLaw> creep{};  // used where loads are applied in time; ignored by an equilibrium
+    std::vector<std::shared_ptr<const ModelSpecificEffect>> of_model{};
 
     bool empty() const {
         const auto is_nothing = [](const auto& effect) { return effect->is_nothing(); };

@@ -17,7 +17,7 @@ struct EffectParameter {
 };
 
 /// An effect as it is told, by a model file or a user: a name of the registry and its numbers.
-struct ToldEffect {
+struct EffectRecord {
     std::string name;
     std::vector<EffectParameter> parameters;
 };

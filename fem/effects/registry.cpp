@@ -8,7 +8,7 @@
 
 #include "fem/effects/built_in.h"
 #include "mesh/errors.h"
-#include "mesh/io/words.h"
+#include "mesh/text/words.h"
 
 namespace palpate::fem {
 
@@ -34,18 +34,18 @@ constexpr std::array<const char*, 4> range_words{"a number", "above 0", "at leas
 // " N/mm", or nothing.
 std::string unit_words(const std::string& unit) { return unit == "1" ? "" : " " + unit; }
 
-double checked(const ToldEffect& effect, const KnownParameter& known, const EffectParameter& told) {
-    if (!told.unit.empty() && told.unit != known.unit)
+double checked(const EffectRecord& effect, const KnownParameter& known, const EffectParameter& given) {
+    if (!given.unit.empty() && given.unit != known.unit)
         throw InvalidInput(fmt::format("effect '{}': {} is in {}, but must be in '{}'", effect.name, known.name,
-                                       mesh::cited(told.unit), known.unit));
-    if (!std::isfinite(told.value) || !is_in(known.range, told.value))
+                                       mesh::cited(given.unit), known.unit));
+    if (!std::isfinite(given.value) || !is_in(known.range, given.value))
         throw InvalidInput(fmt::format("effect '{}': {} is {:.6g}{}, but must be {}", effect.name, known.name,
-                                       told.value, unit_words(known.unit),
+                                       given.value, unit_words(known.unit),
                                        range_words[static_cast<size_t>(known.range)]));
-    return told.value;
+    return given.value;
 }
 
-EffectNumbers numbers_of(const ToldEffect& effect, const KnownEffect& known) {
+EffectNumbers numbers_of(const EffectRecord& effect, const KnownEffect& known) {
     std::vector<std::string> names;
     names.reserve(known.parameters.size());
     for (const KnownParameter& parameter : known.parameters) names.push_back(parameter.name);
@@ -56,9 +56,9 @@ EffectNumbers numbers_of(const ToldEffect& effect, const KnownEffect& known) {
                                            mesh::listed(names)));
     std::map<std::string, double> values;
     for (const KnownParameter& parameter : known.parameters) {
-        const auto told = std::ranges::find(effect.parameters, parameter.name, &EffectParameter::name);
-        if (told != effect.parameters.end())
-            values[parameter.name] = checked(effect, parameter, *told);
+        const auto given = std::ranges::find(effect.parameters, parameter.name, &EffectParameter::name);
+        if (given != effect.parameters.end())
+            values[parameter.name] = checked(effect, parameter, *given);
         else if (!parameter.optional)
             throw InvalidInput(fmt::format("effect '{}': the parameter '{}' [{}] is missing", effect.name,
                                            parameter.name, parameter.unit));
@@ -118,13 +118,13 @@ const KnownEffect& EffectRegistry::of_body(const std::string& name) const {
                                    mesh::suggestion(name, all), mesh::listed(all)));
 }
 
-Effects EffectRegistry::make(const ToldEffect& told) const {
-    const KnownEffect& known = of_body(told.name);
-    const EffectNumbers numbers = numbers_of(told, known);
+Effects EffectRegistry::make(const EffectRecord& given) const {
+    const KnownEffect& known = of_body(given.name);
+    const EffectNumbers numbers = numbers_of(given, known);
     try {
         return known.make(numbers);  // which may ask the registry
     } catch (const InvalidInput& error) {
-        throw InvalidInput(fmt::format("effect '{}': {}", told.name, error.what()));
+        throw InvalidInput(fmt::format("effect '{}': {}", given.name, error.what()));
     }
 }
 

@@ -23,7 +23,7 @@ public:
     std::vector<std::string> names() const;
     /// The physics of an effect. @throws InvalidInput for a name that is no effect of a body, a parameter that is
     /// missing, unknown, in another unit or out of range.
-    Effects make(const ToldEffect& told) const;
+    Effects make(const EffectRecord& given) const;
 
 private:
     EffectRegistry();

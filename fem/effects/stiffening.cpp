@@ -1,11 +1,11 @@
 #include "fem/effects/stiffening.h"
 
-#include "fem/large_deformation/point_law.h"
+#include "fem/large_deformation/elements/point_law.h"
 
 namespace palpate::fem {
 
 MaterialTerms Stiffening::terms(const Vec3& /*X*/, const Mat3& F, bool with_second) const {
-    const PointLaw<Law::neo_hooke> law(F);  // its D is x / 2
+    const PointLaw<MaterialLaw::neo_hookean> law(F);  // its D is x / 2
     const double x = 2 * law.D;
     const double by_x = x * (2 * c2_ + 3 * c3_ * x), by_x_twice = 2 * c2_ + 6 * c3_ * x;
     MaterialTerms result;

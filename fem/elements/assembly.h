@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "fem/solve/multigrid/block_matrix.h"
-#include "fem/stiffness.h"
+#include "fem/elements/stiffness.h"
+#include "fem/linear_algebra/blocks/block_matrix.h"
 
 namespace palpate::fem {
 

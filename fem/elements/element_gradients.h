@@ -3,7 +3,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "mesh/volume_mesh.h"
+#include "mesh/core/volume_mesh.h"
 
 namespace palpate::fem {
 

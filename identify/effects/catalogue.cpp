@@ -26,8 +26,8 @@ std::size_t edits_between(const std::string& a, const std::string& b) {
     return row.back();
 }
 
-std::vector<std::shared_ptr<const Effect>>& registry() {
-    static std::vector<std::shared_ptr<const Effect>> all{
+std::vector<std::shared_ptr<const EffectHypothesis>>& registry() {
+    static std::vector<std::shared_ptr<const EffectHypothesis>> all{
         gravity_effect(),    stiffening_effect(),   anisotropy_effect(), inclusion_effect(),
         volume_effect(),     torsion_effect(),      shear_effect(),      compliant_support_effect(),
         contact_effect(),    pressure_effect(),     prestress_effect(),  viscosity_effect(),
@@ -37,9 +37,9 @@ std::vector<std::shared_ptr<const Effect>>& registry() {
 
 }  // namespace
 
-const std::vector<std::shared_ptr<const Effect>>& catalogue() { return registry(); }
+const std::vector<std::shared_ptr<const EffectHypothesis>>& catalogue() { return registry(); }
 
-bool register_effect(std::shared_ptr<const Effect> effect) {
+bool register_effect(std::shared_ptr<const EffectHypothesis> effect) {
     const auto same = [&](const auto& other) { return other->name() == effect->name(); };
     if (std::ranges::any_of(registry(), same)) {
         throw InvalidInput(fmt::format("there is an effect '{}' already; give yours another name", effect->name()));
@@ -48,16 +48,16 @@ bool register_effect(std::shared_ptr<const Effect> effect) {
     return true;
 }
 
-std::shared_ptr<const Effect> effect_named(const std::string& name) {
+std::shared_ptr<const EffectHypothesis> effect_named(const std::string& name) {
     const auto found = std::ranges::find(catalogue(), name, [](const auto& effect) { return effect->name(); });
     return found == catalogue().end() ? nullptr : *found;
 }
 
-std::shared_ptr<const Effect> effect_of_single_readings() {
-    return *std::ranges::find_if(catalogue(), &Effect::sets_readings_aside);
+std::shared_ptr<const EffectHypothesis> effect_of_single_readings() {
+    return *std::ranges::find_if(catalogue(), &EffectHypothesis::sets_readings_aside);
 }
 
-std::shared_ptr<const Effect> find_effect(const std::string& name) {
+std::shared_ptr<const EffectHypothesis> find_effect(const std::string& name) {
     if (auto effect = effect_named(name)) return effect;
     std::string names;
     for (const auto& effect : catalogue()) names += (names.empty() ? "" : ", ") + effect->name();

@@ -4,23 +4,23 @@
 #include <cassert>
 #include <cmath>
 
-#include "identify/diagnose/fit.h"
+#include "identify/diagnosis/fit/explanation.h"
 
 namespace palpate::identify {
 
-bool Effect::enforce(const Eigen::VectorXd&, Setting&) const { return false; }
+bool EffectHypothesis::enforce(const Eigen::VectorXd&, ModelSetting&) const { return false; }
 
-Action Effect::act(const Problem&, int, Action action, const Eigen::VectorXd&) const { return action; }
+Action EffectHypothesis::act(const Problem&, int, Action action, const Eigen::VectorXd&) const { return action; }
 
-Eigen::VectorXd Effect::in(const Circumstances&, const Eigen::VectorXd& values) const { return values; }
+Eigen::VectorXd EffectHypothesis::in(const ProbeConditions&, const Eigen::VectorXd& values) const { return values; }
 
-Points Effect::see(const Problem&, const Points& markers, const Eigen::VectorXd&) const { return markers; }
+Points EffectHypothesis::see(const Problem&, const Points& markers, const Eigen::VectorXd&) const { return markers; }
 
-ScreenPlan Effect::screen_plan(const BodyModel& model, const Problem& problem, const Explanation& explanation,
-                               const Played& played) const {
+ScreenPlan EffectHypothesis::screen_plan(const BodyModel& model, const Problem& problem, const Explanation& explanation,
+                                         const ForwardSolution& forward) const {
     const std::vector<EffectNumber> own = numbers(model, problem);
     Explanation with = explanation;
-    with.effects.push_back(std::shared_ptr<const Effect>(std::shared_ptr<void>(), this));
+    with.effects.push_back(std::shared_ptr<const EffectHypothesis>(std::shared_ptr<void>(), this));
     Eigen::VectorXd start(std::ssize(own)), prior_sd(std::ssize(own));
     for (std::size_t j = 0; j < own.size(); ++j) {
         start[static_cast<Eigen::Index>(j)] = own[j].start;
@@ -31,21 +31,22 @@ ScreenPlan Effect::screen_plan(const BodyModel& model, const Problem& problem, c
     // Forces of its own numbers only, and what they change of what is seen.
     const Eigen::Index count = std::ssize(own);
     ScreenPlan plan;
-    plan.signatures = {count, [&model, &problem, with, &played](int k, const Eigen::VectorXd& q) {
-                           return signatures_of_last_effect(model, problem, with, played, k, q);
+    plan.signatures = {count, [&model, &problem, with, &forward](int k, const Eigen::VectorXd& q) {
+                           return signatures_of_last_effect(model, problem, with, forward, k, q);
                        }};
-    plan.columns = [&problem, with, &played, prior_sd, count](const Eigen::MatrixXd& answers) {
-        return ScreenColumns{answers + seen_directly(problem, with, played).rightCols(count), prior_sd};
+    plan.columns = [&problem, with, &forward, prior_sd, count](const Eigen::MatrixXd& sensitivities) {
+        return ScreenColumns{sensitivities + seen_directly(problem, with, forward).rightCols(count), prior_sd};
     };
     plan.start = [start](Eigen::Index, const Eigen::VectorXd&) { return start; };
     return plan;
 }
 
-std::string Effect::objection(const Problem&, const Eigen::VectorXd&, bool) const { return {}; }
+std::string EffectHypothesis::objection(const Problem&, const Eigen::VectorXd&, bool) const { return {}; }
 
-skeleton::Effect Effect::told(const std::vector<EffectNumber>& numbers, const Eigen::VectorXd& values) const {
+skeleton::EffectRecord EffectHypothesis::record(const std::vector<EffectNumber>& numbers,
+                                                const Eigen::VectorXd& values) const {
     assert(std::ssize(numbers) == values.size());
-    skeleton::Effect result{name(), {}};
+    skeleton::EffectRecord result{name(), {}};
     for (std::size_t j = 0; j < numbers.size(); ++j) {
         const double value = values[static_cast<Eigen::Index>(j)];
         result.parameters.push_back({numbers[j].name, numbers[j].logarithm ? std::exp(value) : value, numbers[j].unit});
@@ -53,27 +54,30 @@ skeleton::Effect Effect::told(const std::vector<EffectNumber>& numbers, const Ei
     return result;
 }
 
-Eigen::VectorXd Effect::values(const std::vector<EffectNumber>& numbers, const skeleton::Effect& told) const {
+Eigen::VectorXd EffectHypothesis::values(const std::vector<EffectNumber>& numbers,
+                                         const skeleton::EffectRecord& record) const {
     Eigen::VectorXd result(std::ssize(numbers));
     for (Eigen::Index j = 0; j < result.size(); ++j) {
         const EffectNumber& number = numbers[j];
-        const auto found = std::ranges::find(told.parameters, number.name, &skeleton::EffectParameter::name);
-        const bool is_told = found != told.parameters.end();
-        result[j] = !is_told ? number.start : number.logarithm ? std::log(found->value) : found->value;
+        const auto found = std::ranges::find(record.parameters, number.name, &skeleton::EffectParameter::name);
+        const bool is_specified = found != record.parameters.end();
+        result[j] = !is_specified ? number.start : number.logarithm ? std::log(found->value) : found->value;
     }
     return result;
 }
 
-MeasurementSet Effect::corrected(const MeasurementSet& set, const skeleton::Effect&) const { return set; }
-
-void Effect::hide(const skeleton::Effect& told, World& world) const {
-    world.setting.effects.add(skeleton::make_physics(told));
+MeasurementSet EffectHypothesis::corrected(const MeasurementSet& set, const skeleton::EffectRecord&) const {
+    return set;
 }
 
-std::vector<skeleton::KnownParameter> Effect::numbers_to_hide() const {
+void EffectHypothesis::hide(const skeleton::EffectRecord& record, TrueConditions& conditions) const {
+    conditions.setting.effects.add(skeleton::make_physics(record));
+}
+
+std::vector<skeleton::KnownParameter> EffectHypothesis::numbers_to_hide() const {
     return skeleton::find_known_effect(name())->parameters;
 }
 
-std::vector<Draft> Effect::drafts(Drawing&, const ToldNumbers&) const { return {}; }
+std::vector<EffectSampler> EffectHypothesis::samplers(SamplingContext&, const SpecifiedNumbers&) const { return {}; }
 
 }  // namespace palpate::identify

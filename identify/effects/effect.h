@@ -8,14 +8,14 @@
 #include <string>
 #include <vector>
 
-#include "identify/diagnose/problem.h"
+#include "identify/diagnosis/problem.h"
 #include "identify/effects/hiding.h"
 #include "skeleton/effects/effect.h"
 
 namespace palpate::identify {
 
 struct Explanation;
-struct Played;
+struct ForwardSolution;
 
 /// Force signatures that differ from action to action: columns of a wide matrix that most actions know nothing of.
 struct Signatures {
@@ -50,13 +50,13 @@ struct EffectNumber {
     std::string name, unit;  // as they are told
     double start = 0;        // neutral, or where a fit begins
     double prior_mean = 0, prior_sd = 1;
-    bool logarithm = false;       // the fit's number is its logarithm
-    double least = -INFINITY;     // of the fit's number
-    bool slack = false;           // it hardly matters near its start, and may go too far there
-    bool prior_at_start = false;  // its prior is centred where the fit begins: a direction, which a scan has found
+    bool logarithm = false;          // the fit's number is its logarithm
+    double least = -INFINITY;        // of the fit's number
+    bool weakly_identified = false;  // weakly identified near its start, where a step may overshoot
+    bool prior_at_start = false;     // its prior is centred where the fit begins: a direction, which a scan has found
 };
 
-/// What a weak effect does to a model that lacks it, one way or another: groups of columns over sigma, as many numbers
+/// First-order change of the readings by a weak effect, per alternative: groups of columns over sigma, as many numbers
 /// wide as `prior_sd` is long, each group an alternative (other places, other directions).
 struct ScreenColumns {
     Eigen::MatrixXd columns;   // (N x alternatives p)
@@ -68,7 +68,7 @@ struct ScreenColumns {
 /// How an effect is screened: what it asks in every action, what follows from the answers, and where a refit begins.
 struct ScreenPlan {
     Signatures signatures;  // nothing: width 0
-    std::function<ScreenColumns(const Eigen::MatrixXd& answers)> columns;
+    std::function<ScreenColumns(const Eigen::MatrixXd& sensitivities)> columns;
     /// Start values out of the best alternative and what the screen expects of its numbers.
     std::function<Eigen::VectorXd(Eigen::Index alternative, const Eigen::VectorXd& screened)> start;
     /// Which alternatives are one place or direction, from which a refit does not come to another. None: all are one.
@@ -76,7 +76,7 @@ struct ScreenPlan {
 };
 
 /// What a probe changes about the body besides its loads.
-struct Circumstances {
+struct ProbeConditions {
     Mat3 turn = Mat3::Identity();  // of the room's directions in the body's frame
     bool vented = false;           // its cavities stand open
 };
@@ -84,9 +84,9 @@ struct Circumstances {
 /// A physical effect, or a fault of a measurement, that a model may lack: a candidate of the diagnosis. One file each.
 ///
 /// `values` are the fit's numbers, in the order of `numbers`.
-class Effect {
+class EffectHypothesis {
 public:
-    virtual ~Effect() = default;
+    virtual ~EffectHypothesis() = default;
     virtual const EffectDescription& description() const = 0;
     const std::string& name() const { return description().name; }
     bool is_of_body() const { return description().kind == EffectKind::body; }
@@ -100,28 +100,28 @@ public:
     // How it is in force; what it does not override it leaves as it is.
 
     /// Puts it in force on the body; false: it does not act there.
-    virtual bool enforce(const Eigen::VectorXd& values, Setting& setting) const;
+    virtual bool enforce(const Eigen::VectorXd& values, ModelSetting& setting) const;
     /// Changes what acts.
     virtual Action act(const Problem& problem, int k, Action action, const Eigen::VectorXd& values) const;
     /// Marker positions as they are read; an affine map of each.
     virtual Points see(const Problem& problem, const Points& markers, const Eigen::VectorXd& values) const;
 
     /// Its numbers in other circumstances than those of the set.
-    virtual Eigen::VectorXd in(const Circumstances& circumstances, const Eigen::VectorXd& values) const;
+    virtual Eigen::VectorXd in(const ProbeConditions& circumstances, const Eigen::VectorXd& values) const;
 
     /// Does it matter what happened before? Then problems are told stage by stage.
     virtual bool has_memory() const { return false; }
 
-    /// Is it so far from linear that its screen may mislead? Then a refit is tried whatever the screen says, where
-    /// nothing else explains the readings.
-    virtual bool outwits_screen() const { return false; }
+    /// Is it so nonlinear that the score test is unreliable? Then a refit is tried regardless of its screen if nothing
+    /// else explains the readings.
+    virtual bool evades_screen() const { return false; }
     /// Does it change a body as errors of its mesh may: in one place, at the supports, in some directions more, or
     /// where it is strained?
     virtual bool is_like_mesh_error() const { return false; }
 
     /// Of the evidence that it brings, the share that its idealisation (even springs, a ball) may leave to another
     /// effect.
-    virtual double left_by_idealisation() const { return 5e-4; }
+    virtual double idealisation_share() const { return 5e-4; }
 
     /// Is it of single readings, which are found and set aside one by one (diagnose/outliers), not fitted? It has no
     /// numbers of the fit then.
@@ -130,29 +130,31 @@ public:
     /// By default the signatures of all numbers at their start, which must be neutral, and the start itself as the
     /// beginning of a refit. Keeps references to the arguments.
     virtual ScreenPlan screen_plan(const BodyModel& model, const Problem& problem, const Explanation& explanation,
-                                   const Played& played) const;
+                                   const ForwardSolution& forward) const;
 
     /// Why a fit with it is no claim, in words; empty: nothing speaks against it. `enough_without`: what is left
     /// without it is noise already.
     virtual std::string objection(const Problem& problem, const Eigen::VectorXd& values, bool enough_without) const;
 
-    /// For the model file: names, values and units as they are told.
-    virtual skeleton::Effect told(const std::vector<EffectNumber>& numbers, const Eigen::VectorXd& values) const;
-    /// The fit's numbers behind what was told; what was not told starts as a fit does.
-    virtual Eigen::VectorXd values(const std::vector<EffectNumber>& numbers, const skeleton::Effect& told) const;
+    /// As an effect record: names, values and units as in model files.
+    virtual skeleton::EffectRecord record(const std::vector<EffectNumber>& numbers,
+                                          const Eigen::VectorXd& values) const;
+    /// Fit parameters from an effect record; parameters that it lacks take their start values.
+    virtual Eigen::VectorXd values(const std::vector<EffectNumber>& numbers,
+                                   const skeleton::EffectRecord& record) const;
     /// A sentence on what it is here: "Gravity of 9.8 m/s^2 along (0, 0, -1) is missing."
-    virtual std::string sentence(const skeleton::Effect& told) const = 0;
+    virtual std::string sentence(const skeleton::EffectRecord& record) const = 0;
     /// The measurements as they would be without this fault, for models that do not know of it.
-    virtual MeasurementSet corrected(const MeasurementSet& set, const skeleton::Effect& told) const;
+    virtual MeasurementSet corrected(const MeasurementSet& set, const skeleton::EffectRecord& record) const;
 
     // How it is hidden in measurements that are made up (palpate probe --hide).
 
     /// Puts it in force behind them, as it is told; by default its physics.
-    virtual void hide(const skeleton::Effect& told, World& world) const;
+    virtual void hide(const skeleton::EffectRecord& record, TrueConditions& conditions) const;
     /// Does the body stand as it does without it, and only its readings differ?
     virtual bool is_of_readings() const { return false; }
     /// What has to be done for it to show.
-    virtual HidingNeeds needs() const { return {}; }
+    virtual SynthesisNeeds needs() const { return {}; }
     /// Its numbers as they are told for that; by default those of its physics.
     virtual std::vector<skeleton::KnownParameter> numbers_to_hide() const;
     /// The stream of random numbers that its own are drawn from, part of what a seed means: 0 to 15 are taken. None:
@@ -160,7 +162,7 @@ public:
     virtual std::optional<std::uint64_t> stream() const { return std::nullopt; }
     /// What is told is taken, the rest drawn. Several: other places for it, for where it can hardly be felt in the
     /// first one. @pre stream() @throws InvalidInput for an effect that cannot be on this body.
-    virtual std::vector<Draft> drafts(Drawing& drawing, const ToldNumbers& told) const;
+    virtual std::vector<EffectSampler> samplers(SamplingContext& context, const SpecifiedNumbers& specified) const;
 };
 
 }  // namespace palpate::identify

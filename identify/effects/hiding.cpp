@@ -5,8 +5,8 @@
 #include <algorithm>
 
 #include "mesh/errors.h"
-#include "mesh/io/words.h"
-#include "skeleton/state.h"
+#include "mesh/text/words.h"
+#include "skeleton/model/state.h"
 
 namespace palpate::identify {
 namespace {
@@ -18,7 +18,7 @@ double rounded(double value) {
 
 }  // namespace
 
-Points World::see(const std::vector<Marker>& rest, const Points& markers) const {
+Points TrueConditions::see(const std::vector<Marker>& rest, const Points& markers) const {
     if (shift.isZero(0) && turn.isZero(0)) return markers;
     Eigen::RowVector3d centre = Eigen::RowVector3d::Zero();
     for (const Marker& marker : rest) centre += marker.rest.transpose();
@@ -27,41 +27,41 @@ Points World::see(const std::vector<Marker>& rest, const Points& markers) const 
     return ((markers.rowwise() - centre) * R.transpose()).rowwise() + (centre + shift.transpose());
 }
 
-double World::scatter(double noise) const {
-    const double width = off_width * noise;
-    return off_share * width * width;
+double TrueConditions::scatter(double noise) const {
+    const double width = outlier_width * noise;
+    return outlier_share * width * width;
 }
 
-double number_of(const skeleton::Effect& told, const std::string& name) {
-    return std::ranges::find(told.parameters, name, &skeleton::EffectParameter::name)->value;
+double number_of(const skeleton::EffectRecord& record, const std::string& name) {
+    return std::ranges::find(record.parameters, name, &skeleton::EffectParameter::name)->value;
 }
 
-bool ToldNumbers::has(const std::string& name) const {
+bool SpecifiedNumbers::has(const std::string& name) const {
     return std::ranges::find(given_, name, &skeleton::EffectParameter::name) != given_.end();
 }
 
-bool ToldNumbers::has_any(const std::vector<std::string>& names) const {
+bool SpecifiedNumbers::has_any(const std::vector<std::string>& names) const {
     return std::ranges::any_of(names, [&](const std::string& name) { return has(name); });
 }
 
-double ToldNumbers::value(const std::string& name, double drawn) const {
-    const auto told = std::ranges::find(given_, name, &skeleton::EffectParameter::name);
-    return told == given_.end() ? drawn : told->value;
+double SpecifiedNumbers::value(const std::string& name, double drawn) const {
+    const auto record = std::ranges::find(given_, name, &skeleton::EffectParameter::name);
+    return record == given_.end() ? drawn : record->value;
 }
 
-double ToldNumbers::positive_value(const std::string& name, double drawn, double most) const {
+double SpecifiedNumbers::positive_value(const std::string& name, double drawn, double most) const {
     const double result = value(name, drawn);
     if (result > 0 && result <= most) return result;
     throw InvalidInput(fmt::format("effect '{}': {} is {:g}, allowed is above 0 to {:g}", effect_, name, result, most));
 }
 
-Vec3 ToldNumbers::vector(const std::array<std::string, 3>& names, const Vec3& drawn) const {
+Vec3 SpecifiedNumbers::vector(const std::array<std::string, 3>& names, const Vec3& drawn) const {
     if (!has_any({names.begin(), names.end()})) return drawn;
     return {value(names[0], 0), value(names[1], 0), value(names[2], 0)};
 }
 
-skeleton::Effect ToldNumbers::effect(const std::vector<std::pair<std::string, double>>& drawn) const {
-    skeleton::Effect effect{effect_, {}};
+skeleton::EffectRecord SpecifiedNumbers::effect(const std::vector<std::pair<std::string, double>>& drawn) const {
+    skeleton::EffectRecord effect{effect_, {}};
     for (const skeleton::KnownParameter& known : known_) {
         const auto own = std::ranges::find(drawn, known.name, &std::pair<std::string, double>::first);
         if (has(known.name)) {

@@ -7,22 +7,21 @@
 #include <utility>
 #include <vector>
 
+#include "identify/measurements/measurement_set.h"
 #include "identify/models/body_model.h"
-#include "identify/particles/random.h"
-#include "identify/set/measurement_set.h"
+#include "identify/numerics/random.h"
 #include "skeleton/effects/effect.h"
 
 namespace palpate::identify {
 
-/// What is in force behind measurements that are made up, beside what their probes are told to do, and how they are
-/// read.
-struct World {
-    Setting setting;
+/// True conditions of a synthetic set: effects in force beyond the reported loads, and faults of its readings.
+struct TrueConditions {
+    ModelSetting setting;
     double gain = 1;            // every second probe (2, 4, ...) presses so many times as hard as it reports
     Vec3 shift = Vec3::Zero();  // of the readings' frame [mm]
     Vec3 turn = Vec3::Zero();   // of it about the centre of the markers at rest, a rotation vector [rad]
-    double off_share = 0;       // of the readings, that are off by themselves
-    double off_width = 0;       // by so many sigmas of the noise
+    double outlier_share = 0;   // of the readings, that are off by themselves
+    double outlier_width = 0;   // by so many sigmas of the noise
 
     /// Marker positions as they are read: y = c + shift + R(turn) (x - c), c the centre of the markers at rest.
     Points see(const std::vector<Marker>& rest, const Points& markers) const;
@@ -30,49 +29,49 @@ struct World {
     double scatter(double noise) const;
 };
 
-/// What has to be done for an effect to show in measurements that are made up.
-struct HidingNeeds {
-    bool release = false;       // one body goes through all probes, let go after each: it shows in what stays
-    bool dwells = false;        // loads are read at several times after they were put on
-    bool noise = false;         // its numbers are told in sigmas
-    bool told_poisson = false;  // the set tells a Poisson's ratio, which it belies
+/// Requirements on the load histories of a synthetic set for an effect to be observable.
+struct SynthesisNeeds {
+    bool release = false;            // one body goes through all probes, let go after each: it shows in what stays
+    bool dwells = false;             // loads are read at several times after they were put on
+    bool noise = false;              // its numbers are told in sigmas
+    bool specified_poisson = false;  // the set tells a Poisson's ratio, which it belies
 };
 
 /// A number of an effect that is told. @pre it is.
-double number_of(const skeleton::Effect& told, const std::string& name);
+double number_of(const skeleton::EffectRecord& record, const std::string& name);
 
-/// An effect in the making: all its numbers are told or drawn, but for how strong it is.
-struct Draft {
-    std::function<skeleton::Effect(double strength)> at;  // stronger with rising strength
-    double start = 1, most = 1e9;                         // of strength; within [0, most] it is sensible
-    double slope = 1;                                     // about d ln change / d ln strength
-    double growth = 8;                                    // most that a trial may be stronger than the one before
-    bool is_told = false;                                 // its strength too: at() gives the same whatever is asked
-    bool is_local = false;                                // it may be felt by some probes only
-    bool acts_at_rest = false;                            // on the untouched body, in proportion to its strength
+/// Sampler of an effect: all its parameters are specified or drawn, except its strength.
+struct EffectSampler {
+    std::function<skeleton::EffectRecord(double strength)> at;  // stronger with rising strength
+    double start = 1, most = 1e9;                               // of strength; within [0, most] it is sensible
+    double slope = 1;                                           // about d ln change / d ln strength
+    double growth = 8;                                          // most that a trial may be stronger than the one before
+    bool is_specified = false;  // its strength is specified too: at() ignores its argument
+    bool is_local = false;      // only some probes may be sensitive to it
+    bool acts_at_rest = false;  // on the untouched body, in proportion to its strength
 };
 
-/// What drafts are made of: the body that an effect is hidden in, and what is done to it.
-struct Drawing {
+/// Context of sampling: the body in which an effect is hidden, and its load histories.
+struct SamplingContext {
     const BodyModel& model;
-    const Setting& setting;                                 // its law and stiffness
-    const MeasurementSet& set;                              // all of it but its states
-    double stiffness;                                       // about its Young's modulus [MPa]
-    std::optional<double> poisson;                          // none: it is a skeleton
-    const std::vector<double>& dwell;                       // times at which a load that is held is read [s]
-    const std::vector<std::vector<Eigen::VectorXd>>& bare;  // configurations with nothing hidden, of each probe and of
-                                                            // the untouched body
+    const ModelSetting& setting;                                // its law and stiffness
+    const MeasurementSet& set;                                  // all of it but its states
+    double stiffness;                                           // about its Young's modulus [MPa]
+    std::optional<double> poisson;                              // none: it is a skeleton
+    const std::vector<double>& dwell;                           // times at which a load that is held is read [s]
+    const std::vector<std::vector<Eigen::VectorXd>>& baseline;  // configurations with nothing hidden, of each probe and
+                                                                // of the untouched body
     RandomStream random;
 
     bool is_skeleton() const { return !poisson; }
     bool in_small_strain() const { return !model.is_nonlinear(setting); }
 };
 
-/// The numbers of an effect that were told, over those that are drawn.
-class ToldNumbers {
+/// Specified parameters of an effect; the others are drawn.
+class SpecifiedNumbers {
 public:
-    ToldNumbers(std::string effect, std::vector<skeleton::EffectParameter> given,
-                std::vector<skeleton::KnownParameter> known)
+    SpecifiedNumbers(std::string effect, std::vector<skeleton::EffectParameter> given,
+                     std::vector<skeleton::KnownParameter> known)
         : effect_(std::move(effect)), given_(std::move(given)), known_(std::move(known)) {}
 
     bool has(const std::string& name) const;
@@ -84,7 +83,7 @@ public:
     Vec3 vector(const std::array<std::string, 3>& names, const Vec3& drawn) const;
     /// The effect with what is told, and what is drawn (rounded) for the rest, in the order in which its numbers are
     /// known; those that are neither are left out.
-    skeleton::Effect effect(const std::vector<std::pair<std::string, double>>& drawn) const;
+    skeleton::EffectRecord effect(const std::vector<std::pair<std::string, double>>& drawn) const;
 
 private:
     std::string effect_;

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "fem/effects/effects.h"
-#include "mesh/contact.h"
+#include "mesh/core/contact.h"
 #include "mesh/types.h"
 
 namespace palpate::identify {
@@ -20,14 +20,14 @@ struct StiffnessParameter {
     double least = -INFINITY, most = INFINITY;
 };
 
-/// What a model is told to be.
-struct Setting {
+/// Settings of a model evaluation.
+struct ModelSetting {
     int law = 0;            // index in BodyModel::laws
     Eigen::VectorXd theta;  // stiffness parameters (P)
     fem::Effects effects;   // in force beyond the model's own
 };
 
-/// What a body keeps of what it went through; each model has its own kind.
+/// Internal variables of a history-dependent body; each model defines its own.
 class Memory {
 public:
     virtual ~Memory() = default;
@@ -65,43 +65,44 @@ public:
     /// The largest side of the body at rest [mm].
     virtual double size() const = 0;
     /// Young's modulus that a setting amounts to [MPa]; for how deep a contact may dent.
-    virtual double young(const Setting& setting) const = 0;
+    virtual double young(const ModelSetting& setting) const = 0;
     /// Does the law bend and turn with the body?
-    virtual bool is_nonlinear(const Setting& setting) const = 0;
+    virtual bool is_nonlinear(const ModelSetting& setting) const = 0;
 
     /// Undeformed.
-    virtual Eigen::VectorXd rest(const Setting& setting) const = 0;
+    virtual Eigen::VectorXd rest(const ModelSetting& setting) const = 0;
 
-    // The five questions.
+    // Forward model and its derivatives.
 
     /// Where all net forces vanish. `start`: a neighbouring configuration; `guide`: the tangent of one, under whatever
     /// setting, which steps from the start may go by. @throws SolverFailure where there is none.
-    virtual Eigen::VectorXd equilibrium(const Setting& setting, const Action& action,
+    virtual Eigen::VectorXd equilibrium(const ModelSetting& setting, const Action& action,
                                         const Eigen::VectorXd* start = nullptr,
                                         const Tangent* guide = nullptr) const = 0;
     /// Net generalized force; minus the reaction at what is held.
-    virtual Eigen::VectorXd residual(const Eigen::VectorXd& q, const Setting& setting, const Action& action) const = 0;
+    virtual Eigen::VectorXd residual(const Eigen::VectorXd& q, const ModelSetting& setting,
+                                     const Action& action) const = 0;
     /// The factored tangent. @throws SolverFailure when it is not positive definite.
-    virtual std::shared_ptr<const Tangent> tangent(const Eigen::VectorXd& q, const Setting& setting,
+    virtual std::shared_ptr<const Tangent> tangent(const Eigen::VectorXd& q, const ModelSetting& setting,
                                                    const Action& action) const = 0;
     /// d residual / d theta (dofs x P): the force signatures of the stiffness parameters.
-    virtual Eigen::MatrixXd parameter_force(const Eigen::VectorXd& q, const Setting& setting,
+    virtual Eigen::MatrixXd parameter_force(const Eigen::VectorXd& q, const ModelSetting& setting,
                                             const Action& action) const = 0;
     /// Positions of the markers (m x 3) [mm].
-    virtual Points observe(const Eigen::VectorXd& q, const Setting& setting) const = 0;
+    virtual Points observe(const Eigen::VectorXd& q, const ModelSetting& setting) const = 0;
     /// P = d observe / d step (3m x dofs).
-    virtual Eigen::SparseMatrix<double> observation(const Eigen::VectorXd& q, const Setting& setting) const = 0;
+    virtual Eigen::SparseMatrix<double> observation(const Eigen::VectorXd& q, const ModelSetting& setting) const = 0;
 
-    // What diagnosis asks besides.
+    // Further queries of the diagnosis.
 
     virtual Eigen::VectorXd advance(const Eigen::VectorXd& q, const Eigen::VectorXd& step,
-                                    const Setting& setting) const = 0;
+                                    const ModelSetting& setting) const = 0;
     /// What the body keeps of an equilibrium, and of what it remembered in it; nothing where its material does not
     /// yield.
-    virtual std::shared_ptr<const Memory> remember(const Eigen::VectorXd& q, const Setting& setting,
+    virtual std::shared_ptr<const Memory> remember(const Eigen::VectorXd& q, const ModelSetting& setting,
                                                    const Action& action) const = 0;
     /// The generalized force of one contact (dofs).
-    virtual Eigen::VectorXd contact_force(const Eigen::VectorXd& q, const Setting& setting,
+    virtual Eigen::VectorXd contact_force(const Eigen::VectorXd& q, const ModelSetting& setting,
                                           const mesh::Contact& contact) const = 0;
     /// The model's direction of its surface near a point: outward unit normal.
     virtual Vec3 normal_near(const Vec3& point, double radius) const = 0;
@@ -111,16 +112,16 @@ public:
     /// Pieces that a support's border cuts (p flags).
     virtual const std::vector<char>& pieces_at_support() const = 0;
     /// d residual / d ln stiffness of weighted pieces (dofs x c); W (p x c).
-    virtual Eigen::MatrixXd piece_force(const Eigen::VectorXd& q, const Setting& setting, const Action& action,
+    virtual Eigen::MatrixXd piece_force(const Eigen::VectorXd& q, const ModelSetting& setting, const Action& action,
                                         const Eigen::MatrixXd& W) const = 0;
 
     /// Points of the surface at rest (s x 3) [mm], and the area that each stands for (s) [mm^2].
     virtual const Points& skin() const = 0;
     virtual const Eigen::VectorXd& skin_areas() const = 0;
     /// Where they stand (s x 3).
-    virtual Points skin_positions(const Eigen::VectorXd& q, const Setting& setting) const = 0;
+    virtual Points skin_positions(const Eigen::VectorXd& q, const ModelSetting& setting) const = 0;
     /// d skin_positions / d step (3s x dofs).
-    virtual Eigen::SparseMatrix<double> skin_motion(const Eigen::VectorXd& q, const Setting& setting) const = 0;
+    virtual Eigen::SparseMatrix<double> skin_motion(const Eigen::VectorXd& q, const ModelSetting& setting) const = 0;
     /// Does the body close in cavities, which can be under pressure?
     virtual bool has_cavities() const = 0;
 
@@ -131,7 +132,7 @@ public:
     /// (dofs x 6); zero at what is free.
     virtual Eigen::MatrixXd support_motion(const Vec3& centre) const = 0;
     /// J * step, at what is held too (dofs x p).
-    virtual Eigen::MatrixXd tangent_times(const Eigen::VectorXd& q, const Setting& setting, const Action& action,
+    virtual Eigen::MatrixXd tangent_times(const Eigen::VectorXd& q, const ModelSetting& setting, const Action& action,
                                           const Eigen::MatrixXd& steps) const = 0;
 };
 

@@ -4,8 +4,8 @@
 #include <Eigen/LU>
 #include <Eigen/SVD>
 
-#include "fem/interpolation.h"
-#include "skeleton/state.h"
+#include "fem/interpolation/interpolation.h"
+#include "skeleton/model/state.h"
 
 namespace palpate::identify {
 namespace {

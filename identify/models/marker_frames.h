@@ -3,8 +3,8 @@
 #include <Eigen/SparseCore>
 #include <vector>
 
-#include "identify/set/measurement_set.h"
-#include "mesh/volume_mesh.h"
+#include "identify/measurements/measurement_set.h"
+#include "mesh/core/volume_mesh.h"
 
 namespace palpate::identify {
 

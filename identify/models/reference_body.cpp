@@ -8,10 +8,10 @@
 #include <mutex>
 #include <tuple>
 
-#include "fem/patch_load.h"
+#include "fem/elements/patch_load.h"
 #include "identify/models/marker_frames.h"
 #include "mesh/errors.h"
-#include "skeleton/state.h"
+#include "skeleton/model/state.h"
 
 namespace palpate::identify {
 namespace {
@@ -39,7 +39,9 @@ private:
     std::shared_ptr<const fem::BodyTangent> factor_;
 };
 
-bool in_small_strain(const Setting& setting) { return static_cast<fem::Law>(setting.law) == fem::Law::linear; }
+bool in_small_strain(const ModelSetting& setting) {
+    return static_cast<fem::MaterialLaw>(setting.law) == fem::MaterialLaw::linear;
+}
 
 class FemMemory : public Memory {
 public:
@@ -96,8 +98,8 @@ struct ReferenceBody::Impl {
     mutable std::mutex mutex;
     mutable std::map<Place, Eigen::VectorXd> shares;  // (n)
 
-    fem::BodySetting setting(const Setting& s, const fem::Material& material, const Action& action) const {
-        fem::BodySetting result{static_cast<fem::Law>(s.law), material, s.effects};
+    fem::BodySetting setting(const ModelSetting& s, const fem::Material& material, const Action& action) const {
+        fem::BodySetting result{static_cast<fem::MaterialLaw>(s.law), material, s.effects};
         result.effects.pressure += action.pressure;
         return result;
     }
@@ -173,25 +175,26 @@ int ReferenceBody::dofs() const { return static_cast<int>(impl_->body.mesh().nod
 const std::vector<std::string>& ReferenceBody::laws() const { return impl_->laws; }
 const std::vector<StiffnessParameter>& ReferenceBody::parameters() const { return impl_->parameters; }
 double ReferenceBody::size() const { return impl_->size; }
-double ReferenceBody::young(const Setting& setting) const { return std::exp(setting.theta[ln_young]); }
-bool ReferenceBody::is_nonlinear(const Setting& setting) const {
+double ReferenceBody::young(const ModelSetting& setting) const { return std::exp(setting.theta[ln_young]); }
+bool ReferenceBody::is_nonlinear(const ModelSetting& setting) const {
     const bool one_sided =
         std::ranges::any_of(setting.effects.points, [](const auto& potential) { return potential->is_one_sided(); });
-    return static_cast<fem::Law>(setting.law) != fem::Law::linear || setting.effects.plasticity || one_sided;
+    return static_cast<fem::MaterialLaw>(setting.law) != fem::MaterialLaw::linear || setting.effects.plasticity ||
+           one_sided;
 }
 const fem::HyperelasticBody& ReferenceBody::body() const { return impl_->body; }
 
-fem::Material ReferenceBody::material(const Setting& setting) const {
+fem::Material ReferenceBody::material(const ModelSetting& setting) const {
     // theta = (ln E, ln(1 - 2 nu))
     return {.young = std::exp(setting.theta[ln_young]),
             .poisson = 0.5 * (1 - std::exp(setting.theta[ln_compressibility])),
             .density = impl_->density};
 }
 
-Eigen::VectorXd ReferenceBody::rest(const Setting&) const { return Eigen::VectorXd::Zero(dofs()); }
+Eigen::VectorXd ReferenceBody::rest(const ModelSetting&) const { return Eigen::VectorXd::Zero(dofs()); }
 
-Eigen::VectorXd ReferenceBody::equilibrium(const Setting& setting, const Action& action, const Eigen::VectorXd* start,
-                                           const Tangent* guide) const {
+Eigen::VectorXd ReferenceBody::equilibrium(const ModelSetting& setting, const Action& action,
+                                           const Eigen::VectorXd* start, const Tangent* guide) const {
     // What is not found soon next to a known state is no answer for a trial.
     require_material(material(setting));
     const fem::NewtonOptions options{.tolerance = 1e-7, .iterations = start ? 40 : 60, .load_steps = start ? 0 : 16};
@@ -202,19 +205,20 @@ Eigen::VectorXd ReferenceBody::equilibrium(const Setting& setting, const Action&
         .u;
 }
 
-Eigen::VectorXd ReferenceBody::residual(const Eigen::VectorXd& q, const Setting& setting, const Action& action) const {
+Eigen::VectorXd ReferenceBody::residual(const Eigen::VectorXd& q, const ModelSetting& setting,
+                                        const Action& action) const {
     return impl_->body.residual(q, impl_->setting(setting, material(setting), action), impl_->load(action),
                                 memory_of(action));
 }
 
-std::shared_ptr<const Tangent> ReferenceBody::tangent(const Eigen::VectorXd& q, const Setting& setting,
+std::shared_ptr<const Tangent> ReferenceBody::tangent(const Eigen::VectorXd& q, const ModelSetting& setting,
                                                       const Action& action) const {
     require_material(material(setting));
     return std::make_shared<FemTangent>(
         impl_->body.factor(q, impl_->setting(setting, material(setting), action), memory_of(action)));
 }
 
-Eigen::MatrixXd ReferenceBody::parameter_force(const Eigen::VectorXd& q, const Setting& setting,
+Eigen::MatrixXd ReferenceBody::parameter_force(const Eigen::VectorXd& q, const ModelSetting& setting,
                                                const Action& action) const {
     // f = mu a + K b with mu = E / (2 (1 + nu)), K = E / (3 (1 - 2 nu)); t = ln(1 - 2 nu): d nu/dt = -(1 - 2 nu)/2,
     // so d mu/dt = mu (1 - 2 nu) / (2 (1 + nu)) and dK/dt = -K. The residual is minus f.
@@ -227,26 +231,27 @@ Eigen::MatrixXd ReferenceBody::parameter_force(const Eigen::VectorXd& q, const S
     return G;
 }
 
-Points ReferenceBody::observe(const Eigen::VectorXd& q, const Setting& setting) const {
+Points ReferenceBody::observe(const Eigen::VectorXd& q, const ModelSetting& setting) const {
     return impl_->frames.positions(q, in_small_strain(setting));
 }
 
-Eigen::SparseMatrix<double> ReferenceBody::observation(const Eigen::VectorXd& q, const Setting& setting) const {
+Eigen::SparseMatrix<double> ReferenceBody::observation(const Eigen::VectorXd& q, const ModelSetting& setting) const {
     return impl_->frames.derivative(q, in_small_strain(setting));
 }
 
-Eigen::VectorXd ReferenceBody::advance(const Eigen::VectorXd& q, const Eigen::VectorXd& step, const Setting&) const {
+Eigen::VectorXd ReferenceBody::advance(const Eigen::VectorXd& q, const Eigen::VectorXd& step,
+                                       const ModelSetting&) const {
     return q + step;
 }
 
-std::shared_ptr<const Memory> ReferenceBody::remember(const Eigen::VectorXd& q, const Setting& setting,
+std::shared_ptr<const Memory> ReferenceBody::remember(const Eigen::VectorXd& q, const ModelSetting& setting,
                                                       const Action& action) const {
     if (!setting.effects.plasticity) return nullptr;
     return std::make_shared<FemMemory>(
         impl_->body.plastic_state(q, impl_->setting(setting, material(setting), action), memory_of(action)));
 }
 
-Eigen::VectorXd ReferenceBody::contact_force(const Eigen::VectorXd&, const Setting&,
+Eigen::VectorXd ReferenceBody::contact_force(const Eigen::VectorXd&, const ModelSetting&,
                                              const mesh::Contact& contact) const {
     return impl_->load({.contacts = {contact}});
 }
@@ -258,7 +263,7 @@ Vec3 ReferenceBody::normal_near(const Vec3& point, double radius) const {
 const Points& ReferenceBody::pieces() const { return impl_->centres; }
 const std::vector<char>& ReferenceBody::pieces_at_support() const { return impl_->cut; }
 
-Eigen::MatrixXd ReferenceBody::piece_force(const Eigen::VectorXd& q, const Setting& setting, const Action& action,
+Eigen::MatrixXd ReferenceBody::piece_force(const Eigen::VectorXd& q, const ModelSetting& setting, const Action& action,
                                            const Eigen::MatrixXd& W) const {
     return -impl_->body.element_forces(q, impl_->setting(setting, material(setting), action), W, memory_of(action));
 }
@@ -266,12 +271,12 @@ Eigen::MatrixXd ReferenceBody::piece_force(const Eigen::VectorXd& q, const Setti
 const Points& ReferenceBody::skin() const { return impl_->skin; }
 const Eigen::VectorXd& ReferenceBody::skin_areas() const { return impl_->skin_areas; }
 
-Points ReferenceBody::skin_positions(const Eigen::VectorXd& q, const Setting&) const {
+Points ReferenceBody::skin_positions(const Eigen::VectorXd& q, const ModelSetting&) const {
     const Eigen::Map<const Points> u(q.data(), q.size() / 3, 3);
     return impl_->skin + Points(u(impl_->skin_nodes, Eigen::all));
 }
 
-Eigen::SparseMatrix<double> ReferenceBody::skin_motion(const Eigen::VectorXd&, const Setting&) const {
+Eigen::SparseMatrix<double> ReferenceBody::skin_motion(const Eigen::VectorXd&, const ModelSetting&) const {
     std::vector<Eigen::Triplet<double>> ones;
     ones.reserve(3 * impl_->skin_nodes.size());
     for (std::size_t i = 0; i < impl_->skin_nodes.size(); ++i) {
@@ -299,8 +304,8 @@ Eigen::MatrixXd ReferenceBody::support_motion(const Vec3& centre) const {
     return S;
 }
 
-Eigen::MatrixXd ReferenceBody::tangent_times(const Eigen::VectorXd& q, const Setting& setting, const Action& action,
-                                             const Eigen::MatrixXd& steps) const {
+Eigen::MatrixXd ReferenceBody::tangent_times(const Eigen::VectorXd& q, const ModelSetting& setting,
+                                             const Action& action, const Eigen::MatrixXd& steps) const {
     return impl_->body.tangent(q, impl_->setting(setting, material(setting), action), memory_of(action)) * steps;
 }
 

@@ -7,17 +7,17 @@
 #include <mutex>
 #include <tuple>
 
-#include "identify/set/loads.h"
-#include "skeleton/attach.h"
+#include "identify/loading/loads.h"
 #include "skeleton/effects/placed_effects.h"
-#include "skeleton/statics.h"
-#include "skeleton/stiffness_order.h"
+#include "skeleton/model/attach.h"
+#include "skeleton/model/stiffness_order.h"
+#include "skeleton/statics/statics.h"
 
 namespace palpate::identify {
 namespace {
 
 using skeleton::Equilibrium;
-using skeleton::Law;
+using skeleton::EquilibriumLaw;
 using skeleton::State;
 
 Eigen::VectorXd pack(const State& state) {
@@ -91,22 +91,22 @@ struct SkeletonBody::Impl {
     mutable std::mutex mutex;
     mutable std::map<Place, skeleton::Load> shares;  // of a force of 1 N along x
 
-    const skeleton::Model& model(const Setting& setting) const { return by_law[setting.law]; }
+    const skeleton::Model& model(const ModelSetting& setting) const { return by_law[setting.law]; }
     Eigen::RowVectorXd weight_of(const skeleton::StiffnessOrder& order, Eigen::Index place,
                                  const Eigen::MatrixXd& W) const;
     skeleton::Load shares_of(const mesh::Contact& contact) const;
     skeleton::Load load(const Action& action) const;
     /// What is in force: a pressure that is known to act does so in cavities, where there are any.
-    fem::Effects effects(const Setting& setting, const Action& action) const {
+    fem::Effects effects(const ModelSetting& setting, const Action& action) const {
         fem::Effects result = setting.effects;
         if (has_cavities) result.pressure += action.pressure;
         return result;
     }
     /// A configuration as the statics know it.
-    Equilibrium equilibrium_of(const Eigen::VectorXd& q, const Setting& setting, const Action& action = {}) const {
+    Equilibrium equilibrium_of(const Eigen::VectorXd& q, const ModelSetting& setting, const Action& action = {}) const {
         Equilibrium at;
         at.before = fibres_before(action);
-        if (static_cast<Law>(setting.law) == Law::linear) {
+        if (static_cast<EquilibriumLaw>(setting.law) == EquilibriumLaw::linear) {
             at.step = q;
             at.state = skeleton::advance(skeleton::rest_state(by_law[0]), q);
         } else {
@@ -114,8 +114,9 @@ struct SkeletonBody::Impl {
         }
         return at;
     }
-    State tangent_state(const Eigen::VectorXd& q, const Setting& setting) const {
-        return static_cast<Law>(setting.law) == Law::linear ? skeleton::rest_state(by_law[0]) : unpack(q);
+    State tangent_state(const Eigen::VectorXd& q, const ModelSetting& setting) const {
+        return static_cast<EquilibriumLaw>(setting.law) == EquilibriumLaw::linear ? skeleton::rest_state(by_law[0])
+                                                                                  : unpack(q);
     }
 };
 
@@ -125,7 +126,7 @@ SkeletonBody::SkeletonBody(const skeleton::Model& model, const std::vector<Marke
     for (int law = 0; law < 2; ++law) {
         i.by_law[law] = model;
         i.by_law[law].effects.clear();
-        i.by_law[law].law = static_cast<Law>(law);
+        i.by_law[law].law = static_cast<EquilibriumLaw>(law);
         i.laws.emplace_back(skeleton::law_names[law]);
     }
     const skeleton::Attacher attach(model);
@@ -204,10 +205,12 @@ int SkeletonBody::dofs() const { return impl_->by_law[0].dofs(); }
 const std::vector<std::string>& SkeletonBody::laws() const { return impl_->laws; }
 const std::vector<StiffnessParameter>& SkeletonBody::parameters() const { return impl_->parameters; }
 double SkeletonBody::size() const { return impl_->size; }
-double SkeletonBody::young(const Setting& setting) const { return impl_->young * std::exp(setting.theta.mean()); }
-bool SkeletonBody::is_nonlinear(const Setting& setting) const { return static_cast<Law>(setting.law) != Law::linear; }
+double SkeletonBody::young(const ModelSetting& setting) const { return impl_->young * std::exp(setting.theta.mean()); }
+bool SkeletonBody::is_nonlinear(const ModelSetting& setting) const {
+    return static_cast<EquilibriumLaw>(setting.law) != EquilibriumLaw::linear;
+}
 
-Eigen::VectorXd SkeletonBody::stiffness(const Setting& setting) const {
+Eigen::VectorXd SkeletonBody::stiffness(const ModelSetting& setting) const {
     Eigen::VectorXd k = impl_->k0;
     for (Eigen::Index place = 0; place < k.size(); ++place) {
         const int kind = impl_->parameter_of[place];
@@ -216,13 +219,13 @@ Eigen::VectorXd SkeletonBody::stiffness(const Setting& setting) const {
     return k;
 }
 
-Eigen::VectorXd SkeletonBody::rest(const Setting& setting) const {
+Eigen::VectorXd SkeletonBody::rest(const ModelSetting& setting) const {
     if (!is_nonlinear(setting)) return Eigen::VectorXd::Zero(dofs());
     return pack(skeleton::rest_state(impl_->by_law[0]));
 }
 
-Eigen::VectorXd SkeletonBody::equilibrium(const Setting& setting, const Action& action, const Eigen::VectorXd* start,
-                                          const Tangent*) const {
+Eigen::VectorXd SkeletonBody::equilibrium(const ModelSetting& setting, const Action& action,
+                                          const Eigen::VectorXd* start, const Tangent*) const {
     skeleton::StaticsSolver solver(impl_->model(setting), impl_->effects(setting, action));
     const skeleton::Load load = impl_->load(action);
     const skeleton::FibreStates& before = fibres_before(action);
@@ -232,7 +235,8 @@ Eigen::VectorXd SkeletonBody::equilibrium(const Setting& setting, const Action& 
     return pack(solver.solve(stiffness(setting), load, {}, from ? &*from : nullptr, before).state);
 }
 
-Eigen::VectorXd SkeletonBody::residual(const Eigen::VectorXd& q, const Setting& setting, const Action& action) const {
+Eigen::VectorXd SkeletonBody::residual(const Eigen::VectorXd& q, const ModelSetting& setting,
+                                       const Action& action) const {
     const skeleton::Model& model = impl_->model(setting);
     const Equilibrium at = impl_->equilibrium_of(q, setting, action);
     const fem::Effects in_force = impl_->effects(setting, action);
@@ -244,13 +248,13 @@ Eigen::VectorXd SkeletonBody::residual(const Eigen::VectorXd& q, const Setting& 
     return net;
 }
 
-std::shared_ptr<const Tangent> SkeletonBody::tangent(const Eigen::VectorXd& q, const Setting& setting,
+std::shared_ptr<const Tangent> SkeletonBody::tangent(const Eigen::VectorXd& q, const ModelSetting& setting,
                                                      const Action& action) const {
     return std::make_shared<SolverTangent>(impl_->model(setting), impl_->effects(setting, action), stiffness(setting),
                                            impl_->load(action), impl_->equilibrium_of(q, setting, action));
 }
 
-Eigen::MatrixXd SkeletonBody::parameter_force(const Eigen::VectorXd& q, const Setting& setting,
+Eigen::MatrixXd SkeletonBody::parameter_force(const Eigen::VectorXd& q, const ModelSetting& setting,
                                               const Action& action) const {
     // by the logarithm of a multiplier: the force of that kind of stiffness itself
     const Eigen::SparseMatrix<double> G =
@@ -264,27 +268,27 @@ Eigen::MatrixXd SkeletonBody::parameter_force(const Eigen::VectorXd& q, const Se
     return G * own;
 }
 
-Points SkeletonBody::observe(const Eigen::VectorXd& q, const Setting& setting) const {
+Points SkeletonBody::observe(const Eigen::VectorXd& q, const ModelSetting& setting) const {
     return skeleton::observe(impl_->model(setting), impl_->equilibrium_of(q, setting), impl_->markers);
 }
 
-Eigen::SparseMatrix<double> SkeletonBody::observation(const Eigen::VectorXd& q, const Setting& setting) const {
+Eigen::SparseMatrix<double> SkeletonBody::observation(const Eigen::VectorXd& q, const ModelSetting& setting) const {
     return skeleton::observation_jacobian(impl_->model(setting), impl_->equilibrium_of(q, setting), impl_->markers);
 }
 
 Eigen::VectorXd SkeletonBody::advance(const Eigen::VectorXd& q, const Eigen::VectorXd& step,
-                                      const Setting& setting) const {
+                                      const ModelSetting& setting) const {
     return is_nonlinear(setting) ? pack(skeleton::advance(unpack(q), step)) : Eigen::VectorXd(q + step);
 }
 
-std::shared_ptr<const Memory> SkeletonBody::remember(const Eigen::VectorXd& q, const Setting& setting,
+std::shared_ptr<const Memory> SkeletonBody::remember(const Eigen::VectorXd& q, const ModelSetting& setting,
                                                      const Action& action) const {
     if (!setting.effects.plasticity) return nullptr;
     return std::make_shared<FibreMemory>(
         skeleton::flowed(impl_->model(setting), impl_->equilibrium_of(q, setting, action), setting.effects));
 }
 
-Eigen::VectorXd SkeletonBody::contact_force(const Eigen::VectorXd& q, const Setting& setting,
+Eigen::VectorXd SkeletonBody::contact_force(const Eigen::VectorXd& q, const ModelSetting& setting,
                                             const mesh::Contact& contact) const {
     return skeleton::external_force(impl_->model(setting), impl_->tangent_state(q, setting),
                                     impl_->load({.contacts = {contact}}));
@@ -312,7 +316,7 @@ Eigen::RowVectorXd SkeletonBody::Impl::weight_of(const skeleton::StiffnessOrder&
 const Points& SkeletonBody::pieces() const { return impl_->centres; }
 const std::vector<char>& SkeletonBody::pieces_at_support() const { return impl_->at_support; }
 
-Eigen::MatrixXd SkeletonBody::piece_force(const Eigen::VectorXd& q, const Setting& setting, const Action& action,
+Eigen::MatrixXd SkeletonBody::piece_force(const Eigen::VectorXd& q, const ModelSetting& setting, const Action& action,
                                           const Eigen::MatrixXd& W) const {
     Eigen::MatrixXd weighted(impl_->k0.size(), W.cols());
     const Eigen::VectorXd k = stiffness(setting);
@@ -328,11 +332,11 @@ Eigen::MatrixXd SkeletonBody::piece_force(const Eigen::VectorXd& q, const Settin
 const Points& SkeletonBody::skin() const { return impl_->by_law[0].surface.vertices; }
 const Eigen::VectorXd& SkeletonBody::skin_areas() const { return impl_->skin_areas; }
 
-Points SkeletonBody::skin_positions(const Eigen::VectorXd& q, const Setting& setting) const {
+Points SkeletonBody::skin_positions(const Eigen::VectorXd& q, const ModelSetting& setting) const {
     return skeleton::observe(impl_->model(setting), impl_->equilibrium_of(q, setting), impl_->by_law[0].skin);
 }
 
-Eigen::SparseMatrix<double> SkeletonBody::skin_motion(const Eigen::VectorXd& q, const Setting& setting) const {
+Eigen::SparseMatrix<double> SkeletonBody::skin_motion(const Eigen::VectorXd& q, const ModelSetting& setting) const {
     return skeleton::observation_jacobian(impl_->model(setting), impl_->equilibrium_of(q, setting),
                                           impl_->by_law[0].skin);
 }
@@ -354,7 +358,7 @@ Eigen::MatrixXd SkeletonBody::support_motion(const Vec3& centre) const {
     return S;
 }
 
-Eigen::MatrixXd SkeletonBody::tangent_times(const Eigen::VectorXd& q, const Setting& setting, const Action& action,
+Eigen::MatrixXd SkeletonBody::tangent_times(const Eigen::VectorXd& q, const ModelSetting& setting, const Action& action,
                                             const Eigen::MatrixXd& steps) const {
     skeleton::Model model = impl_->model(setting);
     skeleton::set_stiffness(model, stiffness(setting));

@@ -1,8 +1,8 @@
 #pragma once
 
+#include "identify/measurements/measurement_set.h"
 #include "identify/models/body_model.h"
-#include "identify/set/measurement_set.h"
-#include "skeleton/model.h"
+#include "skeleton/model/model.h"
 
 namespace palpate::identify {
 
@@ -21,42 +21,43 @@ public:
     const std::vector<std::string>& laws() const override;
     const std::vector<StiffnessParameter>& parameters() const override;
     double size() const override;
-    double young(const Setting& setting) const override;
-    bool is_nonlinear(const Setting& setting) const override;
-    Eigen::VectorXd rest(const Setting& setting) const override;
-    Eigen::VectorXd equilibrium(const Setting& setting, const Action& action, const Eigen::VectorXd* start = nullptr,
-                                const Tangent* guide = nullptr) const override;
-    Eigen::VectorXd residual(const Eigen::VectorXd& q, const Setting& setting, const Action& action) const override;
-    std::shared_ptr<const Tangent> tangent(const Eigen::VectorXd& q, const Setting& setting,
+    double young(const ModelSetting& setting) const override;
+    bool is_nonlinear(const ModelSetting& setting) const override;
+    Eigen::VectorXd rest(const ModelSetting& setting) const override;
+    Eigen::VectorXd equilibrium(const ModelSetting& setting, const Action& action,
+                                const Eigen::VectorXd* start = nullptr, const Tangent* guide = nullptr) const override;
+    Eigen::VectorXd residual(const Eigen::VectorXd& q, const ModelSetting& setting,
+                             const Action& action) const override;
+    std::shared_ptr<const Tangent> tangent(const Eigen::VectorXd& q, const ModelSetting& setting,
                                            const Action& action) const override;
-    Eigen::MatrixXd parameter_force(const Eigen::VectorXd& q, const Setting& setting,
+    Eigen::MatrixXd parameter_force(const Eigen::VectorXd& q, const ModelSetting& setting,
                                     const Action& action) const override;
-    Points observe(const Eigen::VectorXd& q, const Setting& setting) const override;
-    Eigen::SparseMatrix<double> observation(const Eigen::VectorXd& q, const Setting& setting) const override;
+    Points observe(const Eigen::VectorXd& q, const ModelSetting& setting) const override;
+    Eigen::SparseMatrix<double> observation(const Eigen::VectorXd& q, const ModelSetting& setting) const override;
     Eigen::VectorXd advance(const Eigen::VectorXd& q, const Eigen::VectorXd& step,
-                            const Setting& setting) const override;
-    std::shared_ptr<const Memory> remember(const Eigen::VectorXd& q, const Setting& setting,
+                            const ModelSetting& setting) const override;
+    std::shared_ptr<const Memory> remember(const Eigen::VectorXd& q, const ModelSetting& setting,
                                            const Action& action) const override;
-    Eigen::VectorXd contact_force(const Eigen::VectorXd& q, const Setting& setting,
+    Eigen::VectorXd contact_force(const Eigen::VectorXd& q, const ModelSetting& setting,
                                   const mesh::Contact& contact) const override;
     Vec3 normal_near(const Vec3& point, double radius) const override;
     const Points& pieces() const override;
     const std::vector<char>& pieces_at_support() const override;
-    Eigen::MatrixXd piece_force(const Eigen::VectorXd& q, const Setting& setting, const Action& action,
+    Eigen::MatrixXd piece_force(const Eigen::VectorXd& q, const ModelSetting& setting, const Action& action,
                                 const Eigen::MatrixXd& W) const override;
     const Points& skin() const override;
     const Eigen::VectorXd& skin_areas() const override;
-    Points skin_positions(const Eigen::VectorXd& q, const Setting& setting) const override;
-    Eigen::SparseMatrix<double> skin_motion(const Eigen::VectorXd& q, const Setting& setting) const override;
+    Points skin_positions(const Eigen::VectorXd& q, const ModelSetting& setting) const override;
+    Eigen::SparseMatrix<double> skin_motion(const Eigen::VectorXd& q, const ModelSetting& setting) const override;
     bool has_cavities() const override;
     const Points& support_points() const override;
     const Eigen::VectorXd& support_shares() const override;
     Eigen::MatrixXd support_motion(const Vec3& centre) const override;
-    Eigen::MatrixXd tangent_times(const Eigen::VectorXd& q, const Setting& setting, const Action& action,
+    Eigen::MatrixXd tangent_times(const Eigen::VectorXd& q, const ModelSetting& setting, const Action& action,
                                   const Eigen::MatrixXd& steps) const override;
 
     /// Stiffnesses of a setting, as skeleton::StiffnessOrder says.
-    Eigen::VectorXd stiffness(const Setting& setting) const;
+    Eigen::VectorXd stiffness(const ModelSetting& setting) const;
 
 private:
     struct Impl;

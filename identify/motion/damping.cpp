@@ -5,11 +5,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "identify/motion/leftover.h"
+#include "identify/inference/particles/resampling.h"
+#include "identify/inference/particles/tempered_filter.h"
+#include "identify/loading/loads.h"
+#include "identify/motion/residuals.h"
 #include "identify/motion/ringing_fit.h"
-#include "identify/particles/resampling.h"
-#include "identify/particles/tempered_filter.h"
-#include "identify/set/loads.h"
 #include "mesh/errors.h"
 
 namespace palpate::identify {
@@ -20,18 +20,18 @@ using Eigen::VectorXd;
 double turns_a_second(double omega) { return omega / (2 * M_PI); }
 
 /// What the modes make of the markers' motion without damping, as mean squares (n).
-VectorXd amplitudes(const Ringings& ringings) {
-    VectorXd squares = VectorXd::Zero(ringings.vibration.modes());
-    for (const Ringing& recording : ringings.recordings) {
+VectorXd amplitudes(const Ringdowns& ringdowns) {
+    VectorXd squares = VectorXd::Zero(ringdowns.vibration.modes());
+    for (const Ringdown& recording : ringdowns.recordings) {
         for (std::size_t s = 1; s < recording.stretches.size(); ++s) squares += recording.stretches[s].jump.cwiseAbs2();
     }
-    return squares.cwiseProduct(ringings.shapes.colwise().squaredNorm().transpose());
+    return squares.cwiseProduct(ringdowns.shapes.colwise().squaredNorm().transpose());
 }
 
 /// Half the largest rate of instants over all recordings [Hz]: nothing faster is told apart. [Nyquist]
-double fastest_told(const Ringings& ringings) {
+double fastest_resolved(const Ringdowns& ringdowns) {
     double fastest = 0;
-    for (const Ringing& recording : ringings.recordings) {
+    for (const Ringdown& recording : ringdowns.recordings) {
         const auto instants = recording.times.size();
         if (instants < 2) continue;
         const double lasted = recording.times[instants - 1] - recording.times[0];
@@ -41,19 +41,18 @@ double fastest_told(const Ringings& ringings) {
 }
 
 /// The modes that move the markers most, in order of frequency.
-std::vector<int> chosen_modes(const Ringings& ringings, int most) {
+std::vector<int> chosen_modes(const Ringdowns& ringdowns, int most) {
     constexpr double least = 0.01;  // of the mean square of the motion: what is less drowns in errors of the others
-    const VectorXd share = amplitudes(ringings) / amplitudes(ringings).sum();
-    const double fastest = fastest_told(ringings);
+    const VectorXd share = amplitudes(ringdowns) / amplitudes(ringdowns).sum();
+    const double fastest = fastest_resolved(ringdowns);
     std::vector<int> modes;
     for (int i = 0; i < share.size(); ++i) {
-        if (share[i] >= least && turns_a_second(ringings.vibration.frequencies[i]) < fastest) modes.push_back(i);
+        if (share[i] >= least && turns_a_second(ringdowns.vibration.frequencies[i]) < fastest) modes.push_back(i);
     }
     if (modes.empty())
         throw InvalidInput(
-            fmt::format("the recordings cannot tell damping: of what the loads' changes set in motion "
-                        "nothing is slower than half the {:g} readings a second. Read more often, or "
-                        "let a load act that the body gives way to.",
+            fmt::format("damping is not observable in the recordings: no excited mode lies below half the sampling "
+                        "rate of {:g} per second. Sample faster, or excite a slower mode.",
                         2 * fastest));
     std::ranges::sort(modes, [&](int a, int b) { return share[a] > share[b]; });
     modes.resize(std::min(modes.size(), static_cast<std::size_t>(most)));
@@ -62,33 +61,33 @@ std::vector<int> chosen_modes(const Ringings& ringings, int most) {
 }
 
 /// Of weighed positive values; informed by their logarithms, of which the prior's sd is told.
-Known known(const VectorXd& values, const VectorXd& weights, double prior_sd) {
-    Known told;
-    told.mean = weights.dot(values);
-    told.sd = std::sqrt(weights.dot((values.array() - told.mean).square().matrix()));
-    told.q025 = weighted_quantile(values, weights, 0.025);
-    told.q50 = weighted_quantile(values, weights, 0.5);
-    told.q975 = weighted_quantile(values, weights, 0.975);
+PosteriorSummary known(const VectorXd& values, const VectorXd& weights, double prior_sd) {
+    PosteriorSummary summary;
+    summary.mean = weights.dot(values);
+    summary.sd = std::sqrt(weights.dot((values.array() - summary.mean).square().matrix()));
+    summary.q025 = weighted_quantile(values, weights, 0.025);
+    summary.q50 = weighted_quantile(values, weights, 0.5);
+    summary.q975 = weighted_quantile(values, weights, 0.975);
     const VectorXd ln = values.array().log();
     const double middle = weights.dot(ln);
-    told.informed = std::sqrt(weights.dot((ln.array() - middle).square().matrix())) <= 0.7 * prior_sd;
-    return told;
+    summary.informed = std::sqrt(weights.dot((ln.array() - middle).square().matrix())) <= 0.7 * prior_sd;
+    return summary;
 }
 
 /// A law's fit, and how it is weighed.
 struct Fitted {
     DampingLaw law;
-    RingingFit fit;
+    RingdownFit fit;
     VectorXd theta;
     GaussianProposal proposal;
     double log_evidence = 0;
 };
 
-Fitted fitted(const Ringings& ringings, DampingLaw law, const VectorXd& start, double variance) {
-    Fitted made{.law = law, .fit = RingingFit(ringings, law), .theta = start, .proposal = {}};
+Fitted fitted(const Ringdowns& ringdowns, DampingLaw law, const VectorXd& start, double variance) {
+    Fitted made{.law = law, .fit = RingdownFit(ringdowns, law), .theta = start, .proposal = {}};
     made.theta = made.fit.most_probable(start, variance);
     const LogNormalPrior& prior = made.fit.prior();
-    const Eigen::MatrixXd J = made.fit.slopes(made.theta) * prior.sd.asDiagonal() / std::sqrt(variance);
+    const Eigen::MatrixXd J = made.fit.jacobian(made.theta) * prior.sd.asDiagonal() / std::sqrt(variance);
     const SymmetricProduct A = [&](const Eigen::MatrixXd& V) -> Eigen::MatrixXd { return J.transpose() * (J * V); };
     made.proposal = {.mean = made.theta,
                      .prior = prior,
@@ -111,36 +110,36 @@ constexpr double worth_a_law = 1;  // ln evidence that a law must have over thos
 
 class Identification {
 public:
-    Identification(const MeasurementSet& set, const DampingOptions& options, Ringings ringings)
-        : set_(set), options_(options), ringings_(std::move(ringings)) {}
+    Identification(const MeasurementSet& set, const DampingOptions& options, Ringdowns ringdowns)
+        : set_(set), options_(options), ringdowns_(std::move(ringdowns)) {}
 
     DampingResult run() {
         const Fitted best = best_law();
         weigh(best);
-        tell_leftover(best);
-        tell_traces(best);
+        report_residual(best);
+        report_traces(best);
         return std::move(result_);
     }
 
 private:
     /// Noise that is told holds where the model is right; what is left tells where it is not.
-    bool noise_is_told() const { return set_.position_noise.has_value(); }
+    bool noise_is_known() const { return set_.position_noise.has_value(); }
 
     Fitted best_law() {
-        const RingingFit stiffness(ringings_, DampingLaw::stiffness);
+        const RingdownFit stiffness(ringdowns_, DampingLaw::stiffness);
         const VectorXd rest = stiffness.prior().mean;
         // at first all that moves is taken for error, so that no wrong number of cycles is preferred
-        const double coarse = variance_of(leftover(stiffness, ringings_, rest), noise_is_told());
+        const double coarse = variance_of(residuals(stiffness, ringdowns_, rest), noise_is_known());
         VectorXd start = stiffness.most_probable(stiffness.scanned(coarse), coarse);
         for (int again = 0; again < 2; ++again) {
-            variance_ = variance_of(leftover(stiffness, ringings_, start), noise_is_told());
+            variance_ = variance_of(residuals(stiffness, ringdowns_, start), noise_is_known());
             start = stiffness.most_probable(start, variance_);
         }
         std::vector<Fitted> fits;
-        fits.push_back(fitted(ringings_, DampingLaw::stiffness, start, variance_));
-        if (ringings_.vibration.modes() > 1) {
+        fits.push_back(fitted(ringdowns_, DampingLaw::stiffness, start, variance_));
+        if (ringdowns_.vibration.modes() > 1) {
             for (const DampingLaw law : {DampingLaw::mass, DampingLaw::both})
-                fits.push_back(fitted(ringings_, law, start_of(start, law), variance_));
+                fits.push_back(fitted(ringdowns_, law, start_of(start, law), variance_));
         }
         const double most = std::ranges::max_element(fits, {}, &Fitted::log_evidence)->log_evidence;
         std::size_t best = 0;
@@ -150,7 +149,7 @@ private:
         }
         const auto rivals =
             std::ranges::count_if(fits, [&](const Fitted& one) { return one.log_evidence > most - worth_a_law; });
-        result_.law_is_told = fits.size() > 1 && rivals == 1;
+        result_.law_is_identified = fits.size() > 1 && rivals == 1;
         return std::move(fits[best]);
     }
 
@@ -177,23 +176,23 @@ private:
             known(each([&](const VectorXd& theta) { return best.fit.common_ratio(theta); }), weights, prior.sd[0]);
         result_.speed =
             known(each([&](const VectorXd& theta) { return best.fit.speed(theta); }), weights, prior.sd[speed]);
-        const double slowest = ringings_.vibration.frequencies[0] * result_.speed.q50,
+        const double slowest = ringdowns_.vibration.frequencies[0] * result_.speed.q50,
                      share = best.fit.share_of_mass(best.theta);
         result_.damping = {.alpha = 2 * share * result_.ratio.q50 * slowest,
                            .beta = 2 * (1 - share) * result_.ratio.q50 / slowest};
-        tell_modes(best, each, weights);
+        report_modes(best, each, weights);
     }
 
-    void tell_modes(const Fitted& best, const auto& each, const VectorXd& weights) {
-        const VectorXd amplitude = amplitudes(ringings_);
+    void report_modes(const Fitted& best, const auto& each, const VectorXd& weights) {
+        const VectorXd amplitude = amplitudes(ringdowns_);
         const VectorXd& sd = best.fit.prior().sd;
-        for (int i = 0; i < ringings_.vibration.modes(); ++i) {
-            const auto own = sd.size() - 3 * (ringings_.vibration.modes() - i);
+        for (int i = 0; i < ringdowns_.vibration.modes(); ++i) {
+            const auto own = sd.size() - 3 * (ringdowns_.vibration.modes() - i);
             const auto frequency = [&](const VectorXd& theta) {
                 return turns_a_second(best.fit.oscillator(theta, i, true).frequency);
             };
             const auto ratio = [&](const VectorXd& theta) { return best.fit.oscillator(theta, i, true).ratio; };
-            result_.modes.push_back({.frequency = turns_a_second(ringings_.vibration.frequencies[i]),
+            result_.modes.push_back({.frequency = turns_a_second(ringdowns_.vibration.frequencies[i]),
                                      .measured = known(each(frequency), weights, sd[own + 1]),
                                      .ratio = known(each(ratio), weights, sd[own]),
                                      .played = best.fit.oscillator(best.theta, i, false).ratio,
@@ -201,20 +200,20 @@ private:
         }
     }
 
-    void tell_leftover(const Fitted& best) {
-        const Leftover left = leftover(best.fit, ringings_, best.theta);
+    void report_residual(const Fitted& best) {
+        const ResidualStatistics left = residuals(best.fit, ringdowns_, best.theta);
         result_.readings = left.readings;
         result_.independent = left.independent;
         double errors = 0, moved = 0;
-        for (int r = 0; r < static_cast<int>(ringings_.recordings.size()); ++r) {
-            const Ringing& ringing = ringings_.recordings[r];
+        for (int r = 0; r < static_cast<int>(ringdowns_.recordings.size()); ++r) {
+            const Ringdown& ringdown = ringdowns_.recordings[r];
             const Eigen::ArrayXXd unit_errors =
-                best.fit.errors(best.theta, r).array() / ringing.weights.array().max(1e-300);
+                best.fit.errors(best.theta, r).array() / ringdown.weights.array().max(1e-300);
             errors += unit_errors.square().sum();
-            for (Eigen::Index t = 0; t < ringing.times.size(); ++t) {
-                const auto& rest = ringing.stretches.back().rests;
-                moved += (ringing.weights.col(t).array() > 0)
-                             .select((ringing.measured.col(t) - rest).array().square(), 0.0)
+            for (Eigen::Index t = 0; t < ringdown.times.size(); ++t) {
+                const auto& rest = ringdown.stretches.back().rests;
+                moved += (ringdown.weights.col(t).array() > 0)
+                             .select((ringdown.measured.col(t) - rest).array().square(), 0.0)
                              .sum();
             }
         }
@@ -223,9 +222,9 @@ private:
     }
 
     /// Of each recording the coordinate that moves most.
-    void tell_traces(const Fitted& best) {
-        for (int r = 0; r < static_cast<int>(ringings_.recordings.size()); ++r) {
-            const Ringing& ringing = ringings_.recordings[r];
+    void report_traces(const Fitted& best) {
+        for (int r = 0; r < static_cast<int>(ringdowns_.recordings.size()); ++r) {
+            const Ringdown& ringdown = ringdowns_.recordings[r];
             const Eigen::MatrixXd played = best.fit.played(best.theta, r);
             Eigen::Index row = 0;
             (played.colwise() - played.rowwise().mean()).rowwise().squaredNorm().maxCoeff(&row);
@@ -236,10 +235,10 @@ private:
                         .time = {},
                         .measured = {},
                         .played = {}};
-            for (Eigen::Index t = 0; t < ringing.times.size(); ++t) {
-                if (ringing.weights(row, t) == 0) continue;
-                trace.time.push_back(ringing.times[t]);
-                trace.measured.push_back(ringing.measured(row, t) - marker.rest[trace.axis]);
+            for (Eigen::Index t = 0; t < ringdown.times.size(); ++t) {
+                if (ringdown.weights(row, t) == 0) continue;
+                trace.time.push_back(ringdown.times[t]);
+                trace.measured.push_back(ringdown.measured(row, t) - marker.rest[trace.axis]);
                 trace.played.push_back(played(row, t) - marker.rest[trace.axis]);
             }
             result_.traces.push_back(std::move(trace));
@@ -248,7 +247,7 @@ private:
 
     const MeasurementSet& set_;
     const DampingOptions& options_;
-    Ringings ringings_;
+    Ringdowns ringdowns_;
     double variance_ = 1;
     DampingResult result_;
 };
@@ -295,7 +294,7 @@ std::optional<DampingResult> identify_damping(skeleton::Model& model, const Meas
                                               const DampingOptions& options, const Progress& progress) {
     if (set.recordings.empty()) return std::nullopt;
     report(progress, "Vibrations", 0);
-    const Ringings all = ringings(model, set, options.modes);
+    const Ringdowns all = ringdowns(model, set, options.modes);
     report(progress, "Damping", 0.1);
     DampingResult result = Identification(set, options, of_modes(all, chosen_modes(all, options.most))).run();
     settle_speed(model, set, result);

@@ -4,14 +4,14 @@
 #include <string>
 #include <vector>
 
-#include "identify/set/measurement_set.h"
+#include "identify/measurements/measurement_set.h"
 #include "mesh/progress.h"
-#include "skeleton/model.h"
+#include "skeleton/model/model.h"
 
 namespace palpate::identify {
 
-/// What is known of a number after measuring.
-struct Known {
+/// Posterior summary of a parameter.
+struct PosteriorSummary {
     double mean = 0, sd = 0, q025 = 0, q50 = 0, q975 = 0;
     bool informed = false;  // sd <= 0.7 of the prior's
 };
@@ -26,11 +26,11 @@ inline constexpr std::array<const char*, 3> damping_law_names{"stiffness", "mass
 
 /// A vibration that recordings show.
 struct DampedMode {
-    double frequency = 0;  // of the model [Hz]
-    Known measured;        // frequency [Hz]
-    Known ratio;           // its own damping ratio
-    double played = 0;     // the ratio that the model plays it with
-    double share = 0;      // of the motion's mean square that it makes
+    double frequency = 0;       // of the model [Hz]
+    PosteriorSummary measured;  // frequency [Hz]
+    PosteriorSummary ratio;     // its own damping ratio
+    double played = 0;          // the ratio that the model plays it with
+    double share = 0;           // of the motion's mean square that it makes
 };
 
 /// A marker's coordinate over time, of a recording: what a picture shows.
@@ -41,19 +41,19 @@ struct Trace {
 
 struct DampingResult {
     DampingLaw law = DampingLaw::stiffness;
-    bool law_is_told = false;          // by the data; in doubt damping goes with stiffness
-    skeleton::Damping damping;         // to be played, of the posterior's means
-    Known ratio;                       // of the slowest of the modes, by the law
-    Known speed;                       // of the body's vibrations over the model's, of all modes
-    std::vector<double> log_evidence;  // of each law, less the largest; empty where one mode alone was seen
-    std::vector<DampedMode> modes;     // the slowest first
-    double rms = 0, displacement = 0;  // of what is left, and of the motion [mm]
-    double mass = 1;                   // the model's masses were multiplied by that
-    int readings = 0;                  // coordinates that were weighed
-    double independent = 0;            // of them, as far as what is left is correlated
-    double effective_samples = 0;      // of the particles
-    std::vector<Trace> traces;         // of each recording, where it moves most
-    std::vector<std::string> notes;    // what a user should know, in words
+    bool law_is_identified = false;     // by the data; in doubt damping goes with stiffness
+    skeleton::RayleighDamping damping;  // to be played, of the posterior's means
+    PosteriorSummary ratio;             // of the slowest of the modes, by the law
+    PosteriorSummary speed;             // of the body's vibrations over the model's, of all modes
+    std::vector<double> log_evidence;   // of each law, less the largest; empty where one mode alone was seen
+    std::vector<DampedMode> modes;      // the slowest first
+    double rms = 0, displacement = 0;   // of what is left, and of the motion [mm]
+    double mass = 1;                    // the model's masses were multiplied by that
+    int readings = 0;                   // coordinates that were weighed
+    double independent = 0;             // of them, as far as what is left is correlated
+    double effective_samples = 0;       // of the particles
+    std::vector<Trace> traces;          // of each recording, where it moves most
+    std::vector<std::string> notes;     // what a user should know, in words
 };
 
 struct DampingOptions {

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "identify/set/loads.h"
-#include "identify/set/readings.h"
-#include "skeleton/statics.h"
+#include "identify/loading/loads.h"
+#include "identify/loading/readings.h"
+#include "skeleton/statics/statics.h"
 
 namespace palpate::identify {
 namespace {
@@ -16,7 +16,7 @@ using skeleton::State;
 
 /// The step that leads from one equilibrium to another, by the model's law (6N).
 Eigen::VectorXd step_between(const Model& model, const Equilibrium& from, const Equilibrium& to) {
-    if (model.law == skeleton::Law::linear) return to.step - from.step;
+    if (model.law == skeleton::EquilibriumLaw::linear) return to.step - from.step;
     Eigen::VectorXd step(model.dofs());
     for (std::size_t i = 0; i < model.spheres.size(); ++i) {
         const auto row = static_cast<Eigen::Index>(i);
@@ -27,21 +27,21 @@ Eigen::VectorXd step_between(const Model& model, const Equilibrium& from, const 
 }
 
 /// Rows of a recording's readings: x, y, z of each marker, a column an instant.
-void fill_readings(const Recording& recording, const MeasurementSet& set, Ringing& ringing) {
+void fill_readings(const Recording& recording, const MeasurementSet& set, Ringdown& ringdown) {
     const auto rows = 3 * static_cast<Eigen::Index>(set.markers.size());
     const auto instants = static_cast<Eigen::Index>(recording.instants.size());
-    ringing.times.resize(instants);
-    ringing.measured = Eigen::MatrixXd::Constant(rows, instants, missing);
-    ringing.weights = Eigen::MatrixXd::Zero(rows, instants);
+    ringdown.times.resize(instants);
+    ringdown.measured = Eigen::MatrixXd::Constant(rows, instants, missing);
+    ringdown.weights = Eigen::MatrixXd::Zero(rows, instants);
     for (Eigen::Index t = 0; t < instants; ++t) {
         const Recording::Instant& instant = recording.instants[t];
-        ringing.times[t] = instant.time;
+        ringdown.times[t] = instant.time;
         for (const Reading& reading : instant.readings) {
             const double sigma = std::isnan(reading.sigma) ? set.position_noise.value_or(1) : reading.sigma;
             for (int axis = 0; axis < 3; ++axis) {
                 if (std::isnan(reading.position[axis])) continue;
-                ringing.measured(3 * reading.marker + axis, t) = reading.position[axis];
-                ringing.weights(3 * reading.marker + axis, t) = 1 / sigma;
+                ringdown.measured(3 * reading.marker + axis, t) = reading.position[axis];
+                ringdown.weights(3 * reading.marker + axis, t) = 1 / sigma;
             }
         }
     }
@@ -66,7 +66,7 @@ public:
         return skeleton::observed(model_, at, loads_(set_, load), markers_).reshaped<Eigen::RowMajor>();
     }
     /// d seen / d step (3m x 6N).
-    Eigen::SparseMatrix<double> slopes(const Equilibrium& at) const {
+    Eigen::SparseMatrix<double> jacobian(const Equilibrium& at) const {
         return skeleton::observation_jacobian(model_, at, markers_);
     }
     const skeleton::StaticsSolver& factored(const LoadState& load, const Equilibrium& at) {
@@ -123,14 +123,14 @@ Eigen::Vector2d Oscillator::after(double time, const Eigen::Vector2d& start) con
             -frequency * frequency * s * start[0] + (c - dies * s) * start[1]};
 }
 
-Eigen::MatrixXd Ringing::played(const Eigen::MatrixXd& shapes, const std::vector<Oscillator>& modes,
-                                const Eigen::VectorXd& gain, double late) const {
+Eigen::MatrixXd Ringdown::played(const Eigen::MatrixXd& shapes, const std::vector<Oscillator>& modes,
+                                 const Eigen::VectorXd& gain, double delay) const {
     Eigen::MatrixXd rests(shapes.rows(), times.size()), deviation(shapes.cols(), times.size());
     std::vector<Eigen::Vector2d> start(modes.size(), Eigen::Vector2d::Zero());
     std::size_t current = 0;
     const auto moves_in = [](const Stretch& stretch) { return std::isfinite(stretch.begins); };
     for (Eigen::Index t = 0; t < times.size(); ++t) {
-        const double now = times[t] - late;
+        const double now = times[t] - delay;
         while (current + 1 < stretches.size() && now >= stretches[current + 1].begins) {
             const Stretch &ended = stretches[current], &next = stretches[++current];
             for (std::size_t i = 0; i < modes.size(); ++i) {
@@ -147,26 +147,26 @@ Eigen::MatrixXd Ringing::played(const Eigen::MatrixXd& shapes, const std::vector
     return rests + shapes * deviation;
 }
 
-Ringings ringings(const Model& model, const MeasurementSet& set, int modes) {
-    Ringings all;
+Ringdowns ringdowns(const Model& model, const MeasurementSet& set, int modes) {
+    Ringdowns all;
     Equilibria equilibria(model, set);
     const LoadState nothing;
     std::vector<std::vector<Equilibrium>> found;  // of each stretch of each recording
     for (const Recording& recording : set.recordings) {
-        Ringing& ringing = all.recordings.emplace_back();
-        fill_readings(recording, set, ringing);
+        Ringdown& ringdown = all.recordings.emplace_back();
+        fill_readings(recording, set, ringdown);
         std::vector<Equilibrium>& stations = found.emplace_back();
         for (const Acting& acting : acting_on(recording, nothing)) {
             stations.push_back(equilibria.of(*acting.load, stations.empty() ? nullptr : &stations.back()));
-            ringing.stretches.push_back(
+            ringdown.stretches.push_back(
                 {.begins = acting.begins, .jump = {}, .rests = equilibria.seen(*acting.load, stations.back())});
         }
     }
     // vibrations about what all is over in, of the first recording: others are near
     const Equilibrium& last = found.front().back();
-    State state = model.law == skeleton::Law::linear ? skeleton::rest_state(model) : last.state;
+    State state = model.law == skeleton::EquilibriumLaw::linear ? skeleton::rest_state(model) : last.state;
     all.vibration = vibration(model, equilibria.factored(set.recordings.front().loads.back(), last), state, modes);
-    all.shapes = equilibria.slopes(last) * all.vibration.shapes;
+    all.shapes = equilibria.jacobian(last) * all.vibration.shapes;
     const Eigen::MatrixXd momenta = times_mass(model, state, all.vibration.shapes);
     for (std::size_t r = 0; r < found.size(); ++r) {
         for (std::size_t s = 1; s < found[r].size(); ++s)
@@ -176,12 +176,12 @@ Ringings ringings(const Model& model, const MeasurementSet& set, int modes) {
     return all;
 }
 
-Ringings of_modes(const Ringings& all, const std::vector<int>& which) {
-    Ringings some = all;
+Ringdowns of_modes(const Ringdowns& all, const std::vector<int>& which) {
+    Ringdowns some = all;
     some.vibration = {.frequencies = all.vibration.frequencies(which),
                       .shapes = all.vibration.shapes(Eigen::all, which)};
     some.shapes = all.shapes(Eigen::all, which);
-    for (Ringing& recording : some.recordings) {
+    for (Ringdown& recording : some.recordings) {
         for (std::size_t s = 1; s < recording.stretches.size(); ++s) {
             recording.stretches[s].jump = Eigen::VectorXd(recording.stretches[s].jump(which));
         }

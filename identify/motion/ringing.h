@@ -2,8 +2,8 @@
 
 #include <vector>
 
+#include "identify/measurements/measurement_set.h"
 #include "identify/motion/vibration.h"
-#include "identify/set/measurement_set.h"
 
 namespace palpate::identify {
 
@@ -17,7 +17,7 @@ struct Oscillator {
 };
 
 /// A recording seen from a model: equilibria that the loads lead to, and how far the modes are off them.
-struct Ringing {
+struct Ringdown {
     /// While one load acts.
     struct Stretch {
         double begins = 0;      // [s]
@@ -30,22 +30,22 @@ struct Ringing {
     Eigen::MatrixXd weights;   // 1 / sigma of each; 1 everywhere when no noise is told, 0 where missing
 
     /// What the markers do when the modes are these oscillators, their deviations `gain` times as large, and the loads
-    /// come `late` seconds after their time (3m x t) [mm].
+    /// come `delay` seconds after their time (3m x t) [mm].
     Eigen::MatrixXd played(const Eigen::MatrixXd& shapes, const std::vector<Oscillator>& modes,
-                           const Eigen::VectorXd& gain, double late) const;
+                           const Eigen::VectorXd& gain, double delay) const;
 };
 
 /// All recordings of a set, seen from a model, and its modes about the last equilibrium.
-struct Ringings {
+struct Ringdowns {
     Vibration vibration;
     Eigen::MatrixXd shapes;  // of the modes at the markers (3m x n)
-    std::vector<Ringing> recordings;
+    std::vector<Ringdown> recordings;
 };
 
 /// @throws InvalidInput as vibration and equilibrium; SolverFailure likewise.
-Ringings ringings(const skeleton::Model& model, const MeasurementSet& set, int modes);
+Ringdowns ringdowns(const skeleton::Model& model, const MeasurementSet& set, int modes);
 
 /// The same of some of the modes.
-Ringings of_modes(const Ringings& all, const std::vector<int>& which);
+Ringdowns of_modes(const Ringdowns& all, const std::vector<int>& which);
 
 }  // namespace palpate::identify

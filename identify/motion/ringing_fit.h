@@ -1,6 +1,6 @@
 #pragma once
 
-#include "identify/fit/log_normal_prior.h"
+#include "identify/inference/priors/log_normal_prior.h"
 #include "identify/motion/damping.h"
 #include "identify/motion/ringing.h"
 
@@ -9,10 +9,10 @@ namespace palpate::identify {
 /// What is unknown of a body that rings, in the order of theta: ln of the slowest mode's ratio; for the law `both` the
 /// logit of what mass has of it; ln of all frequencies; how late each recording's loads come [s]; then of each mode ln
 /// of its ratio, frequency and amplitude over all that.
-class RingingFit {
+class RingdownFit {
 public:
     /// Keeps a reference.
-    RingingFit(const Ringings& ringings, DampingLaw law);
+    RingdownFit(const Ringdowns& ringdowns, DampingLaw law);
 
     const LogNormalPrior& prior() const { return prior_; }
 
@@ -35,15 +35,15 @@ public:
     /// The best of a grid of ratios and speeds, the rest as the prior's middle.
     Eigen::VectorXd scanned(double variance) const;
     /// d errors / d theta, of all readings (all x P).
-    Eigen::MatrixXd slopes(const Eigen::VectorXd& theta) const;
+    Eigen::MatrixXd jacobian(const Eigen::VectorXd& theta) const;
 
 private:
     int own(int mode) const { return first_own_ + 3 * mode; }
     Eigen::VectorXd all_errors(const Eigen::VectorXd& theta) const;
 
-    const Ringings& ringings_;
+    const Ringdowns& ringdowns_;
     DampingLaw law_;
-    int speed_ = 1, late_ = 2, first_own_ = 3;
+    int speed_ = 1, delay_ = 2, first_own_ = 3;
     LogNormalPrior prior_;
 };
 

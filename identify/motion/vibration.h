@@ -1,6 +1,6 @@
 #pragma once
 
-#include "skeleton/equilibrium.h"
+#include "skeleton/statics/equilibrium.h"
 
 namespace palpate::identify {
 

@@ -7,7 +7,7 @@
 #include <array>
 #include <vector>
 
-#include "mesh/surface.h"
+#include "mesh/core/surface.h"
 
 /// Surfaces as CGAL sees them. For .cpp files that use CGAL only.
 namespace palpate::mesh::cgal {

@@ -3,7 +3,7 @@
 #include <utility>
 #include <vector>
 
-#include "mesh/surface.h"
+#include "mesh/core/surface.h"
 
 namespace palpate::mesh {
 

@@ -8,7 +8,7 @@
 #include <numeric>
 
 #include "mesh/errors.h"
-#include "mesh/surface_tree.h"
+#include "mesh/geometry/surface_tree.h"
 
 namespace palpate::mesh {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "mesh/surface.h"
+#include "mesh/core/surface.h"
 
 namespace palpate::mesh {
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "mesh/surface.h"
+#include "mesh/core/surface.h"
 
 namespace palpate::mesh {
 

@@ -6,9 +6,9 @@
 
 #include "identify/effects/catalogue.h"
 #include "mesh/errors.h"
-#include "mesh/io/region_yaml.h"
-#include "mesh/io/yaml_fields.h"
-#include "mesh/read_body.h"
+#include "mesh/formats/read_body.h"
+#include "mesh/formats/yaml/yaml_fields.h"
+#include "mesh/supports/region_yaml.h"
 #include "pipeline/case/overrides.h"
 #include "pipeline/case/settings.h"
 
@@ -32,7 +32,7 @@ void read_expected_parameters(const YamlFields& yaml, Expectation& expect) {
 
 /// What the section says. @throws InvalidInput.
 void read_section(const YamlFields& yaml, const std::string& section, Case& c) {
-    for (const Setting& setting : settings())
+    for (const CaseSetting& setting : settings())
         if (setting.section == section && yaml.has(setting.key)) setting.read(yaml, c);
     if (section == "expect") read_expected_parameters(yaml, c.expect);
     if (!section.empty()) yaml.finish();
@@ -114,7 +114,7 @@ void ProbeOptions::validate() const {
     require(noise >= 0, "noise", noise, "0 mm or more");
 }
 
-void InquiryOptions::validate() const {
+void RunDiagnosisOptions::validate() const {
     for (const std::string& name : without) identify::find_effect(name);
 }
 

@@ -8,9 +8,9 @@
 
 #include "fem/material.h"
 #include "identify/identify.h"
-#include "identify/set/measurement_set.h"
-#include "mesh/region.h"
-#include "skeleton/build.h"
+#include "identify/measurements/measurement_set.h"
+#include "mesh/core/region.h"
+#include "skeleton/construction/build.h"
 
 namespace palpate::pipeline {
 
@@ -50,8 +50,8 @@ struct Expectation {
     std::optional<double> rms_at_most_mm;                 // of the skeleton, once they are in [mm]
 };
 
-/// How a run asks what the model lacks.
-struct InquiryOptions {
+/// Diagnosis options of a run.
+struct RunDiagnosisOptions {
     bool reference = true;             // on the body in finite elements; false: it is not asked
     std::vector<std::string> without;  // effects left out of the catalogue
     void validate() const;
@@ -76,7 +76,7 @@ struct Case {
     bool sphere_curve = false;  // measure what more and fewer spheres would do
     ProbeOptions probing{.probes = 60, .held_out = 12};
     identify::IdentifyOptions identify;
-    InquiryOptions diagnose;
+    RunDiagnosisOptions diagnose;
     Expectation expect;
 };
 

@@ -1,6 +1,6 @@
 #include <fmt/format.h>
 
-#include "mesh/io/region_yaml.h"
+#include "mesh/supports/region_yaml.h"
 #include "pipeline/case/case.h"
 #include "pipeline/case/settings.h"
 

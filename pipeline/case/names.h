@@ -8,7 +8,7 @@
 
 #include "identify/identify.h"
 #include "mesh/errors.h"
-#include "skeleton/build.h"
+#include "skeleton/construction/build.h"
 
 namespace palpate::pipeline {
 

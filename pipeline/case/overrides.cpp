@@ -8,10 +8,10 @@
 namespace palpate::pipeline {
 namespace {
 
-std::string flag_or_place(const Setting& setting) { return setting.flag.empty() ? setting.place() : setting.flag; }
+std::string flag_or_place(const CaseSetting& setting) { return setting.flag.empty() ? setting.place() : setting.flag; }
 
 /// Puts the value into the case; why it cannot, in words, where it cannot.
-std::string objection_on_reading(const Setting& setting, const std::string& value, Case& c) {
+std::string objection_on_reading(const CaseSetting& setting, const std::string& value, Case& c) {
     const std::string name = "value";
     try {
         setting.read(mesh::YamlFields::from_text(setting.key + ": " + value + "\n", name), c);
@@ -25,16 +25,16 @@ std::string objection_on_reading(const Setting& setting, const std::string& valu
 }  // namespace
 
 void CaseOverrides::set(std::string_view place, std::string value) {
-    said_[setting_at(place).place()] = std::move(value);
+    overrides_[setting_at(place).place()] = std::move(value);
 }
 
 void CaseOverrides::set(std::string_view place, double value) { set(place, fmt::format("{}", value)); }
 
-bool CaseOverrides::has(std::string_view place) const { return said_.contains(place); }
+bool CaseOverrides::has(std::string_view place) const { return overrides_.contains(place); }
 
 void CaseOverrides::apply(Case& c) const {
-    for (const auto& [place, value] : said_) {
-        const Setting& setting = setting_at(place);
+    for (const auto& [place, value] : overrides_) {
+        const CaseSetting& setting = setting_at(place);
         const std::string objection = objection_on_reading(setting, value, c);
         if (!objection.empty()) throw InvalidInput(fmt::format("{}: {}", flag_or_place(setting), objection));
     }

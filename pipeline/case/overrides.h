@@ -22,7 +22,7 @@ public:
     Case on_defaults() const;
 
 private:
-    std::map<std::string, std::string, std::less<>> said_;
+    std::map<std::string, std::string, std::less<>> overrides_;
 };
 
 /// Why a flag of this setting cannot take the value, in words; empty: it can.

@@ -6,7 +6,7 @@
 #include <cassert>
 #include <type_traits>
 
-#include "identify/diagnose/diagnose.h"
+#include "identify/diagnosis/diagnose.h"
 #include "mesh/errors.h"
 #include "pipeline/case/names.h"
 
@@ -24,8 +24,8 @@ struct Range {
 };
 
 /// Where a setting stands, "section.key".
-Setting declared(std::string_view place, std::string help) {
-    Setting setting;
+CaseSetting declared(std::string_view place, std::string help) {
+    CaseSetting setting;
     const std::size_t dot = place.find('.');
     if (dot != std::string_view::npos) setting.section = place.substr(0, dot);
     setting.key = place.substr(dot == std::string_view::npos ? 0 : dot + 1);
@@ -61,9 +61,9 @@ json value_of(Member member, const Case& c) {
 
 /// A number, or a whole number, as its member in the case is. `member`: from a case, const or not, to a reference.
 template <typename Member>
-Setting number(std::string_view place, std::string help, Range range, Member member) {
+CaseSetting number(std::string_view place, std::string help, Range range, Member member) {
     using Number = typename Unwrapped<Held<Member>>::type;
-    Setting setting = declared(place, std::move(help));
+    CaseSetting setting = declared(place, std::move(help));
     if constexpr (std::is_integral_v<Number>) {
         const int least = static_cast<int>(range.least), most = static_cast<int>(range.most);
         setting.schema = {{"type", "integer"}, {"minimum", least}, {"maximum", most}};
@@ -81,8 +81,8 @@ Setting number(std::string_view place, std::string help, Range range, Member mem
 }
 
 template <typename Member>
-Setting yes_or_no(std::string_view place, std::string help, Member member) {
-    Setting setting = declared(place, std::move(help));
+CaseSetting yes_or_no(std::string_view place, std::string help, Member member) {
+    CaseSetting setting = declared(place, std::move(help));
     setting.schema = {{"type", "boolean"}};
     setting.read = [key = setting.key, member](const YamlFields& yaml, Case& c) { member(c) = yaml.boolean(key); };
     setting.value = [member](const Case& c) { return json(member(c)); };
@@ -97,8 +97,8 @@ std::vector<std::string> words_of(const Names<Enum, N>& names) {
 }
 
 template <typename Enum, std::size_t N, typename Member>
-Setting choice(std::string_view place, std::string help, const Names<Enum, N>& names, Member member) {
-    Setting setting = declared(place, std::move(help));
+CaseSetting choice(std::string_view place, std::string help, const Names<Enum, N>& names, Member member) {
+    CaseSetting setting = declared(place, std::move(help));
     setting.schema = {{"enum", words_of(names)}};
     setting.read = [key = setting.key, &names, member](const YamlFields& yaml, Case& c) {
         member(c) = parse(names, yaml.text(key), yaml.where(key));
@@ -109,8 +109,8 @@ Setting choice(std::string_view place, std::string help, const Names<Enum, N>& n
 
 /// Several of these names.
 template <typename Enum, std::size_t N, typename Member>
-Setting choices(std::string_view place, std::string help, const Names<Enum, N>& names, Member member) {
-    Setting setting = declared(place, std::move(help));
+CaseSetting choices(std::string_view place, std::string help, const Names<Enum, N>& names, Member member) {
+    CaseSetting setting = declared(place, std::move(help));
     setting.schema = {{"type", "array"}, {"items", {{"enum", words_of(names)}}}};
     setting.flag_is_repeatable = true;
     setting.read = [key = setting.key, &names, member](const YamlFields& yaml, Case& c) {
@@ -126,8 +126,8 @@ Setting choices(std::string_view place, std::string help, const Names<Enum, N>& 
 }
 
 template <typename Member>
-Setting texts(std::string_view place, std::string help, Member member) {
-    Setting setting = declared(place, std::move(help));
+CaseSetting texts(std::string_view place, std::string help, Member member) {
+    CaseSetting setting = declared(place, std::move(help));
     setting.schema = {{"type", "array"}, {"items", {{"type", "string"}}}};
     setting.read = [key = setting.key, member](const YamlFields& yaml, Case& c) { member(c) = yaml.texts(key); };
     setting.value = [member](const Case& c) { return value_of(member, c); };
@@ -135,7 +135,7 @@ Setting texts(std::string_view place, std::string help, Member member) {
 }
 
 /// A flag of its own name for it: --edge-length for volume.edge_length.
-Setting with_flag(std::string group, Setting setting) {
+CaseSetting with_flag(std::string group, CaseSetting setting) {
     setting.flag = "--" + setting.key;
     std::ranges::replace(setting.flag, '_', '-');
     setting.group = std::move(group);
@@ -143,15 +143,15 @@ Setting with_flag(std::string group, Setting setting) {
     return setting;
 }
 
-Setting of_stage(std::string stage, Setting setting) {
+CaseSetting of_stage(std::string stage, CaseSetting setting) {
     setting.stage = std::move(stage);
     return setting;
 }
 
 constexpr Names<double, 3> units{{{"mm", 1}, {"cm", 10}, {"m", 1000}}};
 
-Setting expectation_of_verdict() {
-    Setting setting = declared("expect.verdict", "verdict of the diagnosis");
+CaseSetting expectation_of_verdict() {
+    CaseSetting setting = declared("expect.verdict", "verdict of the diagnosis");
     setting.schema = {{"enum", identify::verdict_names}};
     setting.read = [](const YamlFields& yaml, Case& c) {
         c.expect.verdict = yaml.choice("verdict", {identify::verdict_names.begin(), identify::verdict_names.end()});
@@ -160,8 +160,8 @@ Setting expectation_of_verdict() {
     return setting;
 }
 
-void add_body(std::vector<Setting>& all) {
-    const auto body = [&](const char* stage, Setting setting) {
+void add_body(std::vector<CaseSetting>& all) {
+    const auto body = [&](const char* stage, CaseSetting setting) {
         all.push_back(of_stage(stage, with_flag("Body", std::move(setting))));
     };
     body("mesh", choice(
@@ -190,8 +190,8 @@ void add_body(std::vector<Setting>& all) {
                      [](auto& c) -> auto& { return c.linear_elements; }));
 }
 
-void add_skeleton(std::vector<Setting>& all) {
-    const auto skeleton = [&](Setting setting) { all.push_back(with_flag("Skeleton", std::move(setting))); };
+void add_skeleton(std::vector<CaseSetting>& all) {
+    const auto skeleton = [&](CaseSetting setting) { all.push_back(with_flag("Skeleton", std::move(setting))); };
     skeleton(number(
         "skeleton.spheres", "number of free spheres; 0: by the body's shape", {0, skeleton::BuildOptions::most_spheres},
         [](auto& c) -> auto& { return c.skeleton.spheres; }));
@@ -210,8 +210,8 @@ void add_skeleton(std::vector<Setting>& all) {
                                           [](auto& c) -> auto& { return c.sphere_curve; })));
 }
 
-void add_probing(std::vector<Setting>& all) {
-    const auto probing = [&](Setting setting) {
+void add_probing(std::vector<CaseSetting>& all) {
+    const auto probing = [&](CaseSetting setting) {
         all.push_back(with_flag("Probing", of_stage("measurements", std::move(setting))));
     };
     probing(number(
@@ -236,8 +236,8 @@ void add_probing(std::vector<Setting>& all) {
         [](auto& c) -> auto& { return c.probing.noise; }));
 }
 
-void add_identification(std::vector<Setting>& all) {
-    const auto identification = [&](Setting setting) {
+void add_identification(std::vector<CaseSetting>& all) {
+    const auto identification = [&](CaseSetting setting) {
         all.push_back(with_flag("Identification", std::move(setting)));
     };
     identification(choice(
@@ -273,8 +273,8 @@ void add_identification(std::vector<Setting>& all) {
                                    [](auto& c) -> auto& { return c.identify.seed; })));
 }
 
-void add_diagnosis(std::vector<Setting>& all) {
-    Setting reference = yes_or_no(
+void add_diagnosis(std::vector<CaseSetting>& all) {
+    CaseSetting reference = yes_or_no(
         "diagnose.reference", "diagnose on the body in finite elements: minutes",
         [](auto& c) -> auto& { return c.diagnose.reference; });
     reference.flag = "--no-reference";
@@ -287,8 +287,8 @@ void add_diagnosis(std::vector<Setting>& all) {
         [](auto& c) -> auto& { return c.diagnose.without; }));
 }
 
-void add_expectations(std::vector<Setting>& all) {
-    const auto expect = [&](Setting setting) { all.push_back(of_stage("", std::move(setting))); };
+void add_expectations(std::vector<CaseSetting>& all) {
+    const auto expect = [&](CaseSetting setting) { all.push_back(of_stage("", std::move(setting))); };
     expect(number(
         "expect.relative_at_most", "largest rms error over rms displacement", {0, 1e9},
         [](auto& c) -> auto& { return c.expect.relative_at_most; }));
@@ -329,16 +329,16 @@ std::string choice_in_words(const ordered_json& schema) {
     return fmt::format(" ({})", fmt::join(schema["enum"].get<std::vector<std::string>>(), ", "));
 }
 
-std::string line(const std::string& indent, const Setting& setting, const std::string& value) {
-    return fmt::format("{:<{}}# {}{}\n", fmt::format("{}{}: {}", indent, setting.key, value), comment_column,
+std::string line(const std::string& indent, const CaseSetting& setting, const std::string& value) {
+    return fmt::format("{:<{}} # {}{}\n", fmt::format("{}{}: {}", indent, setting.key, value), comment_column - 1,
                        setting.help, choice_in_words(setting.schema));
 }
 
 }  // namespace
 
-const std::vector<Setting>& settings() {
-    static const std::vector<Setting> all = [] {
-        std::vector<Setting> list;
+const std::vector<CaseSetting>& settings() {
+    static const std::vector<CaseSetting> all = [] {
+        std::vector<CaseSetting> list;
         for (const auto& add :
              {add_body, add_skeleton, add_probing, add_identification, add_diagnosis, add_expectations})
             add(list);
@@ -347,32 +347,32 @@ const std::vector<Setting>& settings() {
     return all;
 }
 
-const Setting& setting_at(std::string_view place) {
-    const auto found = std::ranges::find(settings(), place, &Setting::place);
+const CaseSetting& setting_at(std::string_view place) {
+    const auto found = std::ranges::find(settings(), place, &CaseSetting::place);
     if (found == settings().end()) throw std::logic_error(fmt::format("there is no setting {}", place));
     return *found;
 }
 
 json settings_of_stage(const Case& c, std::string_view stage) {
     json key = json::object();
-    for (const Setting& setting : settings())
+    for (const CaseSetting& setting : settings())
         if (setting.stage == stage) key[setting.place()] = setting.value(c);
     return key;
 }
 
-std::string setting_yaml(const Case& c, const Setting& setting) {
+std::string setting_yaml(const Case& c, const CaseSetting& setting) {
     const json value = setting.value(c);
     return value.is_null() ? "" : line(setting.section.empty() ? "" : "  ", setting, yaml_of(value));
 }
 
 std::string section_yaml(const Case& c, const std::string& section) {
     std::string text;
-    for (const Setting& setting : settings())
+    for (const CaseSetting& setting : settings())
         if (setting.section == section) text += setting_yaml(c, setting);
     return text.empty() ? text : section + ":\n" + text;
 }
 
-std::string example_yaml(const Setting& setting, const std::vector<Example>& examples) {
+std::string example_yaml(const CaseSetting& setting, const std::vector<Example>& examples) {
     const std::string indent = setting.section.empty() ? "" : "  ";
     const auto given = std::ranges::find(examples, setting.place(), &Example::place);
     if (given != examples.end()) return line(indent, setting, std::string(given->value));
@@ -383,7 +383,7 @@ std::string example_yaml(const Setting& setting, const std::vector<Example>& exa
 std::string example_section_yaml(const std::string& section, const std::vector<Example>& examples) {
     std::string text;
     bool is_commented = true;
-    for (const Setting& setting : settings()) {
+    for (const CaseSetting& setting : settings()) {
         if (setting.section != section) continue;
         text += example_yaml(setting, examples);
         if (std::ranges::find(examples, setting.place(), &Example::place) != examples.end()) is_commented = false;
@@ -391,7 +391,7 @@ std::string example_section_yaml(const std::string& section, const std::vector<E
     return (is_commented ? "# " : "") + section + ":\n" + text;
 }
 
-ordered_json schema_of(const Setting& setting) {
+ordered_json schema_of(const CaseSetting& setting) {
     ordered_json schema{{"description", setting.help}};
     schema.update(setting.schema);
     const json value = setting.value(Case{});

@@ -6,14 +6,14 @@
 #include <string_view>
 #include <vector>
 
-#include "mesh/io/yaml_fields.h"
+#include "mesh/formats/yaml/yaml_fields.h"
 #include "pipeline/case/case.h"
 
 namespace palpate::pipeline {
 
 /// A setting of a case, declared once. The reader and the writer of case.yaml, the flag, the JSON schema, the commented
 /// case of `palpate new` and the keys of finished stages all come from this declaration.
-struct Setting {
+struct CaseSetting {
     std::string section;            // of case.yaml; empty: its top level
     std::string key;                // there
     std::string help;               // one line: what it is, with its unit, and what 0 stands for
@@ -32,16 +32,16 @@ struct Setting {
 };
 
 /// All of them, in the order of case.yaml.
-const std::vector<Setting>& settings();
+const std::vector<CaseSetting>& settings();
 
 /// By its place in case.yaml: "skeleton.spheres", "seed".
-const Setting& setting_at(std::string_view place);
+const CaseSetting& setting_at(std::string_view place);
 
 /// What a stage of a run depends on among the settings, by place: the key that tells whether it has to run again.
 nlohmann::json settings_of_stage(const Case& settings, std::string_view stage);
 
 /// A line of case.yaml with its explanation; empty where it is not said.
-std::string setting_yaml(const Case& settings, const Setting& setting);
+std::string setting_yaml(const Case& settings, const CaseSetting& setting);
 
 /// A section of case.yaml with every setting and its explanation; empty where none of them is said.
 std::string section_yaml(const Case& settings, const std::string& section);
@@ -51,10 +51,10 @@ std::string section_yaml(const Case& settings, const std::string& section);
 struct Example {
     std::string_view place, value;
 };
-std::string example_yaml(const Setting& setting, const std::vector<Example>& examples);
+std::string example_yaml(const CaseSetting& setting, const std::vector<Example>& examples);
 std::string example_section_yaml(const std::string& section, const std::vector<Example>& examples);
 
 /// The JSON schema of one of them, with description and default.
-nlohmann::ordered_json schema_of(const Setting& setting);
+nlohmann::ordered_json schema_of(const CaseSetting& setting);
 
 }  // namespace palpate::pipeline

@@ -5,15 +5,15 @@
 #include <algorithm>
 #include <iterator>
 
-#include "identify/set/field.h"
-#include "identify/set/labels/label_readings.h"
-#include "identify/set/plausibility.h"
+#include "identify/measurements/field.h"
+#include "identify/measurements/labels/label_readings.h"
+#include "identify/measurements/plausibility.h"
 #include "mesh/errors.h"
-#include "mesh/read_body.h"
-#include "mesh/support_points.h"
+#include "mesh/formats/read_body.h"
+#include "mesh/supports/support_points.h"
+#include "pipeline/body/body.h"
+#include "pipeline/body/reference_body.h"
 #include "pipeline/case/weight.h"
-#include "pipeline/reference/body.h"
-#include "pipeline/reference/reference_body.h"
 
 namespace palpate::pipeline {
 namespace {
@@ -66,8 +66,8 @@ std::vector<mesh::Region> patched(const std::vector<mesh::Region>& supports, con
 
 void choose_supports(Subject& subject) {
     if (!subject.settings.supports.empty()) {
-        const double told = subject.settings.edge_length;
-        const double edge = told > 0      ? told
+        const double specified = subject.settings.edge_length;
+        const double edge = specified > 0 ? specified
                             : subject.set ? reference_edge_length(subject.surface)
                                           : default_edge_length(subject.surface);
         subject.supports = patched(subject.settings.supports, subject.surface, edge, subject.notes);

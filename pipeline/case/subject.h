@@ -5,10 +5,10 @@
 #include <vector>
 
 #include "fem/material.h"
-#include "identify/set/measurement_set.h"
-#include "mesh/region.h"
-#include "mesh/surface.h"
-#include "mesh/volume_mesh.h"
+#include "identify/measurements/measurement_set.h"
+#include "mesh/core/region.h"
+#include "mesh/core/surface.h"
+#include "mesh/core/volume_mesh.h"
 #include "pipeline/case/case.h"
 
 namespace palpate::pipeline {
@@ -24,7 +24,7 @@ struct Subject {
     std::optional<identify::MeasurementSet> set;
     std::vector<std::filesystem::path> files;  // that were read
     std::vector<std::string> notes;            // what was found and done in reading it, in words
-    std::vector<std::string> assumptions;      // what nobody said and was assumed, in words
+    std::vector<std::string> assumptions;      // what was not specified and is assumed, in words
 };
 
 /// A measurement set with readings: where it has full fields only, vertices of its surface are read from them; those

@@ -8,11 +8,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "identify/diagnose/refit.h"
+#include "identify/diagnosis/fit/refit.h"
 #include "identify/effects/catalogue.h"
-#include "identify/set/loads.h"
+#include "identify/loading/loads.h"
 #include "mesh/errors.h"
-#include "pipeline/reference/reference_body.h"
+#include "pipeline/body/reference_body.h"
 
 namespace palpate::pipeline {
 namespace {
@@ -27,16 +27,16 @@ identify::Explanation bare(const identify::BodyModel& body) {
 }
 
 /// How the markers answer to gravity along each axis, linearly, in the order of the problem's rows over sigma (N x 3).
-Eigen::MatrixXd answers_to_gravity(const identify::BodyModel& body, identify::Problem problem) {
+Eigen::MatrixXd sensitivities_to_gravity(const identify::BodyModel& body, identify::Problem problem) {
     const identify::Explanation explanation = bare(body);
-    Eigen::MatrixXd answers(problem.rows(), 3);
+    Eigen::MatrixXd sensitivities(problem.rows(), 3);
     for (int axis = 0; axis < 3; ++axis) {
         for (identify::Action& action : problem.actions) action.gravity = standard_gravity * Vec3::Unit(axis);
-        const identify::Played played = identify::play(body, problem, explanation, 1);
-        const Eigen::VectorXd moved = problem.pick(played.markers) - (problem.measured - problem.displacement());
-        answers.col(axis) = moved.cwiseQuotient(problem.sigma);
+        const identify::ForwardSolution forward = identify::solve_forward(body, problem, explanation, 1);
+        const Eigen::VectorXd moved = problem.pick(forward.markers) - (problem.measured - problem.displacement());
+        sensitivities.col(axis) = moved.cwiseQuotient(problem.sigma);
     }
-    return answers;
+    return sensitivities;
 }
 
 /// Frames stand upright mostly: the axis that a vector may lie along, within what is known of it (P, the inverse of its
@@ -82,15 +82,15 @@ Vec3 direction_of(const identify::BodyModel& body, const identify::Problem& prob
 }  // namespace
 
 void take_weight_as_load(identify::MeasurementSet& set, std::vector<std::string>& notes) {
-    const bool is_material_told = set.density || (set.material && std::isfinite(set.material->young));
+    const bool is_material_specified = set.density || (set.material && std::isfinite(set.material->young));
     const bool is_read = std::ranges::any_of(set.states, [](const auto& state) { return !state.readings.empty(); });
-    if (!is_material_told || !is_read || !set.recordings.empty() ||
+    if (!is_material_specified || !is_read || !set.recordings.empty() ||
         std::ranges::any_of(set.states, [&](const auto& state) { return identify::is_known_to_act(set, state); }))
         return;
     const Reference reference = make_reference(set, 0);
     if (!reference.body) return;
     const identify::Problem problem = identify::make_problem(set, set.position_noise.value_or(1));
-    const Eigen::MatrixXd A = answers_to_gravity(*reference.body, problem);
+    const Eigen::MatrixXd A = sensitivities_to_gravity(*reference.body, problem);
     const Eigen::VectorXd moved = problem.displacement().cwiseQuotient(problem.sigma);
     const Eigen::Vector3d along = A.completeOrthogonalDecomposition().solve(moved);
     constexpr double most = 0.5;  // of the squared displacement: something else moved it more

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "identify/set/measurement_set.h"
+#include "identify/measurements/measurement_set.h"
 
 namespace palpate::pipeline {
 

@@ -2,7 +2,7 @@
 
 #include <iterator>
 
-#include "mesh/io/atomic_file.h"
+#include "mesh/text/atomic_file.h"
 #include "pipeline/exports/programs.h"
 #include "pipeline/exports/what_is_left_out.h"
 #include "pipeline/version.h"
@@ -87,7 +87,7 @@ std::vector<std::string> write_chai3d(const std::filesystem::path& file, const s
     text += gel_builder;
     mesh::write_text(file, text);
 
-    std::vector<std::string> left_out = effects_left_out(model, [](const skeleton::Effect&) { return false; });
+    std::vector<std::string> left_out = omitted_effects(model, [](const skeleton::EffectRecord&) { return false; });
     if (!model.links.empty() && model.links.front().section) {
         left_out.emplace_back("GEL's links have one flexion, no shear and no axes: flexion is the mean of both planes");
         left_out.emplace_back("GEL keeps no volumes");

@@ -4,9 +4,9 @@
 #include <algorithm>
 
 #include "mesh/errors.h"
-#include "skeleton/carried_point.h"
-#include "skeleton/equilibrium.h"
-#include "skeleton/statics.h"
+#include "skeleton/model/carried_point.h"
+#include "skeleton/statics/equilibrium.h"
+#include "skeleton/statics/statics.h"
 
 namespace palpate::pipeline {
 namespace {
@@ -85,7 +85,7 @@ FourInfluences four_influences(const skeleton::Model& model) {
         Eigen::VectorXd prior(A.cols());
         std::vector<Eigen::Index> in_use;
         for (Eigen::Index s = 0; s < A.cols(); ++s) {
-            const skeleton::Share& share = point.shares[s];
+            const skeleton::SphereInfluence& share = point.shares[s];
             const auto own = steps.middleRows<6>(Eigen::Index{6} * share.sphere);
             b += (carried.jacobian(static_cast<int>(s)) * own).reshaped();
             Eigen::Matrix<double, 3, 6> rigid;

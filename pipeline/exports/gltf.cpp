@@ -7,9 +7,9 @@
 #include <string>
 
 #include "mesh/errors.h"
-#include "mesh/io/atomic_file.h"
+#include "mesh/text/atomic_file.h"
 #include "pipeline/exports/four_influences.h"
-#include "pipeline/report/base64.h"
+#include "pipeline/output/base64.h"
 #include "pipeline/version.h"
 
 namespace palpate::pipeline {

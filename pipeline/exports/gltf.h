@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <vector>
 
-#include "skeleton/state.h"
+#include "skeleton/model/state.h"
 
 namespace palpate::pipeline {
 

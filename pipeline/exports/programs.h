@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "skeleton/model.h"
+#include "skeleton/model/model.h"
 
 namespace palpate::pipeline {
 

@@ -6,13 +6,13 @@
 #include <utility>
 
 #include "fem/effects/gravity.h"
-#include "mesh/io/atomic_file.h"
+#include "mesh/text/atomic_file.h"
 #include "pipeline/exports/four_influences.h"
 #include "pipeline/exports/programs.h"
 #include "pipeline/exports/sofa_law.h"
 #include "pipeline/exports/what_is_left_out.h"
 #include "pipeline/version.h"
-#include "skeleton/statics.h"
+#include "skeleton/statics/statics.h"
 
 namespace palpate::pipeline {
 namespace {
@@ -31,7 +31,7 @@ std::string numpy_array(const char* name, const Rows& rows, const char* number =
 }
 
 /// The weight that an effect of a body is [mm/s^2]; none: it is something else, which a scene does not hold.
-std::optional<Vec3> weight_of(const skeleton::Effect& effect) {
+std::optional<Vec3> weight_of(const skeleton::EffectRecord& effect) {
     fem::Effects physics = skeleton::make_physics(effect);
     const auto points = std::exchange(physics.points, {});
     const auto* weight = points.size() == 1 ? dynamic_cast<const fem::Gravity*>(points.front().get()) : nullptr;
@@ -41,7 +41,7 @@ std::optional<Vec3> weight_of(const skeleton::Effect& effect) {
 
 Vec3 sofa_gravity(const skeleton::Model& model) {
     Vec3 g = Vec3::Zero();
-    for (const skeleton::Effect& effect : model.effects) {
+    for (const skeleton::EffectRecord& effect : model.effects) {
         if (skeleton::is_body_effect(effect.name)) g += weight_of(effect).value_or(Vec3::Zero());
     }
     return g;
@@ -99,7 +99,7 @@ std::vector<std::string> write_sofa(const std::filesystem::path& file, const ske
     mesh::write_text(file, text + sofa_law);
 
     std::vector<std::string> left_out =
-        effects_left_out(model, [](const auto& effect) { return weight_of(effect).has_value(); });
+        omitted_effects(model, [](const auto& effect) { return weight_of(effect).has_value(); });
     if (full) left_out.emplace_back("the scene keeps no volumes");
     left_out.emplace_back("the scene spreads the mass evenly over the spheres");
     return left_out;

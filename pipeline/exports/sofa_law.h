@@ -2,8 +2,8 @@
 
 namespace palpate::pipeline {
 
-/// The links' law in numpy, as SOFA's scene has it, after the data. The same as skeleton/link_energy.h and
-/// skeleton/links/full_link.h, without volumes.
+/// The links' law in numpy, as SOFA's scene has it, after the data. The same as skeleton/links/link_energy.h and
+/// skeleton/links/full_link.h, without volumes; SofaExport.ItsForcesAreTheModels holds them together.
 inline constexpr const char* sofa_law = R"py(
 
 def matrices(q):

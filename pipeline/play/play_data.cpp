@@ -6,14 +6,14 @@
 #include <map>
 
 #include "identify/effects/catalogue.h"
-#include "identify/set/creep.h"
+#include "identify/loading/creep.h"
 #include "mesh/errors.h"
-#include "mesh/io/atomic_file.h"
+#include "mesh/text/atomic_file.h"
 #include "pipeline/case/subject.h"
-#include "pipeline/play/set_text.h"
-#include "pipeline/report/run_files.h"
-#include "pipeline/results/words.h"
-#include "skeleton/model_io.h"
+#include "pipeline/output/html/run_files.h"
+#include "pipeline/output/text/words.h"
+#include "pipeline/play/touch/set_text.h"
+#include "skeleton/model/io/model_io.h"
 #include "skeleton/runtime/body.h"
 
 namespace palpate::pipeline {
@@ -27,7 +27,7 @@ using nlohmann::ordered_json;
 struct Candidate {
     fs::path file;
     std::string name, about;
-    json told = {};  // its errors as ladder.json tells them, or null
+    json errors = {};  // its errors as ladder.json tells them, or null
 };
 
 std::string with_words(const json& effects) {
@@ -98,18 +98,18 @@ std::optional<identify::MeasurementSet> measurements_of(const fs::path& run, std
     }
 }
 
-bool is_of_measurement(const skeleton::Effect& effect) { return !skeleton::is_body_effect(effect.name); }
+bool is_of_measurement(const skeleton::EffectRecord& effect) { return !skeleton::is_body_effect(effect.name); }
 
-bool creeps(const skeleton::Effect& effect) { return skeleton::physics_of({effect}).creep.has_value(); }
+bool creeps(const skeleton::EffectRecord& effect) { return skeleton::physics_of({effect}).creep.has_value(); }
 
 /// Can it be taken off a set? Readings that were set aside are not recorded.
-bool is_taken_off(const skeleton::Effect& effect) {
+bool is_taken_off(const skeleton::EffectRecord& effect) {
     const auto known = identify::effect_named(effect.name);
     return is_of_measurement(effect) && known && !known->sets_readings_aside();
 }
 
 /// Does a switch of it change what is played?
-bool is_played(const skeleton::Effect& effect) {
+bool is_played(const skeleton::EffectRecord& effect) {
     if (is_of_measurement(effect)) return is_taken_off(effect);
     return skeleton::find_known_effect(effect.name)->not_played.empty();
 }
@@ -117,9 +117,9 @@ bool is_played(const skeleton::Effect& effect) {
 /// Sets as they are understood with each choice of a model's faults of the measurement, and with loads as they have
 /// crept where it creeps: their numbers in `sets`, by the effects' names joined by commas. Outliers that were set aside
 /// are not recorded: those readings stay.
-json understood_sets(const skeleton::Model& model, const identify::MeasurementSet& set, json& sets) {
-    std::vector<skeleton::Effect> effects;
-    for (const skeleton::Effect& effect : model.effects) {
+json corrected_sets(const skeleton::Model& model, const identify::MeasurementSet& set, json& sets) {
+    std::vector<skeleton::EffectRecord> effects;
+    for (const skeleton::EffectRecord& effect : model.effects) {
         if (creeps(effect) || is_taken_off(effect)) effects.push_back(effect);
     }
     json numbers = json::object();
@@ -142,7 +142,7 @@ json understood_sets(const skeleton::Model& model, const identify::MeasurementSe
 }
 
 /// What the page says of an effect: its meaning, and its numbers.
-ordered_json effect_json(const skeleton::Effect& effect) {
+ordered_json effect_json(const skeleton::EffectRecord& effect) {
     const auto known = identify::effect_named(effect.name);
     std::vector<std::string> numbers;
     numbers.reserve(effect.parameters.size());
@@ -187,15 +187,15 @@ PlayData play_data(const fs::path& input, const fs::path& set_folder) {
         const skeleton::Model model = skeleton::read_model(candidate.file);
         if (model.surface.triangles.rows() == 0)
             throw InvalidInput(candidate.file.string() + ": has no skin that could be touched; give the model one");
-        skeleton::Model told_of = model;
-        if (set) std::erase_if(told_of.effects, is_of_measurement);  // they are played on the set
-        const runtime::Body body(told_of);
+        skeleton::Model errors_of = model;
+        if (set) std::erase_if(errors_of.effects, is_of_measurement);  // they are played on the set
+        const runtime::Body body(errors_of);
         for (const std::string& notice : body.notices()) data.notes.push_back(candidate.name + ": " + notice + ".");
         ordered_json text = ordered_json::parse(mesh::read_text(candidate.file));
-        ordered_json one = {{"name", candidate.name}, {"about", candidate.about}, {"told", candidate.told}};
+        ordered_json one = {{"name", candidate.name}, {"about", candidate.about}, {"told", candidate.errors}};
         one["effects"] = ordered_json::array();
-        for (const skeleton::Effect& effect : model.effects) one["effects"].push_back(effect_json(effect));
-        if (set) one["sets"] = understood_sets(model, *set, sets);
+        for (const skeleton::EffectRecord& effect : model.effects) one["effects"].push_back(effect_json(effect));
+        if (set) one["sets"] = corrected_sets(model, *set, sets);
         one["text"] = first.is_null() ? text : difference(first, text);
         if (first.is_null()) first = std::move(text);
         models.push_back(std::move(one));
@@ -205,7 +205,7 @@ PlayData play_data(const fs::path& input, const fs::path& set_folder) {
 
     fs::path ladder = input / "ladder.json";
     if (!fs::exists(ladder)) ladder = input / "improve/ladder.json";
-    const bool has_steps = std::ranges::any_of(candidates, [](const Candidate& c) { return !c.told.is_null(); });
+    const bool has_steps = std::ranges::any_of(candidates, [](const Candidate& c) { return !c.errors.is_null(); });
     if (fs::exists(ladder) && !has_steps) {
         data.notes.push_back(
             "The models of the ladder's steps are not here: an older palpate made it. Run it again for them.");

@@ -4,10 +4,10 @@
 
 #include <stdexcept>
 
+#include "pipeline/output/base64.h"
+#include "pipeline/output/html/escape.h"
+#include "pipeline/output/html/page/page_parts.h"
 #include "pipeline/play/page/page_parts.h"
-#include "pipeline/report/base64.h"
-#include "pipeline/report/escape.h"
-#include "pipeline/report/page/page_parts.h"
 
 namespace palpate::pipeline {
 namespace {

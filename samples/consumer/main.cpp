@@ -2,9 +2,9 @@
 
 #include <iostream>
 
-#include "identify/set/loads.h"
-#include "skeleton/equilibrium.h"
-#include "skeleton/model_io.h"
+#include "identify/loading/loads.h"
+#include "skeleton/model/io/model_io.h"
+#include "skeleton/statics/equilibrium.h"
 
 int main(int, char** arguments) {
     const palpate::skeleton::Model model = palpate::skeleton::read_model(arguments[1]);

@@ -1,8 +1,8 @@
 // An effect of one's own, in one file.
 //
-// What it shows: an organ lies in soft tissue that nobody told of, and which holds its skin back wherever it moves. The
-// catalogue does not know such a thing. This file tells its physics, and how a diagnosis sees it; the program then
-// plays it on both models, hides it in data, names it and adds it, like any other effect.
+// What it shows: an organ lies in soft tissue that the set does not specify, and which holds its skin back wherever it
+// moves. The catalogue does not know such a thing. This file tells its physics, and how a diagnosis sees it; the
+// program then plays it on both models, hides it in data, names it and adds it, like any other effect.
 //
 // How to run it, in the project's folder:
 //   cmake --preset release -DPALPATE_OWN_EFFECTS=samples/own-effect/embedding.cpp && cmake --build --preset release
@@ -48,7 +48,7 @@ const bool physics_known = skeleton::register_effect(
 
 // --- How a diagnosis sees it -----------------------------------------------------------------------------------------
 
-class EmbeddingEffect : public identify::Effect {
+class EmbeddingEffect : public identify::EffectHypothesis {
 public:
     const identify::EffectDescription& description() const override {
         static const identify::EffectDescription text{
@@ -72,14 +72,14 @@ public:
         return {{.name = "stiffness", .unit = "N/mm^3", .prior_sd = 0.1 * felt}};
     }
 
-    bool enforce(const Eigen::VectorXd& values, identify::Setting& setting) const override {
+    bool enforce(const Eigen::VectorXd& values, identify::ModelSetting& setting) const override {
         setting.effects.points.push_back(std::make_shared<Embedding>(values[0]));
         return true;
     }
 
-    std::string sentence(const skeleton::Effect& told) const override {
+    std::string sentence(const skeleton::EffectRecord& record) const override {
         return fmt::format("The body lies in something soft: {:.3g} N/mm^3 hold its skin back.",
-                           told.parameters[0].value);
+                           record.parameters[0].value);
     }
 };
 

@@ -11,6 +11,6 @@ out=${OUT:-runs/own-effect}
 cmake -S "$root" -B "$build" -DPALPATE_OWN_EFFECTS="$here/embedding.cpp" >/dev/null
 cmake --build "$build" --target palpate
 "$build/palpate" effects embedding
-"$build/palpate" probe "$here/../organ/organ.stl" -o "$out/riddle" --hide embedding --force --quiet
+"$build/palpate" probe "$here/../organ/organ.stl" -o "$out/blind" --hide embedding --force --quiet
 cp "$here/expected.yaml" "$out/case.yaml"
 "$build/palpate" run "$out/case.yaml" -o "$out/run"

@@ -31,11 +31,11 @@ bool is_body_effect(const std::string& name) {
     return !known || known->kind == EffectKind::body;
 }
 
-fem::Effects make_physics(const Effect& effect) { return registry().make(effect); }
+fem::Effects make_physics(const EffectRecord& effect) { return registry().make(effect); }
 
-fem::Effects physics_of(const std::vector<Effect>& effects, const fem::Effects& more) {
+fem::Effects physics_of(const std::vector<EffectRecord>& effects, const fem::Effects& more) {
     fem::Effects physics;
-    for (const Effect& effect : effects)
+    for (const EffectRecord& effect : effects)
         if (is_body_effect(effect.name)) physics.add(make_physics(effect));
     physics.add(more);
     return physics;

@@ -10,7 +10,7 @@
 namespace palpate::skeleton {
 
 /// An effect that a model has beyond its links.
-using Effect = fem::ToldEffect;
+using EffectRecord = fem::EffectRecord;
 using fem::EffectKind, fem::EffectNumbers, fem::EffectParameter, fem::KnownEffect, fem::KnownParameter, fem::Range;
 
 /// Makes an effect known, to all models of this program: a static object of any source file may do so,
@@ -27,9 +27,9 @@ bool is_body_effect(const std::string& name);
 
 /// The physics of an effect. @throws InvalidInput for a name that is no effect of a body, a parameter that is missing,
 /// unknown, in another unit or out of range.
-fem::Effects make_physics(const Effect& effect);
+fem::Effects make_physics(const EffectRecord& effect);
 
 /// The physics of all that are the body's, and `more`. @throws as make_physics.
-fem::Effects physics_of(const std::vector<Effect>& effects, const fem::Effects& more = {});
+fem::Effects physics_of(const std::vector<EffectRecord>& effects, const fem::Effects& more = {});
 
 }  // namespace palpate::skeleton

@@ -4,7 +4,7 @@ namespace palpate::skeleton {
 
 namespace {
 
-class InLinks : public fem::ModelEffect {
+class InLinks : public fem::ModelSpecificEffect {
 public:
     explicit InLinks(const LinkEffects& effects) : effects_(effects) {}
     bool is_nothing() const override { return effects_.torsion == 0 && effects_.shear == 0; }
@@ -20,7 +20,7 @@ fem::Effects shear(const EffectNumbers& numbers) { return {.of_model = {in_links
 
 }  // namespace
 
-std::shared_ptr<const fem::ModelEffect> in_links(const LinkEffects& effects) {
+std::shared_ptr<const fem::ModelSpecificEffect> in_links(const LinkEffects& effects) {
     return std::make_shared<InLinks>(effects);
 }
 

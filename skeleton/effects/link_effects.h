@@ -14,7 +14,7 @@ struct LinkEffects {
 };
 
 /// As one of fem::Effects::of_model.
-std::shared_ptr<const fem::ModelEffect> in_links(const LinkEffects& effects);
+std::shared_ptr<const fem::ModelSpecificEffect> in_links(const LinkEffects& effects);
 
 /// All that are in force in links; numbers add up.
 LinkEffects link_effects(const fem::Effects& effects);

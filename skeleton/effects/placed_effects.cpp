@@ -6,14 +6,14 @@
 #include <map>
 
 #include "mesh/errors.h"
-#include "skeleton/carried_point.h"
+#include "skeleton/model/carried_point.h"
 
 namespace palpate::skeleton {
 
 PlacedEffects::PlacedEffects(const Model& model, const fem::Effects& effects)
     : rest_(rest_state(model)),
       pressure_(effects.pressure),
-      is_dead_(model.law == Law::linear),
+      is_dead_(model.law == EquilibriumLaw::linear),
       supported_(model.spheres.size(), 0) {
     std::map<std::array<int, 2>, int> place;
     const auto pair = [&](int a, int b) {
@@ -31,8 +31,8 @@ PlacedEffects::PlacedEffects(const Model& model, const fem::Effects& effects)
         Placed placed{potential, {}};
         for (size_t i = 0; i < set.at.size(); ++i) {
             Point point{set.at[i], weights[i], {}};
-            for (const Share& s : set.at[i].shares)
-                for (const Share& t : set.at[i].shares)
+            for (const SphereInfluence& s : set.at[i].shares)
+                for (const SphereInfluence& t : set.at[i].shares)
                     if (s.sphere <= t.sphere) point.pairs.push_back(pair(s.sphere, t.sphere));
             placed.points.push_back(std::move(point));
             if (potential->acts_on() == fem::ActsOn::support) supported_[set.at[i].shares.front().sphere] = 1;

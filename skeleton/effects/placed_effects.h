@@ -4,9 +4,9 @@
 #include <vector>
 
 #include "fem/effects/effects.h"
-#include "skeleton/effects/cavities.h"
 #include "skeleton/effects/point_sets.h"
-#include "skeleton/state.h"
+#include "skeleton/loads/cavities.h"
+#include "skeleton/model/state.h"
 
 namespace palpate::skeleton {
 

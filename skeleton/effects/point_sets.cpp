@@ -7,7 +7,7 @@
 #include <numbers>
 
 #include "mesh/errors.h"
-#include "skeleton/attach.h"
+#include "skeleton/model/attach.h"
 
 namespace palpate::skeleton {
 

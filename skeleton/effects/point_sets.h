@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "fem/effects/point_potential.h"
-#include "skeleton/model.h"
+#include "skeleton/model/model.h"
 
 namespace palpate::skeleton {
 

@@ -3,14 +3,11 @@
 #include <Eigen/Geometry>
 #include <array>
 
-#include "skeleton/links/turning_curvature.h"
+#include "skeleton/model/turning_curvature.h"
 
 namespace palpate::skeleton {
 
 namespace {
-
-// Where the steps of the two ends lie in the twelve.
-constexpr int dx_a = 0, w_a = 3, dx_b = 6, w_b = 9;
 
 // The axis of each parting of the ends, and of each of their turns, by its place in Stiffness.
 struct Part {

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "skeleton/link_energy.h"
-#include "skeleton/state.h"
+#include "skeleton/links/link_energy.h"
+#include "skeleton/model/state.h"
 
 namespace palpate::skeleton {
 
@@ -17,6 +17,10 @@ namespace palpate::skeleton {
 /// The energy of each is 1/2 k s^2: conservative, the same after any rigid motion, and polynomial in rotations: 2 |v|
 /// is twice the sine of half the angle. A straight beam's segment with k = E A / L, E I / L, G J / L and, across, 1 /
 /// (L / (kappa G A) + L^3 / (12 E I)) is exact for small displacements of its ends.
+///
+/// The same law stands in skeleton/runtime/kernels/link_forces.h for vector units (held to this one by
+/// tests/skeleton/runtime/forces/force_field_test.cpp, 1e-12) and in pipeline/exports/sofa_law.h in numpy (by
+/// SofaExport.ItsForcesAreTheModels): whoever changes one changes all.
 class FullLink {
 public:
     using Strains = Eigen::Matrix<double, 6, 1>;

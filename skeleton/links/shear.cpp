@@ -2,8 +2,8 @@
 
 #include <Eigen/Geometry>
 
-#include "skeleton/links/turning_curvature.h"
-#include "skeleton/state.h"
+#include "skeleton/model/state.h"
+#include "skeleton/model/turning_curvature.h"
 
 namespace palpate::skeleton {
 

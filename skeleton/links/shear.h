@@ -1,6 +1,6 @@
 #pragma once
 
-#include "skeleton/link_energy.h"
+#include "skeleton/links/link_energy.h"
 
 namespace palpate::skeleton {
 

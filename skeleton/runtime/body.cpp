@@ -8,11 +8,11 @@
 
 #include "mesh/errors.h"
 #include "skeleton/effects/effect.h"
-#include "skeleton/model_io.h"
-#include "skeleton/runtime/creep.h"
+#include "skeleton/model/io/model_io.h"
+#include "skeleton/runtime/contacts/creep.h"
 #include "skeleton/runtime/kernels/motion.h"
 #include "skeleton/runtime/kernels/skinning.h"
-#include "skeleton/runtime/solver.h"
+#include "skeleton/runtime/solver/solver.h"
 #include "skeleton/runtime/walk_order.h"
 
 namespace palpate::runtime {
@@ -21,9 +21,9 @@ namespace {
 
 std::vector<std::string> what_is_not_played(const skeleton::Model& model) {
     std::vector<std::string> words;
-    if (model.law == skeleton::Law::linear)
+    if (model.law == skeleton::EquilibriumLaw::linear)
         words.emplace_back("the model follows the linear law; it is played in large rotation");
-    for (const skeleton::Effect& effect : model.effects) {
+    for (const skeleton::EffectRecord& effect : model.effects) {
         const skeleton::KnownEffect* known = skeleton::find_known_effect(effect.name);
         if (!known) continue;
         if (known->kind == skeleton::EffectKind::measurement)
@@ -50,42 +50,42 @@ void BodyOptions::validate() const {
 
 struct Body::Impl {
     BodyOptions options;
-    WalkedModel walked;
+    ReorderedModel reordered;
     ForceField field;
     Solver solver;
     Skinning skinning;
     MassTable masses;
     std::vector<std::string> notices;
     SphereRows rest, pose, start, momentum, velocity, force;
-    std::vector<Contact> contacts;
-    std::vector<Contact*> in_use;  // all contacts, as the solver wants them
-    Creep creep;
+    std::vector<ContactState> contacts;
+    std::vector<ContactState*> in_use;  // all contacts, as the solver wants them
+    CreepIntegrator creep;
     std::vector<float> skin;
     std::vector<int> triangles;
-    Damping damping;
+    RayleighDamping damping;
     double stable = 0;  // [s]; 0: not known yet
     bool held = false;
     int massless = -1;  // a sphere that moves and has no mass, by its number in the file
 
     Impl(const skeleton::Model& model, const BodyOptions& how)
         : options(how),
-          walked(in_walk_order(model)),
-          field(walked.model),
+          reordered(in_cuthill_mckee_order(model)),
+          field(reordered.model),
           solver(field, options.contacts),
-          skinning(walked.model),
-          masses(mass_table(walked.model, field.moves())),
+          skinning(reordered.model),
+          masses(mass_table(reordered.model, field.moves())),
           notices(what_is_not_played(model)),
-          rest(rest_rows(walked.model)),
+          rest(rest_rows(reordered.model)),
           contacts(options.contacts),
           creep(skeleton::physics_of(model.effects).creep) {
         pose = start = rest;
         for (SphereRows* rows : {&momentum, &velocity, &force}) rows->assign(rest.size(), 0.0);
-        for (Contact& contact : contacts) in_use.push_back(&contact);
-        skin.resize(3 * walked.model.skin.size());
+        for (ContactState& contact : contacts) in_use.push_back(&contact);
+        skin.resize(3 * reordered.model.skin.size());
         triangles.assign(model.surface.triangles.data(),
                          model.surface.triangles.data() + model.surface.triangles.size());
         for (std::size_t i = 0; i < model.spheres.size(); ++i) {
-            const bool moves = field.moves()[walked.place[i]] != 0;
+            const bool moves = field.moves()[reordered.place[i]] != 0;
             held = held || !moves || model.spheres[i].held;
             const bool heavy = model.spheres[i].mass > 0 && model.spheres[i].inertia.determinant() > 0;
             if (moves && !heavy && massless < 0) massless = static_cast<int>(i);
@@ -110,17 +110,17 @@ struct Body::Impl {
         if (!(h > 0) || !std::isfinite(h)) throw InvalidInput(fmt::format("the step is {} s; it must be above 0", h));
         require_masses();
     }
-    Contact& contact(int number) {
+    ContactState& contact(int number) {
         if (number < 0 || number >= static_cast<int>(contacts.size()) || !contacts[number].used)
             throw InvalidInput(fmt::format("contact {} is not in use; touch() gives contacts their numbers", number));
         contacts[number].at.place(pose.data());
         return contacts[number];
     }
     int row(int sphere) const {
-        if (sphere < 0 || sphere >= static_cast<int>(walked.place.size()))
+        if (sphere < 0 || sphere >= static_cast<int>(reordered.place.size()))
             throw InvalidInput(fmt::format("sphere {} does not exist; spheres are numbered from 0 to {}", sphere,
-                                           walked.place.size() - 1));
-        return row_length * walked.place[sphere];
+                                           reordered.place.size() - 1));
+        return row_length * reordered.place[sphere];
     }
 
     // Forces where it stands, with those of contacts; rates by the momenta.
@@ -131,10 +131,10 @@ struct Body::Impl {
             rates = {velocity.data(), damping.beta};
         }
         field.evaluate(pose.data(), rates, force.data());
-        for (Contact& contact : contacts) {
+        for (ContactState& contact : contacts) {
             if (!contact.acts()) continue;
             contact.at.place(pose.data());
-            contact.at.pull_back(contact.borne(), [&](int sphere, const Vec3& f, const Vec3& t) {
+            contact.at.pull_back(contact.effective_force(), [&](int sphere, const Vec3& f, const Vec3& t) {
                 Eigen::Map<Vec3>(force.data() + row_length * sphere) += f;
                 Eigen::Map<Vec3>(force.data() + row_length * sphere + 4) += t;
             });
@@ -143,7 +143,7 @@ struct Body::Impl {
 
     // Momenta of a sphere that moves by v and w.
     void set_momentum(int place, const Vec3& v, const Vec3& w) {
-        const skeleton::Sphere& sphere = walked.model.spheres[place];
+        const skeleton::Sphere& sphere = reordered.model.spheres[place];
         const Eigen::Map<const Eigen::Vector4d> q(pose.data() + row_length * place + 4);
         const Mat3 R = Eigen::Quaterniond(Eigen::Vector4d(q)).toRotationMatrix();
         Eigen::Map<Vec3> p(momentum.data() + row_length * place), L(momentum.data() + row_length * place + 4);
@@ -153,7 +153,7 @@ struct Body::Impl {
 
     // Velocities and momenta of a step of h from `start` to `pose`.
     void set_momenta(double h) {
-        for (std::size_t i = 0; i < walked.model.spheres.size(); ++i) {
+        for (std::size_t i = 0; i < reordered.model.spheres.size(); ++i) {
             if (!field.moves()[i]) continue;
             const double *from = start.data() + row_length * i, *to = pose.data() + row_length * i;
             const Eigen::Quaterniond q_from(Eigen::Map<const Eigen::Vector4d>(from + 4)),
@@ -167,7 +167,7 @@ struct Body::Impl {
         if (creep.begin(h, contacts)) solver.forget_contacts();
     }
     void end_step(double h) {
-        for (Contact& contact : contacts) {
+        for (ContactState& contact : contacts) {
             if (contact.acts()) contact.at.place(pose.data());
         }
         creep.end(h, contacts);
@@ -192,16 +192,16 @@ Body::Body(Body&&) noexcept = default;
 Body& Body::operator=(Body&&) noexcept = default;
 
 const std::vector<std::string>& Body::notices() const { return impl_->notices; }
-int Body::sphere_count() const { return static_cast<int>(impl_->walked.model.spheres.size()); }
-int Body::link_count() const { return static_cast<int>(impl_->walked.model.links.size()); }
-int Body::vertex_count() const { return static_cast<int>(impl_->walked.model.skin.size()); }
+int Body::sphere_count() const { return static_cast<int>(impl_->reordered.model.spheres.size()); }
+int Body::link_count() const { return static_cast<int>(impl_->reordered.model.links.size()); }
+int Body::vertex_count() const { return static_cast<int>(impl_->reordered.model.skin.size()); }
 
 void Body::reset() {
     impl_->pose = impl_->rest;
     std::ranges::fill(impl_->momentum, 0.0);
-    for (Contact& contact : impl_->contacts) {
+    for (ContactState& contact : impl_->contacts) {
         contact.used = false;
-        contact.late.setZero();
+        contact.lagged_force.setZero();
     }
     impl_->solver.forget_contacts();
     impl_->field.forget_flow();
@@ -234,7 +234,7 @@ Energy Body::energy() {
 
 Momenta Body::momenta() const {
     Momenta sum{Vec3::Zero(), Vec3::Zero()};
-    for (std::size_t i = 0; i < impl_->walked.model.spheres.size(); ++i) {
+    for (std::size_t i = 0; i < impl_->reordered.model.spheres.size(); ++i) {
         if (!impl_->field.moves()[i]) continue;
         const Eigen::Map<const Vec3> x(impl_->pose.data() + row_length * i);
         const Eigen::Map<const Vec3> p(impl_->momentum.data() + row_length * i);
@@ -248,10 +248,10 @@ Momenta Body::momenta() const {
 const std::vector<float>& Body::skin() {
     Impl& own = *impl_;
     own.skinning.follow(own.pose.data(), own.skin.data());
-    for (Contact& contact : own.contacts) {
+    for (ContactState& contact : own.contacts) {
         if (!contact.acts() || contact.dented.empty()) continue;
         contact.at.place(own.pose.data());
-        add_dent(own.walked.model, contact, own.skin);
+        add_dent(own.reordered.model, contact, own.skin);
     }
     return own.skin;
 }
@@ -265,14 +265,15 @@ int Body::touch(const Eigen::Vector3d& point, double radius) {
     if (own.triangles.empty() || own.skin.empty())
         throw InvalidInput("the model has no skin that could be touched: give it one");
     // Of those that are free the one of which least is left.
-    const auto free = std::ranges::min_element(
-        own.contacts, {}, [](const Contact& contact) { return std::pair(contact.used, contact.late.squaredNorm()); });
+    const auto free = std::ranges::min_element(own.contacts, {}, [](const ContactState& contact) {
+        return std::pair(contact.used, contact.lagged_force.squaredNorm());
+    });
     if (free == own.contacts.end() || free->used)
         throw InvalidInput(
             fmt::format("all {} contacts are in use; release one, or make the body with more", own.contacts.size()));
     std::vector<float> bare(own.skin.size());  // without dents
     own.skinning.follow(own.pose.data(), bare.data());
-    place_contact(own.walked.model, bare, own.pose.data(), point, radius, *free);
+    place_contact(own.reordered.model, bare, own.pose.data(), point, radius, *free);
     return static_cast<int>(free - own.contacts.begin());
 }
 
@@ -282,37 +283,37 @@ void Body::release(int contact) {
 }
 
 void Body::push(int contact, const Eigen::Vector3d& force) {
-    Contact& own = impl_->contact(contact);
-    if (own.does == Contact::Does::drag) impl_->solver.forget_contacts();
-    own.does = Contact::Does::push;
+    ContactState& own = impl_->contact(contact);
+    if (own.mode == ContactState::Mode::drag) impl_->solver.forget_contacts();
+    own.mode = ContactState::Mode::push;
     own.dead = force;
     own.creeps = true;
 }
 
-void Body::bear(int contact, const Eigen::Vector3d& force) {
+void Body::push_without_creep(int contact, const Eigen::Vector3d& force) {
     push(contact, force);
-    Contact& own = impl_->contact(contact);
+    ContactState& own = impl_->contact(contact);
     own.creeps = false;
     own.gain = 1;
     own.crept.setZero();
-    own.late.setZero();
+    own.lagged_force.setZero();
 }
 
 void Body::drag(int contact, const Eigen::Vector3d& to, double stiffness) {
     require_above("the stiffness of a drag", stiffness, 0);
-    Contact& own = impl_->contact(contact);
-    if (own.does != Contact::Does::drag || own.stiffness != stiffness) impl_->solver.forget_contacts();
-    own.does = Contact::Does::drag;
+    ContactState& own = impl_->contact(contact);
+    if (own.mode != ContactState::Mode::drag || own.stiffness != stiffness) impl_->solver.forget_contacts();
+    own.mode = ContactState::Mode::drag;
     own.creeps = true;
     own.target = to;
     own.stiffness = stiffness;
 }
 
 Eigen::Vector3d Body::force(int contact) { return impl_->contact(contact).force(); }
-Eigen::Vector3d Body::borne(int contact) { return impl_->contact(contact).borne(); }
+Eigen::Vector3d Body::effective_force(int contact) { return impl_->contact(contact).effective_force(); }
 Eigen::Vector3d Body::place(int contact) { return impl_->contact(contact).at.x(); }
 
-void Body::set_damping(const Damping& damping) {
+void Body::set_damping(const RayleighDamping& damping) {
     if (!(damping.alpha >= 0) || !(damping.beta >= 0))
         throw InvalidInput(
             fmt::format("damping is {} 1/s and {} s; both must be at least 0", damping.alpha, damping.beta));
@@ -320,7 +321,7 @@ void Body::set_damping(const Damping& damping) {
     impl_->stable = 0;
 }
 
-const Damping& Body::damping() const { return impl_->damping; }
+const RayleighDamping& Body::damping() const { return impl_->damping; }
 
 // h <= 2 / w for a mode of frequency w without damping; with the ratio zeta = beta w / 2, as rates are those of the
 // last half step, h <= 2 / w (sqrt(1 + zeta^2) - zeta). The power method comes from below: a twentieth is kept back.
@@ -364,7 +365,7 @@ void Body::step_implicit(double h) {
     Solver::Report report = own.solver.solve(step, own.in_use, own.start.data(), own.velocity.data(), own.pose);
     if (!report.found) {
         std::ranges::copy(own.start, own.pose.begin());
-        step.coast = false;
+        step.extrapolate = false;
         report = own.solver.solve(step, own.in_use, own.start.data(), own.velocity.data(), own.pose);
     }
     if (!report.found) {
@@ -377,12 +378,11 @@ void Body::step_implicit(double h) {
 
 EquilibriumReport Body::equilibrium() {
     Impl& own = *impl_;
-    if (!own.held)
-        throw SolverFailure("nothing holds the body, so it comes to rest nowhere: let a support hold a sphere");
+    if (!own.held) throw SolverFailure("the body is unconstrained and has no equilibrium: let a support hold a sphere");
     std::ranges::copy(own.pose, own.start.begin());
     Solver::Step step;
     step.iterations = 200;
-    step.reuse = own.solver.factor_is_dear();
+    step.reuse = own.solver.factor_is_expensive();
     own.begin_step(0);
     const Solver::Report report = own.solver.solve(step, own.in_use, nullptr, nullptr, own.pose);
     if (!report.found) {

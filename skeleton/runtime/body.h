@@ -17,7 +17,7 @@ namespace palpate::runtime {
 /// How motion dies away: forces -alpha m v on every sphere, and in every link beta times the rate of what it resists.
 /// The second keeps momenta and turns with the body. A mode of angular frequency w has the damping ratio
 /// (alpha / w + beta w) / 2.
-struct Damping {
+struct RayleighDamping {
     double alpha = 0;  // [1/s], >= 0
     double beta = 0;   // [s], >= 0
 };
@@ -87,19 +87,20 @@ public:
     void release(int contact);
     /// Force in: a dead force on the contact [N].
     void push(int contact, const Eigen::Vector3d& force);
-    /// The same on a body that creeps, which bears just that however long it acts.
-    void bear(int contact, const Eigen::Vector3d& force);
+    /// The same, without creep of the body under this force.
+    void push_without_creep(int contact, const Eigen::Vector3d& force);
     /// Position in: a spring from the contact to where it shall be; stiffness > 0 [N/mm].
     void drag(int contact, const Eigen::Vector3d& to, double stiffness);
     /// Force out: what acts on the body there, as it stands [N]; on a hand that drags it, minus that.
     Eigen::Vector3d force(int contact);
-    /// What the body bears there [N]: where it creeps, what force of this instant would hold it as it stands.
-    Eigen::Vector3d borne(int contact);
+    /// Effective force there [N]: for a creeping body, the instantaneous force that would hold its current
+    /// configuration.
+    Eigen::Vector3d effective_force(int contact);
     Eigen::Vector3d place(int contact);  // [mm]
 
     // --- In time -------------------------------------------------------------------------------------------------
-    void set_damping(const Damping& damping);
-    const Damping& damping() const;
+    void set_damping(const RayleighDamping& damping);
+    const RayleighDamping& damping() const;
     /// Largest explicit step that is stable at rest, without contacts [s].
     double stable_step();
     /// `steps` steps of h by a symplectic rule of second order (drift, kick, drift). @throws InvalidInput when a

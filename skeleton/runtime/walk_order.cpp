@@ -37,8 +37,8 @@ std::vector<int> walk(const skeleton::Model& model) {
 
 }  // namespace
 
-WalkedModel in_walk_order(const skeleton::Model& model) {
-    WalkedModel result{model, std::vector<int>(model.spheres.size())};
+ReorderedModel in_cuthill_mckee_order(const skeleton::Model& model) {
+    ReorderedModel result{model, std::vector<int>(model.spheres.size())};
     const std::vector<int> met = walk(model);
     for (std::size_t p = 0; p < met.size(); ++p) {
         result.place[met[p]] = static_cast<int>(p);
@@ -52,7 +52,7 @@ WalkedModel in_walk_order(const skeleton::Model& model) {
         return std::pair(std::min(link.a, link.b), std::max(link.a, link.b));
     });
     for (skeleton::Attachment& point : result.model.skin) {
-        for (skeleton::Share& share : point.shares) share.sphere = result.place[share.sphere];
+        for (skeleton::SphereInfluence& share : point.shares) share.sphere = result.place[share.sphere];
     }
     return result;
 }

@@ -22,14 +22,14 @@
 #include <mutex>
 
 #include "diagnosis/tally.h"
-#include "identify/diagnose/ladder.h"
+#include "identify/diagnosis/ladder.h"
 #include "identify/effects/catalogue.h"
 #include "identify/models/skeleton_body.h"
-#include "identify/parallel.h"
+#include "identify/numerics/parallel.h"
 #include "mesh/errors.h"
-#include "pipeline/reference/body.h"
-#include "pipeline/reference/reference_body.h"
-#include "skeleton/build.h"
+#include "pipeline/body/body.h"
+#include "pipeline/body/reference_body.h"
+#include "skeleton/construction/build.h"
 
 using namespace palpate;
 using namespace palpate::bench;
@@ -68,8 +68,7 @@ identify::DiagnoseOptions ablated(const std::vector<std::string>& parts) {
             options.mesh_error = 0;
         } else if (part == "gates") {
             options.least_lead = 0;
-            options.most_left = options.most_left_together = options.most_left_held_out = options.most_strain =
-                INFINITY;
+            options.most_left = options.most_left_together = options.most_left_held_out = options.most_pull = INFINITY;
         }
     }
     return options;
@@ -77,7 +76,7 @@ identify::DiagnoseOptions ablated(const std::vector<std::string>& parts) {
 
 /// The set's skeleton as it comes from the mesh, with nothing fitted.
 skeleton::Model skeleton_of(const identify::MeasurementSet& set) {
-    const pipeline::Body body = pipeline::make_body(set.rest_surface, {});
+    const pipeline::MeshedBody body = pipeline::make_body(set.rest_surface, {});
     fem::Material material;
     if (set.density) material.density = *set.density;
     return skeleton::build_skeleton(body.surface, body.volume, material, set.supports, {});
@@ -98,7 +97,7 @@ std::string climbed(const identify::BodyModel& body, const identify::Measurement
                     const identify::Diagnosis& found, const Options& options) {
     identify::LadderOptions how;
     how.identify.threads = how.diagnose.refit.threads = options.threads;
-    const identify::Ladder ladder = identify::climb(skeleton_of(set), body, set, found.explanation, how, &found);
+    const identify::Ladder ladder = identify::build_ladder(skeleton_of(set), body, set, found.explanation, how, &found);
     const identify::LadderStep &first = ladder.steps.front(), &last = ladder.steps.back();
     const std::string skeleton = fmt::format(
         "{:.3f} -> {:.3f} mm ({:+.0f} %), held out {:.3f} -> {:.3f} mm ({:+.0f} %)", first.skeleton.rms_mm,
@@ -110,10 +109,10 @@ std::string climbed(const identify::BodyModel& body, const identify::Measurement
                                   last.reference->held_out_whitened_rms);
 }
 
-std::string told(const identify::Explained& explained) {
+std::string estimate(const identify::FittedExplanation& explained) {
     std::string text;
     for (const auto& effect : explained.effects) {
-        const identify::Told numbers = explained.told(effect->name());
+        const identify::EffectEstimate numbers = explained.estimate(effect->name());
         text += (text.empty() ? "" : "; ") + effect->name();
         for (std::size_t p = 0; p < numbers.effect.parameters.size(); ++p) {
             const skeleton::EffectParameter& one = numbers.effect.parameters[p];
@@ -123,15 +122,15 @@ std::string told(const identify::Explained& explained) {
     return text;
 }
 
-std::string told(const identify::Diagnosis& found) {
+std::string estimate(const identify::Diagnosis& found) {
     std::string text = "    screened:";
     for (const identify::Candidate& c : found.ranking) text += fmt::format(" {} {:.1f}", c.effect->name(), c.screened);
     text += "\n";
-    for (const identify::Explained& one : found.tried) {
+    for (const identify::FittedExplanation& one : found.tried) {
         text +=
             fmt::format("    ln BF {:.1f}, {:.3f} left, {:.2f} held out, strain {:.1f} ({}), law {}, {} steps: {}{}\n",
-                        one.log_bayes_factor, one.fit.whitened_rms, one.held_out.whitened_rms, one.fit.strain,
-                        one.fit.most_strained, one.fit.explanation.law, one.fit.steps, told(one),
+                        one.log_bayes_factor, one.fit.whitened_rms, one.held_out.whitened_rms, one.fit.nuisance_pull,
+                        one.fit.most_pulled_nuisance, one.fit.explanation.law, one.fit.steps, estimate(one),
                         one.objection.empty() ? "" : " (" + one.objection + ")");
     }
     return text;
@@ -168,7 +167,7 @@ std::string diagnosed(const Truth& truth, const Options& options, Tally& tally) 
             found.best().whitened_rms, claimed ? fmt::format("{:.2f}", found.explained->held_out.whitened_rms) : "",
             body->laws()[static_cast<std::size_t>(claimed ? found.law : found.baseline.explanation.law)], seconds(),
             outcome_names[static_cast<std::size_t>(outcome)]);
-        if (options.tell) text += told(found);
+        if (options.tell) text += estimate(found);
         if (options.ladder && !found.explanation.empty()) {
             text += fmt::format("| | | | | {} | | | | | | | |\n", climbed(*body, set, found, options));
         }

@@ -9,8 +9,8 @@
 
 #include <chrono>
 
-#include "fem/large_deformation/loaded_body.h"
-#include "fem/patch_load.h"
+#include "fem/elements/patch_load.h"
+#include "fem/large_deformation/body/loaded_body.h"
 
 using namespace palpate;
 
@@ -160,9 +160,11 @@ int main() {
     const tbb::global_control one_thread(tbb::global_control::max_allowed_parallelism, 1);
     fmt::print("{:>6} {:>7} {:>6} {:>7} {:>6} {:>7} {:>8} {:>10} {:>9} {:>9} {:>7} {:>7}\n", "nodes", "elem.", "start",
                "s, all", "steps", "factors", "force us", "tangent us", "factor ms", "solve ms", "max mm", "make s");
-    for (const auto law : {fem::Law::neo_hooke, fem::Law::svk, fem::Law::linear}) {
+    for (const auto law : {fem::MaterialLaw::neo_hookean, fem::MaterialLaw::svk, fem::MaterialLaw::linear}) {
         const fem::BodySetting setting{law, {.young = 0.5, .poisson = 0.45}, {.points = {std::make_shared<Weight>()}}};
-        fmt::print("{}\n", law == fem::Law::neo_hooke ? "neo-Hooke" : law == fem::Law::svk ? "svk" : "linear");
+        fmt::print("{}\n", law == fem::MaterialLaw::neo_hookean ? "neo-Hooke"
+                           : law == fem::MaterialLaw::svk       ? "svk"
+                                                                : "linear");
         measure({12, 4, 4}, 0.05, setting);
         measure({17, 6, 5}, 0.10, setting);
     }

@@ -16,14 +16,14 @@
 #include <unsupported/Eigen/NonLinearOptimization>
 #include <unsupported/Eigen/NumericalDiff>
 
-#include "identify/fit/force_domain.h"
-#include "identify/fit/node_configuration.h"
-#include "identify/fit/position_domain.h"
 #include "identify/identify.h"
-#include "identify/particles/random.h"
-#include "identify/set/twin.h"
+#include "identify/inference/domains/force/force_domain.h"
+#include "identify/inference/domains/force/node_configuration.h"
+#include "identify/inference/domains/position/position_domain.h"
+#include "identify/measurements/twin.h"
+#include "identify/numerics/random.h"
 #include "mesh/errors.h"
-#include "pipeline/run_folder/peak_memory.h"
+#include "pipeline/run/folder/peak_memory.h"
 #include "samples/lattice.h"
 
 #ifdef PALPATE_WITH_NLOPT
@@ -83,7 +83,7 @@ struct Trial {
 
     /// Errors of markers by log multipliers, for other people's optimisers.
     PositionDomain domain() const {
-        PositionDomain result(experiment.start, skeleton::Law::large_rotation,
+        PositionDomain result(experiment.start, skeleton::EquilibriumLaw::large_rotation,
                               group_stiffness(experiment.start, scope, {skeleton::Stiffness::torsion}),
                               collect_readings(experiment.start, set), 1);
         result.set_model_error(0);
@@ -276,7 +276,7 @@ struct Block {
     skeleton::Model start, truth;
     MeasurementSet set;
 
-    Block(int n, skeleton::Law law) {
+    Block(int n, skeleton::EquilibriumLaw law) {
         constexpr double noise = 0.01;
         start = samples::make_lattice("block", {n, n, n}, 1);
         start.law = law;
@@ -360,7 +360,7 @@ void particles() {
         line({(R.transpose() * R).sparseView(), R.col(0), 1, P}, "dense");
     }
     for (const int side : {6, 7}) {
-        const Block block(side, skeleton::Law::large_rotation);
+        const Block block(side, skeleton::EquilibriumLaw::large_rotation);
         const Parameters parameters = group_stiffness(block.start, Scope::links, {skeleton::Stiffness::torsion});
         const MeasurementSet whole =
             simulate_measurements(block.truth, block.set.states, markers_on_spheres(block.start));
@@ -373,12 +373,13 @@ void scaling(const std::vector<int>& sides, const std::vector<std::string>& laws
     fmt::print(
         "| law | links | numbers | markers | seconds | peak memory, GB | median error of ln k: informed % | and prior "
         "% | informed, % | in their 95 % intervals, % |\n|---|---|---|---|---|---|---|---|---|---|\n");
-    for (const skeleton::Law law : {skeleton::Law::linear, skeleton::Law::large_rotation}) {
+    for (const skeleton::EquilibriumLaw law :
+         {skeleton::EquilibriumLaw::linear, skeleton::EquilibriumLaw::large_rotation}) {
         if (std::ranges::find(laws, skeleton::law_names[static_cast<std::size_t>(law)]) == laws.end()) continue;
         for (const int n : sides) {
             const Block block(n, law);
             IdentifyOptions how;
-            how.law = law == skeleton::Law::linear ? LawChoice::linear : LawChoice::large_rotation;
+            how.law = law == skeleton::EquilibriumLaw::linear ? LawChoice::linear : LawChoice::large_rotation;
             how.fixed = {skeleton::Stiffness::torsion};
             how.threads = threads;
             const Watch watch;

@@ -18,11 +18,11 @@
 #include <optional>
 #include <random>
 
-#include "mesh/io/atomic_file.h"
-#include "mesh/io/vtk_files.h"
-#include "mesh/read_surface.h"
-#include "mesh/repair_surface.h"
-#include "mesh/surface_tree.h"
+#include "mesh/formats/surface/read_surface.h"
+#include "mesh/formats/vtk/vtk_files.h"
+#include "mesh/geometry/surface_tree.h"
+#include "mesh/meshing/repair_surface.h"
+#include "mesh/text/atomic_file.h"
 #include "meshes/breaks.h"
 
 namespace {

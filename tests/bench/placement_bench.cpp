@@ -12,8 +12,8 @@
 #include <optional>
 
 #include "mesh/errors.h"
-#include "mesh/read_surface.h"
-#include "skeleton/build.h"
+#include "mesh/formats/surface/read_surface.h"
+#include "skeleton/construction/build.h"
 #include "tests/skeleton/measures.h"
 #include "tests/skeleton/shapes.h"
 

@@ -10,10 +10,10 @@
 #include <functional>
 #include <string>
 
-#include "skeleton/attach.h"
-#include "skeleton/equilibrium.h"
+#include "skeleton/model/attach.h"
 #include "skeleton/runtime/body.h"
-#include "skeleton/statics.h"
+#include "skeleton/statics/equilibrium.h"
+#include "skeleton/statics/statics.h"
 #include "tests/bench/runtime/bullet.h"
 #include "tests/bench/runtime/models.h"
 

@@ -17,16 +17,16 @@
 #include <iostream>
 #include <optional>
 
-#include "identify/set/measurement_set.h"
+#include "identify/measurements/measurement_set.h"
 #include "mesh/errors.h"
-#include "mesh/io/atomic_file.h"
-#include "pipeline/quality/calibrated.h"
-#include "pipeline/quality/graph.h"
-#include "pipeline/quality/shape.h"
-#include "pipeline/reference/body.h"
+#include "mesh/text/atomic_file.h"
+#include "pipeline/analysis/quality/calibrated.h"
+#include "pipeline/analysis/quality/graph.h"
+#include "pipeline/analysis/quality/shape.h"
+#include "pipeline/body/body.h"
 #include "skeleton/bodies.h"
-#include "skeleton/build.h"
 #include "skeleton/coarse.h"
+#include "skeleton/construction/build.h"
 
 using namespace palpate;
 
@@ -61,13 +61,13 @@ struct Row {
     pipeline::GraphQuality graph;
     ErrorSummary linear;
     std::optional<ErrorSummary> large;
-    int not_borne = 0;
+    int overloaded_probes = 0;
     std::optional<bench::CoarseBody> coarse;
 };
 
 /// Reads the body's answers where they are kept; else has them computed, and keeps them where they are to be kept.
-ProbedQuality probe(const bench::BenchBody& body, fem::Law law, const Options& options) {
-    const bool is_linear = law == fem::Law::linear;
+ProbedQuality probe(const bench::BenchBody& body, fem::MaterialLaw law, const Options& options) {
+    const bool is_linear = law == fem::MaterialLaw::linear;
     const pipeline::QualityProbing probing{.law = law,
                                            .fit = is_linear ? options.fit : (options.fit + 1) / 2,
                                            .held_out = is_linear ? options.held_out : (2 * options.held_out + 2) / 3,
@@ -96,7 +96,7 @@ int free_spheres(const skeleton::Model& model) {
     return static_cast<int>(std::ranges::count(model.spheres, false, &skeleton::Sphere::held));
 }
 
-Row measure(const bench::BenchBody& body, const pipeline::Body& mesh, const skeleton::Model& model,
+Row measure(const bench::BenchBody& body, const pipeline::MeshedBody& mesh, const skeleton::Model& model,
             const ProbedQuality& linear, const ProbedQuality* large, const Options& options) {
     Row row;
     row.body = body.name;
@@ -107,13 +107,14 @@ Row measure(const bench::BenchBody& body, const pipeline::Body& mesh, const skel
     row.shape = pipeline::shape_quality(model);
     row.graph = pipeline::graph_quality(model);
 
-    auto fitted = pipeline::calibrate_for_quality(model, linear, skeleton::Law::linear, options.threads);
+    auto fitted = pipeline::calibrate_for_quality(model, linear, skeleton::EquilibriumLaw::linear, options.threads);
     row.linear = fitted.held_out;
     row.seconds_fit = fitted.seconds;
     if (large) {
-        fitted = pipeline::calibrate_for_quality(model, *large, skeleton::Law::large_rotation, options.threads);
+        fitted =
+            pipeline::calibrate_for_quality(model, *large, skeleton::EquilibriumLaw::large_rotation, options.threads);
         row.large = fitted.held_out;
-        row.not_borne = fitted.not_borne;
+        row.overloaded_probes = fitted.overloaded_probes;
         row.seconds_fit_large = fitted.seconds;
     }
     if (!options.skip_coarse) {
@@ -131,10 +132,10 @@ Row measure(const bench::BenchBody& body, const pipeline::Body& mesh, const skel
 
 std::vector<Row> measure_body(const std::string& name, const Options& options) {
     const bench::BenchBody body = bench::make_bench_body(name, options.meshes);
-    const pipeline::Body mesh = pipeline::make_body(body.subject.surface, {});
-    const ProbedQuality linear = probe(body, fem::Law::linear, options);
+    const pipeline::MeshedBody mesh = pipeline::make_body(body.subject.surface, {});
+    const ProbedQuality linear = probe(body, fem::MaterialLaw::linear, options);
     std::optional<ProbedQuality> large;
-    if (!options.skip_large) large = probe(body, fem::Law::neo_hooke, options);
+    if (!options.skip_large) large = probe(body, fem::MaterialLaw::neo_hookean, options);
     std::vector<Row> rows;
     for (const int spheres : options.spheres.empty() ? body.spheres : options.spheres) {
         try {
@@ -177,7 +178,7 @@ void print(const std::vector<Row>& rows) {
     const std::string none = "- | - | - | -";
     for (const Row& r : rows) {
         fmt::print("| {} | {} | {} | {:.1f} | {} | {:.1f} | {} | {} | {} |\n", r.body, r.spheres, percents(r.linear),
-                   r.seconds_fit, r.large ? percents(*r.large) : none, r.seconds_fit_large, r.not_borne,
+                   r.seconds_fit, r.large ? percents(*r.large) : none, r.seconds_fit_large, r.overloaded_probes,
                    r.coarse ? std::to_string(r.coarse->free_nodes) : "-",
                    r.coarse ? percents(r.coarse->held_out) : none);
     }
@@ -201,7 +202,7 @@ std::string csv(const std::vector<Row>& rows) {
                             r.shape.coverage_share, r.shape.covered, r.shape.outside, r.graph.parts, r.graph.body_parts,
                             r.graph.handles, r.graph.body_handles, r.graph.links_outside, r.seconds_fit,
                             r.seconds_fit_large);
-        text += cells(r.linear) + cells(r.large) + fmt::format(",{},", r.not_borne);
+        text += cells(r.linear) + cells(r.large) + fmt::format(",{},", r.overloaded_probes);
         if (r.coarse) text += std::to_string(r.coarse->free_nodes);
         text += cells(r.coarse ? std::optional(r.coarse->held_out) : std::nullopt) + "\n";
     }

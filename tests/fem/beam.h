@@ -7,7 +7,7 @@
 
 namespace palpate::fem {
 
-inline constexpr std::array laws{Law::linear, Law::svk, Law::neo_hooke};
+inline constexpr std::array laws{MaterialLaw::linear, MaterialLaw::svk, MaterialLaw::neo_hookean};
 inline constexpr std::array dilatations{Dilatation::mean, Dilatation::full};
 
 /// A straight bar [0, size] of quadratic elements, held at x = 0.

@@ -7,7 +7,7 @@
 #include <random>
 #include <string>
 
-#include "mesh/volume_mesh.h"
+#include "mesh/core/volume_mesh.h"
 
 namespace palpate::fem {
 

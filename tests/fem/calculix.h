@@ -41,7 +41,7 @@ inline std::string mesh_of(const mesh::VolumeMesh& mesh, const std::vector<char>
 }
 
 /// W = C10 (J^-2/3 tr F^T F - 3) + (J - 1)^2 / D1
-inline std::string neo_hooke(const std::string& name, const Material& material) {
+inline std::string neo_hookean(const std::string& name, const Material& material) {
     const double K = material.young / (3 * (1 - 2 * material.poisson));
     return fmt::format("*MATERIAL, NAME={}\n*HYPERELASTIC, NEO HOOKE\n{:.12g}, {:.12g}\n*DENSITY\n{:.12g}\n", name,
                        material.shear_modulus() / 2, 2 / K, material.density);

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "bodies.h"
-#include "fem/patch_load.h"
+#include "fem/elements/patch_load.h"
 #include "mesh/errors.h"
 #include "tests/messages.h"
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <map>
 
-#include "mesh/volume_mesh.h"
+#include "mesh/core/volume_mesh.h"
 
 namespace palpate::fem {
 

@@ -21,21 +21,21 @@ struct Bar {
     Eigen::Index dofs() const { return mesh.nodes.size(); }
 };
 
-BodySetting loaded(Law law) {
+BodySetting loaded(MaterialLaw law) {
     return {law,
             {.young = 0.7, .poisson = 0.4, .density = 1e-3},
             {.points = {std::make_shared<Weight>(Vec3(3, -2, 1)), std::make_shared<Springs>(ActsOn::support, 0.4, 5.0),
                         std::make_shared<Springs>(ActsOn::surface, 0.1, 20.0)}}};
 }
 
-BodySetting bare(Law law) { return {law, {.young = 0.7, .poisson = 0.4, .density = 1e-3}, {}}; }
+BodySetting bare(MaterialLaw law) { return {law, {.young = 0.7, .poisson = 0.4, .density = 1e-3}, {}}; }
 
 TEST(HyperelasticBody, ForceIsMinusGradientOfPotential) {
     const Bar bar(Kind::curved);
     const Eigen::VectorXd u = scatter(bar.dofs(), 0.03), f = scatter(bar.dofs(), 0.01, 5);
     for (const Dilatation dilatation : dilatations) {
         const HyperelasticBody body = bar.body(dilatation);
-        for (const Law law : laws) {
+        for (const MaterialLaw law : laws) {
             const BodySetting setting = loaded(law);
             const Eigen::VectorXd r = body.residual(u, setting, f);
             const auto energy = [&](const Eigen::VectorXd& at) {
@@ -53,7 +53,7 @@ TEST(HyperelasticBody, TangentIsDerivativeOfForce) {
     const Eigen::VectorXd u = scatter(bar.dofs(), 0.03), none = Eigen::VectorXd::Zero(u.size());
     for (const Dilatation dilatation : dilatations) {
         const HyperelasticBody body = bar.body(dilatation);
-        for (const Law law : laws) {
+        for (const MaterialLaw law : laws) {
             const BodySetting setting = loaded(law);
             const Eigen::MatrixXd J = body.tangent(u, setting);
             EXPECT_EQ(J, J.transpose());
@@ -72,7 +72,7 @@ TEST(HyperelasticBody, FactorSolvesWithTheTangentOfTheFreeNodes) {
     Eigen::MatrixXd B(u.size(), 70);  // more than are solved together
     for (Eigen::Index j = 0; j < B.cols(); ++j) B.col(j) = scatter(u.size(), 1, static_cast<unsigned>(j));
 
-    const BodySetting held = bare(Law::neo_hooke);
+    const BodySetting held = bare(MaterialLaw::neo_hookean);
     const Eigen::MatrixXd X = body.factor(u, held)->solve(B);
     Eigen::MatrixXd left = body.tangent(u, held) * X - B;
     for (std::size_t i = 0; i < bar.held.size(); ++i) {
@@ -84,7 +84,7 @@ TEST(HyperelasticBody, FactorSolvesWithTheTangentOfTheFreeNodes) {
     EXPECT_LT(left.norm(), 1e-11 * B.norm());
 
     // An effect on the support releases it: then no row is left out.
-    const BodySetting released = loaded(Law::neo_hooke);
+    const BodySetting released = loaded(MaterialLaw::neo_hookean);
     EXPECT_LT((body.tangent(u, released) * body.factor(u, released)->solve(B) - B).norm(), 1e-11 * B.norm());
 }
 
@@ -95,7 +95,7 @@ TEST(HyperelasticBody, HomogeneousDeformationPullsAtNoInnerNode) {
     const std::vector<char> outside = boundary_nodes(bar.mesh);
     const Eigen::VectorXd u = nodal(bar.mesh, [&](const Vec3& x) { return Vec3(G * x); });
     for (const Dilatation dilatation : dilatations) {
-        for (const Law law : laws) {
+        for (const MaterialLaw law : laws) {
             const Eigen::VectorXd r = bar.body(dilatation).residual(u, bare(law), Eigen::VectorXd::Zero(u.size()));
             double inner = 0;
             for (std::size_t i = 0; i < outside.size(); ++i) {
@@ -132,7 +132,7 @@ TEST(HyperelasticBody, RigidMotionCostsNothing) {
     const Mat3 R = Eigen::AngleAxisd(2, Vec3(1, 2, -1).normalized()).toRotationMatrix();
     const Eigen::VectorXd u = nodal(bar.mesh, [&](const Vec3& x) { return Vec3(R * x - x + Vec3(3, 0, 1)); });
     const Eigen::VectorXd none = Eigen::VectorXd::Zero(u.size());
-    for (const Law law : {Law::svk, Law::neo_hooke}) {
+    for (const MaterialLaw law : {MaterialLaw::svk, MaterialLaw::neo_hookean}) {
         EXPECT_NEAR(bar.body().potential(u, bare(law), none), 0, 1e-14);
         EXPECT_LT(bar.body().residual(u, bare(law), none).norm(), 1e-13);  // rounding
     }
@@ -147,7 +147,7 @@ TEST(HyperelasticBody, ForcesSplitByModulusAndElement) {
     W.col(2).array() -= W.col(1).array();
     for (const Dilatation dilatation : dilatations) {
         const HyperelasticBody body = bar.body(dilatation);
-        for (const Law law : laws) {
+        for (const MaterialLaw law : laws) {
             const BodySetting setting = bare(law);
             const Eigen::VectorXd internal = -body.residual(u, setting, none);
             const double tolerance = 1e-13 * internal.norm();  // rounding
@@ -186,21 +186,21 @@ TEST(HyperelasticBody, InsideOutElementsHaveNoForce) {
     const HyperelasticBody body = bar.body();
     const Eigen::VectorXd mirrored = nodal(bar.mesh, [](const Vec3& x) { return Vec3(-2 * x.x(), 0, 0); });
     const Eigen::VectorXd none = Eigen::VectorXd::Zero(mirrored.size());
-    for (const Law law : {Law::svk, Law::neo_hooke}) {
+    for (const MaterialLaw law : {MaterialLaw::svk, MaterialLaw::neo_hookean}) {
         EXPECT_EQ(body.potential(mirrored, bare(law), none), INFINITY);
         const auto says_where = AllOf(HasSubstr("Element 0 of the body"), HasSubstr("turned inside out"));
         EXPECT_THAT(message_of<SolverFailure>([&] { body.residual(mirrored, bare(law), none); }), says_where);
         EXPECT_THAT(message_of<SolverFailure>([&] { body.tangent(mirrored, bare(law)); }), says_where);
         EXPECT_THAT(message_of<SolverFailure>([&] { body.modulus_forces(mirrored, bare(law)); }), says_where);
     }
-    EXPECT_TRUE(std::isfinite(body.potential(mirrored, bare(Law::linear), none)));
+    EXPECT_TRUE(std::isfinite(body.potential(mirrored, bare(MaterialLaw::linear), none)));
 }
 
 TEST(HyperelasticBodyInput, UnstableStatesHaveNoFactor) {
     // Pressed to half its length, the bar would rather buckle.
     const Bar bar(Kind::quadratic, {6, 1, 1});
     const Eigen::VectorXd u = nodal(bar.mesh, [](const Vec3& x) { return Vec3(-0.5 * x.x(), 0, 0); });
-    EXPECT_THAT(message_of<SolverFailure>([&] { bar.body().factor(u, bare(Law::neo_hooke)); }),
+    EXPECT_THAT(message_of<SolverFailure>([&] { bar.body().factor(u, bare(MaterialLaw::neo_hookean)); }),
                 HasSubstr("tangent is not positive definite"));
 }
 
@@ -224,11 +224,12 @@ TEST(HyperelasticBodyInput, ValuesOutOfRangeAreNamed) {
     const auto complaint = [&](const BodySetting& setting, const NewtonOptions& options) {
         return message_of<InvalidInput>([&] { body.equilibrium(setting, none, options); });
     };
-    BodySetting hollow = bare(Law::svk);
+    BodySetting hollow = bare(MaterialLaw::svk);
     hollow.material.poisson = 0.5;
     EXPECT_THAT(complaint(hollow, {}), HasSubstr("Poisson's ratio is 0.5"));
-    EXPECT_THAT(complaint(bare(Law::svk), {.tolerance = 0}), HasSubstr("tolerance (share of the load"));
-    EXPECT_THAT(complaint(bare(Law::svk), {.iterations = 0}), HasSubstr("iterations is 0; allowed: 1 and more"));
+    EXPECT_THAT(complaint(bare(MaterialLaw::svk), {.tolerance = 0}), HasSubstr("tolerance (share of the load"));
+    EXPECT_THAT(complaint(bare(MaterialLaw::svk), {.iterations = 0}),
+                HasSubstr("iterations is 0; allowed: 1 and more"));
 }
 
 }  // namespace

@@ -14,14 +14,14 @@
 #include <map>
 #include <random>
 
-#include "mesh/check_surface.h"
 #include "mesh/errors.h"
-#include "mesh/io/atomic_file.h"
-#include "mesh/io/isolated.h"
-#include "mesh/read_body.h"
-#include "mesh/read_surface.h"
-#include "mesh/remesh.h"
-#include "mesh/repair_surface.h"
+#include "mesh/formats/read_body.h"
+#include "mesh/formats/surface/read_surface.h"
+#include "mesh/meshing/remesh.h"
+#include "mesh/meshing/repair_surface.h"
+#include "mesh/system/isolated.h"
+#include "mesh/text/atomic_file.h"
+#include "mesh/topology/check_surface.h"
 #include "tests/fuzz/mutations.h"
 #include "tests/temporary_folder.h"
 

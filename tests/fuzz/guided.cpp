@@ -10,7 +10,7 @@
 #include <memory>
 
 #include "mesh/errors.h"
-#include "mesh/io/atomic_file.h"
+#include "mesh/text/atomic_file.h"
 #include "tests/fuzz/readers.h"
 #include "tests/temporary_folder.h"
 

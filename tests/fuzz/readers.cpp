@@ -4,17 +4,17 @@
 #include <cstring>
 #include <string>
 
-#include "identify/set/measurement_set.h"
-#include "mesh/io/atomic_file.h"
-#include "mesh/io/vtk_files.h"
-#include "mesh/read_body.h"
-#include "mesh/read_surface.h"
-#include "mesh/solver/solution.h"
-#include "mesh/write_volume.h"
+#include "identify/measurements/measurement_set.h"
+#include "mesh/formats/read_body.h"
+#include "mesh/formats/solution/solution.h"
+#include "mesh/formats/surface/read_surface.h"
+#include "mesh/formats/volume/write_volume.h"
+#include "mesh/formats/vtk/vtk_files.h"
+#include "mesh/text/atomic_file.h"
 #include "pipeline/case/case.h"
-#include "pipeline/results/posterior_file.h"
+#include "pipeline/output/csv/posterior.h"
 #include "samples/lattice.h"
-#include "skeleton/model_io.h"
+#include "skeleton/model/io/model_io.h"
 #include "tests/temporary_folder.h"
 
 namespace palpate::fuzz {

@@ -8,7 +8,7 @@
 #include <fstream>
 
 #include "mesh/errors.h"
-#include "mesh/io/atomic_file.h"
+#include "mesh/text/atomic_file.h"
 #include "tests/fuzz/mutations.h"
 #include "tests/fuzz/readers.h"
 #include "tests/temporary_folder.h"

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "identify/fit/position_domain.h"
+#include "identify/inference/domains/position/position_domain.h"
 
 namespace palpate::identify {
 

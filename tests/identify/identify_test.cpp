@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "identify/compare.h"
+#include "identify/comparison/compare.h"
 #include "lattice.h"
 #include "mesh/errors.h"
 #include "tests/messages.h"
@@ -15,7 +15,8 @@ MeasurementSet make_twin(const skeleton::Model& truth, double noise = 0) {
 }
 
 TEST(Identify, ChoosesTheLawThatMadeTheMeasurements) {
-    for (const skeleton::Law law : {skeleton::Law::linear, skeleton::Law::large_rotation}) {
+    for (const skeleton::EquilibriumLaw law :
+         {skeleton::EquilibriumLaw::linear, skeleton::EquilibriumLaw::large_rotation}) {
         const skeleton::Model truth = with_law(with_truth(make_lattice({4, 2, 1}), {1.2}, {400}), law);
         IdentifyOptions options;
         options.scope = Scope::uniform;
@@ -60,7 +61,7 @@ TEST(Identify, EveryLinkHasItsRows) {
         informed += row.informed ? 1 : 0;
     }
     EXPECT_GT(informed, 0);
-    // links 0 joins two held spheres: nothing tells about it, and its prior stays
+    // links 0 joins two held spheres: it is unobserved, and its prior stays
     EXPECT_EQ(result.model.links[1].a, 0);
     EXPECT_EQ(result.model.links[1].b, 1);
     EXPECT_FALSE(result.posterior[3].informed);
@@ -69,7 +70,7 @@ TEST(Identify, EveryLinkHasItsRows) {
 
 TEST(Identify, AModelThatCanFollowDownToTheNoiseDoes) {
     // links that differ by a third, from many readings
-    const skeleton::Model start = with_law(make_lattice({4, 3, 3}), skeleton::Law::linear);
+    const skeleton::Model start = with_law(make_lattice({4, 3, 3}), skeleton::EquilibriumLaw::linear);
     skeleton::Model truth = start;
     for (std::size_t l = 0; l < truth.links.size(); ++l) {
         truth.links[l].stiffness.head<3>() *= std::exp(0.3 * std::sin(static_cast<double>(l)));
@@ -86,7 +87,7 @@ TEST(Identify, AModelThatCanFollowDownToTheNoiseDoes) {
     EXPECT_LT(compare(follows.model, set).relative, 0.02);
 
     // other physics than the truth's: it cannot
-    skeleton::Model bent = with_law(truth, skeleton::Law::large_rotation);
+    skeleton::Model bent = with_law(truth, skeleton::EquilibriumLaw::large_rotation);
     std::vector<LoadState> far = push_spheres(bent, six_forces(8, 30));
     const MeasurementSet of_bent = simulate_measurements(bent, far, markers_on_spheres(bent), 0.01);
     const IdentifyResult cannot = identify(start, of_bent, options);
@@ -133,7 +134,7 @@ TEST(Identify, UnlabelledReadingsAreLeftOutWithANote) {
     options.scope = Scope::uniform;
     options.particles = 20;
     const IdentifyResult result = identify(truth, set, options);
-    EXPECT_EQ(result.notes.back(), "1 unlabelled readings were left out: no marker is clearly theirs");
+    EXPECT_EQ(result.notes.back(), "1 unlabelled readings were left out: their marker is ambiguous");
     EXPECT_NEAR(result.posterior[0].mean, 1.2, 1e-4);  // without noise
 }
 

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <vector>
 
-#include "identify/set/twin.h"
-#include "skeleton/model.h"
-#include "skeleton/statics.h"
+#include "identify/measurements/twin.h"
+#include "skeleton/model/model.h"
+#include "skeleton/statics/statics.h"
 
 namespace palpate::identify {
 
@@ -38,7 +38,7 @@ inline skeleton::Model make_lattice(const Eigen::Vector3i& n, int zones = 1) {
     return model;
 }
 
-inline skeleton::Model with_law(skeleton::Model model, skeleton::Law law) {
+inline skeleton::Model with_law(skeleton::Model model, skeleton::EquilibriumLaw law) {
     model.law = law;
     return model;
 }

@@ -4,10 +4,10 @@
 
 #include <string>
 
-#include "identify/set/measurement_set.h"
+#include "identify/measurements/measurement_set.h"
 #include "mesh/errors.h"
-#include "mesh/io/vtk_files.h"
-#include "mesh/read_surface.h"
+#include "mesh/formats/surface/read_surface.h"
+#include "mesh/formats/vtk/vtk_files.h"
 #include "tests/messages.h"
 #include "tests/temporary_folder.h"
 

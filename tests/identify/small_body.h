@@ -6,12 +6,12 @@
 #include <string>
 #include <vector>
 
-#include "identify/diagnose/fit.h"
+#include "identify/diagnosis/fit/explanation.h"
 #include "identify/models/reference_body.h"
 #include "identify/models/skeleton_body.h"
-#include "identify/particles/random.h"
-#include "mesh/volume_mesh.h"
-#include "skeleton/attach.h"
+#include "identify/numerics/random.h"
+#include "mesh/core/volume_mesh.h"
+#include "skeleton/model/attach.h"
 
 namespace palpate::identify {
 
@@ -153,14 +153,15 @@ inline Explanation bare_truth(const BodyModel& model, int law) {
     return truth;
 }
 
-inline Explanation with(Explanation truth, std::shared_ptr<const Effect> effect, const Eigen::VectorXd& values) {
+inline Explanation with(Explanation truth, std::shared_ptr<const EffectHypothesis> effect,
+                        const Eigen::VectorXd& values) {
     truth.effects.push_back(std::move(effect));
     truth.values.push_back(values);
     return truth;
 }
 
 /// Numbers of an effect that bends or moves the bar by some tenths of a millimetre and more.
-inline Eigen::VectorXd example(const Effect& effect, const std::vector<EffectNumber>& numbers) {
+inline Eigen::VectorXd example(const EffectHypothesis& effect, const std::vector<EffectNumber>& numbers) {
     static const std::map<std::string, std::vector<double>> chosen{
         {"stiffening", {std::asinh(1 / 1.4), std::log(10)}},
         {"anisotropy", {1.5, 0.48, 0.6, 0.64}},  // of unit length, as they are told
@@ -186,12 +187,12 @@ inline Eigen::VectorXd example(const Effect& effect, const std::vector<EffectNum
 inline MeasurementSet make_twin(const BodyModel& model, MeasurementSet set, const Explanation& truth, double noise,
                                 std::uint64_t seed = 1) {
     const Problem merged = make_problem(set, 1), problem = truth.has_memory() ? merged.stage_by_stage() : merged;
-    const Played played = play(model, problem, truth, 1);
+    const ForwardSolution forward = solve_forward(model, problem, truth, 1);
     RandomStream random(seed, 0, 0);
     Eigen::Index n = 0;
     for (LoadState& state : set.states) {
         for (Reading& reading : state.readings) {
-            reading.position = played.markers[problem.action[n]].row(reading.marker).transpose();
+            reading.position = forward.markers[problem.action[n]].row(reading.marker).transpose();
             reading.position += noise * Vec3(random.normals(3));
             n += 3;
         }

@@ -3,7 +3,7 @@
 #include <numeric>
 #include <vector>
 
-#include "mesh/surface.h"
+#include "mesh/core/surface.h"
 
 /// Surfaces with one fault each, and ways to put faults in.
 namespace palpate::mesh {

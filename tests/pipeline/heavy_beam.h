@@ -2,15 +2,15 @@
 
 #include <random>
 
-#include "identify/set/measurement_set.h"
-#include "mesh/read_surface.h"
-#include "pipeline/reference/reference_body.h"
+#include "identify/measurements/measurement_set.h"
+#include "mesh/formats/surface/read_surface.h"
+#include "pipeline/body/reference_body.h"
 #include "tests/temporary_folder.h"
 
 namespace palpate::pipeline {
 
 /// A cantilever of 1 MPa, 100 x 20 x 20 mm, pressed and pulled in five probes, whose own weight of 9.81 m/s^2 along -z
-/// nobody told: it sags by some 4 mm. Noise of 0.05 mm.
+/// not specified: it sags by some 4 mm. Noise of 0.05 mm.
 inline identify::MeasurementSet heavy_beam(bool heavy) {
     identify::MeasurementSet set;
     set.name = "heavy-beam";
@@ -34,7 +34,7 @@ inline identify::MeasurementSet heavy_beam(bool heavy) {
                   {.probe = 5, .contacts = load(80, 10, 0, {0, 0, 0.15})}};
 
     const Reference truth = make_reference(set, 9);  // finer than the body that is fitted
-    const identify::Setting setting{2, Eigen::Vector2d(std::log(1.0), std::log(0.1)), {}};
+    const identify::ModelSetting setting{2, Eigen::Vector2d(std::log(1.0), std::log(0.1)), {}};
     std::mt19937 engine(7);
     std::normal_distribution<double> noise(0, *set.position_noise);
     for (identify::LoadState& state : set.states) {

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "mesh/surface_tree.h"
-#include "skeleton/model.h"
+#include "mesh/geometry/surface_tree.h"
+#include "skeleton/model/model.h"
 
 namespace palpate::skeleton {
 

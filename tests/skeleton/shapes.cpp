@@ -9,9 +9,9 @@
 #include <random>
 #include <stdexcept>
 
-#include "mesh/remesh.h"
-#include "mesh/repair_surface.h"
-#include "mesh/tetrahedralise.h"
+#include "mesh/meshing/remesh.h"
+#include "mesh/meshing/repair_surface.h"
+#include "mesh/meshing/tetrahedralise.h"
 
 namespace palpate::skeleton {
 namespace {

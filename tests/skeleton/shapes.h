@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
-#include "mesh/region.h"
-#include "mesh/surface.h"
-#include "mesh/volume_mesh.h"
+#include "mesh/core/region.h"
+#include "mesh/core/surface.h"
+#include "mesh/core/volume_mesh.h"
 
 namespace palpate::skeleton {
 

@@ -7,13 +7,15 @@
 
 namespace palpate::skeleton::testing {
 
-inline Effect gravity(const Vec3& g) {
+inline EffectRecord gravity(const Vec3& g) {
     return {"gravity", {{"gx", g.x(), "mm/s^2"}, {"gy", g.y(), "mm/s^2"}, {"gz", g.z(), "mm/s^2"}}};
 }
 
-inline Effect compliant_support(double stiffness) { return {"compliant-support", {{"stiffness", stiffness, "N/mm"}}}; }
+inline EffectRecord compliant_support(double stiffness) {
+    return {"compliant-support", {{"stiffness", stiffness, "N/mm"}}};
+}
 
-inline Model with_effects(Model model, std::vector<Effect> effects) {
+inline Model with_effects(Model model, std::vector<EffectRecord> effects) {
     model.effects = std::move(effects);
     return model;
 }

@@ -3,12 +3,12 @@
 #include <Eigen/Geometry>
 #include <random>
 
-#include "skeleton/attach.h"
-#include "skeleton/statics.h"
+#include "skeleton/model/attach.h"
+#include "skeleton/statics/statics.h"
 
 namespace palpate::skeleton::testing {
 
-inline Model with_law(Model model, Law law) {
+inline Model with_law(Model model, EquilibriumLaw law) {
     model.law = law;
     return model;
 }

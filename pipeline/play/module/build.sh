@@ -22,7 +22,7 @@ gzip -9 --no-name --stdout "$build/palpate.wasm" | base64 --wrap=0 >"$here/palpa
 # All sources and headers of ours, as the compiler tells them.
 cd "$root"
 {
-  echo fem/effects/sources.cmake
+  git ls-files "*sources.cmake"
   echo pipeline/play/module/CMakeLists.txt
   echo pipeline/play/module/build.sh
   echo pipeline/play/module/palpate.js

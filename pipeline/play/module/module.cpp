@@ -11,31 +11,31 @@
 #include <string>
 #include <vector>
 
-#include "pipeline/play/judgement.h"
-#include "pipeline/play/set_text.h"
-#include "pipeline/play/touched_model.h"
-#include "skeleton/model_io.h"
+#include "pipeline/play/touch/running_comparison.h"
+#include "pipeline/play/touch/set_text.h"
+#include "pipeline/play/touch/touched_model.h"
+#include "skeleton/model/io/model_io.h"
 
 namespace {
 
 using namespace palpate;
-using pipeline::Judgement;
+using pipeline::RunningComparison;
 using pipeline::TouchedModel;
 
 /// All that is alive in a page.
-struct Played {
+struct PageState {
     std::vector<skeleton::Model> models;
     std::vector<identify::MeasurementSet> sets;
     std::unique_ptr<TouchedModel> touched;
-    std::unique_ptr<Judgement> judgement;
+    std::unique_ptr<RunningComparison> comparison;
     int judged_set = -1;
     std::vector<skeleton::Attachment> markers;  // of one set, on the model that is played
     std::vector<double> numbers;                // what a call hands out
     std::string message, text;
 };
 
-Played& played() {
-    static Played all;
+PageState& played() {
+    static PageState all;
     return all;
 }
 
@@ -66,7 +66,7 @@ const double* rows_handed_out(const Points& rows) {
 /// A model with those of its effects whose bit is set.
 skeleton::Model with_effects(int model, unsigned effects) {
     skeleton::Model chosen = played().models.at(model);
-    std::vector<skeleton::Effect> kept;
+    std::vector<skeleton::EffectRecord> kept;
     for (std::size_t e = 0; e < chosen.effects.size(); ++e) {
         if (effects >> e & 1U) kept.push_back(chosen.effects[e]);
     }
@@ -156,7 +156,7 @@ EMSCRIPTEN_KEEPALIVE int play_push(int touch, double x, double y, double z) {
 }
 /// A force that has crept already.
 EMSCRIPTEN_KEEPALIVE int play_bear(int touch, double x, double y, double z) {
-    return guarded(-1, [&] { return touched().bear(touch, {x, y, z}), 0; });
+    return guarded(-1, [&] { return touched().push_without_creep(touch, {x, y, z}), 0; });
 }
 EMSCRIPTEN_KEEPALIVE int play_drag(int touch, double x, double y, double z, double stiffness) {
     return guarded(-1, [&] { return touched().drag(touch, {x, y, z}, stiffness), 0; });
@@ -164,7 +164,7 @@ EMSCRIPTEN_KEEPALIVE int play_drag(int touch, double x, double y, double z, doub
 /// Force on the body [N], place, place at rest [mm], radius [mm], what the body bears [N]: 13 numbers.
 EMSCRIPTEN_KEEPALIVE const double* play_at(int touch) {
     return guarded(static_cast<const double*>(nullptr), [&] {
-        const Vec3 f = touched().force(touch), x = touched().place(touch), b = touched().borne(touch);
+        const Vec3 f = touched().force(touch), x = touched().place(touch), b = touched().effective_force(touch);
         const TouchedModel::Touch& own = touched().touches()[touch];
         return handed_out(
             {f[0], f[1], f[2], x[0], x[1], x[2], own.rest[0], own.rest[1], own.rest[2], own.radius, b[0], b[1], b[2]});
@@ -182,17 +182,17 @@ EMSCRIPTEN_KEEPALIVE const double* play_compliance(int touch) {
 /// Begins to judge a model with those of its effects on a set. How many states there are to judge.
 EMSCRIPTEN_KEEPALIVE int play_judge(int model, unsigned effects, int set) {
     return guarded(-1, [&] {
-        played().judgement = std::make_unique<Judgement>(with_effects(model, effects), played().sets.at(set));
+        played().comparison = std::make_unique<RunningComparison>(with_effects(model, effects), played().sets.at(set));
         played().judged_set = set;
-        return played().judgement->count();
+        return played().comparison->count();
     });
 }
 /// Judges the next: sum of squares [mm^2], coordinates, 1 where the whole load is borne, the state in the set.
 EMSCRIPTEN_KEEPALIVE const double* play_judge_state(int r) {
     return guarded(static_cast<const double*>(nullptr), [&] {
-        const Judgement::Error error = played().judgement->judge(r);
-        return handed_out({error.squares, static_cast<double>(error.coordinates), error.whole ? 1.0 : 0.0,
-                           static_cast<double>(played().judgement->readings(r).state)});
+        const RunningComparison::Error error = played().comparison->evaluate(r);
+        return handed_out({error.squares, static_cast<double>(error.coordinates), error.is_full_load ? 1.0 : 0.0,
+                           static_cast<double>(played().comparison->readings(r).state)});
     });
 }
 

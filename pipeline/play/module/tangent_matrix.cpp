@@ -1,6 +1,6 @@
 // The module has no supernodes, as it has no BLAS: blocks, however many.
 
-#include "skeleton/solve/tangent_matrix.h"
+#include "skeleton/statics/matrices/tangent_matrix.h"
 
 namespace palpate::skeleton {
 

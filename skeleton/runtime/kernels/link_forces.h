@@ -14,7 +14,7 @@ struct Rates {
 };
 
 /// Adds the forces of the paper's links to the spheres' rows; returns their energy [N mm]. The laws are those of
-/// link_terms in skeleton/link_energy.h.
+/// link_terms in skeleton/links/link_energy.h.
 double add_paper_links(std::span<const PaperLinks> links, const double* pose, const Rates& rates, double* force);
 
 /// Adds the forces of full links; returns their energy, without that of volumes. The laws are those of FullLink in

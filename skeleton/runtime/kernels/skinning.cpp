@@ -4,8 +4,8 @@
 #include <numeric>
 
 #include "skeleton/lanes.h"
-#include "skeleton/runtime/carried.h"
-#include "skeleton/state.h"
+#include "skeleton/model/state.h"
+#include "skeleton/runtime/forces/carried.h"
 
 namespace palpate::runtime {
 
@@ -146,16 +146,18 @@ Skinning::Skinning(const skeleton::Model& model) : pose_(row_length * model.sphe
             const int vertex = order[begin + (used ? lane : 0)];
             batch.vertex[lane] = used ? vertex : -1;
             skeleton::Attachment point = model.skin[vertex];
-            std::iter_swap(point.shares.begin(), std::ranges::max_element(point.shares, {}, &skeleton::Share::weight));
+            std::iter_swap(point.shares.begin(),
+                           std::ranges::max_element(point.shares, {}, &skeleton::SphereInfluence::weight));
             Vec3 X = Vec3::Zero();
-            for (const skeleton::Share& share : point.shares) X += share.weight * model.spheres[share.sphere].center;
+            for (const skeleton::SphereInfluence& share : point.shares)
+                X += share.weight * model.spheres[share.sphere].center;
             const Vec3 arm = point.rest - X;
             Vec3 c = arm;
             for (int i = 0; i < batch.shares; ++i) {
                 Shares& to = shares_[batch.first + i];
                 to.sphere[lane] = point.shares.front().sphere;
                 if (i >= static_cast<int>(point.shares.size())) continue;
-                const skeleton::Share& share = point.shares[i];
+                const skeleton::SphereInfluence& share = point.shares[i];
                 const Mat3 A = share.follow.leftCols<3>() - share.weight * Mat3::Identity();
                 const Mat3 B = 2 * (share.follow.rightCols<3>() + share.weight * skeleton::skew(arm));
                 to.sphere[lane] = share.sphere;

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "skeleton/model.h"
+#include "skeleton/model/model.h"
 #include "skeleton/runtime/kernels/tables.h"
 
 namespace palpate::runtime {

@@ -33,19 +33,19 @@ struct Yardstick {
     double length = 0, aligned = 1;
 };
 
-Yardstick yardstick(const Truth& truth, const identify::Told& told, const std::string& name) {
-    const std::string effect = told.effect.name + " ";
+Yardstick yardstick(const Truth& truth, const identify::EffectEstimate& estimate, const std::string& name) {
+    const std::string effect = estimate.effect.name + " ";
     const std::string vector = vector_of(name);
     if (vector.empty()) return {std::abs(truth.numbers.at(effect + name)), 1};
     double squares = 0, along = 0;
-    for (const skeleton::EffectParameter& one : told.effect.parameters) {
+    for (const skeleton::EffectParameter& one : estimate.effect.parameters) {
         if (vector_of(one.name) != vector) continue;
         const auto known = truth.numbers.find(effect + one.name);
         if (known == truth.numbers.end()) continue;
         squares += known->second * known->second;
         along += known->second * one.value;
     }
-    const bool is_axis = told.effect.name == "anisotropy";
+    const bool is_axis = estimate.effect.name == "anisotropy";
     return {std::sqrt(squares), is_axis && along < 0 ? -1.0 : 1.0};
 }
 
@@ -71,14 +71,14 @@ void Tally::add(const Truth& truth, const identify::Diagnosis& found, Outcome ou
     before_[joined(truth.effects)].push_back(found.baseline.whitened_rms);
     after_[joined(truth.effects)].push_back(found.explained->fit.whitened_rms);
     for (const auto& effect : found.explained->effects) {
-        const identify::Told told = found.explained->told(effect->name());
-        for (std::size_t p = 0; p < told.effect.parameters.size(); ++p) {
-            const skeleton::EffectParameter& one = told.effect.parameters[p];
+        const identify::EffectEstimate estimate = found.explained->estimate(effect->name());
+        for (std::size_t p = 0; p < estimate.effect.parameters.size(); ++p) {
+            const skeleton::EffectParameter& one = estimate.effect.parameters[p];
             const auto known = truth.numbers.find(effect->name() + " " + one.name);
-            if (known == truth.numbers.end() || !(told.sd[p] > 0)) continue;
-            const Yardstick by = yardstick(truth, told, one.name);
+            if (known == truth.numbers.end() || !(estimate.sd[p] > 0)) continue;
+            const Yardstick by = yardstick(truth, estimate, one.name);
             const double off = one.value - by.aligned * known->second;
-            numbers_[known->first].push_back({off / by.length, off / told.sd[p]});
+            numbers_[known->first].push_back({off / by.length, off / estimate.sd[p]});
         }
     }
 }

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "identify/diagnose/diagnose.h"
+#include "identify/diagnosis/diagnose.h"
 
 namespace palpate::bench {
 

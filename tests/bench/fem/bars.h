@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "fem/material.h"
-#include "mesh/volume_mesh.h"
+#include "mesh/core/volume_mesh.h"
 
 namespace palpate::bench {
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "mesh/surface.h"
+#include "mesh/core/surface.h"
 
 namespace palpate::bench {
 

@@ -4,9 +4,9 @@
 #include <numeric>
 #include <random>
 
-#include "skeleton/attach.h"
-#include "skeleton/equilibrium.h"
-#include "skeleton/statics.h"
+#include "skeleton/model/attach.h"
+#include "skeleton/statics/equilibrium.h"
+#include "skeleton/statics/statics.h"
 
 namespace palpate::bench {
 
@@ -138,7 +138,7 @@ skeleton::Model organ(int spheres, int vertices) {
             point.shares.push_back({.sphere = near[n], .weight = std::exp(-0.5 * d * d) + 1e-6});
             sum += point.shares.back().weight;
         }
-        for (skeleton::Share& share : point.shares) {
+        for (skeleton::SphereInfluence& share : point.shares) {
             share.weight /= sum;
             share.follow << share.weight * Mat3::Identity(),
                 -share.weight * skeleton::skew(at - model.spheres[share.sphere].center);
@@ -167,13 +167,13 @@ skeleton::Model with_skin_on_spheres(skeleton::Model model) {
 
 Vec3 force_for(const skeleton::Model& model, double share) {
     skeleton::Load load;
-    const Vec3 way = Vec3(1, 2, 3).normalized();
-    load.forces.push_back({model.skin.back(), way});
+    const Vec3 direction = Vec3(1, 2, 3).normalized();
+    load.forces.push_back({model.skin.back(), direction});
     skeleton::Model linear = model;
-    linear.law = skeleton::Law::linear;
+    linear.law = skeleton::EquilibriumLaw::linear;
     const skeleton::Equilibrium by_one = skeleton::equilibrium(linear, load);
     const double size = mesh::bounding_box(model.surface.vertices).longest_side();
-    return share * size / by_one.step.tail<6>().head<3>().norm() * way;
+    return share * size / by_one.step.tail<6>().head<3>().norm() * direction;
 }
 
 void set_off(runtime::Body& body, double speed, double spin) {

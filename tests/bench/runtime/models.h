@@ -1,6 +1,6 @@
 #pragma once
 
-#include "skeleton/model.h"
+#include "skeleton/model/model.h"
 #include "skeleton/runtime/body.h"
 
 namespace palpate::bench {

@@ -7,8 +7,8 @@
 #include <map>
 
 #include "mesh/errors.h"
-#include "mesh/read_surface.h"
-#include "pipeline/reference/body.h"
+#include "mesh/formats/surface/read_surface.h"
+#include "pipeline/body/body.h"
 
 namespace palpate::bench {
 namespace {

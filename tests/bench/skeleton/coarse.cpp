@@ -6,12 +6,12 @@
 #include <optional>
 
 #include "fem/elastic_body.h"
-#include "fem/interpolation.h"
-#include "fem/patch_load.h"
+#include "fem/elements/patch_load.h"
+#include "fem/interpolation/interpolation.h"
 #include "mesh/errors.h"
-#include "mesh/remesh.h"
-#include "mesh/repair_surface.h"
-#include "mesh/tetrahedralise.h"
+#include "mesh/meshing/remesh.h"
+#include "mesh/meshing/repair_surface.h"
+#include "mesh/meshing/tetrahedralise.h"
 
 namespace palpate::bench {
 namespace {

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "pipeline/quality/errors.h"
-#include "pipeline/quality/probed_body.h"
+#include "pipeline/analysis/quality/errors.h"
+#include "pipeline/analysis/quality/probed_body.h"
 
 namespace palpate::bench {
 

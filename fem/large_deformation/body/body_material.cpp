@@ -1,0 +1,133 @@
+#include "fem/large_deformation/body/body_material.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <limits>
+
+#include "mesh/errors.h"
+
+namespace palpate::fem {
+
+namespace {
+
+void validate(const Plasticity& plasticity) {
+    if (!(plasticity.yield > 0)) {
+        throw InvalidInput(fmt::format(
+            "Plasticity: the strain of first yield (stress over 3 mu) is {}; allowed: more than 0.", plasticity.yield));
+    }
+    if (!(plasticity.hardening >= 0)) {
+        throw InvalidInput(
+            fmt::format("Plasticity: hardening (over 3 mu) is {}; allowed: 0 and more.", plasticity.hardening));
+    }
+}
+
+Mat3 gradient_at(const ElementShape& shape, const NodeVectors& u, int q) {
+    return Mat3::Identity() + u * shape.gradients(q).transpose();
+}
+
+}  // namespace
+
+BodyMaterial::BodyMaterial(const BodyShape& body, const BodySetting& setting, const PlasticState* before, bool flows)
+    : body_(body),
+      model_(setting, body.dilatation),
+      plasticity_(setting.effects.plasticity),
+      before_(before),
+      flows_(flows) {
+    if (plasticity_) validate(*plasticity_);
+    assert(!before || (before->law == setting.law && before->points.size() == element_points * body.elements.size()));
+    const auto& all = setting.effects.material;
+    if (all.empty() && !plasticity_) return;
+    for (const auto& effect : all) {
+        if (!effect->is_scale()) energies_.push_back(effect.get());
+    }
+
+    place_.assign(body.elements.size(), -1);
+    for (std::size_t e = 0; e < body.elements.size(); ++e) {
+        ElementEffects own;
+        own.energies = energies_;
+        if (plasticity_) own.plasticity = &*plasticity_;
+        if (before_) own.before = &before_->points[element_points * e];
+        own.flows = flows_;
+        own.X = body.quadrature_points(e);
+        for (int q = 0; q < element_points; ++q) {
+            for (const auto& effect : all) own.s(q) *= effect->stiffness(own.X.row(q));
+        }
+        own.mean_s = body.elements[e].w.dot(own.s) / body.elements[e].w.sum();
+        if (own.is_scale() && (own.s.array() == 1).all()) continue;
+        place_[e] = static_cast<int>(effects_.size());
+        effects_.push_back(own);
+    }
+}
+
+double BodyMaterial::force(const Eigen::VectorXd& u, std::size_t element, NodeVectors& f) const {
+    return element_force(body_.elements[element], model_, effects(element), body_.displacements(u, element), f);
+}
+
+NodeVectors BodyMaterial::force(const Eigen::VectorXd& u, std::size_t element) const {
+    NodeVectors f;
+    if (std::isfinite(force(u, element, f))) return f;
+    const auto corners = body_.mesh.tetrahedra.row(static_cast<Eigen::Index>(element)).head<4>();
+    const Vec3 at = body_.mesh.nodes(corners, Eigen::all).colwise().mean();
+    throw SolverFailure(
+        fmt::format("Element {} of the body, at rest near ({:.4g}, {:.4g}, {:.4g}) mm, is turned inside out by these "
+                    "displacements; there it has no force. Take smaller displacements.",
+                    element, at.x(), at.y(), at.z()));
+}
+
+void BodyMaterial::tangent(const Eigen::VectorXd& u, std::size_t element, ElementTangent& K) const {
+    element_tangent(body_.elements[element], model_, effects(element), body_.displacements(u, element), K);
+}
+
+PlasticState BodyMaterial::after(const Eigen::VectorXd& u) const {
+    assert(plasticity_);
+    PlasticState result{model_.law, std::vector<PlasticPoint>(element_points * body_.elements.size())};
+    for (std::size_t e = 0; e < body_.elements.size(); ++e) {
+        force(u, e);  // refuses elements that are inside out
+        const NodeVectors moved = body_.displacements(u, e);
+        for (int q = 0; q < element_points; ++q) {
+            const std::size_t k = element_points * e + static_cast<std::size_t>(q);
+            result.points[k] = plastic_point(model_.law, *plasticity_, before_ ? before_->points[k] : PlasticPoint{},
+                                             gradient_at(body_.elements[e], moved, q));
+        }
+    }
+    return result;
+}
+
+double BodyMaterial::energy_scale() const {
+    double volume = body_.integrals.volume.sum();
+    for (std::size_t e = 0; e < place_.size(); ++e) {
+        if (const ElementEffects* own = effects(e)) volume += (own->mean_s - 1) * body_.elements[e].w.sum();
+    }
+    return model_.mu * volume;
+}
+
+double BodyMaterial::rounding(const Eigen::VectorXd& u) const {
+    // Small stresses are differences of terms as large as the moduli. The deformation gradient F = I + sum_i u_i dN_i
+    // is itself a difference: where a thin element moves by many times its height its terms are far larger than F, and
+    // each displacement is known to a share of its own size only. A stress of F S(F^T F) hands that on by |F|^2.
+    double squares = 0;
+    for (std::size_t e = 0; e < body_.elements.size(); ++e) {
+        const ElementShape& shape = body_.elements[e];
+        const ElementEffects* own = effects(e);
+        const NodeVectors moved = body_.displacements(u, e);
+        const auto reach = moved.colwise().squaredNorm();
+        for (int q = 0; q < element_points; ++q) {
+            const double terms = 1 + shape.gradients(q).colwise().squaredNorm().cwiseProduct(reach).sum();
+            const double stretch = gradient_at(shape, moved, q).squaredNorm() / 3;
+            double modulus = 1;  // over mu + K
+            if (own) {
+                const Mat3 rest = Mat3::Identity();
+                const double added = own->is_scale() ? 0 : own->added(model_.law, q, rest, true).second.norm();
+                modulus = own->s(q) * (1 + model_.mu / (model_.mu + model_.K) * added);
+            }
+            squares += terms * std::max(1.0, stretch * stretch) * modulus * modulus *
+                       (shape.w(q) * shape.gradients(q)).squaredNorm();
+        }
+    }
+    return std::numeric_limits<double>::epsilon() * (model_.mu + model_.K) * std::sqrt(squares);
+}
+
+}  // namespace palpate::fem

@@ -1,0 +1,61 @@
+#pragma once
+
+#include <optional>
+
+#include "fem/large_deformation/body/body_shape.h"
+
+namespace palpate::fem {
+
+/// Plastic state of every quadrature point of a body.
+struct PlasticState {
+    MaterialLaw law;                   // what it was found with, and goes with
+    std::vector<PlasticPoint> points;  // that of point q in element e is 4 e + q
+};
+
+/// What a body is made of: how each of its elements answers, with the effects in its material.
+class BodyMaterial {
+public:
+    /// `before`: nullptr: virgin; of no account without plasticity. `flows`: does plastic strain change from there?
+    /// @pre body, effects and `before` outlive it. @throws InvalidInput for plasticity out of range.
+    BodyMaterial(const BodyShape& body, const BodySetting& setting, const PlasticState* before = nullptr,
+                 bool flows = true);
+    BodyMaterial(const BodyMaterial&) = delete;
+    BodyMaterial& operator=(const BodyMaterial&) = delete;
+
+    /// Other moduli; effects in the material are shares of mu still.
+    void set_moduli(double mu, double K) { model_.mu = mu, model_.K = K; }
+    MaterialLaw law() const { return model_.law; }
+    /// Are its forces the gradient of a potential?
+    bool conservative() const { return !(plasticity_ && flows_); }
+
+    /// Energy and internal forces of an element; infinite where it is inside out.
+    double force(const Eigen::VectorXd& u, std::size_t element, NodeVectors& f) const;
+    /// The forces alone. @throws SolverFailure when the element is inside out.
+    NodeVectors force(const Eigen::VectorXd& u, std::size_t element) const;
+    /// @pre the element is not inside out.
+    void tangent(const Eigen::VectorXd& u, std::size_t element, ElementTangent& K) const;
+
+    /// What the body has been through once it has stood in u.
+    PlasticState after(const Eigen::VectorXd& u) const;
+
+    /// Shear modulus times volume, which energies are small differences of [N mm].
+    double energy_scale() const;
+    /// About the norm of what rounding leaves of forces that balance in the displacement u [N].
+    double rounding(const Eigen::VectorXd& u) const;
+
+private:
+    const ElementEffects* effects(std::size_t element) const {
+        return place_.empty() || place_[element] < 0 ? nullptr : &effects_[place_[element]];
+    }
+
+    const BodyShape& body_;
+    ElementModel model_;
+    std::vector<const MaterialEffect*> energies_;
+    std::optional<Plasticity> plasticity_;
+    const PlasticState* before_;
+    bool flows_;
+    std::vector<int> place_;  // of each element among effects_, -1: it has none; empty: no element has any
+    std::vector<ElementEffects> effects_;
+};
+
+}  // namespace palpate::fem

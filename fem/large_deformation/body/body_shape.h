@@ -1,0 +1,26 @@
+#pragma once
+
+#include "fem/large_deformation/body/cavities.h"
+#include "fem/large_deformation/body/node_integrals.h"
+
+namespace palpate::fem {
+
+/// What a body is, whatever it is made of.
+struct BodyShape {
+    mesh::VolumeMesh mesh;
+    std::vector<char> held;
+    Dilatation dilatation;
+    std::vector<ElementShape> elements;
+    NodeIntegrals integrals;
+    Cavities cavities{};
+
+    NodeWeights points(ActsOn what, double density) const;
+    /// Where an element's quadrature points rest (points x 3) [mm].
+    PointPositions quadrature_points(std::size_t element) const;
+    /// Displacements of an element's nodes.
+    NodeVectors displacements(const Eigen::VectorXd& u, std::size_t element) const;
+    /// Adds forces on an element's nodes to those on all.
+    void add(const NodeVectors& f, std::size_t element, Eigen::Ref<Eigen::VectorXd> forces) const;
+};
+
+}  // namespace palpate::fem

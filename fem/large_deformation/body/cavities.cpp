@@ -1,0 +1,176 @@
+#include "fem/large_deformation/body/cavities.h"
+
+#include <Eigen/Geometry>
+#include <Eigen/LU>
+#include <algorithm>
+#include <map>
+#include <numeric>
+
+#include "fem/elements/shape.h"
+
+namespace palpate::fem {
+
+namespace {
+
+/// A triple i < j < k of a face's nodes, and its part in the volume behind the face.
+struct Triple {
+    int i, j, k;
+    double weight;  // V = sum weight det(x_i, x_j, x_k)
+};
+
+/// V = 1/3 int x . (x,1 cross x,2) is trilinear in the nodes' positions; the determinant takes the antisymmetric part
+/// of int N_i N_j,1 N_k,2.
+std::array<Triple, 20> triples() {
+    const auto rule = triangle_quadrature_5();  // of degree 4 in the barycentric coordinates
+    std::array<Triple, 20> result{};
+    int count = 0;
+    for (int i = 0; i < 6; ++i) {
+        for (int j = i + 1; j < 6; ++j) {
+            for (int k = j + 1; k < 6; ++k) {
+                double sum = 0;
+                for (const auto& [l, part] : rule) {
+                    Eigen::Matrix<double, 6, 3> all;
+                    all << shape<3, 6>(l), shape_gradient<3, 6>(l);
+                    const Mat3 chosen = all(std::array{i, j, k}, Eigen::all);
+                    sum += part / 2 * chosen.determinant();
+                }
+                result[count++] = {i, j, k, sum / 3};
+            }
+        }
+    }
+    return result;
+}
+
+const std::array<Triple, 20>& face_triples() {
+    static const auto result = triples();
+    return result;
+}
+
+double volume_of(const Eigen::Matrix<double, 3, 6>& x) {
+    double sum = 0;
+    for (const auto& [i, j, k, weight] : face_triples()) sum += weight * x.col(i).dot(x.col(j).cross(x.col(k)));
+    return sum;
+}
+
+/// The boundary's parts: for each face the number of the first face that it is joined to by edges.
+std::vector<int> parts(const Faces& faces) {
+    std::vector<int> leader(faces.rows());
+    std::iota(leader.begin(), leader.end(), 0);
+    const auto find = [&](int f) {
+        while (leader[f] != f) f = leader[f] = leader[leader[f]];
+        return f;
+    };
+    // An edge is known by its midside.
+    std::map<int, int> face_of;
+    for (int f = 0; f < faces.rows(); ++f) {
+        for (int m = 3; m < 6; ++m) {
+            const auto [at, fresh] = face_of.try_emplace(faces(f, m), f);
+            if (fresh) continue;
+            const int one = find(at->second), other = find(f);
+            leader[std::max(one, other)] = std::min(one, other);
+        }
+    }
+    for (int f = 0; f < faces.rows(); ++f) leader[f] = find(f);
+    return leader;
+}
+
+}  // namespace
+
+Cavities::Cavities(const mesh::VolumeMesh& mesh) : nodes_(mesh.nodes) {
+    // Volumes by outward orientation.
+    const std::vector<int> part = parts(mesh.faces);
+    std::map<int, double> enclosed;
+    const Vec3 centre = mesh.nodes.colwise().mean();
+    for (int f = 0; f < mesh.faces.rows(); ++f) {
+        const auto x = node_positions<6>(mesh.nodes, mesh.faces.row(f));
+        enclosed[part[f]] += volume_of(x.transpose().colwise() - centre);
+    }
+    std::map<std::array<int, 3>, int> face_at;  // by its midsides, which are its own
+    Vec3 sum = Vec3::Zero();
+    for (int f = 0; f < mesh.faces.rows(); ++f) {
+        if (enclosed[part[f]] >= 0) continue;
+        Face face;
+        for (int i = 0; i < 6; ++i) face.node[i] = mesh.faces(f, i);
+        sum += mesh.nodes.row(face.node[0]).transpose();
+        std::array<int, 3> key{face.node[3], face.node[4], face.node[5]};
+        std::ranges::sort(key);
+        face_at[key] = static_cast<int>(faces_.size());
+        faces_.push_back(face);
+    }
+    if (faces_.empty()) return;
+    nodes_.rowwise() -= (sum / static_cast<double>(faces_.size())).transpose();
+
+    // The elements behind the faces.
+    constexpr int midsides[4][3] = {{4, 5, 6}, {4, 7, 8}, {5, 8, 9}, {6, 7, 9}};  // of each side
+    for (int e = 0; e < mesh.tetrahedra.rows(); ++e) {
+        const auto element = mesh.tetrahedra.row(e);
+        for (const auto& side : midsides) {
+            std::array<int, 3> key{element(side[0]), element(side[1]), element(side[2])};
+            std::ranges::sort(key);
+            const auto found = face_at.find(key);
+            if (found == face_at.end()) continue;
+            Face& face = faces_[found->second];
+            face.element = e;
+            for (int i = 0; i < 6; ++i) {
+                for (int k = 0; k < element_nodes; ++k) {
+                    if (element(k) == face.node[i]) face.local[i] = k;
+                }
+            }
+        }
+    }
+}
+
+Cavities::FaceNodes Cavities::positions(const Face& face, const Eigen::VectorXd& u) const {
+    FaceNodes x;
+    for (int i = 0; i < 6; ++i) {
+        x.col(i) = nodes_.row(face.node[i]).transpose() + u.segment<3>(std::int64_t(3) * face.node[i]);
+    }
+    return x;
+}
+
+double Cavities::volume(const Eigen::VectorXd& u) const {
+    double sum = 0;
+    for (const Face& face : faces_) sum -= volume_of(positions(face, u));
+    return sum;
+}
+
+void Cavities::add_gradient(const Eigen::VectorXd& u, double factor, Eigen::VectorXd& sum) const {
+    for (const Face& face : faces_) {
+        const FaceNodes x = positions(face, u);
+        FaceNodes by_node = FaceNodes::Zero();
+        for (const auto& [i, j, k, weight] : face_triples()) {
+            by_node.col(i) += weight * x.col(j).cross(x.col(k));
+            by_node.col(j) += weight * x.col(k).cross(x.col(i));
+            by_node.col(k) += weight * x.col(i).cross(x.col(j));
+        }
+        for (int i = 0; i < 6; ++i) sum.segment<3>(std::int64_t(3) * face.node[i]) -= factor * by_node.col(i);
+    }
+}
+
+void Cavities::add_hessian(const Eigen::VectorXd& u, double factor, const Unknowns& unknowns, LowerMatrix& K) const {
+    for (const Face& face : faces_) {
+        const FaceNodes x = positions(face, u);
+        ElementTangent tangent;
+        for (auto& block : tangent.blocks) block.setZero();
+        // d^2 det(a, b, c) / da_c db_d = epsilon_cde c_e; the volume is the cavity's, behind the face.
+        const auto add = [&](int a, int b, const Vec3& third) {
+            const int i = face.local[a], j = face.local[b];
+            for (int c = 0; c < 3; ++c) {
+                for (int d = c + 1; d < 3; ++d) {
+                    const double value = -factor * (d == c + 1 ? third(3 - c - d) : -third(3 - c - d));
+                    auto& block = tangent.blocks[ElementTangent::block_of(c, d)];
+                    block(i, j) += value;
+                    block(j, i) -= value;
+                }
+            }
+        };
+        for (const auto& [i, j, k, weight] : face_triples()) {
+            add(i, j, weight * x.col(k));
+            add(j, k, weight * x.col(i));
+            add(k, i, weight * x.col(j));
+        }
+        unknowns.add(face.element, tangent, K);
+    }
+}
+
+}  // namespace palpate::fem

@@ -1,0 +1,101 @@
+#include "fem/large_deformation/body/loaded_body.h"
+
+#include <cmath>
+
+namespace palpate::fem {
+
+LoadedBody::LoadedBody(const BodyShape& body, const BodySetting& setting, const Eigen::VectorXd& f,
+                       const PlasticState* before, double share, bool flows)
+    : body_(body),
+      material_(body, setting, before, flows),
+      f_(share * f),
+      pressure_(body.cavities.empty() ? 0 : share * setting.effects.pressure) {
+    for (const auto& effect : setting.effects.points) {
+        NodeWeights at = body.points(effect->acts_on(), setting.material.density);
+        at.weights = effect->weights(body.mesh.nodes(at.nodes, Eigen::all), at.weights);
+        if (effect->acts_on() != ActsOn::support) at.weights *= share;
+        effects_.push_back({effect.get(), std::move(at)});
+    }
+}
+
+PointTerms LoadedBody::terms(const PlacedPotential& effect, std::size_t k, const Eigen::VectorXd& u) const {
+    const int node = effect.at.nodes[k];
+    const Vec3 X = body_.mesh.nodes.row(node), moved = u.segment<3>(std::int64_t(3) * node);
+    if (material_.law() != MaterialLaw::linear || effect.potential->is_one_sided())
+        return effect.potential->terms(X, X + moved);
+    PointTerms at_rest = effect.potential->terms(X, X);
+    const Vec3 change = at_rest.hessian * moved;
+    at_rest.energy += (at_rest.gradient + change / 2).dot(moved);
+    at_rest.gradient += change;
+    return at_rest;
+}
+
+Potential LoadedBody::potential(const Eigen::VectorXd& u, Eigen::VectorXd& net) const {
+    Eigen::VectorXd force = Eigen::VectorXd::Zero(u.size());
+    Potential sum;
+    NodeVectors f;
+    for (std::size_t e = 0; e < body_.elements.size(); ++e) {
+        const double energy = material_.force(u, e, f);
+        if (!std::isfinite(energy)) return {energy, energy};
+        sum.value += energy;
+        body_.add(f, e, force);
+    }
+    // The distortion's energy is a small difference of large terms.
+    sum.scale = std::abs(sum.value) + material_.energy_scale();
+    for (const PlacedPotential& effect : effects_) {
+        for (std::size_t k = 0; k < effect.at.nodes.size(); ++k) {
+            const double weight = effect.at.weights(static_cast<Eigen::Index>(k));
+            const PointTerms at = terms(effect, k, u);
+            sum.value += weight * at.energy;
+            sum.scale += std::abs(weight * at.energy);
+            force.segment<3>(std::int64_t(3) * effect.at.nodes[k]) += weight * at.gradient;
+        }
+    }
+    if (pressure_ != 0) {
+        // -p (V - V0); in small strain a dead load, as on the body at rest.
+        const Eigen::VectorXd rest = Eigen::VectorXd::Zero(u.size());
+        Eigen::VectorXd push = rest;
+        const bool dead = material_.law() == MaterialLaw::linear;
+        body_.cavities.add_gradient(dead ? rest : u, pressure_, push);
+        const double more = dead ? push.dot(u) : pressure_ * (body_.cavities.volume(u) - body_.cavities.volume(rest));
+        sum.value -= more;
+        sum.scale += std::abs(more) + std::abs(pressure_) * body_.cavities.volume(rest);
+        force -= push;
+    }
+    const double work = f_.dot(u);
+    sum.value -= work;
+    sum.scale += std::abs(work);
+    net = f_ - force;
+    return sum;
+}
+
+bool LoadedBody::admits(const Eigen::VectorXd& u) const {
+    Eigen::VectorXd net;
+    return std::isfinite(potential(u, net).value);
+}
+
+Eigen::VectorXd LoadedBody::net_force(const Eigen::VectorXd& u) const {
+    Eigen::VectorXd net;
+    if (!std::isfinite(potential(u, net).value)) {
+        for (std::size_t e = 0; e < body_.elements.size(); ++e) material_.force(u, e);
+    }
+    return net;
+}
+
+void LoadedBody::add_tangent(const Eigen::VectorXd& u, const Unknowns& unknowns, LowerMatrix& K) const {
+    ElementTangent tangent;
+    for (std::size_t e = 0; e < body_.elements.size(); ++e) {
+        material_.tangent(u, e, tangent);
+        unknowns.add(static_cast<int>(e), tangent, K);
+    }
+    if (pressure_ != 0 && material_.law() != MaterialLaw::linear)
+        body_.cavities.add_hessian(u, -pressure_, unknowns, K);
+    for (const PlacedPotential& effect : effects_) {
+        for (std::size_t k = 0; k < effect.at.nodes.size(); ++k) {
+            const double weight = effect.at.weights(static_cast<Eigen::Index>(k));
+            unknowns.add(effect.at.nodes[k], weight * terms(effect, k, u).hessian, K);
+        }
+    }
+}
+
+}  // namespace palpate::fem

@@ -1,0 +1,52 @@
+#pragma once
+
+#include "fem/large_deformation/body/body_material.h"
+#include "fem/large_deformation/body/unknowns.h"
+
+namespace palpate::fem {
+
+/// The potential at one displacement.
+struct Potential {
+    double value = 0;  // [N mm]
+    double scale = 0;  // sum of its parts' amounts, which rounding is relative to [N mm]
+};
+
+/// A body of some material under effects and dead loads, a share of which is applied. Effects on the support hold the
+/// body and are always there in full. The linear law takes effects as they are at rest, to second order,
+/// but for those that act on one side only.
+class LoadedBody {
+public:
+    /// `before`, `flows`: as BodyMaterial takes them. @pre body, setting and `before` outlive it.
+    LoadedBody(const BodyShape& body, const BodySetting& setting, const Eigen::VectorXd& f,
+               const PlasticState* before = nullptr, double share = 1, bool flows = true);
+
+    /// Are its forces the gradient of a potential?
+    bool conservative() const { return material_.conservative(); }
+
+    /// `net`: force on every node, minus the potential's gradient (3n). The value is infinite, and `net` not set, where
+    /// an element is inside out.
+    Potential potential(const Eigen::VectorXd& u, Eigen::VectorXd& net) const;
+    /// Is no element inside out?
+    bool admits(const Eigen::VectorXd& u) const;
+    /// @throws SolverFailure where an element is inside out.
+    Eigen::VectorXd net_force(const Eigen::VectorXd& u) const;
+    /// About the norm of what rounding leaves of forces that balance in the displacement u [N].
+    double rounding(const Eigen::VectorXd& u) const { return material_.rounding(u); }
+    /// Adds the potential's second derivative. @pre no element is inside out.
+    void add_tangent(const Eigen::VectorXd& u, const Unknowns& unknowns, LowerMatrix& K) const;
+
+private:
+    struct PlacedPotential {
+        const PointPotential* potential;
+        NodeWeights at;
+    };
+    PointTerms terms(const PlacedPotential& effect, std::size_t k, const Eigen::VectorXd& u) const;  // at its point k
+
+    const BodyShape& body_;
+    BodyMaterial material_;
+    std::vector<PlacedPotential> effects_;
+    Eigen::VectorXd f_;
+    double pressure_;  // in cavities [MPa]
+};
+
+}  // namespace palpate::fem

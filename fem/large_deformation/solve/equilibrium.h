@@ -1,0 +1,15 @@
+#pragma once
+
+#include "fem/large_deformation/body/loaded_body.h"
+
+namespace palpate::fem {
+
+/// Newton's method from `start`, else from rest, else with the load in 4 and then 16 steps. A body that flows does so
+/// at once from what it was `before`, however many steps the load is put on in. `guide`: the factored tangent of a
+/// state near `start`.
+/// @throws SolverFailure with iterations and residual when all fail.
+BodyEquilibrium find_equilibrium(const BodyShape& body, const EliminationOrder& order, const BodySetting& setting,
+                                 const Eigen::VectorXd& f, const NewtonOptions& options, const Eigen::VectorXd* start,
+                                 const PlasticState* before, const Cholesky* guide = nullptr);
+
+}  // namespace palpate::fem

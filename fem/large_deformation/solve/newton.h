@@ -1,0 +1,55 @@
+#pragma once
+
+#include <vector>
+
+#include "fem/large_deformation/body/loaded_body.h"
+
+namespace palpate::fem {
+
+/// Finds where a loaded body's potential is least, over some unknowns; of one that flows, where its forces balance.
+///
+/// Newton's method with line search. A factor of the tangent serves for further steps, mended by BFGS updates with the
+/// changes of force that they bring [Matthies & Strang 1979], as long as they bring enough. A tangent that is not
+/// positive definite is shifted until it is.
+class Newton {
+public:
+    Newton(const EliminationOrder& order, int iterations);
+
+    /// Moves u to where the norm of the net force on the unknowns is at most `tolerance` [N], or what rounding makes of
+    /// forces that balance; false when that takes more than the iterations allowed, goes no further, or leads from one
+    /// unstable state to the next. `guide`: a factor over the same unknowns that the first steps are taken by, of the
+    /// tangent in a state nearby. @pre no element is inside out at u.
+    bool minimise(const LoadedBody& body, double tolerance, Eigen::VectorXd& u, const Cholesky* guide = nullptr);
+
+    int iterations() const { return iterations_; }          // in all
+    int factorisations() const { return factorisations_; }  // in all
+    double residual() const { return residual_; }           // the last one [N]
+
+private:
+    struct State;  // what holds at one displacement
+    struct Secant {
+        Eigen::VectorXd s, y;  // changes of displacement and of the potential's gradient
+        double sy;
+    };
+
+    bool factor(const LoadedBody& body, const Eigen::VectorXd& u);
+    bool factor_shifted(double share);
+    bool factor_with_shift(const LoadedBody& body, const Eigen::VectorXd& u);
+    Eigen::VectorXd direction(const Eigen::VectorXd& force) const;
+    double search(const LoadedBody& body, const State& from, const Eigen::VectorXd& step, State& to) const;
+    bool watchdog_step(const LoadedBody& body, const State& from, const Eigen::VectorXd& step, State& best);
+    void remember(const State& from, const State& to);
+
+    const EliminationOrder& order_;
+    const int allowed_;
+    LowerMatrix K_;
+    Cholesky cholesky_;
+    const Cholesky* in_use_ = nullptr;  // what steps are taken by
+    double shift_ = 0;                  // of the tangent's diagonal, as a share of its mean
+    double predicted_decrease_ = 0;     // decrease of the potential, by its slope along the last step [N mm]
+    std::vector<Secant> secants_;
+    int iterations_ = 0, factorisations_ = 0;
+    double residual_ = 0;
+};
+
+}  // namespace palpate::fem

@@ -1,0 +1,32 @@
+#include "fem/linear_algebra/solver_choice.h"
+
+namespace palpate::fem {
+namespace {
+
+// What bars of 100,000 and 300,000 nodes took on two cores (tests/bench/fem/RESULTS.md).
+constexpr double products_per_second = 4.8e10;
+constexpr double multigrid_of_a_node = 2.5e-5;  // [s]
+constexpr double load_on_a_node = 7e-6;         // [s]
+constexpr double worthwhile = 0.4;              // of a factor's time: other meshes take more iterations
+
+/// Multiplications of a factorisation.
+double factor_products(const Supernodes& structure) {
+    double products = 0;
+    for (int s = 0; s < structure.count(); ++s) {
+        for (int c = 0; c < structure.columns(s); ++c) {
+            const double height = structure.height(s) - c;
+            products += height * height / 2;
+        }
+    }
+    return products;
+}
+
+}  // namespace
+
+bool is_faster_without_factor(const Supernodes& structure, int loads) {
+    const double nodes = structure.size() / 3.0;
+    const double iterating = nodes * (multigrid_of_a_node + loads * load_on_a_node);
+    return loads > 0 && iterating < worthwhile * factor_products(structure) / products_per_second;
+}
+
+}  // namespace palpate::fem

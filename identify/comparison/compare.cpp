@@ -1,0 +1,143 @@
+#include "identify/comparison/compare.h"
+
+#include <algorithm>
+#include <boost/math/special_functions/gamma.hpp>
+#include <cmath>
+
+#include "identify/comparison/load_exponent.h"
+#include "identify/inference/domains/position/solver_pool.h"
+#include "identify/loading/load_history.h"
+#include "identify/loading/readings.h"
+#include "identify/loading/reduced_load.h"
+#include "identify/numerics/parallel.h"
+#include "mesh/errors.h"
+#include "skeleton/statics/statics.h"
+
+namespace palpate::identify {
+namespace {
+
+constexpr double adequate_rms = 1.1;  // in sigmas: with thousands of readings no p-value forgives rounding
+constexpr double adequate_p_value = 0.01;
+constexpr int worst_readings = 10;
+
+double square(double x) { return x * x; }
+
+/// Markers of each state at the model's equilibria; `bears_full_load` is 0 where it does not bear the whole load.
+std::vector<Points> predict(const skeleton::Model& model, const std::vector<StateReadings>& states, int threads,
+                            std::vector<char>& bears_full_load) {
+    std::vector<Points> predicted(states.size());
+    bears_full_load.assign(states.size(), 1);
+    SolverPool solvers(model);
+    const Eigen::VectorXd k = stiffness_vector(model);
+    std::vector<skeleton::Equilibrium> equilibria(states.size());
+    for_each_in_parallel(static_cast<int>(states.size()), is_history_dependent(states) ? 1 : threads, [&](int s) {
+        const SolverPool::Loan solver(solvers);
+        const LoadHistory before = reduced_load_history_before(model, *solver, k, states, s, equilibria);
+        ReducedLoadEquilibrium found = solve_with_reduced_load(*solver, k, states[s].load, before.flowed);
+        bears_full_load[s] = before.is_full_load && found.is_full_load;
+        predicted[s] = observed(model, found.equilibrium, found.load, states[s].points);
+        equilibria[s] = std::move(found.equilibrium);
+    });
+    return predicted;
+}
+
+/// Length of an error, of its measured coordinates.
+Vec3 measured_part(const Eigen::RowVector3d& error) { return error.array().isNaN().select(0, error).transpose(); }
+
+ProbeError error_of(const LoadState& state, const StateReadings& readings, const Points& error) {
+    double largest = 0;
+    for (const auto& row : error.rowwise()) largest = std::max(largest, measured_part(row).norm());
+    const double left = rms(error);
+    return {state.probe, state.time, left, largest, readings.displacement > 0 ? left / readings.displacement : missing};
+}
+
+/// Sums over all measured coordinates.
+struct Totals {
+    int coordinates = 0;
+    double error = 0, displacement = 0, noise = 0;  // of squares [mm^2]
+    double chi_squared = 0;                         // NaN when a noise is unknown
+
+    void add(const StateReadings& readings, const Points& difference) {
+        coordinates += readings.coordinates;
+        displacement += readings.coordinates * square(readings.displacement);
+        for (Eigen::Index i = 0; i < difference.rows(); ++i) {
+            const int measured = static_cast<int>((!difference.row(i).array().isNaN()).count());
+            const double squares = measured_part(difference.row(i)).squaredNorm();
+            error += squares;
+            noise += measured * square(readings.noise[i]);
+            chi_squared += squares / square(readings.noise[i]);
+        }
+    }
+};
+
+/// Noise of a state, rms over its coordinates; 0 when unknown.
+double noise_of(const StateReadings& readings) {
+    const double value = std::sqrt(readings.noise.squaredNorm() / static_cast<double>(readings.noise.size()));
+    return std::isnan(value) ? 0 : value;
+}
+
+void find_worst(const MeasurementSet& set, const std::vector<StateReadings>& states, const std::vector<Points>& errors,
+                Comparison& result) {
+    for (std::size_t s = 0; s < states.size(); ++s) {
+        const LoadState& state = set.states[states[s].state];
+        for (Eigen::Index i = 0; i < errors[s].rows(); ++i) {
+            const Vec3 error = measured_part(errors[s].row(i));
+            const Reading& reading = state.readings[states[s].rows[i]];
+            result.worst.push_back({set.markers[reading.marker].id, state.probe, state.time, error.norm(),
+                                    reading.position, error.normalized()});
+        }
+    }
+    std::ranges::stable_sort(result.worst, std::greater{}, &WorstReading::error);
+    if (result.worst.size() > worst_readings) result.worst.resize(worst_readings);
+}
+
+}  // namespace
+
+Comparison compare(const skeleton::Model& model, const MeasurementSet& set, int threads) {
+    const std::vector<StateReadings> states = collect_readings(model, set);
+    if (states.empty()) {
+        throw InvalidInput("measurement set '" + set.name +
+                           "' has no labelled reading to compare with; positions.csv "
+                           "needs rows that name a marker");
+    }
+    std::vector<char> bears_full_load;
+    const std::vector<Points> predicted = predict(model, states, threads, bears_full_load);
+
+    Comparison result;
+    for (std::size_t s = 0; s < states.size(); ++s) {
+        const int probe = set.states[states[s].state].probe;
+        const bool is_new = result.overloaded_probes.empty() || result.overloaded_probes.back() != probe;
+        if (!bears_full_load[s] && is_new) result.overloaded_probes.push_back(probe);
+    }
+    for (const LoadState& state : set.states) {
+        result.predicted.emplace_back(Points::Constant(static_cast<Eigen::Index>(state.readings.size()), 3, missing));
+    }
+    Totals totals;
+    std::vector<Points> errors;
+    std::vector<ErrorUnderLoad> under_load;
+    for (std::size_t s = 0; s < states.size(); ++s) {
+        const LoadState& state = set.states[states[s].state];
+        result.predicted[states[s].state](states[s].rows, Eigen::all) = predicted[s];
+        errors.emplace_back(states[s].measured - predicted[s]);
+        totals.add(states[s], errors[s]);
+        result.probes.push_back(error_of(state, states[s], errors[s]));
+        result.max = std::max(result.max, result.probes.back().max);
+        under_load.push_back(
+            {rms(predicted[s] - states[s].rest), result.probes.back().rms, noise_of(states[s]), states[s].coordinates});
+    }
+    result.rms = std::sqrt(totals.error / totals.coordinates);
+    result.relative = totals.displacement > 0 ? std::sqrt(totals.error / totals.displacement) : missing;
+    find_worst(set, states, errors, result);
+    result.load_exponent = load_exponent(under_load);
+
+    // is what is left noise? chi^2 with as many degrees of freedom as coordinates
+    if (!std::isnan(totals.noise) && totals.noise > 0) {
+        result.noise = std::sqrt(totals.noise / totals.coordinates);
+        result.p_value = boost::math::gamma_q(totals.coordinates / 2.0, totals.chi_squared / 2);
+        result.adequate =
+            std::sqrt(totals.chi_squared / totals.coordinates) <= adequate_rms || result.p_value >= adequate_p_value;
+    }
+    return result;
+}
+
+}  // namespace palpate::identify

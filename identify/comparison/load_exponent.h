@@ -1,0 +1,27 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "identify/comparison/compare.h"
+
+namespace palpate::identify {
+
+/// The error of a state, against what acted on it. A load is measured by how far it moves the model: a soft place and a
+/// hard one compare, and the same wrong stiffness shows as the same share of it.
+struct ErrorUnderLoad {
+    double load = 0;      // rms displacement of the modelled markers [mm]; 0, but for rounding: unloaded
+    double rms = 0;       // [mm]
+    double noise = 0;     // its share that is noise, rms [mm]; 0 when unknown
+    int coordinates = 1;  // measured
+};
+
+/// p in error ~ load^p, from a line through ln(error) over ln(load), the noise taken off in squares.
+///
+/// A state without load says p = 0 where its error is there; where nothing is left of it but noise, it says only that p
+/// is above 0. It enters at the load at which an error in proportion to the load would sink into the noise, and only
+/// where its error is above that, or where the others do not tell that p is above 0. Empty when the loads do not
+/// differ.
+std::optional<LoadExponent> load_exponent(const std::vector<ErrorUnderLoad>& states);
+
+}  // namespace palpate::identify

@@ -1,0 +1,320 @@
+#include "identify/diagnosis/diagnose.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Eigenvalues>
+
+#include <algorithm>
+#include <cmath>
+
+#include "identify/diagnosis/search/baselines.h"
+#include "identify/diagnosis/search/crushing.h"
+#include "identify/diagnosis/search/search.h"
+#include "identify/diagnosis/statistics/independent_readings.h"
+#include "identify/diagnosis/verdict/verdict.h"
+#include "identify/effects/catalogue.h"
+#include "mesh/errors.h"
+
+namespace palpate::identify {
+namespace {
+
+constexpr const char* noise_note = "The set does not tell its noise: ";
+
+/// [mm]
+double rms(const Eigen::VectorXd& v) { return std::sqrt(v.squaredNorm() / static_cast<double>(v.size())); }
+
+/// The diagnosis in progress.
+class DiagnosisInProgress {
+public:
+    DiagnosisInProgress(const BodyModel& model, const MeasurementSet& set, const DiagnoseOptions& options,
+                        const Progress& progress)
+        : model_(model), options_(options), progress_(progress), baselines_(model, options) {
+        result_.noise_known = all_noise_known(set);
+        result_.problem = make_problem(set, first_noise(set));
+        moved_ = rms(result_.problem.displacement());
+        for (const auto& effect : catalogue()) {
+            const bool known =
+                std::ranges::find(options.known, effect->name(), &skeleton::EffectRecord::name) != options.known.end();
+            if (!options.leaves_out(*effect) && !known) effects_.push_back(effect);
+            if (known && effect->has_memory() && !result_.problem.by_stage) {
+                result_.problem = result_.problem.stage_by_stage();
+            }
+        }
+    }
+
+    Diagnosis run() {
+        if (!options_.law || *options_.law != 0) {
+            result_.problem = without_crushing_probes(model_, result_.problem, options_.refit.threads, result_.notes);
+        }
+        baselines_.fit(result_.problem, result_.notes, progress_);
+        if (!result_.noise_known) estimate_noise();
+        set_plain_outliers_aside();
+        if (options_.screen) {
+            // Evidence of fits that leave noise may differ by some tens for nuisances that were taken elsewhere: the
+            // baseline's are taken where it stands, as those of a fit with an effect are.
+            if (leaves_only_noise(baseline(), options_)) baselines_.refit(result_.problem, true);
+            search_and_refit();
+            if (!result_.noise_known && explained()) {
+                estimate_noise();
+                search_and_refit();
+            }
+        }
+        result_.baseline = baseline();
+        result_.baseline_held_out = leave_probes_out(result_.problem, result_.baseline);
+        result_.noise = result_.problem.rms_sigma();
+        for (int law = 0; law < baselines_.laws(); ++law) {
+            result_.law_evidence.push_back(baselines_.evidence(law) - baseline().log_evidence);
+        }
+        result_.independent = independent_readings(result_.problem);
+        result_.large_deformation_failed = baselines_.large_deformation_failed();
+        decide_verdict(model_, options_, result_);
+        note_mesh_error();
+        return std::move(result_);
+    }
+
+private:
+    static bool all_noise_known(const MeasurementSet& set) {
+        return set.position_noise || std::ranges::all_of(set.states, [](const LoadState& state) {
+                   return std::ranges::none_of(state.readings, [](const Reading& r) { return std::isnan(r.sigma); });
+               });
+    }
+
+    /// A hundredth of how far the markers move, to begin with where the noise is not specified [mm].
+    static double first_noise(const MeasurementSet& set) {
+        return std::max(0.01 * rms(make_problem(set, 1).displacement()), 1e-12);
+    }
+
+    const Refit& baseline() const { return baselines_.best(); }
+
+    void tell(const std::string& what, double share) const { report(progress_, what, share); }
+
+    /// Sensors finer than the body's mesh see its errors, which no effect explains.
+    void note_mesh_error() {
+        if (result_.verdict != Verdict::unexplained) return;
+        const Eigen::VectorXd left_mm = result_.best().residual.cwiseProduct(result_.problem.sigma);
+        const double left = rms(left_mm);
+        constexpr double most = 0.015;  // of the displacement: what meshes and their contacts may be off by
+        if (left > most * moved_) return;
+        result_.notes.push_back(
+            fmt::format("The residual, {:.3g} mm rms, is {:.2g} % of the displacement, which discretisation error may "
+                        "explain. Shorter elements (--edge-length) reduce it; a noise of {:.3g} mm or more covers it.",
+                        left, 100 * left / moved_, options_.resolution * moved_));
+    }
+
+    void estimate_noise() {
+        // What is rough in the errors is noise: a missing effect is smooth from marker to marker. Errors of few
+        // readings that are trusted less are as they are, a median bears them.
+        Problem& problem = result_.problem;
+        const Refit& fit = leading();
+        const Eigen::VectorXd error_mm = fit.residual.cwiseQuotient(fit.V->weights()).cwiseProduct(problem.sigma);
+        const double rough = noise_by_roughness(problem, error_mm);
+        const double finest = std::max(options_.resolution * moved_, 1e-12);
+        const double noise = std::max(rough, finest);
+        for (Eigen::Index n = 0; n < problem.rows(); ++n) {
+            if (problem.is_guessed[n]) problem.sigma[n] = noise;
+        }
+        std::erase_if(result_.notes, [](const std::string& note) { return note.starts_with(noise_note); });
+        result_.notes.push_back(
+            rough >= finest
+                ? fmt::format("{}{:.3g} mm, from how errors differ between neighbouring markers.", noise_note, noise)
+                : fmt::format("{}errors hardly differ between neighbouring markers, and are weighed with {:.3g} mm, "
+                              "{:g} % of the displacement, which a mesh may be off by.",
+                              noise_note, noise, 100 * options_.resolution));
+        baselines_.refit(result_.problem);
+    }
+
+    /// Seeks effects in the catalogue, first by themselves, then several together. Outliers are looked for next to the
+    /// best single one: several effects would bend to them.
+    void search_and_refit() {
+        seek(&Search::single_effects);
+        if (set_outliers_aside_next_to_effect()) seek(&Search::single_effects);
+        seek(&Search::put_together);
+        if (!leaves_only_noise(leading(), options_) && set_outliers_aside_next_to_effect()) {
+            seek(&Search::single_effects);
+            seek(&Search::put_together);
+        }
+    }
+
+    void seek(void (Search::*what)()) {
+        if (what == &Search::single_effects) {
+            search_ = std::make_unique<Search>(model_, result_.problem, baselines_, effects_, options_, progress_);
+        }
+        ((*search_).*what)();
+        result_.ranking = search_->ranking();
+        result_.tried = search_->tried();
+    }
+
+    const FittedExplanation* leader() const {
+        const auto found = std::ranges::max_element(result_.tried, {}, &FittedExplanation::log_bayes_factor);
+        return found == result_.tried.end() || !is_claimable(*found, options_) ? nullptr : &*found;
+    }
+    bool explained() const { return leader() != nullptr; }
+    const Refit& leading() const { return explained() ? leader()->fit : baseline(); }
+
+    static double rms_of(const Eigen::VectorXd& v, const std::vector<char>& keep) {
+        double sum = 0;
+        for (Eigen::Index n = 0; n < v.size(); ++n) sum += keep[n] ? v[n] * v[n] : 0;
+        return std::sqrt(sum / static_cast<double>(std::ranges::count(keep, 1)));
+    }
+
+    /// Readings that are off by themselves, as a fit sees them; true where some were set aside.
+    bool set_outliers_aside(const Refit& fit, double least) {
+        if (options_.leaves_out(*single_readings_) || !result_.outliers.readings.empty()) return false;
+        tell(single_readings_->name(), 0.4);
+        const Outliers found = find_outliers(result_.problem, fit.residual);
+        if (found.log_bayes_factor < std::max(least, options_.least_outliers)) return false;
+        const int before = result_.problem.readings();
+        const std::vector<char> keep = rows_without(result_.problem, found.readings);
+        constexpr double little = 3;  // rms, whitened: where more is left without them, they are not what is wrong
+        if (rms_of(fit.residual, keep) > little) return false;
+        result_.outliers = found;
+        result_.outliers.readings.clear();
+        for (std::size_t n = 0; n < keep.size(); ++n) {
+            const int number = result_.problem.set_reading[n];
+            std::vector<int>& numbers = result_.outliers.readings;
+            if (!keep[n] && (numbers.empty() || numbers.back() != number)) numbers.push_back(number);
+        }
+        result_.problem = result_.problem.with_rows(keep);
+        result_.notes.push_back(
+            fmt::format("{} of {} readings are outliers and were set aside.", found.readings.size(), before));
+        return true;
+    }
+
+    /// Next to a missing effect anything looks rough: before one is sought, readings are set aside only where little
+    /// else is left to explain then.
+    void set_plain_outliers_aside() {
+        const Diagnosis before = result_;
+        const Baselines baselines = baselines_;
+        const double least = leaves_only_noise(baseline(), options_)
+                                 ? least_next_to_noise(*single_readings_, result_.problem, options_)
+                                 : 0;
+        if (!set_outliers_aside(baseline(), least)) return;
+        baselines_.refit(result_.problem, true);
+        if (!options_.screen || leaves_only_noise(baseline(), options_)) {
+            baselines_.refit(result_.problem);
+        } else {
+            result_ = before;
+            baselines_ = baselines;
+        }
+    }
+
+    /// Once an effect explains the rest, or nothing does, the same; only where noise is left then. True where some were
+    /// set aside.
+    bool set_outliers_aside_next_to_effect() {
+        const Diagnosis before = result_;
+        const Refit leads = leading();
+        const bool is_explained = explained() && leaves_only_noise(leads, options_);
+        const double least =
+            is_explained ? least_next_to_effect(*single_readings_, *leader(), result_.problem, options_) : 0;
+        if (!set_outliers_aside(leads, least)) return false;
+        if (!leaves_only_noise(without_them(leads), options_)) {
+            result_ = before;
+            return false;
+        }
+        baselines_.refit(result_.problem);
+        return true;
+    }
+
+    /// A fit once more, to the readings that are left.
+    Refit without_them(const Refit& fit) const {
+        Refit start = fit;
+        start.V.reset();
+        const bool in_stages = fit.explanation.has_memory() && !result_.problem.by_stage;
+        return refit(model_, in_stages ? result_.problem.stage_by_stage() : result_.problem, fit.explanation,
+                     options_.refit, &start);
+    }
+
+    const std::shared_ptr<const EffectHypothesis> single_readings_ = effect_of_single_readings();
+    const BodyModel& model_;
+    const DiagnoseOptions& options_;
+    const Progress& progress_;
+    std::vector<std::shared_ptr<const EffectHypothesis>> effects_;
+    Baselines baselines_;
+    std::unique_ptr<Search> search_;
+    Diagnosis result_;
+    double moved_ = 0;  // readings from rest, rms [mm]
+};
+
+/// Variances of what is told of fitted numbers v with a covariance C: the halves of what it differs by between v + c
+/// and v - c, squared, for each column c of C's square root.
+Eigen::VectorXd variances_of_told(const EffectHypothesis& effect, const std::vector<EffectNumber>& numbers,
+                                  const Eigen::VectorXd& v, const Eigen::MatrixXd& covariance) {
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> axes(covariance);
+    const auto estimate = [&](const Eigen::VectorXd& x) -> Eigen::VectorXd {
+        const skeleton::EffectRecord at = effect.record(numbers, x);
+        Eigen::VectorXd values(std::ssize(at.parameters));
+        for (Eigen::Index p = 0; p < values.size(); ++p) values[p] = at.parameters[p].value;
+        return values;
+    };
+    Eigen::VectorXd variances = 0 * estimate(v);
+    for (Eigen::Index j = 0; j < v.size(); ++j) {
+        const Eigen::VectorXd c = std::sqrt(std::max(axes.eigenvalues()[j], 0.0)) * axes.eigenvectors().col(j);
+        variances += (0.5 * (estimate(v + c) - estimate(v - c))).cwiseAbs2();
+    }
+    return variances;
+}
+
+}  // namespace
+
+bool DiagnoseOptions::leaves_out(const EffectHypothesis& effect) const {
+    return std::ranges::find(without, effect.name()) != without.end();
+}
+
+void DiagnoseOptions::validate() const {
+    for (const std::string& name : without) find_effect(name);
+    const auto above = [](const char* name, double value) {
+        if (!(value > 0)) throw InvalidInput(fmt::format("{} is {}; it must be above 0", name, value));
+    };
+    above("most_left", most_left);
+    above("most_left_held_out", most_left_held_out);
+    above("most_gap", most_gap);
+    above("most_pull", most_pull);
+    const auto no_less = [](const char* name, double value) {
+        if (!(value >= 0)) throw InvalidInput(fmt::format("{} is {}; it must be 0 or more", name, value));
+    };
+    no_less("mesh_error", mesh_error);
+    no_less("resolution", resolution);
+    no_less("idealisation_evidence", idealisation_evidence);
+    no_less("least_outliers", least_outliers);
+    if (refit.steps < 1) throw InvalidInput(fmt::format("refit.steps is {}; allowed: 1 and more", refit.steps));
+    if (refits < 1) throw InvalidInput(fmt::format("refits is {}; allowed: 1 and more", refits));
+    if (together < 1) throw InvalidInput(fmt::format("together is {}; allowed: 1 and more", together));
+}
+
+bool FittedExplanation::has(const std::string& name) const {
+    return std::ranges::any_of(effects, [&](const auto& effect) { return effect->name() == name; });
+}
+
+EffectEstimate FittedExplanation::estimate(const std::string& name) const {
+    const Explanation& all = fit.explanation;
+    Eigen::Index at = all.theta.size();
+    for (std::size_t e = 0; e < all.effects.size(); ++e) {
+        const Eigen::VectorXd& v = all.values[e];
+        if (all.effects[e]->name() != name) {
+            at += v.size();
+            continue;
+        }
+        EffectEstimate result{all.effects[e]->record(fit.numbers[e], v), {}};
+        const auto variances = [&](const Eigen::MatrixXd& covariance) {
+            return variances_of_told(*all.effects[e], fit.numbers[e], v, covariance.block(at, at, v.size(), v.size()));
+        };
+        const Eigen::VectorXd variance = variances(fit.covariance).cwiseMax(variances(fit.scatter));
+        for (const double one : variance) result.sd.push_back(std::sqrt(one));
+        return result;
+    }
+    return {};
+}
+
+const Refit& Diagnosis::best() const { return explained ? explained->fit : baseline; }
+
+Diagnosis diagnose(const BodyModel& model, const MeasurementSet& set, const DiagnoseOptions& options,
+                   const Progress& progress) {
+    options.validate();
+    const auto laws = static_cast<int>(model.laws().size());
+    if (options.law && (*options.law < 0 || *options.law >= laws)) {
+        throw InvalidInput(fmt::format("law is {}; allowed: 0 to {}", *options.law, laws - 1));
+    }
+    return DiagnosisInProgress(model, set, options, progress).run();
+}
+
+}  // namespace palpate::identify

@@ -1,0 +1,47 @@
+#pragma once
+
+#include "identify/diagnosis/fit/explanation.h"
+
+namespace palpate::identify {
+
+/// How large the nuisances are taken to be, as measured on bodies of known physics from another solver.
+struct NuisanceOptions {
+    double shift = 0.25;    // of a contact along the surface, 1 sd as a share of its radius
+    double radius = 0.25;   // of its radius itself
+    double softness = 0.3;  // of ln stiffness within two radii of a contact
+    double clamp = 0.6;     // of ln stiffness in each sector of what a support's border cuts
+    int clamp_sectors = 30;
+    double gain_at_support = 0.3;  // of ln force of a probe that reaches a support
+    double dent = 0.1;             // of the local indentation, unknown for each reading
+    double ragged = 0.15;          // of what a marker at a support's border moves against it, unknown for each reading
+    double flow = 0.01;            // of the displacement of a body that yields, unknown for each reading
+};
+
+/// Nuisances of the experimental setup: sensitivity columns over sigma (N x c), prior precisions (c) and names.
+struct Nuisances {
+    Eigen::MatrixXd columns;
+    Eigen::VectorXd precisions;
+    std::vector<std::string> names;  // "contact of radius 2 mm at (0, 0, 8) shifted", ...
+};
+
+/// For each place that is touched, whatever probes, loads and times, two shifts of the contact along the surface, its
+/// radius and the softness of the body round it; the stiffness of sectors of pieces that a support's border cuts; a
+/// gain of its own for a place next to a support. Their signatures are taken at the played configurations.
+Nuisances make_nuisances(const BodyModel& model, const Problem& problem, const Explanation& explanation,
+                         const ForwardSolution& forward, int threads, const NuisanceOptions& options = {});
+
+/// Weights W (N): 1 far from contacts; below it near one, where a reading depends on how exactly the contact is made:
+///   sigma^2 -> sigma^2 + (kappa U min(1, (1.2 r / d)^2) (1 + p/E))^2, U = F (1 - nu^2) / (2 E r), p = F / (pi r^2),
+/// d the reading's distance from the contact at rest, kappa the `dent`; the last factor for laws of large deformation.
+/// Nor does a mesh end a support more exactly than its pieces are long: for a marker that moves by u against the
+/// support, d from it,
+///   sigma^2 -> sigma^2 + (ragged u exp(-(d/l)^2))^2, l twice the mean distance of the pieces that its border cuts.
+/// Where the material yields, a share of the modelled displacement comes on top: what flows keeps and adds up the
+/// errors of its mesh. It keeps dents, too: contacts of earlier stages count as well.
+Eigen::VectorXd reading_weights(const BodyModel& model, const Problem& problem, const Explanation& explanation,
+                                const ForwardSolution& forward, const NuisanceOptions& options = {});
+
+/// Radius of a contact as the nuisances see it: a point is never sharper than a hundredth of the body [mm].
+double effective_radius(const BodyModel& model, const mesh::Contact& contact);
+
+}  // namespace palpate::identify

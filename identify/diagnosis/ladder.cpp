@@ -1,0 +1,322 @@
+#include "identify/diagnosis/ladder.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <set>
+
+#include "identify/effects/catalogue.h"
+#include "identify/inference/maximum/calibrate.h"
+#include "identify/loading/readings.h"
+#include "identify/models/skeleton_body.h"
+#include "mesh/errors.h"
+#include "skeleton/statics/statics.h"
+
+namespace palpate::identify {
+namespace {
+
+bool is_loaded(const LoadState& state) {
+    return std::ranges::any_of(state.contacts, [](const mesh::Contact& c) { return !c.force.isZero(0); });
+}
+
+/// Which probes are held out, in turn.
+///
+/// A quarter of the loaded ones, spread evenly, where there are more than eight; the rungs are fitted to the others.
+/// Of fewer none can be spared: every third probe is held out in turn, and the rungs are fitted to all.
+std::vector<std::vector<int>> folds_of(const MeasurementSet& set) {
+    std::set<int> loaded, all;
+    for (const LoadState& state : set.states) {
+        if (is_loaded(state)) loaded.insert(state.probe);
+        if (!state.readings.empty()) all.insert(state.probe);
+    }
+    if (loaded.size() < 3) return {};
+    if (loaded.size() > 8) {
+        const std::vector<int> probes(loaded.begin(), loaded.end());
+        const std::size_t count = probes.size() / 4;
+        std::vector<int> held_out;
+        for (std::size_t i = 0; i < count; ++i) held_out.push_back(probes[(2 * i + 1) * probes.size() / (2 * count)]);
+        return {held_out};
+    }
+    std::vector<std::vector<int>> folds(3);
+    for (std::size_t i = 0; const int probe : all) folds[i++ % folds.size()].push_back(probe);
+    return folds;
+}
+
+MeasurementSet part_of(const MeasurementSet& set, const std::vector<int>& probes, bool of_them) {
+    const auto is_other = [&](const LoadState& state) {
+        return (std::ranges::find(probes, state.probe) != probes.end()) != of_them;
+    };
+    MeasurementSet part = set;
+    if (set.continuous) {  // the body went through all states, whoever reads them
+        for (LoadState& state : part.states) {
+            if (is_other(state)) state.readings.clear();
+        }
+    } else {
+        std::erase_if(part.states, is_other);
+    }
+    return part;
+}
+
+/// An explanation's effects as they are told.
+std::vector<skeleton::EffectRecord> estimate(const Diagnosis& diagnosis) {
+    std::vector<skeleton::EffectRecord> result;
+    const Refit& fit = diagnosis.best();
+    for (std::size_t e = 0; e < fit.explanation.effects.size(); ++e) {
+        result.push_back(fit.explanation.effects[e]->record(fit.numbers[e], fit.explanation.values[e]));
+    }
+    for (const Candidate& candidate : diagnosis.ranking) {
+        const bool set_aside = candidate.effect->sets_readings_aside() && !diagnosis.outliers.readings.empty();
+        if (set_aside) result.push_back(candidate.estimate.effect);
+    }
+    return result;
+}
+
+/// The measurements without the faults that are known, and without outliers where these are one of them.
+MeasurementSet understood(const MeasurementSet& set, const std::vector<skeleton::EffectRecord>& effects,
+                          const std::vector<int>& outliers) {
+    MeasurementSet result = without_readings(set, outliers);
+    for (const skeleton::EffectRecord& effect : effects) result = find_effect(effect.name)->corrected(result, effect);
+    return result;
+}
+
+/// Is one among these effects that sets readings aside?
+bool set_readings_aside(const std::vector<std::string>& effects) {
+    return std::ranges::any_of(effects,
+                               [](const std::string& name) { return find_effect(name)->sets_readings_aside(); });
+}
+
+void refuse_what_cannot_show(const EffectHypothesis& effect, const BodyModel& body, const MeasurementSet& set) {
+    const Problem problem = make_problem(set, 1);
+    const bool spread = effect.has_memory() && !problem.by_stage;
+    const bool is_fitted = !effect.sets_readings_aside();
+    if (!is_fitted || !effect.numbers(body, spread ? problem.stage_by_stage() : problem).empty()) return;
+    throw InvalidInput(
+        effect.is_of_links()
+            ? fmt::format("The effect '{}' cannot show in a solid: links alone have it. Judge it on the skeleton.",
+                          effect.name())
+            : fmt::format("The effect '{}' cannot show in this body and this set. Leave it out, or measure what shows "
+                          "it: {}.",
+                          effect.name(), effect.description().reveals));
+}
+
+class LadderBuilder {
+public:
+    LadderBuilder(const skeleton::Model& model, const BodyModel& body, const MeasurementSet& set,
+                  const LadderOptions& options, const Progress& progress)
+        : model_(model),
+          body_(body),
+          body_is_skeleton_(dynamic_cast<const SkeletonBody*>(&body) != nullptr),
+          set_(set),
+          options_(options),
+          progress_(progress) {
+        for (const std::vector<int>& fold : folds_of(set)) {
+            folds_.push_back({part_of(set, fold, false), part_of(set, fold, true)});
+            result_.held_out_probes.insert(result_.held_out_probes.end(), fold.begin(), fold.end());
+        }
+        std::ranges::sort(result_.held_out_probes);
+        fitted_ = folds_.size() == 1 ? folds_.front().fitted : set;
+    }
+
+    Ladder run(const std::vector<std::string>& effects, const Diagnosis* diagnosis) {
+        std::vector<std::string> added;
+        add_step(added, diagnosis);
+        for (std::size_t number = 1; number <= effects.size(); ++number) {
+            report(progress_, fmt::format("ladder, step {}", number),
+                   static_cast<double>(number) / static_cast<double>(effects.size() + 1));
+            added.push_back(effects[number - 1]);
+            const UniformFit near = near_;
+            const Verdict verdict = result_.verdict;
+            add_step(added, diagnosis);
+            if (!options_.only_better || !is_worse(added.back())) continue;
+            added.pop_back();
+            result_.steps.pop_back();
+            near_ = near;
+            result_.verdict = verdict;
+        }
+        finish(added, diagnosis);
+        return std::move(result_);
+    }
+
+private:
+    /// Does the last step predict held-out probes worse than the one before, on the body or on the skeleton?
+    bool is_worse(const std::string& name) {
+        const LadderStep& now = result_.steps.back();
+        const LadderStep& before = result_.steps[result_.steps.size() - 2];
+        constexpr double chance = 1.1;
+        const auto worse = [&](const char* what, const StepError& then, const StepError& since) {
+            if (!(since.held_out_rms_mm > chance * then.held_out_rms_mm)) return false;
+            result_.notes.push_back(fmt::format(
+                "{} is not added: with it the {} is off by {:.3g} mm on probes held out, {:.3g} mm without it.", name,
+                what, since.held_out_rms_mm, then.held_out_rms_mm));
+            return true;
+        };
+        return (now.reference && before.reference && worse("body", *before.reference, *now.reference)) ||
+               worse("model", before.skeleton, now.skeleton);
+    }
+
+    /// The body explained with these effects and no others.
+    Diagnosis explain(const MeasurementSet& set, const std::vector<std::string>& effects,
+                      const Diagnosis* diagnosis) const {
+        DiagnoseOptions options = options_.diagnose;
+        options.screen = false;
+        for (const std::string& name : effects) options.known.push_back(start_of(name, diagnosis));
+        if (!set_readings_aside(effects)) options.without.push_back(effect_of_single_readings()->name());
+        if (diagnosis) {
+            options.law = diagnosis->law;
+            options.near = {&diagnosis->problem, effects.empty() ? &diagnosis->baseline : &diagnosis->best()};
+        }
+        return diagnose(body_, set, options);
+    }
+
+    static skeleton::EffectRecord start_of(const std::string& name, const Diagnosis* diagnosis) {
+        if (diagnosis) {
+            for (const Candidate& candidate : diagnosis->ranking) {
+                if (candidate.effect->name() == name && !candidate.estimate.effect.name.empty()) {
+                    return candidate.estimate.effect;
+                }
+            }
+        }
+        return {name, {}};
+    }
+
+    void add_step(const std::vector<std::string>& effects, const Diagnosis* diagnosis) {
+        LadderStep step;
+        const Diagnosis found = explain(fitted_, effects, diagnosis);
+        const Refit& fit = found.best();
+        step.effects = estimate(found);
+        step.log_evidence = fit.log_evidence;
+        if (!effects.empty() && diagnosis) {
+            const auto& ranking = diagnosis->ranking;
+            const auto own =
+                std::ranges::find_if(ranking, [&](const Candidate& c) { return c.effect->name() == effects.back(); });
+            if (own != ranking.end()) step.predicted_rms_mm = own->predicted_rms_mm;
+        }
+        StepError body{.rms_mm = fit.rms_mm, .whitened_rms = fit.whitened_rms};
+        body.relative = fit.rms_mm / rms_of(found.problem.displacement());
+        result_.verdict = found.verdict;
+
+        // The skeleton with the same physics, fitted to what is left of the measurements.
+        const MeasurementSet part = understood(fitted_, step.effects, found.outliers.readings);
+        const skeleton::Model model = with_effects(step.effects);
+        const Calibration calibration = fit_skeleton(model, part);
+        near_ = calibration.coarse;
+        step.model = step.validation_model = calibrated(model, calibration);
+        const Comparison on_fitted = compare(step.model, part, options_.identify.threads);
+        step.skeleton = {.rms_mm = on_fitted.rms, .relative = on_fitted.relative};
+        hold_out(effects, found, step, body);
+        if (!body_is_skeleton_) step.reference = body;
+        step.set = understood(set_, step.effects, {});
+        step.comparison = compare(step.model, step.set, options_.identify.threads);
+        result_.steps.push_back(std::move(step));
+    }
+
+    /// Errors on what is held out, pooled over the folds. `found`, `step`: as fitted to `fitted_`.
+    void hold_out(const std::vector<std::string>& effects, const Diagnosis& found, LadderStep& step,
+                  StepError& body) const {
+        double squares = 0, whitened = 0, skeleton_squares = 0, rows = 0;
+        for (const Fold& fold : folds_) {
+            const bool is_fitted = folds_.size() == 1;
+            const Diagnosis own = is_fitted ? found : explain_again(fold.fitted, found);
+            const auto [unseen, predicted] = predict_unseen(effects, fold.held_out, own);
+            const auto N = static_cast<double>(make_problem(unseen, own.noise).rows());
+            squares += N * predicted.rms_mm * predicted.rms_mm;
+            whitened += N * predicted.whitened_rms * predicted.whitened_rms;
+            rows += N;
+
+            const std::vector<skeleton::EffectRecord> said = estimate(own);
+            const MeasurementSet part = understood(fold.fitted, said, own.outliers.readings);
+            skeleton::Model model = step.model;
+            if (!is_fitted) {
+                model = with_effects(said);
+                model = calibrated(model, fit_skeleton(model, part, &near_));
+            }
+            const double rms = compare(model, understood(unseen, said, {}), options_.identify.threads).rms;
+            skeleton_squares += N * rms * rms;
+        }
+        if (folds_.empty()) return;
+        body.held_out_rms_mm = std::sqrt(squares / rows);
+        body.held_out_whitened_rms = std::sqrt(whitened / rows);
+        step.skeleton.held_out_rms_mm = std::sqrt(skeleton_squares / rows);
+    }
+
+    /// The same explanation fitted to another part of the set, under its law.
+    Diagnosis explain_again(const MeasurementSet& part, const Diagnosis& found) const {
+        DiagnoseOptions options = options_.diagnose;
+        options.screen = false;
+        options.law = found.law;
+        options.known = estimate(found);
+        options.near = {&found.problem, &found.best()};
+        if (found.outliers.readings.empty()) options.without.push_back(effect_of_single_readings()->name());
+        return diagnose(body_, part, options);
+    }
+
+    struct Unseen {
+        MeasurementSet set;  // without outliers, where these are among the effects
+        HeldOut predicted;
+    };
+    Unseen predict_unseen(const std::vector<std::string>& effects, const MeasurementSet& held_out,
+                          const Diagnosis& found) const {
+        const RefitOptions& how = options_.diagnose.refit;
+        const Refit& fit = found.best();
+        Unseen result{held_out, predict(body_, make_problem(held_out, found.noise), fit, how)};
+        if (!set_readings_aside(effects)) return result;
+        const Outliers off = find_outliers(make_problem(held_out, found.noise), result.predicted.residual);
+        result.set = without_readings(held_out, off.readings);
+        result.predicted = predict(body_, make_problem(result.set, found.noise), fit, how);
+        return result;
+    }
+
+    static double rms_of(const Eigen::VectorXd& v) {
+        return std::sqrt(v.squaredNorm() / static_cast<double>(v.size()));
+    }
+
+    skeleton::Model with_effects(const std::vector<skeleton::EffectRecord>& effects) const {
+        skeleton::Model model = model_;
+        model.effects = effects;
+        return model;
+    }
+
+    /// The most probable stiffnesses, without particles.
+    Calibration fit_skeleton(const skeleton::Model& model, const MeasurementSet& set,
+                             const UniformFit* near = nullptr) const {
+        return calibrate(model, collect_readings(model, set), options_.identify, {}, near);
+    }
+
+    /// The last step once more, on all states and with particles: the model that is delivered.
+    void finish(const std::vector<std::string>& effects, const Diagnosis* diagnosis) {
+        report(progress_, "the model on all states", 0.9);
+        const bool is_known = diagnosis && diagnosis->explanation == effects;
+        const Diagnosis whole = is_known ? *diagnosis : explain(set_, effects, diagnosis);
+        LadderStep& last = result_.steps.back();
+        last.effects = estimate(whole);
+        last.set = understood(set_, last.effects, whole.outliers.readings);
+        result_.identified = identify(with_effects(last.effects), last.set, options_.identify, progress_, &near_);
+        last.model = result_.identified.model;
+        last.comparison = compare(last.model, last.set, options_.identify.threads);
+    }
+
+    const skeleton::Model& model_;
+    const BodyModel& body_;
+    bool body_is_skeleton_;
+    const MeasurementSet& set_;
+    const LadderOptions& options_;
+    const Progress& progress_;
+    struct Fold {
+        MeasurementSet fitted, held_out;
+    };
+    std::vector<Fold> folds_;
+    MeasurementSet fitted_;  // what the rungs are fitted to
+    UniformFit near_;        // the skeleton's, on the last rung
+    Ladder result_;
+};
+
+}  // namespace
+
+Ladder build_ladder(const skeleton::Model& model, const BodyModel& body, const MeasurementSet& set,
+                    const std::vector<std::string>& effects, const LadderOptions& options, const Diagnosis* diagnosis,
+                    const Progress& progress) {
+    for (const std::string& name : effects) refuse_what_cannot_show(*find_effect(name), body, set);
+    return LadderBuilder(model, body, set, options, progress).run(effects, diagnosis);
+}
+
+}  // namespace palpate::identify

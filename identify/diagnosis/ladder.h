@@ -1,0 +1,55 @@
+#pragma once
+
+#include "identify/comparison/compare.h"
+#include "identify/diagnosis/diagnose.h"
+#include "identify/identify.h"
+
+namespace palpate::identify {
+
+/// Errors of one model, on what it was fitted to and on what it has not seen.
+struct StepError {
+    double rms_mm = 0, held_out_rms_mm = missing;
+    double relative = missing;                                       // rms over rms displacement, of all states
+    double whitened_rms = missing, held_out_whitened_rms = missing;  // reference body only
+};
+
+/// A rung: the effects that are in, and what is left then.
+struct LadderStep {
+    std::vector<skeleton::EffectRecord> effects;
+    StepError skeleton;
+    std::optional<StepError> reference;
+    double log_evidence = missing;      // of the reference body's fit, less the constant that the readings share
+    double predicted_rms_mm = missing;  // of the reference body, by the screen before it was fitted
+    skeleton::Model model;              // with the effects in it; the last one is fitted to all states
+    skeleton::Model validation_model;   // the same, fitted to what is not held out: rms_mm and held_out_rms_mm are its
+    Comparison comparison;              // of that model with all states as they are understood by then
+    MeasurementSet set;                 // measurements without the faults that are among the effects
+};
+
+struct Ladder {
+    std::vector<LadderStep> steps;        // nothing added first
+    IdentifyResult identified;            // of the last step, on all states
+    std::vector<int> held_out_probes;     // empty where there are too few to spare one
+    Verdict verdict = Verdict::adequate;  // on the last step
+    std::vector<std::string> notes;
+};
+
+struct LadderOptions {
+    IdentifyOptions identify;
+    DiagnoseOptions diagnose;
+    bool only_better = false;  // an effect that makes held-out probes worse is told in the notes, and not added
+};
+
+/// Adds effects to a model, fits anew, and tells the error before and after, on fitted and on held-out probes.
+///
+/// `effects`: in the order of the rungs. What they come to is found on `body`, the reference or the skeleton itself;
+/// body effects then go into the skeleton and its stiffnesses are fitted again, faults of the measurement into how the
+/// set is understood. A quarter of the loaded probes is held out, spread evenly; where there are eight or fewer, every
+/// third probe in turn. The model of the last step is fitted to all. `diagnosis`: of the whole set by that body, where
+/// there is one.
+/// @throws InvalidInput, also where an effect cannot show in the body and the set; SolverFailure.
+Ladder build_ladder(const skeleton::Model& model, const BodyModel& body, const MeasurementSet& set,
+                    const std::vector<std::string>& effects, const LadderOptions& options,
+                    const Diagnosis* diagnosis = nullptr, const Progress& progress = {});
+
+}  // namespace palpate::identify

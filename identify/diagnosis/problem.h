@@ -1,0 +1,65 @@
+#pragma once
+
+#include <vector>
+
+#include "identify/measurements/measurement_set.h"
+#include "identify/models/body_model.h"
+
+namespace palpate::identify {
+
+/// A state of the set in its original order, measured or not: the load history of a history-dependent body.
+struct Stage {
+    int probe = 0;    // as in the set
+    double time = 0;  // [s]
+    Action action;
+};
+
+/// A set's readings as one long vector of coordinates, and what acted behind them. N rows: the coordinates that were
+/// measured; K actions: those that differ. States without load share one action; others do within a probe, when
+/// nothing else acts on the body (creep, repeats). For a body with a memory `stage_by_stage` tells all states apart.
+struct Problem {
+    std::vector<Action> actions;      // (K)
+    std::vector<int> probe;           // of each action, as in the set; -1: one without load, which probes share
+    std::vector<Stage> stages;        // all states, in order
+    bool continuous = false;          // one body goes through all stages; else each probe finds it as new
+    bool by_stage = false;            // the actions are the stages
+    Points rest;                      // of the set's markers (m x 3) [mm]
+    std::vector<int> state;           // of each row, in the set (N)
+    std::vector<int> action;          // of each row (N)
+    std::vector<int> coordinate;      // 3 marker + axis, of each row (N)
+    std::vector<int> reading;         // rows of one reading share a number (N)
+    std::vector<int> set_reading;     // the same, as the whole set numbers its readings (N)
+    std::vector<char> is_guessed;     // rows whose sigma was not specified (N)
+    Eigen::VectorXd measured, sigma;  // [mm] (N)
+    double declared_poisson = missing;
+
+    Eigen::Index rows() const { return measured.size(); }
+    int readings() const { return reading.empty() ? 0 : reading.back() + 1; }
+    bool loaded(int k) const { return !actions[k].contacts.empty(); }
+    /// The stage before action k in the life of the body; -1: the body is new. @pre by_stage
+    int before(int k) const;
+    /// The same problem with an action for each stage: its rows are the same.
+    Problem stage_by_stage() const;
+    /// The action of another problem about the same body that is like action k: with the same loads, of the same probe
+    /// rather than of another, and of the same time where both tell; -1: there is none.
+    int action_in(const Problem& other, int k) const;
+
+    /// Coordinates (N) out of each action's marker positions (K of m x 3).
+    Eigen::VectorXd pick(const std::vector<Points>& positions) const;
+    /// The same of displacements from rest, as they were measured [mm].
+    Eigen::VectorXd displacement() const;
+    /// The problem with only those rows that `keep` (N flags) holds for.
+    Problem with_rows(const std::vector<char>& keep) const;
+    /// The problem without some of the actions (K flags), renumbered, and without their rows; as if nothing had acted.
+    Problem without_actions(const std::vector<char>& drop) const;
+    double rms_sigma() const;
+};
+
+/// Labelled readings of the set; `noise` [mm] stands for a sigma that the set does not tell.
+/// @throws InvalidInput when there are none.
+Problem make_problem(const MeasurementSet& set, double noise);
+
+/// The set without some of the readings, numbered as make_problem numbers them (ascending).
+MeasurementSet without_readings(const MeasurementSet& set, const std::vector<int>& readings);
+
+}  // namespace palpate::identify

@@ -1,0 +1,146 @@
+#include "identify/diagnosis/search/baselines.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "identify/effects/catalogue.h"
+#include "mesh/errors.h"
+
+namespace palpate::identify {
+
+Explanation Baselines::start(const Problem& problem, int law, const Eigen::VectorXd& theta) const {
+    Explanation result{.law = law, .theta = theta, .effects = {}, .values = {}};
+    for (const skeleton::EffectRecord& known : options_->known) {
+        const auto effect = find_effect(known.name);
+        const auto numbers = effect->numbers(*model_, problem);
+        if (numbers.empty()) continue;
+        result.effects.push_back(effect);
+        result.values.push_back(effect->values(numbers, known));
+    }
+    return result;
+}
+
+/// `neighbour`: the fit under another law of large deformation, from where it is not far.
+Refit Baselines::fit_under(const Problem& problem, int law, const Refit* neighbour) const {
+    RefitOptions how = options_->refit;
+    if (neighbour) {
+        how.steps = std::min(how.steps, 4);
+        Refit from = *neighbour;
+        from.V.reset();
+        return identify::refit(*model_, problem, start(problem, law, from.explanation.theta), how, &from);
+    }
+    if (options_->near && options_->near->fit->explanation.law == law) {
+        const std::optional<Refit> from = start_at(*options_->near, problem);
+        const Explanation first = start(problem, law, options_->near->fit->explanation.theta);
+        try {
+            return identify::refit(*model_, problem, first, how, from ? &*from : nullptr);
+        } catch (const SolverFailure&) {  // too soft without the effects that it has there
+        }
+    }
+    return identify::refit(*model_, problem, start(problem, law, first_guess(*model_, problem, law, how.threads).theta),
+                           how);
+}
+
+/// Could a law do about as well as a fit under another one? By its equilibria at the same numbers, and what a change of
+/// them would mend by the slopes of the fit.
+bool Baselines::could_match(const Problem& problem, int law, const Refit& fit) const {
+    Explanation explanation = fit.explanation;
+    explanation.law = law;
+    const double promised = promised_objective(*model_, problem, explanation, options_->refit, fit);
+    constexpr double about = 50;  // ln of evidence, in units of what is left
+    return promised < objective(fit) + about * std::max(1.0, fit.whitened_rms * fit.whitened_rms);
+}
+
+void Baselines::fit(const Problem& problem, std::vector<std::string>& notes, const Progress& progress) {
+    std::string failure;
+    std::optional<Refit> neighbour;  // of another law of large deformation
+    // The linear one first, then from the last, which is the best behaved of the others.
+    for (int i = 0; i < laws(); ++i) {
+        const int law = i == 0 ? 0 : laws() - i;
+        if (options_->law && *options_->law != law) continue;
+        // Where more than this is left, whitened, other things matter than which of the laws of large deformation it
+        // is.
+        constexpr double much = 3;
+        if (neighbour && neighbour->whitened_rms > much) continue;
+        const std::string& name = model_->laws()[law];
+        report(progress, "baseline, law " + name, 0.1 + 0.1 * i);
+        if (neighbour && !could_match(problem, law, *neighbour)) continue;
+        try {
+            fits_[law] = fit_under(problem, law, neighbour ? &*neighbour : nullptr);
+            if (law == 0) continue;
+            neighbour = fits_[law];
+        } catch (const SolverFailure& e) {
+            failure = e.what();
+            large_deformation_failed_ |= law > 0 && !options_->law;
+            notes.push_back(fmt::format("Under the law {} the body has no equilibrium: {}", name, failure));
+        }
+    }
+    large_deformation_failed_ &= !neighbour;
+    if (std::ranges::none_of(fits_, [](const auto& found) { return found.has_value(); })) {
+        throw SolverFailure("no law finds an equilibrium in every state: " + failure);
+    }
+}
+
+void Baselines::refit(const Problem& problem, bool best_only) {
+    const Refit* leading = &best();
+    for (std::optional<Refit>& found : fits_) {
+        if (!found || (best_only && &*found != leading)) continue;
+        try {
+            // from where it stands; the nuisances are made anew
+            found->V.reset();
+            found = identify::refit(*model_, problem, found->explanation, options_->refit, &*found);
+        } catch (const SolverFailure&) {
+            found.reset();
+        }
+    }
+}
+
+const Refit& Baselines::best() const {
+    int best = 0;
+    for (int law = 1; law < laws(); ++law) {
+        if (evidence(law) > evidence(best)) best = law;
+    }
+    return *fits_[best];
+}
+
+Explanation first_guess(const BodyModel& model, const Problem& problem, int law, int threads) {
+    Explanation guess;
+    guess.law = law;
+    guess.theta.resize(std::ssize(model.parameters()));
+    for (Eigen::Index p = 0; p < guess.theta.size(); ++p) guess.theta[p] = model.parameters()[p].start;
+
+    // Linear answers against measurements, both less the unloaded pose where there is one: what acts without load
+    // (weight, a moved frame) drops out.
+    Explanation linear = guess;
+    linear.law = 0;
+    const ForwardSolution forward = solve_forward(model, problem, linear, threads);
+    const Eigen::VectorXd measured = problem.displacement();
+    Eigen::VectorXd modelled = problem.pick(forward.markers);
+    std::vector<double> sum(problem.rest.size(), 0.0);
+    std::vector<int> count(problem.rest.size(), 0);
+    for (Eigen::Index n = 0; n < problem.rows(); ++n) {
+        modelled[n] -= problem.rest(problem.coordinate[n] / 3, problem.coordinate[n] % 3);
+        if (problem.loaded(problem.action[n])) continue;
+        sum[problem.coordinate[n]] += measured[n];
+        ++count[problem.coordinate[n]];
+    }
+    double pm = 0, pp = 0;
+    for (Eigen::Index n = 0; n < problem.rows(); ++n) {
+        const int c = problem.coordinate[n];
+        if (!problem.loaded(problem.action[n])) continue;
+        const double unloaded = count[c] > 0 ? sum[c] / count[c] : 0;
+        const double w = 1 / (problem.sigma[n] * problem.sigma[n]);
+        pm += w * modelled[n] * (measured[n] - unloaded);
+        pp += w * modelled[n] * modelled[n];
+    }
+    if (pp > 0 && pm > 0.02 * pp) {
+        for (Eigen::Index p = 0; p < guess.theta.size(); ++p) {
+            if (model.parameters()[p].stiffens) guess.theta[p] -= std::log(pm / pp);
+        }
+    }
+    return guess;
+}
+
+}  // namespace palpate::identify

@@ -1,0 +1,16 @@
+#pragma once
+
+#include "identify/diagnosis/problem.h"
+
+namespace palpate::identify {
+
+/// Does the body bear an action, from rest?
+bool has_equilibrium(const BodyModel& model, const ModelSetting& setting, const Action& action);
+
+/// The problem without the probes that press harder than Young's modulus on a patch and find no equilibrium under the
+/// model's last law: they say nothing. Each is told in `notes`.
+/// @throws SolverFailure when no loaded action remains.
+Problem without_crushing_probes(const BodyModel& model, const Problem& problem, int threads,
+                                std::vector<std::string>& notes);
+
+}  // namespace palpate::identify

@@ -1,0 +1,326 @@
+#include "identify/diagnosis/search/search.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "identify/diagnosis/verdict/verdict.h"
+#include "mesh/errors.h"
+
+namespace palpate::identify {
+
+Search::Search(const BodyModel& model, const Problem& problem, const Baselines& baselines,
+               const std::vector<std::shared_ptr<const EffectHypothesis>>& effects, const DiagnoseOptions& options,
+               const Progress& progress)
+    : model_(model),
+      problem_(problem),
+      stages_(problem.by_stage ? problem : problem.stage_by_stage()),
+      baselines_(baselines),
+      effects_(effects),
+      options_(options),
+      progress_(progress) {}
+
+void Search::single_effects() {
+    screen_all();
+    confirm_single_effects();
+}
+
+std::vector<Candidate> Search::ranking() const {
+    std::vector<Candidate> result = ranking_;
+    for (const FittedExplanation& single : tried_) {
+        if (single.effects.size() > 1) continue;
+        const auto own = std::ranges::find(result, single.effects.front(), &Candidate::effect);
+        own->is_unfitted = false;
+        own->objection.clear();
+        own->log_bayes_factor = single.log_bayes_factor;
+        own->refit = single.fit;
+        own->held_out = single.held_out;
+        own->estimate = single.estimate(own->effect->name());
+    }
+    std::ranges::stable_sort(result, std::greater{}, &Candidate::log_bayes_factor);
+    return result;
+}
+
+const FittedExplanation* Search::leader() const { return tried_.empty() ? nullptr : &tried_[index_of_leader()]; }
+
+std::size_t Search::index_of_leader() const {
+    return static_cast<std::size_t>(std::ranges::max_element(tried_, {}, &FittedExplanation::log_bayes_factor) -
+                                    tried_.begin());
+}
+
+const Problem& Search::problem_for(const Explanation& explanation) const {
+    return explanation.has_memory() ? stages_ : problem_;
+}
+
+std::vector<ScreenedEffect> Search::screen_at(const Refit& base, const std::vector<std::string>& without) const {
+    std::vector<std::shared_ptr<const EffectHypothesis>> others;
+    std::ranges::copy_if(effects_, std::back_inserter(others), [&](const auto& effect) {
+        return std::ranges::find(without, effect->name()) == without.end();
+    });
+    std::vector<ScreenedEffect> result =
+        screen_effects(model_, problem_for(base.explanation), base, others, options_.refit.threads);
+    std::ranges::stable_sort(result, std::greater{}, &ScreenedEffect::log_bayes_factor);
+    return result;
+}
+
+void Search::screen_all() {
+    screened_.assign(baselines_.laws(), {});
+    // small strain, and the best of the laws of large deformation: they are alike
+    int large = 1;
+    for (int law = 2; law < baselines_.laws(); ++law) {
+        if (baselines_.evidence(law) >= baselines_.evidence(large)) large = law;
+    }
+    for (const int law : {0, large}) {
+        if (law >= baselines_.laws() || !baselines_.under(law)) continue;
+        report(progress_, "screen, law " + model_.laws()[law], 0.4 + 0.05 * law);
+        screened_[law] = screen_at(*baselines_.under(law), {});
+    }
+}
+
+/// The law under which the best effect, by the screen, promises most.
+int Search::most_promising_law() const {
+    int best = 0;
+    double most = -INFINITY;
+    for (int law = 0; law < baselines_.laws(); ++law) {
+        if (screened_[law].empty()) continue;
+        const double more = std::max(0.0, screened_[law].front().log_bayes_factor);
+        if (baselines_.evidence(law) + more > most) {
+            most = baselines_.evidence(law) + more;
+            best = law;
+        }
+    }
+    return best;
+}
+
+/// A fit with one effect more; nothing where there is no equilibrium. Where it does not leave noise alone, another
+/// place that promised nearly as much is tried too.
+std::optional<FittedExplanation> Search::refit_with(const Refit& base, const ScreenedEffect& screened) const {
+    Explanation explanation = base.explanation;
+    explanation.effects.push_back(screened.effect);
+    explanation.values.push_back(screened.starts.front());
+    const bool spread = explanation.has_memory() && !base.explanation.has_memory() && !problem_.by_stage;
+    const Refit from = spread ? expand_to_stages(model_, base, problem_, stages_) : base;
+    // A linearisation may promise too much: then less of the effect, so that its fit begins no worse than without it.
+    for (std::size_t i = 0; i < screened.starts.size() && screened.starts.size() > 1; ++i) {
+        explanation.values.back() = screened.starts[i];
+        const double begins = objective_near(model_, problem_for(explanation), explanation, options_.refit, from);
+        if (begins < objective(base)) break;
+    }
+    std::optional<FittedExplanation> found = refit_from(explanation, from, {screened.effect});
+    const bool is_settled = found && found->fit.whitened_rms <= options_.most_left_together;
+    if (!screened.elsewhere || is_settled) return found;
+    explanation.values.back() = *screened.elsewhere;
+    std::optional<FittedExplanation> other = refit_from(explanation, from, {screened.effect});
+    return !found || (other && other->log_bayes_factor > found->log_bayes_factor) ? other : found;
+}
+
+std::optional<FittedExplanation> Search::refit_from(
+    const Explanation& explanation, const Refit& start,
+    const std::vector<std::shared_ptr<const EffectHypothesis>>& effects) const {
+    try {
+        const Problem& problem = problem_for(explanation);
+        RefitOptions how = options_.refit;
+        if (leader()) how.rival = leader()->fit.whitened_rms;
+        FittedExplanation result{.effects = effects, .fit = refit(model_, problem, explanation, how, &start)};
+        result.log_bayes_factor = result.fit.log_evidence - baselines_.best().log_evidence;
+        result.held_out = leave_probes_out(problem, result.fit);
+        return result;
+    } catch (const SolverFailure&) {
+        return std::nullopt;
+    }
+}
+
+void Search::confirm_single_effects() {
+    const int law = most_promising_law();
+    if (screened_[law].empty()) return;
+    const Refit& base = *baselines_.under(law);
+    const bool enough = leaves_only_noise(baselines_.best(), options_);
+    int refitted = 0;
+    double claimed = -INFINITY;  // evidence of an effect that leaves nothing else to explain
+    for (const ScreenedEffect& screened : screened_[law]) {
+        Candidate candidate{.effect = screened.effect,
+                            .screened = screened.log_bayes_factor,
+                            .log_bayes_factor = screened.log_bayes_factor,
+                            .identifiable = screened.identifiable,
+                            .predicted_rms_mm = screened.predicted_rms_mm};
+        double least = std::max(options_.least_screen, 0.1 * screened_[law].front().log_bayes_factor);
+        // A refit finds more than a linearisation promises, and not many times as much.
+        if (enough) least = std::max(least, 0.3 * least_next_to_noise(*screened.effect, problem_, options_));
+        candidate.objection = enough ? screened.effect->objection(problem_, screened.starts.front(), true) : "";
+        if (candidate.objection.empty() && refitted < options_.refits && screened.log_bayes_factor >= least &&
+            screened.at_most() > claimed) {
+            report(progress_, "refit with " + screened.effect->name(), 0.55 + 0.05 * refitted);
+            if (auto found = refit_with(base, screened)) {
+                if (claims(*found)) claimed = std::max(claimed, found->log_bayes_factor);
+                tried_.push_back(std::move(*found));
+            } else {
+                candidate.is_unfitted = true;
+                candidate.objection = "its fit found no equilibrium";
+                candidate.log_bayes_factor += baselines_.evidence(law) - baselines_.best().log_evidence;
+            }
+            ++refitted;
+        }
+        ranking_.push_back(std::move(candidate));
+    }
+    for (const ScreenedEffect& screened : screened_[law]) {
+        if (!screened.effect->evades_screen() || was_tried({screened.effect->name()})) continue;
+        if (!residual_is_small() && !is_confused_with_leader(*screened.effect)) continue;
+        report(progress_, "refit with " + screened.effect->name(), 0.75);
+        if (auto found = refit_with(base, screened)) tried_.push_back(std::move(*found));
+    }
+    confirm_at_load_response(law);
+    // The law goes with the effect: the two that lead are tried under the others too.
+    std::vector<std::size_t> order(tried_.size());
+    for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
+    std::ranges::stable_sort(order, std::greater{}, [&](std::size_t i) { return tried_[i].log_bayes_factor; });
+    for (std::size_t i = 0; i < std::min<std::size_t>(2, order.size()); ++i) try_other_laws(order[i]);
+    for (int other = 0; other < baselines_.laws(); ++other) {
+        if (other != law && !screened_[other].empty()) confirm_under(other);
+    }
+}
+
+/// Where nothing explains the readings under the law that promised most, something may under this one: what leads its
+/// screen, and what evades it.
+void Search::confirm_under(int law) {
+    constexpr int most_refits = 2;
+    const Refit& base = *baselines_.under(law);
+    const double behind = baselines_.best().log_evidence - baselines_.evidence(law);
+    int refitted = 0;
+    for (const ScreenedEffect& screened : screened_[law]) {
+        if (has_claim() || leaves_only_noise(baselines_.best(), options_)) return;
+        const auto tried = std::ranges::find_if(tried_, [&](const FittedExplanation& one) {
+            return one.effects.size() == 1 && one.has(screened.effect->name());
+        });
+        if (tried != tried_.end() && tried->fit.explanation.law == law) continue;
+        const double leads = leader() ? leader()->log_bayes_factor : 0;
+        const bool may_lead = refitted < most_refits && screened.log_bayes_factor >= options_.least_screen &&
+                              screened.at_most() - behind > leads;
+        if (!may_lead && !screened.effect->evades_screen()) continue;
+        report(progress_, fmt::format("refit with {}, law {}", screened.effect->name(), model_.laws()[law]), 0.77);
+        ++refitted;
+        std::optional<FittedExplanation> found = refit_with(base, screened);
+        if (found) keep_better(std::move(*found));
+    }
+}
+
+/// In the place of an explanation by the same effect, if it explains more.
+void Search::keep_better(FittedExplanation found) {
+    const auto before = std::ranges::find_if(tried_, [&](const FittedExplanation& tried) {
+        return tried.effects.size() == 1 && tried.effects == found.effects;
+    });
+    if (before == tried_.end()) {
+        tried_.push_back(std::move(found));
+    } else if (found.log_bayes_factor > before->log_bayes_factor) {
+        *before = std::move(found);
+    }
+}
+
+/// What is missing may bend the baseline's stiffness far away from how the body answers to loads, and the fits with it:
+/// a soft body that hangs under its weight looks as stiff as steel. So fits start there as well, and the better one is
+/// kept.
+void Search::confirm_at_load_response(int law) {
+    constexpr double much = 3;              // whitened rms
+    const double far = std::log(3.0);       // of Young's modulus, or what stands for it
+    constexpr std::size_t most_refits = 3;  // of effects, by the screen from there
+    const Refit& base = *baselines_.under(law);
+    if (base.whitened_rms < much) return;
+    RefitOptions without_steps = options_.refit;
+    without_steps.steps = 0;
+    std::optional<Refit> there;
+    try {
+        Explanation guess = base.explanation;
+        guess.theta = first_guess(model_, problem_, law, options_.refit.threads).theta;
+        if (std::abs(guess.theta[0] - base.explanation.theta[0]) < far) return;
+        there = refit(model_, problem_, guess, without_steps);
+    } catch (const SolverFailure&) {
+        return;
+    }
+    const std::vector<ScreenedEffect> screened = screen_at(*there, {});
+    for (std::size_t i = 0; i < std::min(most_refits, screened.size()); ++i) {
+        report(progress_, "refit with " + screened[i].effect->name(), 0.7);
+        if (std::optional<FittedExplanation> found = refit_with(*there, screened[i])) keep_better(std::move(*found));
+    }
+}
+
+/// The fit once more under another law, from its own numbers.
+std::optional<FittedExplanation> Search::carry_over(const FittedExplanation& single, int law) const {
+    Explanation explanation = single.fit.explanation;
+    explanation.law = law;
+    return refit_from(explanation, single.fit, single.effects);
+}
+
+void Search::try_other_laws(std::size_t tried) {
+    FittedExplanation& single = tried_[tried];
+    const int own = single.fit.explanation.law;
+    for (int law = 0; law < baselines_.laws(); ++law) {
+        if (law == own || !baselines_.under(law)) continue;
+        const auto tell = [&] {
+            report(progress_, fmt::format("refit with {}, law {}", single.effects.front()->name(), model_.laws()[law]),
+                   0.75);
+        };
+        std::optional<FittedExplanation> other;
+        if (law > 0 && own > 0) {
+            // next to another law of large deformation; a matter of what little is left, where it does as well without
+            constexpr double as_well = 20;  // ln of evidence
+            if (!leaves_only_noise(single.fit, options_)) continue;
+            if (baselines_.evidence(law) + as_well < baselines_.evidence(own)) continue;
+            tell();
+            other = carry_over(single, law);
+        } else {
+            const auto screened = std::ranges::find(screened_[law], single.effects.front(), &ScreenedEffect::effect);
+            if (screened == screened_[law].end()) continue;
+            const double lead = baselines_.best().log_evidence - baselines_.evidence(law);
+            if (screened->at_most() < single.log_bayes_factor + lead) continue;
+            tell();
+            other = carry_over(single, law);
+            if (!other) other = refit_with(*baselines_.under(law), *screened);
+        }
+        if (other && other->log_bayes_factor > single.log_bayes_factor) single = std::move(*other);
+    }
+}
+
+/// Does it explain the readings, with nothing to be said against it?
+bool Search::claims(const FittedExplanation& explained) const {
+    if (!leaves_only_noise(explained.fit, options_) || !is_claimable(explained, options_)) return false;
+    const bool is_noise = explained.effects.size() == 1 && leaves_only_noise(baselines_.best(), options_);
+    const double least = least_next_to_noise(*explained.effects.front(), problem_, options_);
+    if (is_noise && explained.log_bayes_factor < least) return false;
+    const Explanation& all = explained.fit.explanation;
+    for (std::size_t e = 0; e < all.effects.size(); ++e) {
+        if (!explained.has(all.effects[e]->name())) continue;
+        if (!all.effects[e]->objection(problem_, all.values[e], false).empty()) return false;
+    }
+    return true;
+}
+
+bool Search::has_claim() const {
+    return std::ranges::any_of(tried_, [&](const FittedExplanation& one) { return claims(one); });
+}
+
+/// Something unexplained is left next to what leads, and not much of it.
+bool Search::residual_is_small() const {
+    constexpr double little = 2;  // rms, whitened: where more is left, something else is missing
+    const Refit& leads = tried_.empty() ? baselines_.best() : leader()->fit;
+    const bool nothing_is = tried_.empty() && leaves_only_noise(leads, options_);
+    return !nothing_is && !has_claim() && leads.whitened_rms < little;
+}
+
+/// Does an effect claim that is taken for another one at times?
+bool Search::is_confused_with_leader(const EffectHypothesis& other) const {
+    if (!has_claim()) return false;
+    const auto& aliases = leader()->effects.front()->description().confused_with;
+    return std::ranges::find(aliases, other.name()) != aliases.end();
+}
+
+bool Search::was_tried(const std::vector<std::string>& names) const {
+    const auto same = [&](const std::vector<std::string>& rejected) {
+        return std::ranges::is_permutation(rejected, names);
+    };
+    return std::ranges::any_of(rejected_, same) || std::ranges::any_of(tried_, [&](const FittedExplanation& one) {
+               return one.effects.size() == names.size() &&
+                      std::ranges::all_of(names, [&](const std::string& name) { return one.has(name); });
+           });
+}
+
+}  // namespace palpate::identify

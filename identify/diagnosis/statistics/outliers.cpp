@@ -1,0 +1,138 @@
+#include "identify/diagnosis/statistics/outliers.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+
+namespace palpate::identify {
+namespace {
+
+constexpr int neighbours = 6, least_readings = 8;
+constexpr double rough = 5;  // in scales: one of 60,000 by chance
+constexpr double most_share = 0.1;
+
+struct ReadingError {
+    int marker = 0, state = 0;
+    Vec3 error = Vec3::Zero();
+    int coordinates = 0;
+};
+
+std::vector<ReadingError> by_reading(const Problem& problem, const Eigen::VectorXd& residual) {
+    std::vector<ReadingError> result(problem.readings());
+    for (Eigen::Index n = 0; n < problem.rows(); ++n) {
+        ReadingError& reading = result[problem.reading[n]];
+        reading.marker = problem.coordinate[n] / 3;
+        reading.state = problem.state[n];
+        reading.error[problem.coordinate[n] % 3] = residual[n];
+        ++reading.coordinates;
+    }
+    return result;
+}
+
+double median(std::vector<double> values) {
+    const auto middle = values.begin() + std::ssize(values) / 2;
+    std::ranges::nth_element(values, middle);
+    return *middle;
+}
+
+/// Median of the neighbours' errors, coordinate by coordinate.
+Vec3 median_of_neighbours(const Problem& problem, const std::vector<ReadingError>& all, const std::vector<int>& state,
+                          int reading) {
+    std::vector<std::pair<double, int>> near;
+    near.reserve(state.size());
+    for (const int other : state) {
+        if (other == reading) continue;
+        near.emplace_back((problem.rest.row(all[other].marker) - problem.rest.row(all[reading].marker)).squaredNorm(),
+                          other);
+    }
+    std::ranges::partial_sort(near, near.begin() + neighbours);
+    Vec3 result;
+    for (int axis = 0; axis < 3; ++axis) {
+        std::array<double, neighbours> values{};
+        for (int i = 0; i < neighbours; ++i) values[i] = all[near[i].second].error[axis];
+        std::ranges::sort(values);
+        result[axis] = 0.5 * (values[neighbours / 2 - 1] + values[neighbours / 2]);
+    }
+    return result;
+}
+
+/// Median length of a vector of c independent normal numbers of sd 1: the chi distribution's.
+constexpr double chi_median[] = {0, 0.6745, 1.1774, 1.5382};
+
+/// Scale of the roughness that noise of 1 has: the median of six is itself noisy, with a variance of about pi / 12.
+double noise_roughness() { return std::sqrt(1 + M_PI / (2 * neighbours)); }
+
+}  // namespace
+
+Roughness roughness(const Problem& problem, const Eigen::VectorXd& residual) {
+    const std::vector<ReadingError> all = by_reading(problem, residual);
+    std::map<int, std::vector<int>> states;
+    for (std::size_t i = 0; i < all.size(); ++i) states[all[i].state].push_back(static_cast<int>(i));
+
+    Roughness result;
+    std::vector<double> scaled;
+    for (std::size_t i = 0; i < all.size(); ++i) {
+        const std::vector<int>& state = states[all[i].state];
+        Vec3 error = all[i].error;
+        if (std::ssize(state) >= least_readings && all[i].coordinates == 3) {
+            error -= median_of_neighbours(problem, all, state, static_cast<int>(i));
+        }
+        result.size.push_back(error.norm());
+        scaled.push_back(error.norm() / chi_median[all[i].coordinates]);
+    }
+    result.scale = median(scaled);
+    return result;
+}
+
+double noise_by_roughness(const Problem& problem, const Eigen::VectorXd& error_mm) {
+    return roughness(problem, error_mm).scale / noise_roughness();
+}
+
+Outliers find_outliers(const Problem& problem, const Eigen::VectorXd& residual) {
+    const Roughness rough_ones = roughness(problem, residual);
+    const double scale = std::max(rough_ones.scale, noise_roughness());
+    Outliers result;
+    std::vector<double> squares;
+    for (std::size_t i = 0; i < rough_ones.size.size(); ++i) {
+        squares.push_back(std::pow(rough_ones.size[i] / scale, 2));
+        if (squares.back() > rough * rough) result.readings.push_back(static_cast<int>(i));
+    }
+    if (result.readings.empty() ||
+        static_cast<double>(result.readings.size()) > most_share * static_cast<double>(squares.size()))
+        return {};
+
+    // ln of (1 - eps) N(0, 1) + eps N(0, w^2) over N(0, 1), for vectors of three, summed over the readings
+    std::vector<double> logs;
+    double best = -INFINITY;
+    for (const double share : {0.003, 0.01, 0.03, 0.06, 0.1}) {
+        for (const double width : {4., 8., 15., 30., 60.}) {
+            double sum = 0;
+            for (const double q : squares) {
+                const double wide = std::log(share) - 3 * std::log(width) + 0.5 * q * (1 - 1 / (width * width));
+                const double narrow = std::log1p(-share);
+                sum += std::max(wide, narrow) + std::log1p(std::exp(-std::abs(wide - narrow)));
+            }
+            logs.push_back(sum);
+            if (sum > best) {
+                best = sum;
+                result.share = share;
+                result.width = width;
+            }
+        }
+    }
+    double mean = 0;
+    for (const double l : logs) mean += std::exp(l - best) / static_cast<double>(logs.size());
+    result.log_bayes_factor = best + std::log(mean);
+    return result;
+}
+
+std::vector<char> rows_without(const Problem& problem, const std::vector<int>& readings) {
+    std::vector<char> keep(problem.rows(), 1);
+    for (Eigen::Index n = 0; n < problem.rows(); ++n) {
+        keep[n] = !std::ranges::binary_search(readings, problem.reading[n]);
+    }
+    return keep;
+}
+
+}  // namespace palpate::identify

@@ -1,0 +1,258 @@
+#include "identify/diagnosis/verdict/verdict.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "identify/diagnosis/verdict/next_probe.h"
+#include "identify/effects/catalogue.h"
+
+namespace palpate::identify {
+namespace {
+
+/// Outliers as a candidate: they have no numbers of the fit.
+Candidate outlier_candidate(const Diagnosis& diagnosis) {
+    Candidate candidate{.effect = effect_of_single_readings(),
+                        .screened = diagnosis.outliers.log_bayes_factor,
+                        .log_bayes_factor = diagnosis.outliers.log_bayes_factor};
+    if (diagnosis.outliers.readings.empty()) return candidate;
+    const auto count = static_cast<double>(diagnosis.outliers.readings.size());
+    const double all = count + diagnosis.problem.readings();
+    candidate.estimate.effect = {
+        candidate.effect->name(),
+        {{"share", count / all, "1"}, {"readings", count, "1"}, {"width", diagnosis.outliers.width, "1"}}};
+    candidate.estimate.sd = {std::sqrt(count) / all, 0, 0};
+    candidate.predicted_rms_mm = diagnosis.baseline.rms_mm;
+    candidate.held_out = diagnosis.baseline_held_out;
+    return candidate;
+}
+
+/// Is there an explanation among those tried that does without one of the effects, and is enough?
+bool enough_without(const Diagnosis& diagnosis, const FittedExplanation& all, const std::string& name,
+                    const DiagnoseOptions& options) {
+    if (all.effects.size() == 1) return leaves_only_noise(diagnosis.baseline, options);
+    return std::ranges::any_of(diagnosis.tried, [&](const FittedExplanation& other) {
+        const bool is_rest = other.effects.size() + 1 == all.effects.size() && !other.has(name) &&
+                             std::ranges::all_of(other.effects, [&](const auto& e) { return all.has(e->name()); });
+        return is_rest && leaves_only_noise(other.fit, options);
+    });
+}
+
+/// Two mutually confused effects among three or more: together they may mimic an effect outside the catalogue. Empty:
+/// there are none.
+std::string put_together_of_aliases(const FittedExplanation& explained) {
+    if (explained.effects.size() < 3) return {};
+    for (const auto& one : explained.effects) {
+        for (const auto& other : explained.effects) {
+            const auto& aliases = one->description().confused_with;
+            if (std::ranges::find(aliases, other->name()) == aliases.end()) continue;
+            return fmt::format("{} and {} are nearly collinear and together mimic another effect", one->name(),
+                               other->name());
+        }
+    }
+    return {};
+}
+
+/// Does an explanation leave too much of what is beyond the noise without it? Thousands of readings make evidence of
+/// little: what is like an error of the mesh took up a third to a half of what a coarse one was off by.
+bool leaves_too_much(const Refit& without, const FittedExplanation& explained) {
+    const double before = without.whitened_rms * without.whitened_rms;
+    const double after = explained.fit.whitened_rms * explained.fit.whitened_rms;
+    const double most = std::ranges::all_of(explained.effects, &EffectHypothesis::is_like_mesh_error) ? 0.5 : 1;
+    const double chance = std::sqrt(2 / static_cast<double>(explained.fit.residual.size()));
+    return after - 1 > most * (before - after) + chance;
+}
+
+/// Why an effect of an explanation, as it came out, is none of that kind; empty: nothing speaks against it.
+std::string objection_of_effects(const Diagnosis& diagnosis, const FittedExplanation& explained,
+                                 const DiagnoseOptions& options) {
+    const auto& all = explained.fit.explanation;
+    for (std::size_t e = 0; e < all.effects.size(); ++e) {
+        if (!explained.has(all.effects[e]->name())) continue;  // known: no claim
+        const bool enough = enough_without(diagnosis, explained, all.effects[e]->name(), options);
+        std::string objection = all.effects[e]->objection(diagnosis.problem, all.values[e], enough);
+        if (!objection.empty()) return objection;
+    }
+    return {};
+}
+
+/// As many numbers as readings that are independent of each other explain whatever was measured.
+std::string objection_of_few_readings(const Diagnosis& diagnosis, const FittedExplanation& explained) {
+    constexpr double fixed = 0.1;  // a prior of less, as that of a ratio that is told, leaves nothing to be fitted
+    Eigen::Index numbers = 0;
+    for (Eigen::Index p = 0; p < explained.fit.explanation.theta.size(); ++p)
+        numbers += explained.fit.prior_sd[p] > fixed;
+    for (std::size_t e = 0; e < explained.fit.explanation.effects.size(); ++e)
+        if (explained.has(explained.fit.explanation.effects[e]->name()))
+            numbers += std::ssize(explained.fit.numbers[e]);
+    if (numbers < diagnosis.independent) return {};
+    return fmt::format(
+        "including the stiffness it has {} parameters for {} independent readings, enough to fit any data. Read more "
+        "markers, or load other places",
+        numbers, diagnosis.independent);
+}
+
+/// A correct explanation predicts left-out probes better than the baseline, whatever the nuisances absorb.
+std::string objection_of_held_out(const Diagnosis& diagnosis, const FittedExplanation& explained) {
+    // Numbers that only the probe left out tells, as its gain, are unknown there: it errs as much as without the
+    // effect, and by chance a little more.
+    constexpr double chance = 1.1;
+    const double with = explained.held_out.rms_mm, without = diagnosis.baseline_held_out.rms_mm;
+    if (with <= chance * without) return {};
+    return fmt::format("probes left out are predicted worse with it, to {:.3g} mm instead of {:.3g} mm", with, without);
+}
+
+std::string objection_to(const Diagnosis& diagnosis, const FittedExplanation& explained,
+                         const DiagnoseOptions& options) {
+    if (leaves_too_much(diagnosis.baseline, explained))
+        return "too much of the misfit that it should explain remains beyond the noise, as with discretisation error";
+    if (std::string few = objection_of_few_readings(diagnosis, explained); !few.empty()) return few;
+    if (std::string worse = objection_of_held_out(diagnosis, explained); !worse.empty()) return worse;
+    const double unseen = explained.held_out.whitened_rms, gap = unseen / explained.fit.whitened_rms;
+    constexpr double chance = 10;  // over the number of rows: an allowance for small sets
+    if (unseen > 1 && gap > options.most_gap + chance / static_cast<double>(diagnosis.problem.rows())) {
+        return fmt::format(
+            "it overfits single probes: the error of left-out probes is {:.2f} times that of fitted ones", gap);
+    }
+    if (explained.effects.size() == 1 && is_claimable(explained, options) &&
+        leaves_only_noise(diagnosis.baseline, options)) {
+        const double least = least_next_to_noise(*explained.effects.front(), diagnosis.problem, options);
+        if (explained.log_bayes_factor < least) {
+            return fmt::format(
+                "the residual without it is noise already, and its ln Bayes factor of {:.0f} is below the {:.0f} that "
+                "errors of mesh and rig can produce",
+                explained.log_bayes_factor, least);
+        }
+    }
+    return put_together_of_aliases(explained);
+}
+
+/// Likely explanations that explain enough and do not fall behind the likeliest, by evidence. Those with an effect that
+/// is refused for what it came out as (`refused`) are no rivals.
+/// Nothing is claimed that ranks below an effect that could not be fitted (`unfitted`, its evidence by the screen).
+std::vector<const FittedExplanation*> explain_alike(const std::vector<const FittedExplanation*>& by_evidence,
+                                                    const std::set<const FittedExplanation*>& refused, double unfitted,
+                                                    const DiagnoseOptions& options) {
+    std::vector<const FittedExplanation*> alike;
+    double most = unfitted;
+    for (const FittedExplanation* one : by_evidence) {
+        if (!is_claimable(*one, options) || refused.contains(one)) continue;
+        most = std::max(most, one->log_bayes_factor);
+        const bool predicts = one->held_out.whitened_rms <= options.most_left_held_out;
+        const bool leads = most - one->log_bayes_factor < options.least_lead;
+        const bool closely = one->effects.size() == 1 || one->fit.whitened_rms <= options.most_left_together;
+        if (leaves_only_noise(one->fit, options) && closely && predicts && leads && one->objection.empty())
+            alike.push_back(one);
+    }
+    return alike;
+}
+
+/// Each against the others and against nothing, all equally likely before.
+void assign_probabilities(std::vector<Candidate>& ranking) {
+    double top = 0;
+    for (const Candidate& c : ranking) top = std::max(top, c.log_bayes_factor);
+    double sum = std::exp(-top);
+    for (const Candidate& c : ranking) sum += std::exp(c.log_bayes_factor - top);
+    for (Candidate& c : ranking) c.probability = std::exp(c.log_bayes_factor - top) / sum;
+}
+
+/// The explanation's effects, those first that say most by themselves; their numbers are those that they have together.
+void name_effects(Diagnosis& diagnosis) {
+    for (Candidate& c : diagnosis.ranking) {
+        if (!diagnosis.explained->has(c.effect->name())) continue;
+        diagnosis.explanation.push_back(c.effect->name());
+        c.estimate = diagnosis.explained->estimate(c.effect->name());
+    }
+}
+
+}  // namespace
+
+bool is_claimable(const FittedExplanation& explained, const DiagnoseOptions& options) {
+    return explained.log_bayes_factor >= options.least_evidence;
+}
+
+bool leaves_only_noise(const Refit& fit, const DiagnoseOptions& options) {
+    // Plastic flow accumulates discretisation error, mostly along the border of a support.
+    const double most_pull = (fit.explanation.setting().effects.plasticity ? 2 : 1) * options.most_pull;
+    return fit.whitened_rms <= options.most_left && fit.nuisance_pull <= most_pull;
+}
+
+double least_next_to_noise(const EffectHypothesis& effect, const Problem& problem, const DiagnoseOptions& options) {
+    const double least = 2 * options.least_evidence;
+    if (!effect.is_like_mesh_error()) return least;
+    const double in_sigmas = options.mesh_error * problem.displacement().cwiseQuotient(problem.sigma).norm();
+    return std::max(least, 0.5 * in_sigmas * in_sigmas);
+}
+
+double least_next_to_effect(const EffectHypothesis& effect, const FittedExplanation& there, const Problem& problem,
+                            const DiagnoseOptions& options) {
+    double share = 0;
+    for (const auto& one : there.effects) share = std::max(share, one->idealisation_share());
+    return std::max(
+        {options.idealisation_evidence, share * there.log_bayes_factor, least_next_to_noise(effect, problem, options)});
+}
+
+void decide_verdict(const BodyModel& model, const DiagnoseOptions& options, Diagnosis& diagnosis) {
+    const bool outliers = !diagnosis.outliers.readings.empty();
+    const bool enough = leaves_only_noise(diagnosis.baseline, options);
+    std::vector<const FittedExplanation*> by_evidence;
+    std::set<const FittedExplanation*> refused;
+    for (FittedExplanation& one : diagnosis.tried) {
+        one.objection = objection_to(diagnosis, one, options);
+        if (one.objection.empty()) {
+            one.objection = objection_of_effects(diagnosis, one, options);
+            if (!one.objection.empty()) refused.insert(&one);
+        }
+        by_evidence.push_back(&one);
+        if (one.effects.size() > 1) continue;
+        const auto own = std::ranges::find(diagnosis.ranking, one.effects.front(), &Candidate::effect);
+        if (own != diagnosis.ranking.end()) own->objection = one.objection;
+    }
+    std::ranges::stable_sort(by_evidence, std::greater{}, &FittedExplanation::log_bayes_factor);
+    // Is there evidence for more than what is claimed? Little of what an error of the mesh brings about is none.
+    const auto first =
+        std::ranges::find_if(by_evidence, [&](const FittedExplanation* one) { return !refused.contains(one); });
+    const double most = first == by_evidence.end() ? 0 : (*first)->log_bayes_factor;
+    const bool something = std::ranges::any_of(by_evidence, [&](const FittedExplanation* one) {
+        return is_claimable(*one, options) && one->objection.empty() && one->log_bayes_factor > 0.5 * most;
+    });
+    double unfitted = -INFINITY;
+    for (const Candidate& c : diagnosis.ranking)
+        if (c.is_unfitted) unfitted = std::max(unfitted, c.log_bayes_factor);
+    std::vector<const FittedExplanation*> alike = explain_alike(by_evidence, refused, unfitted, options);
+    if (diagnosis.large_deformation_failed && !alike.empty()) {
+        diagnosis.notes.emplace_back(
+            "No effect is claimed: no large-deformation law could be fitted, and the error of small strain resembles "
+            "an effect.");
+        alike.clear();
+    }
+    if (alike.size() > 1) {
+        diagnosis.verdict = Verdict::ambiguous;
+        diagnosis.next_probe = separate(model, diagnosis.problem, alike, options.refit);
+    } else if (alike.size() == 1) {
+        diagnosis.verdict = Verdict::missing_effect;
+    } else if (enough && !something) {
+        diagnosis.verdict = outliers ? Verdict::missing_effect : Verdict::adequate;
+    } else {
+        diagnosis.verdict = Verdict::unexplained;
+    }
+    if (!alike.empty()) diagnosis.explained = *alike.front();
+    diagnosis.law = diagnosis.best().explanation.law;
+
+    // By evidence; with an explanation its first effect leads.
+    std::vector<Candidate>& ranking = diagnosis.ranking;
+    const auto single_readings = effect_of_single_readings();
+    if (!options.leaves_out(*single_readings)) ranking.push_back(outlier_candidate(diagnosis));
+    assign_probabilities(ranking);
+    std::ranges::stable_sort(ranking, std::greater{}, &Candidate::log_bayes_factor);
+    if (diagnosis.explained) name_effects(diagnosis);
+    if (outliers && diagnosis.verdict != Verdict::unexplained) diagnosis.explanation.push_back(single_readings->name());
+    if (diagnosis.explanation.empty()) return;
+    const auto named = std::ranges::find_if(
+        ranking, [&](const Candidate& c) { return c.effect->name() == diagnosis.explanation.front(); });
+    std::rotate(ranking.begin(), named, named + 1);
+}
+
+}  // namespace palpate::identify

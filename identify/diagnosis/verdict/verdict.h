@@ -1,0 +1,27 @@
+#pragma once
+
+#include "identify/diagnosis/diagnose.h"
+
+namespace palpate::identify {
+
+/// Does the evidence of an explanation allow a claim?
+bool is_claimable(const FittedExplanation& explained, const DiagnoseOptions& options);
+
+/// Are the residuals of a fit noise, with no nuisance pulled beyond its prior?
+bool leaves_only_noise(const Refit& fit, const DiagnoseOptions& options);
+
+/// Least ln Bayes factor of an effect where the fit without it already leaves only noise: twice the usual one, and for
+/// an effect that resembles discretisation error more than such an error (a share of the displacement) can produce.
+double least_next_to_noise(const EffectHypothesis& effect, const Problem& problem, const DiagnoseOptions& options);
+
+/// The same beside effects that already leave only noise: also more than their own idealisation can produce.
+double least_next_to_effect(const EffectHypothesis& effect, const FittedExplanation& there, const Problem& problem,
+                            const DiagnoseOptions& options);
+
+/// Decides the verdict from the fitted explanations: one is claimed if its evidence is large enough and leads, if its
+/// residuals are noise on fitted probes, hardly more on held-out ones and small against what it explains, and if no
+/// nuisance is pulled beyond its prior. `diagnosis`: all but verdict, explanation, law, probabilities and next probe,
+/// which are filled in; the ranking is put into order.
+void decide_verdict(const BodyModel& model, const DiagnoseOptions& options, Diagnosis& diagnosis);
+
+}  // namespace palpate::identify

@@ -1,0 +1,70 @@
+#include "fem/effects/prestress.h"
+
+#include <fmt/format.h>
+
+#include "identify/effects/catalogue.h"
+
+namespace palpate::identify {
+namespace {
+
+/// A uniform stress in the body that was measured as its rest shape: it has not shrunk or swollen freely.
+class PrestressEffect : public EffectHypothesis {
+public:
+    const EffectDescription& description() const override {
+        static const EffectDescription text{
+            .name = "prestress",
+            .kind = EffectKind::body,
+            .meaning = "The rest shape is not free of stress: the material wants to shrink or swell, all of it alike.",
+            .parameters = {"sxx, syy, szz, sxy, syz, sxz [-]: stress at rest over the shear modulus"},
+            .reveals = "an error without any load that is largest where the body is free to change its size",
+            .confused_with = {"gravity", "misalignment", "pressure"},
+            .separating_probe = "read the unloaded pose with the body turned: prestress turns with it, weight does not",
+            .next_probe = "orientation"};
+        return text;
+    }
+
+    std::vector<EffectNumber> numbers(const BodyModel&, const Problem&) const override {
+        std::vector<EffectNumber> result;
+        for (const char* name : {"sxx", "syy", "szz", "sxy", "syz", "sxz"}) {
+            result.push_back({.name = name, .unit = "1", .prior_sd = 0.06});  // strains of .03
+        }
+        return result;
+    }
+
+    bool enforce(const Eigen::VectorXd& values, ModelSetting& setting) const override {
+        Mat3 S;
+        S << values[0], values[3], values[5], values[3], values[1], values[4], values[5], values[4], values[2];
+        setting.effects.material.push_back(std::make_shared<fem::Prestress>(S));
+        return true;
+    }
+
+    std::string sentence(const skeleton::EffectRecord& record) const override {
+        const auto& p = record.parameters;
+        return fmt::format(
+            "The body is under stress at rest: ({:.2g}, {:.2g}, {:.2g}) along the axes, over its shear modulus.",
+            p[0].value, p[1].value, p[2].value);
+    }
+
+    std::optional<std::uint64_t> stream() const override { return 3; }
+
+    std::vector<EffectSampler> samplers(SamplingContext& context, const SpecifiedNumbers& specified) const override {
+        const Vec3 normal = context.random.normals(3).normalized(), shear = context.random.normals(3).normalized();
+        const std::vector<std::string> names{"sxx", "syy", "szz", "sxy", "syz", "sxz"};
+        const bool is_specified = specified.has_any(names);
+        const auto at = [=](double x) {
+            const double s = is_specified ? 0 : x;
+            std::vector<std::pair<std::string, double>> values;
+            values.reserve(names.size());
+            for (int i = 0; i < 3; ++i) values.emplace_back(names[i], s * normal[i]);
+            for (int i = 0; i < 3; ++i) values.emplace_back(names[i + 3], 0.5 * s * shear[i]);
+            return specified.effect(values);
+        };
+        return {{.at = at, .start = 0.05, .most = 1, .is_specified = is_specified, .acts_at_rest = true}};
+    }
+};
+
+}  // namespace
+
+std::shared_ptr<const EffectHypothesis> prestress_effect() { return std::make_shared<PrestressEffect>(); }
+
+}  // namespace palpate::identify

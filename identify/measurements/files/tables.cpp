@@ -1,0 +1,211 @@
+#include "identify/measurements/files/tables.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <set>
+
+#include "mesh/errors.h"
+#include "mesh/text/words.h"
+
+namespace palpate::identify {
+
+namespace fs = std::filesystem;
+using mesh::CsvTable;
+
+namespace {
+
+StateKey state_key(const CsvTable& table, int row) { return {table.integer(row, "probe"), table.number(row, "time")}; }
+
+Vec3 vector(const CsvTable& table, int row, const std::array<std::string, 3>& columns) {
+    return {table.number(row, columns[0]), table.number(row, columns[1]), table.number(row, columns[2])};
+}
+
+Vec3 vector_if_given(const CsvTable& table, int row, const std::array<std::string, 3>& columns) {
+    return {table.at(row, columns[0]), table.at(row, columns[1]), table.at(row, columns[2])};
+}
+
+}  // namespace
+
+void TableReader::check_time(const StateKey& key, const std::string& where) {
+    const auto [probe, time] = key;
+    if (time < 0)
+        throw InvalidInput(fmt::format(
+            "{}, column time: {} is negative. Count time from the beginning of the probe, which is 0.", where, time));
+    const auto [last, is_first] = last_time_.try_emplace(probe, time);
+    if (time < last->second)
+        throw InvalidInput(
+            fmt::format("{}, column time: {} comes after {} in probe {}. Put its rows in the order in which they "
+                        "happened.",
+                        where, time, last->second, probe));
+    last->second = time;
+}
+
+void TableReader::read_probes(const fs::path& file) {
+    const CsvTable table(file, {"probe", "time", "x", "y", "z", "fx", "fy", "fz", "radius"});
+    for (int row = 0; row < table.rows(); ++row) {
+        const StateKey key = state_key(table, row);
+        check_time(key, table.where(row));
+        LoadState& loaded = state(key);
+        const Vec3 force = units_.force * vector(table, row, {"fx", "fy", "fz"});
+        if (force.isZero(0)) continue;  // unloaded, or one contact less
+        const double radius = units_.length * table.number(row, "radius");
+        if (radius < 0)
+            throw InvalidInput(
+                fmt::format("{}, column radius: {} is negative. Give the radius of the contact patch, or 0 "
+                            "for the nearest surface point.",
+                            table.where(row), table.number(row, "radius")));
+        loaded.contacts.push_back({units_.length * vector(table, row, {"x", "y", "z"}), force, radius});
+    }
+}
+
+void TableReader::read_states(const fs::path& file) {
+    const CsvTable table(file, {"probe", "time"}, {"gx", "gy", "gz", "pressure"});
+    std::set<StateKey> seen;
+    for (int row = 0; row < table.rows(); ++row) {
+        const StateKey key = state_key(table, row);
+        if (!seen.insert(key).second)
+            throw InvalidInput(fmt::format("{}: probe {} at time {} has a row already. Keep one.", table.where(row),
+                                           key.first, key.second));
+        LoadState& known = state(key);
+        known.pressure = table.at(row, "pressure");
+        known.gravity = units_.length * vector_if_given(table, row, {"gx", "gy", "gz"});
+        if (known.gravity.array().isNaN().any() && !known.gravity.array().isNaN().all())
+            throw InvalidInput(fmt::format(
+                "{}: gravity is known by part only. Give gx, gy and gz, or leave all three empty.", table.where(row)));
+    }
+}
+
+void TableReader::find_fields(const fs::path& folder) {
+    if (!fs::is_directory(folder)) return;
+    for (const auto& entry : fs::directory_iterator(folder)) {
+        if (entry.path().extension() != ".vtu") continue;
+        const std::string stem = entry.path().stem().string();
+        const auto cut = std::min(stem.find('_'), stem.size());
+        const auto probe = mesh::parse_integer(stem.substr(0, cut));
+        const auto time = mesh::parse_number(stem.substr(std::min(cut + 1, stem.size())));
+        const auto found = probe && time ? index_of_.find({*probe, *time}) : index_of_.end();
+        if (found == index_of_.end())
+            throw InvalidInput(
+                fmt::format("{}: no state has this name. Name it <probe>_<time>.vtu by a row of probes.csv, "
+                            "or take it away.",
+                            entry.path().string()));
+        LoadState& shown = set_.states[found->second];
+        if (!shown.field.empty())
+            throw InvalidInput(fmt::format("{}: {} is a field of the same state. Keep one.", entry.path().string(),
+                                           shown.field.filename().string()));
+        shown.field = entry.path();
+        shown.field_unit = units_.length;
+    }
+}
+
+void TableReader::read_markers(const fs::path& file) {
+    const CsvTable table(file, {"marker", "x", "y", "z"}, {"ax", "ay", "az"});
+    for (int row = 0; row < table.rows(); ++row) {
+        Marker marker;
+        marker.id = table.integer(row, "marker");
+        marker.rest = units_.length * vector(table, row, {"x", "y", "z"});
+        const Vec3 anchor = units_.length * vector_if_given(table, row, {"ax", "ay", "az"});
+        if (anchor.allFinite()) marker.anchor = anchor;
+        if (!marker.anchor && !anchor.array().isNaN().all())
+            throw InvalidInput(
+                fmt::format("{}: marker {} has half an anchor. Give ax, ay and az, or leave all three empty.",
+                            table.where(row), marker.id));
+        if (!marker_of_.try_emplace(marker.id, static_cast<int>(set_.markers.size())).second)
+            throw InvalidInput(fmt::format("{}: marker {} has a row already. Give each marker its own number.",
+                                           table.where(row), marker.id));
+        set_.markers.push_back(marker);
+    }
+}
+
+Reading TableReader::read_position(const CsvTable& table, int row) const {
+    Reading reading{.position = units_.length * vector_if_given(table, row, {"x", "y", "z"}),
+                    .sigma = units_.length * table.at(row, "sigma")};
+    if (reading.sigma < least_position_noise)
+        throw InvalidInput(
+            fmt::format("{}, column sigma: {} is below {:g}, less than any instrument's noise. Leave it empty where it "
+                        "is unknown.",
+                        table.where(row), table.at(row, "sigma"), least_position_noise / units_.length));
+    if (std::isnan(table.at(row, "marker"))) return reading;
+    const int id = table.integer(row, "marker");
+    const auto found = marker_of_.find(id);
+    if (found == marker_of_.end())
+        throw InvalidInput(
+            fmt::format("{}: marker {} is not in markers.csv. Add its rest position there, or leave the cell "
+                        "empty for an unlabelled reading.",
+                        table.where(row), id));
+    reading.marker = found->second;
+    return reading;
+}
+
+void TableReader::read_positions(const fs::path& file) {
+    const CsvTable table(file, {"probe", "time", "marker", "x", "y", "z"}, {"sigma"});
+    std::set<std::pair<std::size_t, int>> seen;  // state, marker
+    for (int row = 0; row < table.rows(); ++row) {
+        const StateKey key = state_key(table, row);
+        const auto found = index_of_.find(key);
+        if (found == index_of_.end())
+            throw InvalidInput(
+                fmt::format("{}: there is no state of probe {} at time {}. Add its row to probes.csv (with "
+                            "zero force when nothing pressed), or correct the numbers.",
+                            table.where(row), key.first, key.second));
+        const Reading reading = read_position(table, row);
+        if (reading.marker >= 0 && !seen.emplace(found->second, reading.marker).second)
+            throw InvalidInput(fmt::format(
+                "{}: marker {} was read already for probe {} at time {}. Keep one reading, or "
+                "give repeated measurements probes of their own.",
+                table.where(row), set_.markers[static_cast<std::size_t>(reading.marker)].id, key.first, key.second));
+        const bool nothing_seen = reading.position.array().isNaN().all();
+        if (!nothing_seen) set_.states[found->second].readings.push_back(reading);
+    }
+}
+
+void TableReader::add_to_recording(const CsvTable& table, int row, const std::map<int, std::size_t>& recording_of) {
+    const auto [probe, time] = state_key(table, row);
+    const auto found = recording_of.find(probe);
+    if (found == recording_of.end())
+        throw InvalidInput(
+            fmt::format("{}: probe {} has no row in motion_probes.csv. Tell there what acted on the body (zero "
+                        "force when nothing did).",
+                        table.where(row), probe));
+    const Reading reading = read_position(table, row);
+    if (reading.marker < 0)
+        throw InvalidInput(
+            fmt::format("{}: a reading of a body in motion has no marker. Give its number.", table.where(row)));
+    std::vector<Recording::Instant>& instants = set_.recordings[found->second].instants;
+    if (time < 0 || (!instants.empty() && time < instants.back().time))
+        throw InvalidInput(
+            fmt::format("{}, column time: {} comes after {} in probe {}. Count time from the beginning of the probe, "
+                        "which is 0, and put its rows in the order in which they happened.",
+                        table.where(row), time, instants.empty() ? 0.0 : instants.back().time, probe));
+    if (instants.empty() || time > instants.back().time) instants.push_back({.time = time, .readings = {}});
+    std::vector<Reading>& seen = instants.back().readings;
+    if (std::ranges::find(seen, reading.marker, &Reading::marker) != seen.end())
+        throw InvalidInput(fmt::format("{}: marker {} was read already for probe {} at time {}. Keep one reading.",
+                                       table.where(row), table.integer(row, "marker"), probe, time));
+    if (!reading.position.array().isNaN().all()) seen.push_back(reading);
+}
+
+void TableReader::read_recordings(const fs::path& loads, const fs::path& readings) {
+    MeasurementSet moved;
+    TableReader(moved, units_).read_probes(loads);
+    std::map<int, std::size_t> recording_of;
+    for (LoadState& load : moved.states) {
+        const auto [entry, is_new] = recording_of.try_emplace(load.probe, set_.recordings.size());
+        if (is_new) set_.recordings.push_back({.probe = load.probe, .loads = {}, .instants = {}});
+        set_.recordings[entry->second].loads.push_back(std::move(load));
+    }
+    const CsvTable table(readings, {"probe", "time", "marker", "x", "y", "z"}, {"sigma"});
+    for (int row = 0; row < table.rows(); ++row) add_to_recording(table, row, recording_of);
+    for (const Recording& recording : set_.recordings) {
+        if (recording.instants.empty())
+            throw InvalidInput(
+                fmt::format("{}: probe {} of motion_probes.csv has no readings. Add them, or take it "
+                            "away there.",
+                            readings.string(), recording.probe));
+    }
+}
+
+}  // namespace palpate::identify

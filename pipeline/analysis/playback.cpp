@@ -1,0 +1,35 @@
+#include "pipeline/analysis/playback.h"
+
+#include <map>
+
+#include "identify/loading/load_history.h"
+#include "identify/loading/loads.h"
+#include "identify/loading/readings.h"
+#include "identify/loading/reduced_load.h"
+
+namespace palpate::pipeline {
+std::vector<identify::ReducedLoadEquilibrium> play(const skeleton::Model& model, const identify::MeasurementSet& set) {
+    const std::vector<identify::StateReadings> read = identify::collect_readings(model, set);
+    std::map<int, int> reading_of;  // of a state of the set, where it has one
+    for (int r = 0; r < static_cast<int>(read.size()); ++r) reading_of[read[r].state] = r;
+
+    skeleton::StaticsSolver solver(model);
+    const identify::ContactLoads to_load(model);
+    const Eigen::VectorXd k = skeleton::stiffness_vector(model);
+    std::vector<skeleton::Equilibrium> so_far(read.size());
+    std::vector<identify::ReducedLoadEquilibrium> played;
+    for (int s = 0; s < static_cast<int>(set.states.size()); ++s) {
+        const auto found = reading_of.find(s);
+        if (found == reading_of.end()) {
+            played.push_back(identify::solve_with_reduced_load(solver, k, to_load(set, set.states[s]), {}));
+            continue;
+        }
+        const int r = found->second;
+        const identify::LoadHistory before = identify::reduced_load_history_before(model, solver, k, read, r, so_far);
+        played.push_back(identify::solve_with_reduced_load(solver, k, read[r].load, before.flowed));
+        so_far[r] = played.back().equilibrium;
+    }
+    return played;
+}
+
+}  // namespace palpate::pipeline

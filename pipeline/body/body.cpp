@@ -1,0 +1,129 @@
+#include "pipeline/body/body.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "mesh/errors.h"
+#include "mesh/meshing/remesh.h"
+#include "mesh/meshing/repair_surface.h"
+#include "mesh/meshing/tetrahedralise.h"
+#include "mesh/topology/check_surface.h"
+#include "pipeline/case/subject.h"
+
+namespace palpate::pipeline {
+
+namespace {
+
+constexpr double default_edge_share = 0.06;  // of the longest side
+constexpr double default_nodes = 20'000;     // that a thin body may have: solved in two seconds
+
+/// A surface filled with tetrahedra: where that fails with these edges, with shorter ones.
+void fill(MeshedBody& body, double edge, double volume_change, const Progress& progress) {
+    constexpr std::array shares{1.0, 0.8, 0.64};
+    for (const double share : shares) {
+        try {
+            report(progress, "remeshing the surface", 0.3);
+            body.surface = mesh::remesh(body.repaired, {.edge_length = share * edge, .volume_change = volume_change});
+            report(progress, "filling with tetrahedra", 0.6);
+            body.volume = mesh::tetrahedralise(body.surface, {.edge_length = share * edge});
+            if (share < 1) body.notes.push_back(fmt::format("edges of {:.3g} mm: longer ones failed", share * edge));
+            return;
+        } catch (const LimitReached&) {
+            throw;
+        } catch (const SolverFailure&) {
+            if (share == shares.back()) throw;
+        }
+    }
+}
+
+}  // namespace
+
+MeshedBody make_body(const mesh::Surface& surface, const MeshingOptions& options, const Progress& progress) {
+    MeshedBody body;
+    report(progress, "repairing the surface", 0.0);
+    const mesh::RepairResult repaired = mesh::repair_surface(surface);
+    body.repaired = repaired.surface;
+    body.notes = repaired.steps;
+
+    const double longest = mesh::bounding_box(repaired.surface.vertices).longest_side();
+    const double edge = options.edge_length > 0 ? options.edge_length : default_edge_length(repaired.surface);
+    if (edge > 0.5 * longest) {
+        throw InvalidInput(
+            fmt::format("edge length {:g} mm is more than half the body's longest side ({:g} mm): choose "
+                        "a smaller one, 6 % of it is usual",
+                        edge, longest));
+    }
+    try {
+        fill(body, edge, options.volume_change, progress);
+    } catch (const LimitReached&) {
+        throw;
+    } catch (const SolverFailure& failure) {
+        if (repaired.wrapped) throw;
+        // Sound, but too thin or too crumpled somewhere to be meshed: the last resort is a wrap.
+        try {
+            const mesh::RepairResult wrapped = mesh::repair_surface(surface, {.wrap = true});
+            body.repaired = wrapped.surface;
+            body.notes = wrapped.steps;
+            fill(body, edge, options.volume_change, progress);
+        } catch (const InvalidInput&) {
+            throw failure;
+        }
+    }
+    if (!options.linear_elements) body.volume = mesh::to_quadratic(body.volume);
+    report(progress, "filling with tetrahedra", 1.0);
+    return body;
+}
+
+MeshedBody make_body(const Subject& subject, const MeshingOptions& options, const Progress& progress) {
+    if (!subject.volume) return make_body(subject.surface, options, progress);
+    return ready_made_body(*subject.volume, subject.surface, options);
+}
+
+MeshedBody ready_made_body(const mesh::VolumeMesh& given, const mesh::Surface& surface, const MeshingOptions& options) {
+    if (const mesh::SurfaceReport boundary = mesh::check_surface(surface);
+        boundary.non_manifold_edges > 0 || boundary.self_intersections > 0) {
+        throw InvalidInput(fmt::format(
+            "the boundary of the mesh meets itself along {} edges and crosses itself in {} places, which no body does: "
+            "mend it, or give its surface (palpate check tells where), which is repaired and meshed anew",
+            boundary.non_manifold_edges, boundary.self_intersections));
+    }
+    MeshedBody body;
+    body.is_ready_made = true;
+    body.repaired = body.surface = surface;
+    body.volume = options.linear_elements ? given : mesh::to_quadratic(given);
+    body.notes.push_back(fmt::format(
+        "the mesh is used as it is: {} tetrahedra of {} nodes{}", given.tetrahedra.rows(), given.tetrahedra.cols(),
+        body.volume.is_quadratic() && !given.is_quadratic() ? ", given midside nodes on straight edges" : ""));
+    if (options.edge_length > 0) body.notes.emplace_back("an edge length changes nothing on a ready-made mesh");
+    return body;
+}
+
+double edge_of_sheet(const mesh::Surface& surface, double nodes) {
+    // A sheet of one element has A / (sqrt(3)/4 h^2) triangles on its surface and some 3.2 nodes for each of them.
+    return std::sqrt(3.2 / (std::sqrt(3.0) / 4) * mesh::area(surface) / nodes);
+}
+
+double edge_for_thickness(const mesh::Surface& surface, double edge, double nodes) {
+    const double thickness = 2 * std::abs(mesh::signed_volume(surface)) / mesh::area(surface);
+    constexpr double slenderest = 4;
+    return std::min(edge, std::max(slenderest * thickness, edge_of_sheet(surface, nodes)));
+}
+
+double default_edge_length(const mesh::Surface& surface) {
+    const double usual = default_edge_share * mesh::bounding_box(surface.vertices).longest_side();
+    return edge_for_thickness(surface, usual, default_nodes);
+}
+
+mesh::BoxRegion default_clamp(const mesh::Box& box) {
+    Eigen::Index axis = 0;
+    const double longest = box.extent().maxCoeff(&axis);
+    const Vec3 margin = Vec3::Constant(0.01 * longest);
+    mesh::BoxRegion clamp{box.min - margin, box.max + margin};
+    clamp.max[axis] = box.min[axis] + 0.05 * longest;
+    return clamp;
+}
+
+}  // namespace palpate::pipeline

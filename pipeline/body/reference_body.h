@@ -1,0 +1,36 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "identify/measurements/measurement_set.h"
+#include "identify/models/reference_body.h"
+#include "mesh/progress.h"
+
+namespace palpate::pipeline {
+
+/// Edge length of a reference body's elements by default [mm]: 7 % of the longest side, or, for a stout body, what
+/// makes some 2,500 nodes; finer ones change its answers by less than contacts are known.
+double reference_edge_length(const mesh::Surface& surface);
+
+/// How quadratic elements of such an edge length [mm] are to keep their volume in a body of Poisson's ratio nu: with
+/// the mean dilatation, which does not lock, a sheet of one element in thickness bends too easily, by 11 % at nu = 0.33
+/// (tests/identify/models/body_model_test.cpp); where nu is up to 0.4 and elements are longer than the body is thick on
+/// average, 2 V / A, in full.
+fem::Dilatation dilatation_for(const mesh::Surface& surface, double edge_length, double poisson);
+
+/// The body of a measurement set in finite elements, or why there is none.
+struct Reference {
+    std::unique_ptr<identify::ReferenceBody> body;  // empty: it cannot be made
+    std::string why_none;                           // then
+    std::vector<std::string> notes;                 // what a user should know, in words
+};
+
+/// Repairs and remeshes the set's rest surface, fills it with quadratic tetrahedra, and curves them to the surface.
+/// Tetrahedra of the set's own are used as they are.
+/// Density and a first guess of Young's modulus are the set's.
+/// @param edge_length of the tetrahedra [mm]; 0: the default
+Reference make_reference(const identify::MeasurementSet& set, double edge_length, const Progress& progress = {});
+
+}  // namespace palpate::pipeline

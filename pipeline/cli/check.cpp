@@ -1,0 +1,199 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "identify/diagnosis/statistics/independent_readings.h"
+#include "mesh/formats/vtk/vtk_files.h"
+#include "mesh/supports/held_parts.h"
+#include "mesh/text/atomic_file.h"
+#include "pipeline/case/subject.h"
+#include "pipeline/command_line/commands.h"
+#include "pipeline/command_line/flags.h"
+#include "pipeline/command_line/subcommands.h"
+#include "pipeline/output/json/comparison.h"
+
+namespace palpate::pipeline::commands {
+namespace {
+
+std::string describe_set(const identify::MeasurementSet& set) {
+    const auto loaded =
+        std::count_if(set.states.begin(), set.states.end(), [](auto& s) { return !s.contacts.empty(); });
+    std::size_t readings = 0;
+    for (const auto& state : set.states) readings += state.readings.size();
+    std::string text = fmt::format("{} states ({} loaded), {} markers, {} readings", set.states.size(), loaded,
+                                   set.markers.size(), readings);
+    if (!set.recordings.empty()) text += fmt::format(", {} recordings of motion", set.recordings.size());
+    if (!set.position_noise) text += "; no noise is stated";
+    return text + ".\n";
+}
+
+/// How the loads are numbered: within a probe one body goes through them in time, between probes it is as new.
+std::string describe_numbering(const identify::Problem& problem) {
+    std::map<int, int> loads;  // of each probe
+    for (std::size_t k = 0; k < problem.actions.size(); ++k)
+        if (problem.loaded(static_cast<int>(k))) ++loads[problem.probe[k]];
+    if (loads.size() == 1 && loads.begin()->second > 1)
+        return fmt::format(
+            "All {} loads are of probe {}: one body went through them in the order of time, which creep and yield "
+            "remember, and loads are held out one by one. Number those as probes of their own before which the body "
+            "was at rest.\n",
+            loads.begin()->second, loads.begin()->first);
+    return {};
+}
+
+/// What the readings can tell at most.
+std::string describe_information(const identify::Problem& problem, int independent) {
+    constexpr int few = 12;  // the largest effect has six numbers: stiffness and two of that kind
+    std::string text = fmt::format("{} measured coordinates, {} of them independent data", problem.rows(), independent);
+    if (independent > few) return text + ".\n";
+    return text +
+           ": too few for most effects, whatever the noise. Read more markers, or load other places and directions.\n";
+}
+
+/// Before a fit: what the readings are good for. Nothing where none is labelled.
+void add_preflight(const identify::MeasurementSet& set, Outcome& outcome) {
+    if (std::ranges::none_of(set.states, [](const auto& state) { return !state.readings.empty(); })) return;
+    // Where the noise is not specified: a hundredth of how far the markers move.
+    const identify::Problem raw = identify::make_problem(set, 1);
+    const double moved = std::sqrt(raw.displacement().squaredNorm() / static_cast<double>(raw.rows()));
+    const identify::Problem problem =
+        identify::make_problem(set, set.position_noise.value_or(std::max(0.01 * moved, 1e-9)));
+    const int independent = identify::independent_readings(problem);
+    outcome.text += describe_information(problem, independent) + describe_numbering(problem);
+    outcome.json["independent_readings"] = independent;
+}
+
+/// Where faults of each kind are, the first few of them.
+std::string describe_places(const std::vector<mesh::FaultPlace>& places) {
+    constexpr std::ptrdiff_t most_listed = 3;
+    std::string text;
+    for (auto first = places.begin(); first != places.end();) {
+        const auto end = std::find_if(first, places.end(), [&](auto& place) { return place.fault != first->fault; });
+        text += fmt::format("    {}: at ", mesh::name_of(first->fault));
+        for (auto place = first; place != std::min(first + most_listed, end); ++place) {
+            text += fmt::format("{}({:.4g}, {:.4g}, {:.4g})", place == first ? "" : ", ", place->at.x(), place->at.y(),
+                                place->at.z());
+        }
+        if (end - first > most_listed) text += fmt::format(" and {} more", end - first - most_listed);
+        text += " mm\n";
+        first = end;
+    }
+    return text;
+}
+
+nlohmann::json places_json(const std::vector<mesh::FaultPlace>& places) {
+    constexpr std::size_t most = 1000;  // the rest stands in faults.vtp
+    nlohmann::json list = nlohmann::json::array();
+    for (std::size_t i = 0; i < std::min(places.size(), most); ++i) {
+        const mesh::FaultPlace& place = places[i];
+        list.push_back({{"fault", mesh::name_of(place.fault)},
+                        {"at", {place.at.x(), place.at.y(), place.at.z()}},
+                        {"triangles", place.triangles}});
+    }
+    return list;
+}
+
+/// For ParaView: the surface whose triangles tell their fault, and a point for each.
+void write_faults(const std::filesystem::path& folder, const mesh::Surface& surface,
+                  const std::vector<mesh::FaultPlace>& places) {
+    Eigen::MatrixXd of_triangle = Eigen::MatrixXd::Zero(surface.triangles.rows(), 1);
+    Eigen::MatrixXd of_point(std::ssize(places), 1);
+    Points points(std::ssize(places), 3);
+    for (std::size_t i = 0; i < places.size(); ++i) {
+        const auto code = static_cast<double>(places[i].fault);
+        for (const int t : places[i].triangles) of_triangle(t, 0) = code;
+        of_point(static_cast<Eigen::Index>(i), 0) = code;
+        points.row(static_cast<Eigen::Index>(i)) = places[i].at;
+    }
+    mesh::write_vtp(folder / "surface.vtp", surface, {.points = {}, .cells = {{"fault", of_triangle}}});
+    mesh::write_vtp_lines(folder / "faults.vtp", points, {}, {.points = {{"fault", of_point}}, .cells = {}});
+}
+
+/// What each support holds of the surface, and of a ready-made mesh whether that is enough.
+void add_supports(const Subject& subject, Outcome& outcome) {
+    constexpr double spacing = 0.005;  // of samples of the surface, as a share of the longest side: areas to 1 %
+    const double longest = mesh::bounding_box(subject.surface.vertices).longest_side();
+    const auto parts = subject.volume ? mesh::held_parts(subject.supports, *subject.volume)
+                                      : mesh::held_parts(subject.supports, subject.surface, spacing * longest);
+    std::vector<std::string> warnings;
+    if (subject.volume) warnings = mesh::too_little_held(subject.supports, *subject.volume);
+    nlohmann::json list = nlohmann::json::array();
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+        const std::string words = mesh::describe_held_part(
+            subject.supports, parts, i, subject.volume ? "nodes of the mesh" : "vertices of the surface");
+        outcome.text += "Held by " + words + ".\n";
+        list.push_back({{"nodes", parts[i].nodes}, {"area_mm2", parts[i].area}, {"words", words}});
+        if (!subject.volume && parts[i].area == 0)
+            warnings.push_back(
+                fmt::format("Support {} holds nothing of the surface: it is for material inside the "
+                            "body alone, or its unit or frame is not the body's.",
+                            i + 1));
+    }
+    for (const std::string& warning : warnings) outcome.text += "  - warning: " + warning + "\n";
+    outcome.json["supports"] = list;
+    outcome.json["warnings"] = warnings;
+}
+
+}  // namespace
+
+Outcome check(const CheckOptions& options, const Common& common) {
+    if (!options.output.empty()) refuse_to_overwrite(options.output, common.force);
+    const Subject subject = read_subject(read_case(options.input, options.overrides));
+    std::vector<mesh::FaultPlace> places;
+    const mesh::SurfaceReport surface = mesh::check_surface(subject.surface, &places);
+    const std::vector<std::string> faults = mesh::describe_faults(surface);
+
+    Outcome outcome;
+    outcome.text =
+        fmt::format("{}: {} vertices, {} triangles, {} part{}, {:.4g} x {:.4g} x {:.4g} mm, volume {:.4g} mm^3.\n",
+                    options.input.string(), surface.vertices, surface.triangles, surface.components,
+                    surface.components == 1 ? "" : "s", surface.box.extent().x(), surface.box.extent().y(),
+                    surface.box.extent().z(), surface.volume);
+    if (subject.set) outcome.text += describe_set(*subject.set);
+    for (const std::string& fault : faults) outcome.text += "  - " + fault + "\n";
+    if (!places.empty()) outcome.text += "  Where:\n" + describe_places(places);
+    outcome.text += faults.empty() ? "The surface is sound.\n" : "";
+    for (const std::string& note : subject.notes) outcome.text += "  - " + note + "\n";
+    for (const std::string& assumption : subject.assumptions) outcome.text += "  - assumed: " + assumption + "\n";
+    outcome.json = {
+        {"format", "palpate-check/1"},   {"surface", to_json(surface)}, {"faults", faults},
+        {"places", places_json(places)}, {"notes", subject.notes},      {"assumptions", subject.assumptions}};
+    if (subject.volume) {
+        outcome.json["tetrahedra"] = subject.volume->tetrahedra.rows();
+        outcome.text += fmt::format("A ready-made mesh of {} tetrahedra with {} nodes each, used as it is.\n",
+                                    subject.volume->tetrahedra.rows(), subject.volume->tetrahedra.cols());
+    }
+    if (subject.set) {
+        outcome.json["set"] = {{"states", subject.set->states.size()}, {"markers", subject.set->markers.size()}};
+    }
+    add_supports(subject, outcome);
+    if (subject.set) add_preflight(*subject.set, outcome);
+    if (!options.output.empty()) {
+        write_faults(options.output, subject.surface, places);
+        mesh::write_text(options.output / "check.json", outcome.json.dump(2) + "\n");
+        outcome.text += fmt::format(
+            "Written to {}: check.json; surface.vtp and faults.vtp, coloured by 'fault', show where (ParaView).\n",
+            options.output.string());
+    }
+    outcome.text +=
+        "Next: palpate run " + options.input.string() + (faults.empty() ? "" : "    # repairs what it can") + "\n";
+    return outcome;
+}
+
+}  // namespace palpate::pipeline::commands
+
+namespace palpate::pipeline {
+
+void Subcommands::add_check(CLI::App& app) {
+    auto* sub = subcommand(app, "check", "Reads everything, repairs nothing, says what is wrong.",
+                           "  palpate check liver.stl\n  palpate check liver.stl -o liver-check\n  palpate check "
+                           "my-measurements/ --json\n",
+                           [this] { return commands::check(check, common); });
+    sub->add_option("INPUT", check.input, "A case.yaml, a measurement set, or a mesh")->required();
+    sub->add_option("-o,--output", check.output, "A folder for the report, and for files that show where faults are");
+    add_flags_of(sub, check.overrides, "Body");
+}
+
+}  // namespace palpate::pipeline

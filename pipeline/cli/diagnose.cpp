@@ -1,0 +1,61 @@
+#include "identify/diagnosis/diagnose.h"
+
+#include <fmt/format.h>
+
+#include "identify/effects/catalogue.h"
+#include "mesh/text/atomic_file.h"
+#include "pipeline/command_line/flags.h"
+#include "pipeline/command_line/subcommands.h"
+#include "pipeline/output/json/diagnosis.h"
+#include "pipeline/output/text/diagnosis.h"
+#include "pipeline/run/model_and_set.h"
+
+namespace palpate::pipeline::commands {
+
+Outcome diagnose(const DiagnoseCommandOptions& options, const Common& common) {
+    if (!options.output.empty()) refuse_to_overwrite(options.output, common.force);
+    for (const std::string& name : options.without) identify::find_effect(name);
+    const ModelAndSet given = read_model_and_set(options.model, options.set);
+    identify::DiagnoseOptions how = diagnose_options(given.model, common);
+    how.without = options.without;
+    const auto body = body_to_diagnose(options.body, given, options.overrides.on_defaults().edge_length);
+    const identify::Diagnosis found = identify::diagnose(*body, given.set, how, Console::progress());
+
+    Outcome outcome;
+    outcome.json = to_json(found, *body, given.set);
+    outcome.text = diagnosis_in_words(outcome.json) + "\n";
+    for (const std::string& note : found.notes) outcome.text += "  " + note + "\n";
+    if (!options.output.empty()) {
+        mesh::write_text(options.output / "diagnosis.json", outcome.json.dump(2) + "\n");
+        outcome.text += fmt::format("Written: {}\n", (options.output / "diagnosis.json").string());
+    }
+    if (outcome.json["verdict"] == "missing-effect") {
+        outcome.text += fmt::format("Next: palpate improve {} {}", options.model.string(), options.set.string());
+        for (const std::string& effect : found.explanation) outcome.text += " --add " + effect;
+        outcome.text += options.body == "skeleton" ? " --body skeleton -o improved\n" : " -o improved\n";
+    } else if (outcome.json["verdict"] == "ambiguous") {
+        outcome.text += "Next: add that probe to the set, and diagnose again\n";
+    }
+    return outcome;
+}
+
+}  // namespace palpate::pipeline::commands
+
+namespace palpate::pipeline {
+
+void Subcommands::add_diagnose(CLI::App& app) {
+    auto* sub = subcommand(app, "diagnose", "Which physical effect the model lacks, with the evidence.",
+                           "  palpate diagnose model.json set/\n"
+                           "  palpate diagnose model.json set/ --without gravity     # what else would explain it?\n",
+                           [this] { return commands::diagnose(diagnose, common); });
+    sub->add_option("MODEL", diagnose.model, "model.json")->required();
+    sub->add_option("SET", diagnose.set, "The measurements")->required();
+    sub->add_option("-o,--output", diagnose.output, "Folder for diagnosis.json");
+    sub->add_option("--without", diagnose.without, "An effect to leave out of the catalogue; repeatable")
+        ->expected(1)
+        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+    add_body(sub, diagnose.body, "by default");
+    add_flag(sub, diagnose.overrides, "volume.edge_length");
+}
+
+}  // namespace palpate::pipeline

@@ -1,0 +1,103 @@
+#include <fmt/format.h>
+
+#include "identify/diagnosis/ladder.h"
+#include "identify/effects/catalogue.h"
+#include "pipeline/command_line/flags.h"
+#include "pipeline/command_line/subcommands.h"
+#include "pipeline/output/json/diagnosis.h"
+#include "pipeline/output/ladder.h"
+#include "pipeline/output/text/diagnosis.h"
+#include "pipeline/run/model_and_set.h"
+
+namespace palpate::pipeline::commands {
+namespace {
+
+namespace fs = std::filesystem;
+
+identify::IdentifyOptions identify_options(const CaseOverrides& overrides, const Common& common) {
+    identify::IdentifyOptions how = overrides.on_defaults().identify;
+    how.seed = common.seed.value_or(how.seed);
+    how.threads = common.threads;
+    return how;
+}
+
+/// A diagnosis, said aloud.
+identify::Diagnosis diagnose_aloud(const identify::BodyModel& body, const identify::MeasurementSet& set,
+                                   const identify::DiagnoseOptions& how) {
+    identify::Diagnosis found = identify::diagnose(body, set, how, Console::progress());
+    Console::notice(diagnosis_in_words(to_json(found, body, set)));
+    if (found.explanation.empty()) Console::notice("Nothing is added.");
+    return found;
+}
+
+/// "reference" or "skeleton".
+std::string judged_on(const ImproveCommandOptions& options) {
+    std::string of_links;
+    for (const std::string& name : options.add) {
+        if (identify::find_effect(name)->is_of_links()) of_links = name;
+    }
+    if (!options.body.empty()) return options.body;
+    if (of_links.empty()) return "reference";
+    Console::notice(fmt::format("Errors are judged on the skeleton: no solid has '{}'.", of_links));
+    return "skeleton";
+}
+
+}  // namespace
+
+Outcome improve(const ImproveCommandOptions& options, const Common& common) {
+    const fs::path output = options.output.empty() ? fs::path("improved") : options.output;
+    refuse_to_overwrite(output, common.force);
+    const std::string kind = judged_on(options);
+    const ModelAndSet given = read_model_and_set(options.model, options.set);
+    const identify::LadderOptions how{.identify = identify_options(options.overrides, common),
+                                      .diagnose = diagnose_options(given.model, common),
+                                      .only_better = options.automatic};
+    how.identify.validate();
+    const auto body = body_to_diagnose(kind, given, options.overrides.on_defaults().edge_length);
+    std::optional<identify::Diagnosis> found;
+    if (options.automatic) found = diagnose_aloud(*body, given.set, how.diagnose);
+    const std::vector<std::string>& effects = found ? found->explanation : options.add;
+    identify::Ladder ladder = identify::build_ladder(given.model, *body, given.set, effects, how,
+                                                     found ? &*found : nullptr, Console::progress());
+    ladder.identified.damping = damping_of(ladder.steps.back().model, given.set, how.identify.seed, common);
+    write_ladder(output, ladder);
+
+    Outcome outcome;
+    outcome.json = to_json(ladder);
+    outcome.json["model"] = (output / "model.json").string();
+    outcome.text = ladder_in_words(outcome.json);
+    for (const std::string& note : ladder.notes) outcome.text += "  " + note + "\n";
+    outcome.text +=
+        fmt::format("Model: {}\nParaView: {}\n", (output / "model.json").string(), (output / "ladder.pvd").string());
+    outcome.text +=
+        outcome.json["verdict"] == "adequate"
+            ? fmt::format("Next: palpate simulate {} --probes probes.csv -o played\n", (output / "model.json").string())
+            : fmt::format("Next: palpate diagnose {} {}\n", (output / "model.json").string(), options.set.string());
+    return outcome;
+}
+
+}  // namespace palpate::pipeline::commands
+
+namespace palpate::pipeline {
+
+void Subcommands::add_improve(CLI::App& app) {
+    auto* sub = subcommand(app, "improve", "Adds an effect, fits anew, and shows the error before and after.",
+                           "  palpate improve model.json set/ --auto -o improved\n"
+                           "  palpate improve model.json set/ --add gravity --add misalignment -o improved\n",
+                           [this] { return commands::improve(improve, common); });
+    sub->add_option("MODEL", improve.model, "model.json")->required();
+    sub->add_option("SET", improve.set, "The measurements")->required();
+    sub->add_option("-o,--output", improve.output,
+                    "Folder for model.json, ladder.json, ladder.pvd; improved by default");
+    auto* what = sub->add_option_group("What to add", "one of these");
+    what->add_option("--add", improve.add, "An effect ('palpate effects' lists them); repeatable, a step each")
+        ->expected(1)
+        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+    what->add_flag("--auto", improve.automatic, "What a diagnosis names");
+    what->require_option(1);
+    add_body(sub, improve.body, "by default, but for what links alone have");
+    add_flags_of(sub, improve.overrides, "Identification");
+    add_flag(sub, improve.overrides, "volume.edge_length");
+}
+
+}  // namespace palpate::pipeline

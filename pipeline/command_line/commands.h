@@ -1,0 +1,151 @@
+#pragma once
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "pipeline/analysis/quality/convergence_study.h"
+#include "pipeline/case/overrides.h"
+#include "pipeline/command_line/console.h"
+#include "pipeline/synthesis/options.h"
+
+namespace palpate::pipeline::commands {
+
+enum ExitCode { done = 0, internal_error = 1, wrong_usage = 2, bad_input = 3, numerical_failure = 4, not_met = 5 };
+
+/// What every command understands.
+struct Common {
+    bool json = false;   // the result as one JSON object on standard output, nothing else there
+    bool force = false;  // overwrite what palpate did not make
+    int threads = 1;
+    std::optional<std::uint64_t> seed;  // absent: the case's, or 1
+};
+
+/// What a command comes to: for people, for scripts, and for the shell.
+struct Outcome {
+    std::string text;
+    nlohmann::json json;
+    ExitCode code = done;
+};
+
+/// @throws InvalidInput when `target` exists, palpate did not make it, and `force` is false.
+void refuse_to_overwrite(const std::filesystem::path& target, bool force);
+
+struct RunOptions {
+    std::filesystem::path input, output;
+    CaseOverrides overrides;
+};
+Outcome run(const RunOptions& options, const Common& common);
+
+struct CheckOptions {
+    std::filesystem::path input;
+    std::filesystem::path output = {};  // a folder; none: nothing is written
+    CaseOverrides overrides;
+};
+Outcome check(const CheckOptions& options, const Common& common);
+
+struct MeshOptions {
+    std::filesystem::path input, output;
+    std::string format = {};  // vtu, inp, msh or msh22; empty: what the output's name says
+    CaseOverrides overrides;
+};
+Outcome mesh_body(const MeshOptions& options, const Common& common);
+
+struct SkeletonOptions {
+    std::filesystem::path input, output;
+    CaseOverrides overrides;
+    std::optional<QualityOptions> quality = {};  // absent: it is not measured
+};
+Outcome skeleton(const SkeletonOptions& options, const Common& common);
+
+struct ProbeCommandOptions {
+    std::filesystem::path input, output;
+    CaseOverrides overrides;
+    BlindSetOptions synthesis = {};
+    std::filesystem::path from = {};  // folder of another solver's results; empty: our own finite elements
+    std::string array = {};           // of displacements in those; empty: found by its name
+    std::string to = {};              // "inp": what is to be computed, for another solver; empty: it is computed
+};
+Outcome probe(const ProbeCommandOptions& options, const Common& common);
+
+struct IdentifyCommandOptions {
+    std::filesystem::path model, set, output;
+    CaseOverrides overrides;
+};
+Outcome identify(const IdentifyCommandOptions& options, const Common& common);
+
+struct CompareOptions {
+    std::filesystem::path model, set, output;
+    std::optional<double> tolerance;  // [mm]
+    bool no_reference = false;        // the skeleton alone: fast, and without an error budget
+    CaseOverrides overrides = {};
+};
+Outcome compare(const CompareOptions& options, const Common& common);
+
+struct DiagnoseCommandOptions {
+    std::filesystem::path model, set, output;
+    std::vector<std::string> without = {};  // effects left out of the catalogue
+    std::string body = "reference";         // or "skeleton": what the errors are judged on
+    CaseOverrides overrides = {};
+};
+Outcome diagnose(const DiagnoseCommandOptions& options, const Common& common);
+
+struct ImproveCommandOptions {
+    std::filesystem::path model, set, output;
+    std::vector<std::string> add = {};  // effects, a rung each
+    bool automatic = false;             // what a diagnosis names, in place of those
+    std::string body = {};              // as for a diagnosis; empty: the skeleton where an effect is of its links alone
+    CaseOverrides overrides = {};
+};
+Outcome improve(const ImproveCommandOptions& options, const Common& common);
+
+struct EffectsOptions {
+    std::string name;  // empty: all
+};
+Outcome effects(const EffectsOptions& options, const Common& common);
+
+struct SimulateOptions {
+    std::filesystem::path model, probes, output;
+    std::optional<double> dt = {}, duration = {};  // motion, a frame every dt [s]; absent: equilibria
+    std::optional<double> damping = {};            // ratio of the softest mode [-]; none: the model's, or 0.1
+    bool implicit = false;                         // a step a frame, stable at any size, in place of small ones
+    std::filesystem::path posterior = {};          // folder of particles.csv; empty: the model's own, if there is one
+    int draws = 32;                                // from it, for intervals of equilibria; 0: none
+};
+Outcome simulate(const SimulateOptions& options, const Common& common);
+
+struct ExportOptions {
+    std::filesystem::path model, output;
+    std::string to;                 // gltf, sofa, chai3d, stl, vtp
+    std::filesystem::path probes;   // empty: the body at rest
+    std::optional<int> state = {};  // of the probes' states; absent: the last, and all of them as gltf's animation
+};
+Outcome export_model(const ExportOptions& options, const Common& common);
+
+struct ReportOptions {
+    std::filesystem::path run, output;
+};
+Outcome report(const ReportOptions& options, const Common& common);
+
+struct PlayOptions {
+    std::filesystem::path model, output;  // no output: it is served
+    std::filesystem::path set = {};       // measurements; empty: the run's own, where it has some
+    int port = 0;                         // 0: a free one
+};
+/// A page in which the model is touched. @throws InvalidInput, IoError.
+Outcome play(const PlayOptions& options, const Common& common);
+
+struct NewOptions {
+    std::filesystem::path folder;
+};
+/// A commented case.yaml, and a small body to try it on. @throws InvalidInput when the folder is there and not empty.
+Outcome new_case(const NewOptions& options, const Common& common);
+
+struct InfoOptions {
+    std::filesystem::path file;
+};
+Outcome info(const InfoOptions& options, const Common& common);
+
+}  // namespace palpate::pipeline::commands

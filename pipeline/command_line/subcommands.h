@@ -1,0 +1,62 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <functional>
+#include <string>
+
+#include "pipeline/command_line/commands.h"
+
+namespace palpate::pipeline {
+
+/// All commands with their options, as CLI11 fills them in.
+struct Subcommands {
+    commands::Common common;
+    std::function<commands::Outcome()> command;  // that was asked for
+
+    commands::RunOptions run;
+    commands::CheckOptions check;
+    commands::MeshOptions mesh;
+    commands::SkeletonOptions skeleton;
+    QualityOptions quality;     // of it,
+    bool with_quality = false;  // where it is asked for
+    commands::ProbeCommandOptions probe;
+    commands::IdentifyCommandOptions identify;
+    commands::CompareOptions compare;
+    commands::DiagnoseCommandOptions diagnose;
+    commands::ImproveCommandOptions improve;
+    commands::EffectsOptions effects;
+    commands::SimulateOptions simulate;
+    commands::ExportOptions exports;
+    commands::ReportOptions report;
+    commands::PlayOptions play;
+    commands::NewOptions new_case;
+    commands::InfoOptions info;
+
+    // Each in its own file, pipeline/cli/<command>.cpp, beside what the command does.
+    void add_run(CLI::App& app);
+    void add_check(CLI::App& app);
+    void add_mesh(CLI::App& app);
+    void add_skeleton(CLI::App& app);
+    void add_probe(CLI::App& app);
+    void add_identify(CLI::App& app);
+    void add_compare(CLI::App& app);
+    void add_diagnose(CLI::App& app);
+    void add_improve(CLI::App& app);
+    void add_simulate(CLI::App& app);
+    void add_export(CLI::App& app);
+    void add_play(CLI::App& app);
+    void add_report(CLI::App& app);
+
+    // Around the work, in pipeline/cli/shell.
+    void add_new(CLI::App& app);
+    void add_info(CLI::App& app);
+    void add_effects(CLI::App& app);
+    void add_completion(CLI::App& app);
+    void add_man(CLI::App& app);
+
+    /// A command whose help begins with examples.
+    CLI::App* subcommand(CLI::App& app, const std::string& name, const std::string& what, const std::string& examples,
+                         const std::function<commands::Outcome()>& action);
+};
+
+}  // namespace palpate::pipeline

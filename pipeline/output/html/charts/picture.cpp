@@ -1,0 +1,170 @@
+#include "pipeline/output/html/charts/picture.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Geometry>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numeric>
+
+namespace palpate::pipeline {
+namespace {
+
+constexpr double widest = 640;  // [px]
+
+/// Five points of the colour map viridis (van der Walt & Smith 2015), told apart by colour-blind readers too.
+std::string colour(double share) {
+    constexpr std::array<std::array<double, 3>, 5> map{
+        {{68, 1, 84}, {59, 82, 139}, {33, 145, 140}, {94, 201, 98}, {253, 231, 37}}};
+    const double at = 4 * std::clamp(share, 0.0, 1.0);
+    const auto below = std::min<std::size_t>(3, static_cast<std::size_t>(at));
+    const double t = at - static_cast<double>(below);
+    const auto mix = [&](std::size_t c) { return (1 - t) * map[below][c] + t * map[below + 1][c]; };
+    return fmt::format("#{:02x}{:02x}{:02x}", static_cast<int>(mix(0)), static_cast<int>(mix(1)),
+                       static_cast<int>(mix(2)));
+}
+
+/// A parallel view in which the body's longest axis runs across and its shortest one points at the reader, a little
+/// from above.
+class View {
+public:
+    explicit View(const Points& points) : box_(mesh::bounding_box(points)) {
+        std::array<int, 3> axes{0, 1, 2};
+        const Vec3 extent = box_.extent();
+        std::sort(axes.begin(), axes.end(),
+                  [&](int i, int j) { return extent[i] > extent[j] || (extent[i] == extent[j] && i < j); });
+        const Vec3 across = Vec3::Unit(axes[0]), up = Vec3::Unit(axes[1]), toward = across.cross(up);
+        const double turn = 0.45, tilt = 0.35;  // [rad]
+        const Vec3 right = std::cos(turn) * across + std::sin(turn) * toward;
+        const Vec3 front = std::cos(turn) * toward - std::sin(turn) * across;
+        rows_.row(0) = right;
+        rows_.row(1) = std::cos(tilt) * up - std::sin(tilt) * front;
+        rows_.row(2) = std::cos(tilt) * front + std::sin(tilt) * up;
+        const Points seen = points * rows_.transpose();
+        low_ = seen.colwise().minCoeff();
+        const Eigen::RowVector3d size = seen.colwise().maxCoeff() - seen.colwise().minCoeff();
+        scale_ = (widest - 20) / std::max(size[0], size[1]);
+        height_ = 20 + scale_ * size[1];
+        top_ = low_[1] + size[1];
+        width_ = 20 + scale_ * size[0];
+    }
+    /// x, y [px], and depth towards the reader [mm].
+    Vec3 operator()(const Vec3& p) const {
+        const Vec3 seen = rows_ * p;
+        return {10 + scale_ * (seen[0] - low_[0]), 10 + scale_ * (top_ - seen[1]), seen[2]};
+    }
+    Vec3 toward() const { return rows_.row(2); }
+    double scale() const { return scale_; }
+    std::string open(const std::string& title) const {
+        return fmt::format(R"(<svg viewBox="0 0 {:.0f} {:.0f}" role="img" aria-label="{}"><title>{}</title>)", width_,
+                           height_ + 34, title, title);
+    }
+    double height() const { return height_; }
+
+private:
+    mesh::Box box_;
+    Mat3 rows_;
+    Eigen::RowVector3d low_;
+    double scale_, height_, width_, top_;
+};
+
+/// The faces that look at the reader, furthest first, shaded.
+std::string surface_svg(const skeleton::Model& model, const View& view) {
+    const Points normals = mesh::area_vectors(model.surface);
+    std::vector<int> facing;
+    for (int t = 0; t < normals.rows(); ++t) {
+        if (normals.row(t).dot(view.toward()) > 0) facing.push_back(t);
+    }
+    const auto depth = [&](int t) {
+        return (model.surface.vertices.row(model.surface.triangles(t, 0)) +
+                model.surface.vertices.row(model.surface.triangles(t, 1)) +
+                model.surface.vertices.row(model.surface.triangles(t, 2)))
+            .dot(view.toward());
+    };
+    std::sort(facing.begin(), facing.end(), [&](int i, int j) { return depth(i) < depth(j); });
+    std::string svg = R"(<g id="body" stroke-width=".4">)";
+    for (const int t : facing) {
+        const double light = normals.row(t).normalized().dot(view.toward());
+        const int grey = static_cast<int>(150 + 95 * light);
+        std::string corners;
+        for (int c = 0; c < 3; ++c) {
+            const Vec3 p = view(model.surface.vertices.row(model.surface.triangles(t, c)).transpose());
+            corners += fmt::format("{:.1f},{:.1f} ", p.x(), p.y());
+        }
+        svg += fmt::format(R"svg(<polygon points="{0}" fill="rgb({1},{1},{1})" stroke="rgb({1},{1},{1})"/>)svg",
+                           corners, grey);
+    }
+    return svg + "</g>";
+}
+
+std::string colour_bar(const View& view, double low, double high, const std::string& words) {
+    std::string svg;
+    constexpr int steps = 40;
+    for (int i = 0; i < steps; ++i) {
+        svg += fmt::format(R"(<rect x="{:.1f}" y="{:.1f}" width="5.2" height="8" fill="{}"/>)", 10 + 5.0 * i,
+                           view.height() + 4, colour((i + 0.5) / steps));
+    }
+    return svg + fmt::format(R"(<text x="10" y="{:.1f}" class="small">{:.3g}</text>)"
+                             R"(<text x="210" y="{:.1f}" class="small" text-anchor="end">{:.3g}</text>)"
+                             R"(<text x="220" y="{:.1f}" class="small">{}</text>)",
+                             view.height() + 26, low, view.height() + 26, high, view.height() + 12, words);
+}
+
+Points all_points(const skeleton::Model& model) {
+    if (model.surface.vertices.rows() > 0) return model.surface.vertices;
+    Points centers(static_cast<Eigen::Index>(model.spheres.size()), 3);
+    for (std::size_t s = 0; s < model.spheres.size(); ++s)
+        centers.row(static_cast<Eigen::Index>(s)) = model.spheres[s].center;
+    return centers;
+}
+
+}  // namespace
+
+std::string skeleton_picture(const skeleton::Model& model) {
+    const View view(all_points(model));
+    std::string svg = view.open("Spheres and links of the model in its surface") + R"(<g opacity=".35">)" +
+                      surface_svg(model, view) + "</g>";
+    std::vector<double> logs;
+    for (const auto& link : model.links) logs.push_back(std::log10(std::max(link.stiffness[0], 1e-30)));
+    std::sort(logs.begin(), logs.end());
+    const double low = logs.empty() ? 0 : logs[logs.size() / 50],
+                 high = logs.empty() ? 1 : logs[logs.size() - 1 - logs.size() / 50];
+    const double range = std::max(high - low, 1e-9);
+    for (const auto& link : model.links) {
+        const Vec3 a = view(model.spheres[link.a].center), b = view(model.spheres[link.b].center);
+        svg += fmt::format(R"(<line x1="{:.1f}" y1="{:.1f}" x2="{:.1f}" y2="{:.1f}" stroke="{}" stroke-width="2.2"/>)",
+                           a.x(), a.y(), b.x(), b.y(),
+                           colour((std::log10(std::max(link.stiffness[0], 1e-30)) - low) / range));
+    }
+    for (const auto& sphere : model.spheres) {
+        const Vec3 c = view(sphere.center);
+        svg += fmt::format(R"(<circle cx="{:.1f}" cy="{:.1f}" r="{:.1f}" class="{}"/>)", c.x(), c.y(),
+                           view.scale() * sphere.radius, sphere.held ? "held" : "sphere");
+        svg += fmt::format(R"(<circle cx="{:.1f}" cy="{:.1f}" r="2.4" class="center"/>)", c.x(), c.y());
+    }
+    return svg +
+           colour_bar(view, std::pow(10, low), std::pow(10, high),
+                      "elongation stiffness of links [N/mm], logarithmic") +
+           "</svg>";
+}
+
+std::string dot_picture(const skeleton::Model& model, const std::vector<Dot>& dots, double highest,
+                        const std::string& unit) {
+    const View view(all_points(model));
+    std::string svg = view.open("Error at each marker") + R"(<g opacity=".9"><use href="#body"/></g>)";
+    std::vector<Dot> sorted = dots;
+    std::sort(sorted.begin(), sorted.end(),
+              [&](const Dot& a, const Dot& b) { return view(a.at).z() < view(b.at).z(); });
+    for (const Dot& dot : sorted) {
+        const Vec3 c = view(dot.at);
+        svg += fmt::format(
+            R"(<circle cx="{:.1f}" cy="{:.1f}" r="4.5" fill="{}" stroke="{}" stroke-width="{}"><title>{:.3g} {}</title></circle>)",
+            c.x(), c.y(), colour(highest > 0 ? dot.value / highest : 0), dot.strange ? "#c8741a" : "#fff",
+            dot.strange ? 2 : 0.8, dot.value, unit);
+    }
+    return svg + colour_bar(view, 0, highest, "rms error of each marker over all states [" + unit + "]") + "</svg>";
+}
+
+}  // namespace palpate::pipeline

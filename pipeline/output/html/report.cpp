@@ -1,0 +1,217 @@
+#include "pipeline/output/html/report.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "mesh/text/atomic_file.h"
+#include "pipeline/output/html/charts/charts.h"
+#include "pipeline/output/html/charts/picture.h"
+#include "pipeline/output/html/escape.h"
+#include "pipeline/output/html/page/page_parts.h"
+#include "pipeline/output/html/run_files.h"
+#include "pipeline/output/html/sections/damping_section.h"
+#include "pipeline/output/html/sections/fit_sections.h"
+#include "pipeline/output/html/sections/inquiry_sections.h"
+#include "pipeline/output/html/sections/stiffness_section.h"
+#include "pipeline/output/html/view_data.h"
+#include "pipeline/output/text/comparison.h"
+#include "pipeline/output/text/diagnosis.h"
+#include "pipeline/output/text/words.h"
+
+namespace palpate::pipeline {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+/// The verdict, or where there is none how wrong the model is.
+std::string lead(const RunFiles& files) {
+    return files.diagnosis.is_null() ? compare_in_words(files.compare) : diagnosis_in_words(files.diagnosis);
+}
+
+std::string share_of(const json& relative) {
+    if (!relative.is_number()) return "unknown";
+    const double share = relative.get<double>();
+    return share < 10 ? percent(share) : fmt::format("{:.0f} times", share);
+}
+
+std::string tile(const std::string& value, const std::string& what) {
+    return fmt::format(R"(<div class="tile"><b>{}</b>{}</div>)", escape(value), escape(what));
+}
+
+/// "2.6 → 0.63": before and after what was added, where something was.
+std::string before_and_after(const RunFiles& files, double before, const char* key) {
+    if (files.errors_after.empty()) return fmt::format("{:.3g}", before);
+    const json& last = files.ladder["steps"].back()[key];
+    return fmt::format("{:.3g} → {:.3g}", files.ladder["steps"].front()[key].get<double>(), last.get<double>());
+}
+
+std::string tiles(const RunFiles& files) {
+    const auto held =
+        std::count_if(files.model.spheres.begin(), files.model.spheres.end(), [](auto& s) { return s.held; });
+    const auto informed =
+        std::count_if(files.posterior.begin(), files.posterior.end(), [](auto& r) { return r.informed; });
+    const json& error = files.compare["error"];
+    const json& noise = error["noise_mm"];
+    std::string html = "<div class=\"tiles\">";
+    if (!files.diagnosis.is_null()) html += tile(files.diagnosis["verdict"].get<std::string>(), "verdict");
+    html += tile(before_and_after(files, error["rms_mm"].get<double>(), "rms_mm") + " mm", "rms error of the model");
+    if (noise.is_number()) html += tile(fmt::format("{:.2g} mm", noise.get<double>()), "noise of the measurements");
+    return html +
+           tile(share_of(error["relative"]), files.errors_after.empty()
+                                                 ? "rms error over rms displacement"
+                                                 : "rms error over rms displacement, nothing added") +
+           tile(fmt::format("{} + {}", files.model.spheres.size() - held, held), "spheres, free + held") +
+           tile(std::to_string(files.model.links.size()), "links") +
+           tile(fmt::format("{} of {}", informed, files.posterior.size()), "stiffnesses that the data inform") +
+           "</div>";
+}
+
+std::string figure(const std::string& picture, const std::string& words) {
+    return "<figure>" + picture + "<figcaption class=\"soft\">" + words + "</figcaption></figure>";
+}
+
+std::string pictures(const RunFiles& files) {
+    double highest = 0;
+    for (const Dot& dot : files.errors_before) highest = std::max(highest, dot.value);
+    const bool strange = std::ranges::any_of(files.errors_before, [](const Dot& dot) { return dot.strange; });
+    std::string html =
+        "<div class=\"pair\">" +
+        figure(skeleton_picture(files.model), "Spheres and links; spheres that are held in orange.") +
+        figure(dot_picture(files.model, files.errors_before, highest, "mm"),
+               std::string("Where the model is wrong") + (files.errors_after.empty() ? "." : ", nothing added.") +
+                   (strange ? " Orange rings: finite elements do not explain it either." : ""));
+    if (!files.errors_after.empty()) {
+        const auto effects = files.ladder["steps"].back()["effects"].get<std::vector<std::string>>();
+        html += figure(dot_picture(files.model, files.errors_after, highest, "mm"),
+                       "The same with " + listed(effects) + ", in the same colours.");
+    }
+    return html + "</div>";
+}
+
+std::string probe_chart(const RunFiles& files) {
+    const json held_out = files.record.value("held_out_probes", json::array());
+    std::vector<Bar> rms, relative;
+    for (const json& p : files.compare["probes"]) {
+        const bool kept = std::find(held_out.begin(), held_out.end(), p["probe"]) != held_out.end();
+        const std::string label = fmt::format("probe {}, time {:g}{}", p["probe"].get<int>(), p["time"].get<double>(),
+                                              kept ? ", held out" : "");
+        rms.push_back({label, p["rms_mm"].get<double>(), kept});
+        if (p["relative"].is_number()) relative.push_back({label, 100 * p["relative"].get<double>(), kept});
+    }
+    return "<div class=\"pair\">" + bar_chart(rms, "Error of each state", "mm rms") +
+           bar_chart(relative, "Error over displacement of each state", "%") + "</div>" +
+           (held_out.empty() ? "" : "<p class=\"soft\">Orange: kept from the fit.</p>");
+}
+
+std::string stage_table(const RunFiles& files) {
+    std::string rows;
+    for (const char* stage :
+         {"mesh", "skeleton", "measurements", "identify", "diagnose", "compare", "improve", "sphere_curve"}) {
+        if (!files.record["stages"].contains(stage)) continue;
+        const json& s = files.record["stages"][stage];
+        std::string figures;
+        for (const auto& [key, value] : s["figures"].items()) {
+            if (!value.is_number() && !value.is_string()) continue;
+            figures += figures.empty() ? "" : ", ";
+            figures +=
+                key + " " + (value.is_number() ? fmt::format("{:.4g}", value.get<double>()) : value.get<std::string>());
+        }
+        rows += fmt::format("<tr><td>{}</td><td>{:.1f}</td><td>{:.0f}</td><td style=\"text-align:left\">{}</td></tr>",
+                            stage, s["seconds"].get<double>(), s["peak_memory_mb"].get<double>(), escape(figures));
+    }
+    return "<div class=\"wide\"><table><tr><th>stage</th><th>seconds</th><th>peak MB</th><th "
+           "style=\"text-align:left\">figures</th></tr>" +
+           rows + "</table></div>";
+}
+
+std::string assumption_list(const RunFiles& files) {
+    std::string items;
+    for (const json& a : files.record.value("assumptions", json::array()))
+        items += "<li>" + escape(a.get<std::string>()) + "</li>";
+    for (const json& n : files.record["stages"]["identify"]["figures"].value("notes", json::array())) {
+        items += "<li>" + escape(n.get<std::string>()) + "</li>";
+    }
+    for (const json* asked : {&files.diagnosis, &files.ladder}) {
+        if (asked->is_null()) continue;
+        for (const json& n : (*asked)["notes"]) items += "<li>" + escape(n.get<std::string>()) + "</li>";
+    }
+    return items.empty() ? "" : "<h2 id=\"noted\">Assumed and noted</h2><ul>" + items + "</ul>";
+}
+
+std::string view_section(const RunFiles& files, const fs::path& run) {
+    const json data = view_data(run, files.record, files.compare, files.ladder, files.posterior);
+    if (data.is_null()) {
+        return "<p class=\"soft\">This run was made by an older palpate: run it again to turn the body here.</p>";
+    }
+    std::string html(page_view);
+    if (const auto left_out = data["left_out"].get<std::size_t>(); left_out > 0) {
+        html += fmt::format(
+            "<p class=\"soft\">{} of {} states are here, those with the largest errors; all are in the run folder.</p>",
+            data["states"].size(), data["states"].size() + left_out);
+    }
+    return html + "<script id=\"run-data\" type=\"application/json\">" + as_script_data(data) + "</script><script>" +
+           std::string(page_script) + "</script>";
+}
+
+/// What to open next, and what to type.
+std::string file_section(const RunFiles& files) {
+    const bool improved = files.best == "improve";
+    std::string html =
+        "<h2 id=\"files\">Files</h2><ul><li><code>" + files.best + "/model.json</code> is the model to use" +
+        (improved ? ", with what was missing added" : "") + ": <code>palpate simulate " + files.best +
+        "/model.json --probes probes.csv -o played</code></li><li><code>paraview --script=view.py</code> opens the run "
+        "in "
+        "ParaView</li><li><code>" +
+        files.best +
+        "/posterior.csv</code> holds every stiffness with its interval, <code>compare/compare.json</code> "
+        "every error</li>";
+    if (improved) html += "<li><code>improve/ladder.pvd</code>: play it, and the error falls</li>";
+    if (files.quality.is_null())
+        html += "<li><code>palpate run ... --sphere-curve</code> measures what fewer and more spheres would do</li>";
+    return html + "<li><code>palpate info .</code> in the run folder tells what lies there</li></ul>";
+}
+
+std::string contents(const std::string& page) {
+    std::string html = "<nav aria-label=\"Sections\">";
+    for (std::size_t at = page.find("<h2 id=\""); at != std::string::npos; at = page.find("<h2 id=\"", at + 1)) {
+        const std::size_t id = at + 8, id_end = page.find('"', id), end = page.find("</h2>", id_end);
+        html +=
+            "<a href=\"#" + page.substr(id, id_end - id) + "\">" + page.substr(id_end + 2, end - id_end - 2) + "</a>";
+    }
+    return html + "</nav>";
+}
+
+}  // namespace
+
+void write_report(const fs::path& run, const fs::path& page) {
+    const RunFiles files = read_run(run);
+    const std::string name = escape(files.model.name.empty() ? run.filename().string() : files.model.name);
+    std::string sections =
+        missing_section(files.diagnosis) + ladder_section(files.ladder) + budget_section(files.compare);
+    sections += "<h2 id=\"errors\">Where it is wrong</h2>" +
+                (files.diagnosis.is_null() ? "" : "<p>" + escape(compare_in_words(files.compare)) + "</p>") +
+                pictures(files) + probe_chart(files);
+    sections += stiffness_section(files.posterior, files.particles, files.prior, files.best + "/posterior.csv") +
+                damping_section(run / files.best) + convergence_section(run / "identify/convergence.csv") +
+                spheres_section(files.quality);
+    sections += assumption_list(files) + file_section(files);
+    sections += "<h2 id=\"times\">Times</h2>" + stage_table(files);
+    sections +=
+        "<h2 id=\"settings\">Settings</h2><details open><summary>case.yaml: every setting, defaults included"
+        "</summary><pre>" +
+        escape(files.settings) + "</pre></details><p class=\"soft\">palpate " +
+        escape(files.record.value("version", "")) +
+        fmt::format(", seed {}", files.record.value("seed", json()).dump()) + "</p>";
+    mesh::write_text(page,
+                     "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">"
+                     "<meta name=\"viewport\" content=\"width=device-width,initial-scale=1\">"
+                     "<meta name=\"generator\" content=\"palpate\"><link rel=\"icon\" href=\"data:,\"><title>" +
+                         name + "</title><style>" + std::string(page_style) + "</style></head><body><main><h1>" + name +
+                         "</h1><p class=\"lead\">" + escape(lead(files)) + "</p>" + tiles(files) +
+                         view_section(files, run) + contents(sections) + sections + "</main></body></html>\n");
+}
+
+}  // namespace palpate::pipeline

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "identify/identify.h"
+#include "pipeline/analysis/density.h"
+#include "pipeline/output/html/charts/picture.h"
+#include "skeleton/model/model.h"
+
+namespace palpate::pipeline {
+
+/// All that a page is made of, read from the run folder.
+struct RunFiles {
+    nlohmann::json record, compare;
+    nlohmann::json diagnosis, ladder, quality;  // null where the run did not ask
+    std::string settings;
+    std::string best;                               // the folder of the model to use: "improve" where there is one
+    std::vector<identify::PosteriorRow> posterior;  // of that model
+    ParticleSet particles;                          // of the same identification; there may be none
+    PriorKind prior = PriorKind::log_normal;
+    skeleton::Model model;
+    std::vector<Dot> errors_before, errors_after;  // rms of each marker; after: with all effects in, may be empty
+};
+
+/// @throws IoError when there is no such file, InvalidInput when it is no JSON.
+nlohmann::json read_json(const std::filesystem::path& file);
+
+/// @throws IoError, InvalidInput naming the file that is missing or broken.
+RunFiles read_run(const std::filesystem::path& run);
+
+}  // namespace palpate::pipeline

@@ -1,0 +1,86 @@
+#include "pipeline/output/html/sections/damping_section.h"
+
+#include <fmt/format.h>
+
+#include <map>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "mesh/text/atomic_file.h"
+#include "pipeline/output/damping.h"
+#include "pipeline/output/html/charts/charts.h"
+#include "pipeline/output/html/escape.h"
+#include "pipeline/output/html/run_files.h"
+
+namespace palpate::pipeline {
+namespace {
+
+using nlohmann::json;
+
+/// A chart of each recording in damping.csv: probe,marker,axis,time,measured,played.
+std::string trace_charts(const std::filesystem::path& file) {
+    struct Curves {
+        std::string marker, axis;
+        ChartLine measured{"measured", {}, ChartLine::Drawn::dots}, played{"model", {}, ChartLine::Drawn::line};
+    };
+    std::map<int, Curves> of_probe;
+    std::istringstream lines(mesh::read_text(file));
+    std::string line;
+    std::getline(lines, line);
+    while (std::getline(lines, line)) {
+        std::istringstream cells(line);
+        std::vector<std::string> cell;
+        for (std::string c; std::getline(cells, c, ',');) cell.push_back(c);
+        if (cell.size() != 6) continue;
+        Curves& curves = of_probe[std::stoi(cell[0])];
+        curves.marker = cell[1];
+        curves.axis = cell[2];
+        const double time = std::stod(cell[3]);
+        curves.measured.points.emplace_back(time, std::stod(cell[4]));
+        curves.played.points.emplace_back(time, std::stod(cell[5]));
+    }
+    std::string html;
+    for (const auto& [probe, curves] : of_probe) {
+        html +=
+            line_chart({curves.measured, curves.played},
+                       fmt::format("Probe {}: {} of marker {} [mm]", probe, curves.axis, curves.marker), "time [s]");
+    }
+    return html;
+}
+
+std::string interval(const json& known) {
+    return fmt::format("{:.3g} ({:.3g} – {:.3g})", known["q50"].get<double>(), known["q025"].get<double>(),
+                       known["q975"].get<double>());
+}
+
+std::string mode_table(const json& modes) {
+    std::string rows;
+    for (const json& mode : modes) {
+        rows += fmt::format("<tr><td>{:.3g}</td><td>{}</td><td>{}{}</td><td>{:.3g}</td><td>{:.1f} %</td></tr>",
+                            mode["frequency_hz"].get<double>(), interval(mode["measured_hz"]), interval(mode["ratio"]),
+                            mode["ratio"]["informed"].get<bool>() ? " ●" : "", mode["played_ratio"].get<double>(),
+                            100 * mode["share"].get<double>());
+    }
+    return "<div class=\"wide\"><table><tr><th>model [Hz]</th><th>measured [Hz]</th><th>damping ratio</th>"
+           "<th>as played</th><th>share of the motion</th></tr>" +
+           rows + "</table></div>";
+}
+
+}  // namespace
+
+std::string damping_section(const std::filesystem::path& folder) {
+    if (!std::filesystem::exists(folder / "damping.csv")) return {};
+    const json damping = read_json(folder / "identify.json")["damping"];
+    std::string html = fmt::format(
+        "<h2 id=\"damping\">Damping</h2><p>The slowest vibration that was seen has a damping ratio of {}; "
+        "{}. "
+        "Motion of {:.3g} mm rms is followed to {:.2g} mm.</p><div class=\"pair\">{}</div>{}",
+        interval(damping["modes"][0]["ratio"]), how_it_goes(damping), damping["displacement_mm"].get<double>(),
+        damping["rms_mm"].get<double>(), trace_charts(folder / "damping.csv"), mode_table(damping["modes"]));
+    for (const json& note : damping["notes"]) html += "<p>" + escape(note.get<std::string>()) + "</p>";
+    return html +
+           "<p class=\"soft\">Intervals hold 95 % of the posterior; ● known better than before. As played: by the "
+           "damping in model.json, which has two numbers for all modes.</p>";
+}
+
+}  // namespace palpate::pipeline

@@ -1,0 +1,74 @@
+#include "pipeline/output/html/sections/fit_sections.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <sstream>
+
+#include "mesh/text/atomic_file.h"
+#include "pipeline/output/html/charts/charts.h"
+
+namespace palpate::pipeline {
+namespace {
+
+using nlohmann::json;
+
+struct Trace {
+    ChartLine fit{"−ln of the posterior density", {}}, temperature{"temperature", {}}, samples{"effective samples", {}};
+};
+
+/// convergence.csv: stage,step,minus_log_density,temperature,effective_samples, empty where a stage has none.
+Trace read_trace(const std::filesystem::path& file) {
+    std::istringstream lines(mesh::read_text(file));
+    std::string line;
+    std::getline(lines, line);
+    Trace trace;
+    while (std::getline(lines, line)) {
+        std::istringstream cells(line);
+        std::vector<std::string> cell;
+        for (std::string c; std::getline(cells, c, ',');) cell.push_back(c);
+        const auto add = [&](ChartLine& curve, std::size_t column) {
+            if (column < cell.size() && !cell[column].empty()) {
+                curve.points.emplace_back(std::stod(cell[1]), std::stod(cell[column]));
+            }
+        };
+        add(trace.fit, 2);
+        add(trace.temperature, 3);
+        add(trace.samples, 4);
+    }
+    return trace;
+}
+
+}  // namespace
+
+std::string convergence_section(const std::filesystem::path& convergence) {
+    if (!std::filesystem::exists(convergence)) return {};
+    const Trace trace = read_trace(convergence);
+    return "<h2 id=\"convergence\">Convergence</h2><p>The search went down to the most probable stiffnesses; then "
+           "particles went from a proposal (temperature 0) to the posterior (1). Few effective samples mean a coarse "
+           "picture of it.</p><div class=\"pair\">" +
+           line_chart({trace.fit}, "Search: −ln of the posterior density", "step") +
+           line_chart({trace.samples}, "Particles: effective samples", "step") +
+           line_chart({trace.temperature}, "Particles: temperature", "step") + "</div>";
+}
+
+std::string spheres_section(const json& quality) {
+    if (quality.is_null()) return {};
+    ChartLine rms{"rms", {}}, median{"median", {}}, p90{"90th percentile", {}};
+    for (const json& step : quality["rungs"]) {
+        const double spheres = step["spheres"].get<double>();
+        rms.points.emplace_back(spheres, 100 * step["error"]["rms"].get<double>());
+        median.points.emplace_back(spheres, 100 * step["error"]["median"].get<double>());
+        p90.points.emplace_back(spheres, 100 * step["error"]["p90"].get<double>());
+    }
+    const auto own = std::ranges::find_if(quality["rungs"], [](const json& step) { return step["own"].get<bool>(); });
+    return fmt::format(
+               "<h2 id=\"spheres\">Number of spheres</h2><p>How well skeletons of this body, fitted link by link, "
+               "follow it in "
+               "finite elements, on probes that were held out. This run has {} free spheres; <code>--spheres N</code> "
+               "changes that.</p><div class=\"pair\">",
+               (*own)["spheres"].get<int>()) +
+           line_chart({p90, rms, median}, "Error over displacement [%]", "free spheres") + "</div>";
+}
+
+}  // namespace palpate::pipeline

@@ -1,0 +1,174 @@
+#include "pipeline/output/json/comparison.h"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+
+#include "pipeline/output/damping.h"
+#include "pipeline/output/json/json_values.h"
+
+namespace palpate::pipeline {
+namespace {
+
+using nlohmann::json;
+
+/// Rms error of each marker over all states, with its place at rest.
+json marker_errors(const identify::Comparison& c, const identify::MeasurementSet& set) {
+    std::vector<double> squares(set.markers.size(), 0.0);
+    std::vector<int> counts(set.markers.size(), 0);
+    for (std::size_t s = 0; s < set.states.size(); ++s) {
+        const auto& readings = set.states[s].readings;
+        for (std::size_t r = 0; r < readings.size(); ++r) {
+            if (readings[r].marker < 0) continue;
+            const Vec3 error = readings[r].position - c.predicted[s].row(static_cast<Eigen::Index>(r)).transpose();
+            for (const double e : error) {
+                if (std::isnan(e)) continue;
+                squares[readings[r].marker] += e * e;
+                ++counts[readings[r].marker];
+            }
+        }
+    }
+    json markers = json::array();
+    for (std::size_t m = 0; m < set.markers.size(); ++m) {
+        if (counts[m] == 0) continue;
+        markers.push_back({{"marker", set.markers[m].id},
+                           {"rms_mm", std::sqrt(squares[m] / counts[m])},
+                           {"at", numbers(set.markers[m].rest)}});
+    }
+    return markers;
+}
+
+}  // namespace
+
+json to_json(const identify::Comparison& c, const identify::MeasurementSet& set) {
+    json result = {
+        {"format", "palpate-comparison/1"},
+        {"error",
+         {{"rms_mm", c.rms}, {"max_mm", c.max}, {"relative", known(c.relative)}, {"noise_mm", known(c.noise)}}},
+        {"adequate", c.adequate},
+        {"p_value", known(c.p_value)}};
+    if (c.load_exponent) {
+        result["load_exponent"] = {
+            {"value", c.load_exponent->value}, {"sd", c.load_exponent->sd}, {"words", c.load_exponent->words}};
+    }
+    if (!c.overloaded_probes.empty()) result["not_borne"] = c.overloaded_probes;
+    result["probes"] = json::array();
+    for (const auto& p : c.probes) {
+        result["probes"].push_back({{"probe", p.probe},
+                                    {"time", p.time},
+                                    {"rms_mm", p.rms},
+                                    {"max_mm", p.max},
+                                    {"relative", known(p.relative)}});
+    }
+    result["worst"] = json::array();
+    for (const auto& w : c.worst) {
+        result["worst"].push_back({{"marker", w.marker},
+                                   {"probe", w.probe},
+                                   {"time", w.time},
+                                   {"error_mm", w.error},
+                                   {"at", numbers(w.at)},
+                                   {"towards", numbers(w.towards)}});
+    }
+    result["markers"] = marker_errors(c, set);
+    return result;
+}
+
+json worst_probes_json(const identify::Comparison& comparison, const identify::MeasurementSet& set) {
+    constexpr std::size_t listed_probes = 3;
+    std::vector<identify::ProbeError> worst;
+    std::ranges::copy_if(comparison.probes, std::back_inserter(worst),
+                         [](const identify::ProbeError& p) { return std::isfinite(p.relative); });
+    std::ranges::stable_sort(worst, std::greater{}, &identify::ProbeError::relative);
+    const Points& surface = set.rest_surface.vertices;
+    const std::vector<char> held = mesh::contains(set.supports, surface);
+    json result = json::array();
+    for (const identify::ProbeError& probe : worst) {
+        if (result.size() == listed_probes) break;
+        const auto state = std::ranges::find_if(set.states, [&](const identify::LoadState& s) {
+            return s.probe == probe.probe && s.time == probe.time && !s.contacts.empty();
+        });
+        if (state == set.states.end()) continue;
+        const Vec3 at = state->contacts.front().point;
+        double gap = INFINITY;
+        for (Eigen::Index v = 0; v < surface.rows(); ++v)
+            if (held[static_cast<std::size_t>(v)]) gap = std::min(gap, (surface.row(v).transpose() - at).norm());
+        result.push_back({{"probe", probe.probe},
+                          {"relative", probe.relative},
+                          {"at", numbers(at)},
+                          {"from_support_mm", known(gap)}});
+    }
+    return result;
+}
+
+json to_json(const mesh::SurfaceReport& r) {
+    return {{"vertices", r.vertices},
+            {"triangles", r.triangles},
+            {"duplicate_vertices", r.duplicate_vertices},
+            {"degenerate_triangles", r.degenerate_triangles},
+            {"duplicate_triangles", r.duplicate_triangles},
+            {"boundary_edges", r.boundary_edges},
+            {"holes", r.holes},
+            {"non_manifold_edges", r.non_manifold_edges},
+            {"inconsistent_edges", r.inconsistent_edges},
+            {"self_intersections", r.self_intersections},
+            {"components", r.components},
+            {"closed", r.closed},
+            {"outward", r.outward},
+            {"volume_mm3", r.volume},
+            {"area_mm2", r.area},
+            {"box", {{"min", numbers(r.box.min)}, {"max", numbers(r.box.max)}}},
+            {"sound", r.sound()}};
+}
+
+json summary_json(const identify::IdentifyResult& result) {
+    json posterior = json::array();
+    int informed = 0;
+    for (const auto& row : result.posterior) informed += row.informed ? 1 : 0;
+    constexpr std::size_t most_listed = 30;  // the rest stands in posterior.csv
+    if (result.posterior.size() <= most_listed) {
+        for (std::size_t p = 0; p < result.posterior.size(); ++p) {
+            const identify::PosteriorRow& row = result.posterior[p];
+            posterior.push_back({{"parameter", row.parameter},
+                                 {"unit", row.unit},
+                                 {"best", result.best[static_cast<Eigen::Index>(p)]},
+                                 {"mean", row.mean},
+                                 {"sd", row.sd},
+                                 {"q025", row.q025},
+                                 {"q975", row.q975}});
+        }
+    }
+    json modes = json::array();
+    for (const identify::Mode& mode : result.modes) {
+        json entry = {{"probability", mode.probability}};
+        if (result.posterior.size() <= most_listed) {
+            for (std::size_t p = 0; p < result.posterior.size(); ++p) {
+                entry["stiffness"][result.posterior[p].parameter] = mode.stiffness[static_cast<Eigen::Index>(p)];
+            }
+        }
+        modes.push_back(std::move(entry));
+    }
+    json places = json::array();
+    for (const Vec3& place : result.measured.places) places.push_back({place.x(), place.y(), place.z()});
+    return {{"law", skeleton::law_names[static_cast<std::size_t>(result.model.law)]},
+            {"parameters", result.posterior.size()},
+            {"informed", informed},
+            {"posterior", posterior},
+            {"modes", modes},
+            {"log_evidence", known(result.log_evidence)},
+            {"effective_samples", result.history.empty() ? 0.0 : result.history.back().effective_samples},
+            {"acceptance", known(result.acceptance)},
+            {"model_error", known(result.model_error)},
+            {"forecast_error",
+             {{"relative", known(result.forecast_error.relative)},
+              {"least_displacement_mm", result.forecast_error.least_displacement},
+              {"probes", result.forecast_error.probes}}},
+            {"measured",
+             {{"force_N", result.measured.force},
+              {"displacement_mm", result.measured.displacement},
+              {"places_mm", places}}},
+            {"equilibria", result.equilibria},
+            {"damping", result.damping ? to_json(*result.damping) : json(nullptr)},
+            {"notes", result.notes}};
+}
+
+}  // namespace palpate::pipeline

@@ -1,0 +1,112 @@
+#include "pipeline/output/ladder.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "mesh/text/atomic_file.h"
+#include "pipeline/output/csv/particles.h"
+#include "pipeline/output/csv/posterior.h"
+#include "pipeline/output/damping.h"
+#include "pipeline/output/json/comparison.h"
+#include "pipeline/output/json/json_values.h"
+#include "pipeline/output/text/words.h"
+#include "pipeline/output/vtk/ladder_series.h"
+#include "pipeline/output/vtk/series.h"
+#include "skeleton/model/io/model_io.h"
+
+namespace palpate::pipeline {
+namespace {
+
+using nlohmann::json;
+
+json errors_json(const identify::StepError& error) {
+    return {{"rms_mm", known(error.rms_mm)},
+            {"held_out_rms_mm", known(error.held_out_rms_mm)},
+            {"relative", known(error.relative)}};
+}
+
+json to_json(const identify::LadderStep& step) {
+    json result = errors_json(step.skeleton);
+    result["effects"] = json::array();
+    for (const skeleton::EffectRecord& effect : step.effects) result["effects"].push_back(effect.name);
+    result["log_evidence"] = known(step.log_evidence);
+    result["predicted_rms_mm"] = known(step.predicted_rms_mm);
+    result["reference"] = nullptr;
+    if (step.reference) {
+        result["reference"] = errors_json(*step.reference);
+        result["reference"]["whitened_rms"] = known(step.reference->whitened_rms);
+        result["reference"]["held_out_whitened_rms"] = known(step.reference->held_out_whitened_rms);
+    }
+    return result;
+}
+
+std::string millimetres(const json& error) {
+    std::string text = fmt::format("{:.3g} mm rms", error["rms_mm"].get<double>());
+    if (error["held_out_rms_mm"].is_number()) {
+        text += fmt::format(" ({:.3g} on probes held out)", error["held_out_rms_mm"].get<double>());
+    }
+    return text;
+}
+
+std::string step_in_words(const json& step) {
+    const auto effects = step["effects"].get<std::vector<std::string>>();
+    std::string text = (effects.empty() ? "Without: " : "With " + listed(effects) + ": ") + millimetres(step);
+    if (step["reference"].is_object()) {
+        text += "; in finite elements " + millimetres(step["reference"]);
+        if (step["predicted_rms_mm"].is_number()) {
+            text += fmt::format(", where the screen had expected {:.3g}", step["predicted_rms_mm"].get<double>());
+        }
+    }
+    return text + ".";
+}
+
+/// The verdict is on the body in finite elements, where there is one: a skeleton may be coarse besides.
+const char* verdict_in_words(const std::string& verdict, bool reference) {
+    if (verdict == "adequate")
+        return reference ? "The residual of the finite-element model is noise." : "What is left is noise.";
+    if (verdict == "unexplained") return "Something is still missing that the catalogue does not hold.";
+    if (verdict == "ambiguous") return "An effect is still missing, but these measurements cannot identify which one.";
+    return "Another effect is still missing: run diagnose on the new model.";
+}
+
+}  // namespace
+
+json to_json(const identify::Ladder& ladder) {
+    json steps = json::array();
+    for (const identify::LadderStep& step : ladder.steps) steps.push_back(to_json(step));
+    return {{"format", "palpate-ladder/1"},
+            {"steps", steps},
+            {"held_out_probes", ladder.held_out_probes},
+            {"model", "model.json"},
+            {"verdict", identify::verdict_names[static_cast<std::size_t>(ladder.verdict)]},
+            {"notes", ladder.notes}};
+}
+
+std::string ladder_in_words(const json& ladder) {
+    std::string text;
+    for (const json& step : ladder["steps"]) text += step_in_words(step) + "\n";
+    return text +
+           verdict_in_words(ladder["verdict"].get<std::string>(), ladder["steps"].back()["reference"].is_object()) +
+           "\n";
+}
+
+void write_ladder(const std::filesystem::path& folder, const identify::Ladder& ladder) {
+    const skeleton::Model& model = ladder.steps.back().model;
+    write_ladder_series(folder, ladder);
+    for (std::size_t i = 0; i < ladder.steps.size(); ++i) {
+        const identify::LadderStep& step = ladder.steps[i];
+        const std::filesystem::path of_step = folder / fmt::format("step_{}", i);
+        write_played_series(of_step, step.model, step.set, step.comparison);
+        skeleton::write_model(of_step / "model.json", step.validation_model);
+    }
+    mesh::write_text(folder / "posterior.csv", posterior_csv(ladder.identified.posterior));
+    mesh::write_text(folder / "particles.csv", particles_csv(ladder.identified));
+    if (ladder.identified.damping) mesh::write_text(folder / "damping.csv", damping_csv(*ladder.identified.damping));
+    mesh::write_text(folder / "identify.json", summary_json(ladder.identified).dump(2) + "\n");
+    skeleton::write_model_vtp(folder / "model.vtp", model);
+    skeleton::write_model(folder / "model.json", model);
+    mesh::write_text(folder / "ladder.json", to_json(ladder).dump(2) + "\n");
+}
+
+}  // namespace palpate::pipeline

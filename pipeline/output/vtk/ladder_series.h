@@ -1,0 +1,14 @@
+#pragma once
+
+#include <filesystem>
+
+#include "identify/diagnosis/ladder.h"
+
+namespace palpate::pipeline {
+
+/// ladder.pvd: a step of time for each step of the ladder, so that playing it shows the error fall. The markers of all
+/// states stand where they were measured, with "error [mm]" (from model to measurement), "displacement [mm]" (of the
+/// model), "measured [mm]", "probe" and "time".
+void write_ladder_series(const std::filesystem::path& folder, const identify::Ladder& ladder);
+
+}  // namespace palpate::pipeline

@@ -1,0 +1,131 @@
+#include "pipeline/run/inquiry.h"
+
+#include <fmt/format.h>
+
+#include "identify/diagnosis/ladder.h"
+#include "mesh/errors.h"
+#include "mesh/supports/region_yaml.h"
+#include "mesh/text/atomic_file.h"
+#include "pipeline/case/settings.h"
+#include "pipeline/output/identification.h"
+#include "pipeline/output/json/diagnosis.h"
+#include "pipeline/output/json/reference_comparison.h"
+#include "pipeline/output/ladder.h"
+#include "pipeline/output/text/words.h"
+#include "pipeline/run/summary.h"
+
+namespace palpate::pipeline::commands {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+/// Calls `work`; what keeps it from a result becomes a reason in words.
+template <typename Work>
+std::string reason_of_failure(Work&& work) {
+    try {
+        work();
+    } catch (const InvalidInput& e) {
+        return e.what();
+    } catch (const SolverFailure& e) {
+        return e.what();
+    }
+    return {};
+}
+
+}  // namespace
+
+RunDiagnosis::RunDiagnosis(RunFolder& folder, const Subject& subject, const identify::MeasurementSet& set,
+                           const Common& common)
+    : folder_(folder), subject_(subject), set_(set), common_(common) {
+    if (!subject.settings.diagnose.reference) why_none_ = "it was not asked for";
+}
+
+json RunDiagnosis::settings() const {
+    const Case& c = subject_.settings;
+    return {{"settings", settings_of_stage(c, "diagnose")},
+            {"edge", c.edge_length},
+            {"density", set_.density.value_or(0)},
+            {"young", subject_.material.young},
+            {"supports", mesh::regions_to_yaml(set_.supports)}};
+}
+
+const identify::ReferenceBody& RunDiagnosis::reference() {
+    if (!reference_) reference_ = reference_of(set_, subject_.settings.edge_length);
+    return *reference_;
+}
+
+const identify::Diagnosis& RunDiagnosis::diagnosed(const skeleton::Model& model) {
+    if (!diagnosis_) {
+        identify::DiagnoseOptions how = diagnose_options(model, common_);
+        how.without = subject_.settings.diagnose.without;
+        diagnosis_ = identify::diagnose(reference(), set_, how, Console::progress());
+    }
+    return *diagnosis_;
+}
+
+json RunDiagnosis::diagnose(const skeleton::Model& model) {
+    json result;
+    if (why_none_.empty()) {
+        why_none_ = reason_of_failure([&] {
+            const bool ran =
+                folder_.stage({"diagnose", settings(), subject_.files, {"skeleton"}, {"diagnose/diagnosis.json"}}, [&] {
+                    result = to_json(diagnosed(model), reference(), set_);
+                    mesh::write_text(folder_.path() / "diagnose/diagnosis.json", result.dump(2) + "\n");
+                    return json{{"verdict", result["verdict"]}};
+                });
+            result = json::parse(mesh::read_text(folder_.path() / "diagnose/diagnosis.json"));
+            const auto named = result["explanation"].get<std::vector<std::string>>();
+            report_stage(folder_, "diagnose", ran,
+                         result["verdict"].get<std::string>() + (named.empty() ? "" : ": " + listed(named)));
+        });
+    }
+    if (why_none_.empty()) return result;
+
+    if (subject_.settings.diagnose.reference) Console::warning("What is missing stays unknown: " + why_none_);
+    for (const char* stale : {"diagnose", "improve"}) fs::remove_all(folder_.path() / stale);
+    return nullptr;
+}
+
+void RunDiagnosis::compare_reference(json& compare, const skeleton::Model& model,
+                                     const identify::Comparison& comparison) {
+    if (why_none_.empty()) {
+        why_none_ = reason_of_failure([&] {
+            const identify::Diagnosis& diagnosis = diagnosed(model);
+            add_reference(compare, reference(), diagnosis, set_, comparison);
+            warn_of_modulus(compare, *subject_.set);  // with what the set itself says of its material
+        });
+    }
+    if (!why_none_.empty()) add_no_reference(compare, why_none_);
+}
+
+json RunDiagnosis::improve(const skeleton::Model& model, const json& diagnosis) {
+    if (diagnosis.is_null()) return nullptr;
+    identify::LadderOptions how{
+        .identify = subject_.settings.identify, .diagnose = diagnose_options(model, common_), .only_better = true};
+    how.identify.threads = common_.threads;
+    how.diagnose.without = subject_.settings.diagnose.without;
+    const auto effects = diagnosis["explanation"].get<std::vector<std::string>>();
+    json settings = this->settings();
+    settings["identify"] = settings_of_stage(subject_.settings, "identify");
+    settings["seed"] = how.identify.seed;
+    settings["effects"] = effects;
+    const fs::path folder = folder_.path() / "improve";
+    const bool ran = folder_.stage({"improve", settings, subject_.files, {"skeleton", "diagnose"}, {"improve"}}, [&] {
+        identify::Ladder ladder =
+            identify::build_ladder(model, reference(), set_, effects, how, &diagnosed(model), Console::progress());
+        ladder.identified.damping = damping_of(ladder.steps.back().model, set_, how.identify.seed, common_);
+        write_ladder(folder, ladder);
+        return json{{"steps", ladder.steps.size()}, {"rms_mm", ladder.steps.back().skeleton.rms_mm}};
+    });
+    json result = json::parse(mesh::read_text(folder / "ladder.json"));
+    const json& steps = result["steps"];
+    for (const json& note : result["notes"]) Console::notice(note.get<std::string>());
+    report_stage(folder_, "improve", ran,
+                 steps.size() < 2 ? (effects.empty() ? "nothing to add" : "nothing added")
+                                  : fmt::format("{:.3g} to {:.3g} mm rms", steps.front()["rms_mm"].get<double>(),
+                                                steps.back()["rms_mm"].get<double>()));
+    return result;
+}
+
+}  // namespace palpate::pipeline::commands

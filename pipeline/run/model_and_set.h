@@ -1,0 +1,47 @@
+#pragma once
+
+#include <filesystem>
+#include <memory>
+
+#include "identify/diagnosis/diagnose.h"
+#include "identify/measurements/measurement_set.h"
+#include "identify/models/reference_body.h"
+#include "identify/motion/damping.h"
+#include "pipeline/command_line/commands.h"
+#include "skeleton/model/model.h"
+
+namespace palpate::pipeline::commands {
+
+struct ModelAndSet {
+    skeleton::Model model;
+    identify::MeasurementSet set;
+};
+
+/// A model and measurements, read; where they give different supports the set's win, said aloud.
+ModelAndSet read_model_and_set(const std::filesystem::path& model, const std::filesystem::path& set);
+
+/// The set as a model understands it: without the faults of the measurement that the model records.
+identify::MeasurementSet without_measurement_faults(const identify::MeasurementSet& set,
+                                                    const std::vector<skeleton::EffectRecord>& effects);
+
+/// The set's body in finite elements; what it assumes is said aloud.
+/// @throws InvalidInput telling why there is none.
+std::unique_ptr<identify::ReferenceBody> reference_of(const identify::MeasurementSet& set, double edge_length);
+
+/// What errors are judged on: "reference", or "skeleton", which starts from the set's Young's modulus where it has one.
+/// @throws InvalidInput telling why there is no reference.
+std::unique_ptr<identify::BodyModel> body_to_diagnose(const std::string& kind, const ModelAndSet& given,
+                                                      double edge_length);
+
+/// Says aloud where a fit's Young's modulus hints at a slip of units. `compare`: with the baseline that was fitted.
+void warn_of_modulus(const nlohmann::json& compare, const identify::MeasurementSet& set);
+
+/// How a model's motion dies away, from the set's recordings, put into the model; nothing without recordings. Where it
+/// cannot be told, that is said aloud.
+std::optional<identify::DampingResult> damping_of(skeleton::Model& model, const identify::MeasurementSet& set,
+                                                  std::uint64_t seed, const Common& common);
+
+/// Options of a diagnosis of what a model lacks besides the effects that it has.
+identify::DiagnoseOptions diagnose_options(const skeleton::Model& model, const Common& common);
+
+}  // namespace palpate::pipeline::commands

@@ -1,0 +1,222 @@
+#include "pipeline/synthesis/blind_set.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "mesh/errors.h"
+#include "pipeline/synthesis/loading/load_sequence.h"
+#include "pipeline/synthesis/loading/reading_faults.h"
+
+namespace palpate::pipeline {
+namespace {
+
+constexpr double default_noise = 0.02;  // of the rms displacement, where something is hidden
+constexpr double visible = 5;           // sigmas that an effect changes the readings by, at least
+
+std::vector<std::string> names_of(const std::vector<EffectSpec>& specs) {
+    std::vector<std::string> names;
+    names.reserve(specs.size());
+    for (const EffectSpec& spec : specs) names.push_back(spec.effect);
+    return names;
+}
+
+/// Three digits, as somebody would tell it; never more.
+double rounded_down(double noise) {
+    if (noise <= 0) return 0;
+    const double unit = std::pow(10, std::floor(std::log10(noise)) - 2);
+    return std::stod(fmt::format("{:.3g}", std::floor(noise / unit) * unit));
+}
+
+class BlindSetMaker {
+public:
+    BlindSetMaker(const Specimen& specimen, const ProbeOptions& probing, const BlindSetOptions& options,
+                  std::uint64_t seed, int threads, const Progress& progress)
+        : specimen_(specimen),
+          probing_(probing),
+          options_(options),
+          specs_(read_specs(options.hide)),
+          sequence_(sequence_of(options, specs_)),
+          seed_(seed),
+          play_{.continuous = sequence_.continuous, .threads = threads},
+          progress_(progress) {
+        std::erase_if(specs_, [](const EffectSpec& spec) { return spec.effect == "none"; });
+        std::ranges::for_each(specs_, check_spec);
+    }
+
+    BlindSet execute() {
+        blind_set_.is_blind = !options_.hide.empty();
+        blind_set_.notes = sequence_.notes;
+        const double size = specimen_.model->size();
+        plan_ = make_plan(specimen_, options_, sequence_.timing,
+                          size * probing_.largest_displacement(specimen_.in_small_strain()), play_.threads, progress_);
+        choose_noise();
+        hide_all();
+        play_together();
+        write_set();
+        blind_set_.notes.insert(blind_set_.notes.end(), plan_.notes.begin(), plan_.notes.end());
+        return std::move(blind_set_);
+    }
+
+private:
+    std::vector<Points> seen_bare() const {
+        return seen(specimen_, {.setting = specimen_.setting}, plan_.histories, plan_.baseline);
+    }
+
+    void choose_noise() {
+        noise_is_specified_ = options_.noise.has_value() || !blind_set_.is_blind;
+        blind_set_.noise = options_.noise.value_or(0);
+        if (noise_is_specified_) return;
+        const std::vector<Points> baseline = seen_bare();
+        blind_set_.noise = rounded_down(default_noise * strength_of(specimen_, baseline, baseline).displacement);
+    }
+
+    void hide_all() {
+        const EffectSpec* in_sigmas = first_with(&identify::SynthesisNeeds::noise, specs_);
+        if (in_sigmas && blind_set_.noise == 0) {
+            throw InvalidInput(fmt::format("effect '{}' is told in sigmas of the noise, and there is none; say --noise",
+                                           in_sigmas->effect));
+        }
+        for (std::size_t w = 0; w < specs_.size(); ++w) {
+            report(progress_, "hiding " + specs_[w].effect,
+                   static_cast<double>(w) / static_cast<double>(specs_.size()));
+            const std::vector<EffectSampler> samplers =
+                samplers_of(specimen_, plan_, specs_[w], sequence_.timing, seed_);
+            blind_set_.hidden.push_back(hide(specimen_, plan_, samplers, {.noise = blind_set_.noise}, play_));
+            report(progress_, "hiding " + specs_[w].effect, 1);
+            see_to_visibility(blind_set_.hidden.back());
+        }
+    }
+
+    /// What is weaker than asked for, though it is as strong as is sensible, is seen at less noise.
+    void see_to_visibility(const HiddenEffect& hidden) {
+        if (hidden.is_specified || hidden.strength.change >= visible * blind_set_.noise) return;
+        const double sigmas = hidden.strength.change / blind_set_.noise;
+        if (noise_is_specified_) {
+            blind_set_.notes.push_back(
+                fmt::format("Effect '{}' changes the readings by {:.2g} sigma only, though it is as strong as is "
+                            "sensible here; say less --noise, another --seed, or its numbers.",
+                            hidden.effect.name, sigmas));
+            return;
+        }
+        blind_set_.noise = rounded_down(hidden.strength.change / visible);
+        blind_set_.notes.push_back(
+            fmt::format("Effect '{}' changes the readings by {:.2g} mm only, as strong as is sensible here: the noise "
+                        "is made as much smaller.",
+                        hidden.effect.name, hidden.strength.change));
+    }
+
+    std::vector<skeleton::EffectRecord> effects() const {
+        std::vector<skeleton::EffectRecord> all;
+        all.reserve(blind_set_.hidden.size());
+        for (const HiddenEffect& hidden : blind_set_.hidden) all.push_back(hidden.effect);
+        return all;
+    }
+
+    /// All effects in force. A probe that finds no equilibrium then presses less, three times at most.
+    void play_together() {
+        constexpr int attempts = 4;
+        conditions_ = true_conditions(specimen_, effects());
+        // What yields gives way for good: to seek long is in vain.
+        SimulationOptions options = play_;
+        options.is_patient = !conditions_.setting.effects.plasticity;
+        for (int attempt = 0;; ++attempt) {
+            try {
+                // From the bare paths, not from trials: told again, the same effects give the same digits.
+                paths_ = simulate(specimen_, conditions_, plan_.histories, options, &plan_.baseline);
+            } catch (const SolverFailure& failure) {
+                throw SolverFailure(fmt::format("with {} the body has no equilibrium: {}",
+                                                fmt::join(names_of(specs_), ", "), failure.what()));
+            }
+            std::vector<char> failed;
+            failed.reserve(paths_.size());
+            for (const EquilibriumPath& path : paths_) failed.push_back(path.empty());
+            if (failed.front()) {
+                throw SolverFailure(fmt::format(
+                    "with {} in it the body finds no equilibrium though nothing touches it; hide less of it",
+                    fmt::join(names_of(specs_), ", ")));
+            }
+            if (std::ranges::count(failed, 1) == 0) return;
+            if (attempt + 1 < attempts) {
+                reduce_forces(specimen_, plan_, failed, play_.threads);
+                blind_set_.notes.push_back(fmt::format(
+                    "With what is hidden {} probes find no equilibrium: they press less than they would without.",
+                    std::ranges::count(failed, 1)));
+            } else {
+                leave_out(plan_, failed);
+                std::erase_if(paths_, [](const EquilibriumPath& path) { return path.empty(); });
+                return;
+            }
+        }
+    }
+
+    ReadingFaults faults() const {
+        return {.noise = blind_set_.noise,
+                .outlier_share = conditions_.outlier_share,
+                .outlier_width = conditions_.outlier_width,
+                .missing = options_.missing,
+                .unlabelled = options_.unlabelled};
+    }
+
+    void write_set() {
+        identify::MeasurementSet& set = blind_set_.set;
+        set = specimen_.set;
+        set.continuous = sequence_.continuous;
+        if (blind_set_.noise > 0) set.position_noise = blind_set_.noise;
+        include_material();
+        const std::vector<Points> baseline = seen_bare();
+        std::vector<Points> hidden = seen(specimen_, conditions_, plan_.histories, paths_);
+        std::size_t s = 0;
+        for (std::size_t c = 0; c < plan_.histories.size(); ++c) {
+            for (std::size_t row = 0; row < plan_.histories[c].rows.size(); ++row, ++s) {
+                identify::LoadState state = plan_.histories[c].state(row);
+                state.readings = read_markers(state, hidden[s], faults(), seed_);
+                set.states.push_back(std::move(state));
+                blind_set_.configurations.push_back(paths_[c][row]);
+            }
+        }
+        blind_set_.strength = strength_of(specimen_, baseline, hidden);
+        blind_set_.strength.add(conditions_.scatter(blind_set_.noise));
+    }
+
+    void include_material() {
+        if (!specimen_.material) return;
+        identify::MaterialGuess guess;
+        if (!blind_set_.is_blind || options_.include_material) {
+            guess = {specimen_.material->young, specimen_.material->poisson};
+        } else if (first_with(&identify::SynthesisNeeds::specified_poisson, specs_)) {
+            // A body of another Poisson's ratio lacks nothing, unless somebody said what it should be.
+            guess.poisson = specimen_.material->poisson;
+            blind_set_.notes.push_back(
+                fmt::format("The set declares a Poisson's ratio of {:g}; the hidden one differs.", guess.poisson));
+        }
+        if (std::isfinite(guess.poisson)) blind_set_.set.material = guess;
+    }
+
+    const Specimen& specimen_;
+    const ProbeOptions& probing_;
+    const BlindSetOptions& options_;
+    std::vector<EffectSpec> specs_;
+    Sequence sequence_;
+    std::uint64_t seed_;
+    SimulationOptions play_;
+    Progress progress_;
+
+    Plan plan_;
+    TrueConditions conditions_;
+    std::vector<EquilibriumPath> paths_;
+    bool noise_is_specified_ = true;
+    BlindSet blind_set_;
+};
+
+}  // namespace
+
+BlindSet synthesise(const Specimen& specimen, const ProbeOptions& probing, const BlindSetOptions& options,
+                    std::uint64_t seed, int threads, const Progress& progress) {
+    probing.validate();
+    options.validate();
+    return BlindSetMaker(specimen, probing, options, seed, threads, progress).execute();
+}
+
+}  // namespace palpate::pipeline

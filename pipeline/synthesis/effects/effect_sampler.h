@@ -1,0 +1,24 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "identify/effects/hiding.h"
+#include "pipeline/synthesis/effects/effect_spec.h"
+#include "pipeline/synthesis/loading/load_plan.h"
+
+namespace palpate::pipeline {
+
+using identify::EffectSampler;
+
+/// Drafts of an effect: what is told is taken, the rest drawn. Several: other places for it, for where it can hardly be
+/// felt in the first one. Of an effect that a user made known one number may be left out, which is then its strength.
+/// @throws InvalidInput for an effect or a number that is not known, with its likely spelling,
+/// or an effect that cannot be on this specimen.
+std::vector<EffectSampler> samplers_of(const Specimen& specimen, const Plan& plan, const EffectSpec& spec,
+                                       const LoadTiming& timing, std::uint64_t seed);
+
+/// Refuses names of effects and numbers that are not known, before anything is computed. @throws InvalidInput.
+void check_spec(const EffectSpec& spec);
+
+}  // namespace palpate::pipeline

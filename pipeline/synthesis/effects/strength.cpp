@@ -1,0 +1,48 @@
+#include "pipeline/synthesis/effects/strength.h"
+
+#include <cmath>
+
+namespace palpate::pipeline {
+namespace {
+
+/// All coordinates one after the other.
+Eigen::VectorXd stacked(const std::vector<Points>& readings) {
+    Eigen::Index size = 0;
+    for (const Points& state : readings) size += state.size();
+    Eigen::VectorXd all(size);
+    Eigen::Index at = 0;
+    for (const Points& state : readings) {
+        all.segment(at, state.size()) = Eigen::Map<const Eigen::VectorXd>(state.data(), state.size());
+        at += state.size();
+    }
+    return all;
+}
+
+double rms(const Eigen::VectorXd& values) {
+    return values.size() > 0 ? std::sqrt(values.squaredNorm() / static_cast<double>(values.size())) : 0;
+}
+
+}  // namespace
+
+double rms(const std::vector<Points>& readings) { return rms(stacked(readings)); }
+
+Strength strength_of(const Specimen& specimen, const std::vector<Points>& baseline, const std::vector<Points>& hidden) {
+    const auto markers = static_cast<Eigen::Index>(specimen.set.markers.size());
+    Points rest(markers, 3);
+    for (Eigen::Index m = 0; m < markers; ++m) rest.row(m) = specimen.set.markers[m].rest;
+    std::vector<Points> displacements, changes;
+    for (std::size_t s = 0; s < baseline.size(); ++s) {
+        if (!hidden[s].allFinite()) continue;  // it found no equilibrium
+        displacements.emplace_back(baseline[s] - rest);
+        changes.emplace_back(hidden[s] - baseline[s]);
+    }
+    const Eigen::VectorXd u = stacked(displacements), change = stacked(changes);
+    const double scaling = u.squaredNorm() > 0 ? change.dot(u) / u.squaredNorm() : 0;
+    return {rms(u), rms(change), rms(change - scaling * u)};
+}
+
+void Strength::add(double variance) {
+    for (double* rms : {&change, &beyond}) *rms = std::sqrt(*rms * *rms + variance);
+}
+
+}  // namespace palpate::pipeline

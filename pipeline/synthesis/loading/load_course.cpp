@@ -1,0 +1,54 @@
+#include "pipeline/synthesis/loading/load_course.h"
+
+#include <cmath>
+
+namespace palpate::pipeline {
+
+identify::LoadState LoadCourse::state(std::size_t row) const {
+    identify::LoadState state{.probe = probe, .time = rows[row].time};
+    if (rows[row].force != 0) {
+        state.contacts = {contact};
+        state.contacts.front().force *= rows[row].force;
+    }
+    return state;
+}
+
+double LoadCourse::effective_force(std::size_t row, const std::optional<fem::CreepLaw>& creep) const {
+    if (!creep) return rows[row].force;
+    double force = 0;
+    double before = 0, since = 0;
+    for (std::size_t j = 0; j <= row; ++j) {
+        const double held = rows[row].time - since;
+        force += (rows[j].force - before) * (1 + creep->creep * (1 - std::exp(-held / creep->tau)));
+        before = rows[j].force;
+        since = rows[j].time;
+    }
+    return force;
+}
+
+LoadCourse unloaded_history() { return {0, {}, {{}}}; }
+
+std::vector<Row> rows_of(const std::vector<double>& forces, const LoadTiming& timing) {
+    const std::vector<double> dwell = timing.dwell.empty() ? std::vector<double>{1} : timing.dwell;
+    std::vector<Row> rows;
+    double begin = 0;
+    for (const double force : forces) {
+        for (const double time : dwell) rows.push_back({begin + time, force});
+        begin += dwell.back();
+        if (!timing.unload) continue;
+        begin += dwell.front();
+        rows.push_back({begin, 0});
+    }
+    return rows;
+}
+
+std::vector<double> levels_of(int probe, int levels) {
+    constexpr int in_turn = 3;
+    if (levels == 0) return {(1 + probe % in_turn) / static_cast<double>(in_turn)};
+    std::vector<double> all;
+    all.reserve(static_cast<std::size_t>(levels));
+    for (int k = 1; k <= levels; ++k) all.push_back(static_cast<double>(k) / levels);
+    return all;
+}
+
+}  // namespace palpate::pipeline

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "fem/effects/effects.h"
+#include "identify/measurements/measurement_set.h"
+#include "mesh/core/contact.h"
+#include "pipeline/synthesis/options.h"
+
+namespace palpate::pipeline {
+
+/// An instant at which the body is read.
+struct Row {
+    double time = 0;   // since the probe's beginning [s]
+    double force = 0;  // of the probe [N]; 0: it lets go
+};
+
+/// What one probe does: its contact, and row after row how hard it presses. The force of a row acts since the row
+/// before it, that of the first since time 0.
+struct LoadCourse {
+    int probe = 0;
+    mesh::Contact contact;  // with 1 N
+    std::vector<Row> rows;
+
+    /// The state of a measurement set that a row is.
+    identify::LoadState state(std::size_t row) const;
+    /// The force that an elastic body would have to bear to stand as a creeping one does under what has acted so far:
+    /// sum over j <= row of (f_j - f_j-1) J(t_row - t_j-1), J(t) = 1 + creep (1 - exp(-t / tau)). [Boltzmann 1876]
+    double effective_force(std::size_t row, const std::optional<fem::CreepLaw>& creep) const;
+};
+
+/// Probe 0: nothing touches the body.
+LoadCourse unloaded_history();
+
+/// Whether the body is let go after each load, and read how long after a load was put on.
+struct LoadTiming {
+    bool unload = false;
+    std::vector<double> dwell;  // [s]; empty: once, after a second
+};
+
+/// A probe's rows: each of its forces held as long as the last dwell time, and where it is let go, that as long as the
+/// first one, which is when it is read.
+std::vector<Row> rows_of(const std::vector<double>& forces, const LoadTiming& timing);
+
+/// Shares of the largest displacement that a probe (from 0) presses to: `levels` even steps, or one of 1/3, 2/3 and 1
+/// when that is 0, in turn. Push, pull and sideways come round every four probes: so each meets each level.
+std::vector<double> levels_of(int probe, int levels);
+
+}  // namespace palpate::pipeline

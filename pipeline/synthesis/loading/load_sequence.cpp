@@ -1,0 +1,39 @@
+#include "pipeline/synthesis/loading/load_sequence.h"
+
+#include <fmt/format.h>
+
+#include <cctype>
+
+namespace palpate::pipeline {
+namespace {
+
+/// With a capital letter: "Plasticity".
+std::string as_first_word(std::string name) {
+    name.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(name.front())));
+    return name;
+}
+
+}  // namespace
+
+Sequence sequence_of(const BlindSetOptions& options, const std::vector<EffectSpec>& specs) {
+    const EffectSpec* stays = first_with(&identify::SynthesisNeeds::release, specs);
+    const EffectSpec* creeps = first_with(&identify::SynthesisNeeds::dwells, specs);
+    const bool released = stays != nullptr;
+    Sequence sequence{{options.unload.value_or(released), options.dwell}, options.continuous.value_or(released), {}};
+    if (stays && !(options.unload && options.continuous)) {
+        sequence.notes.push_back(
+            fmt::format("{} shows in what stays: one body goes through all probes, let go after each (--no-unload, "
+                        "--no-continuous say otherwise).",
+                        as_first_word(stays->effect)));
+    }
+    if (creeps && options.dwell.empty()) {
+        sequence.timing.dwell = {0.1, 4, 20};
+        sequence.notes.push_back(
+            fmt::format("{} shows in time: each load is read 0.1, 4 and 20 s after it was put on (--dwell says "
+                        "otherwise).",
+                        as_first_word(creeps->effect)));
+    }
+    return sequence;
+}
+
+}  // namespace palpate::pipeline

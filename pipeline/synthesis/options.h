@@ -1,0 +1,28 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "fem/hyperelastic_body.h"
+
+namespace palpate::pipeline {
+
+/// What a body goes through while it is probed, and what is wrong with it or with the readings; beside how many probes
+/// there are and how far they press (ProbeOptions).
+struct BlindSetOptions {
+    std::vector<std::string> hide{};        // EFFECT[:name=value,...] each
+    std::optional<fem::MaterialLaw> law{};  // absent: neo-Hookean, or what a skeleton has
+    int levels = 0;                         // loads that each probe presses with, [0, 100]; 0: one, 1/3, 2/3, 1 in turn
+    std::vector<double> dwell{};            // each held load is read so long after it was put on [s], > 0, ascending
+    std::optional<bool> unload{};      // after each load the body is let go; absent: where a hidden effect needs it
+    std::optional<bool> continuous{};  // one body goes through all probes; absent: likewise
+    std::optional<double> noise{};     // 1 sigma [mm], >= 0; absent: 2 % of the rms displacement where something is
+                                       // hidden, else none
+    double missing = 0;                // share of the readings that are left out, [0, 0.9]
+    double unlabelled = 0;             // share of the readings that do not tell their marker, [0, 1]
+    bool include_material = false;     // in the set, though something is hidden
+    void validate() const;             // @throws InvalidInput naming option, value and bound
+};
+
+}  // namespace palpate::pipeline

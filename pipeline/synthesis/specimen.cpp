@@ -1,0 +1,118 @@
+#include "pipeline/synthesis/specimen.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "identify/measurements/twin.h"
+#include "identify/models/reference_body.h"
+#include "identify/models/skeleton_body.h"
+#include "mesh/errors.h"
+#include "mesh/geometry/surface_tree.h"
+#include "mesh/meshing/smooth_surface.h"
+#include "pipeline/body/body.h"
+#include "pipeline/body/reference_body.h"
+#include "pipeline/synthesis/probing/probing.h"
+#include "pipeline/synthesis/probing/skeleton_probing.h"
+
+namespace palpate::pipeline {
+namespace {
+
+constexpr double finer = 0.8;             // edges against those of the body that is fitted: twice the nodes
+constexpr double largest_pressure = 0.3;  // under a contact, of Young's modulus
+constexpr double chords_cut_off = 0.06;   // of the volume; curving the elements gives it back
+
+/// Young's modulus that the links stand for, the middle one: kE = E A / L, with the smaller sphere's section.
+double stiffness_of(const skeleton::Model& model) {
+    std::vector<double> all;
+    for (const skeleton::Link& link : model.links) {
+        const double radius = std::min(model.spheres[link.a].radius, model.spheres[link.b].radius);
+        const double section = std::numbers::pi * radius * radius;
+        if (section > 0) all.push_back(link.stiffness[0] * link.length / section);
+    }
+    if (all.empty()) return 1;
+    const auto middle = all.begin() + std::ssize(all) / 2;
+    std::ranges::nth_element(all, middle);
+    return *middle > 0 ? *middle : 1;
+}
+
+/// Do its free spheres stand where its skin is, as in lattices that are all nodes? A measurement set allows 5 %.
+bool is_bare(const skeleton::Model& model) {
+    if (model.surface.triangles.rows() == 0) return true;
+    const mesh::SurfaceTree skin(model.surface);
+    const double allowed = 0.05 * mesh::bounding_box(model.surface.vertices).longest_side();
+    return std::ranges::all_of(model.spheres, [&](const skeleton::Sphere& sphere) {
+        return sphere.held || skin.closest(sphere.center).distance <= allowed;
+    });
+}
+
+}  // namespace
+
+Specimen finite_element_specimen(const Subject& subject, const BlindSetOptions& options, const Progress& progress) {
+    if (subject.settings.linear_elements) {
+        throw InvalidInput("linear elements are too stiff to be the truth; leave --linear-elements out");
+    }
+    Specimen specimen;
+    const double edge = subject.settings.edge_length;
+    const double default_edge = subject.volume ? 0 : finer * reference_edge_length(subject.surface);
+    const MeshedBody body =
+        make_body(subject, {.edge_length = edge > 0 ? edge : default_edge, .volume_change = chords_cut_off}, progress);
+    specimen.notes = body.notes;
+    specimen.volume = body.is_ready_made ? body.volume : mesh::curve_to(body.volume, body.repaired);
+
+    identify::MeasurementSet& set = specimen.set;
+    set.name = subject.settings.name;
+    set.rest_surface = body.repaired;
+    set.supports = subject.supports;
+    set.density = subject.material.density;
+    const ProbeOptions& probing = subject.settings.probing;
+    set.markers = spread_markers(body.surface, subject.supports, probing.markers);
+    specimen.contacts = probing_contacts(body.surface, subject.supports, probing, subject.settings.identify.seed);
+
+    const fem::Material& material = subject.material;
+    specimen.material = material;
+    specimen.stiffness = material.young;
+    const double radius = specimen.contacts.front().radius;
+    specimen.most_force = largest_pressure * material.young * std::numbers::pi * radius * radius;
+    specimen.setting = {static_cast<int>(options.law.value_or(fem::MaterialLaw::neo_hookean)),
+                        Eigen::Vector2d(std::log(material.young), std::log(1 - 2 * material.poisson)),
+                        {}};
+    specimen.model = std::make_unique<identify::ReferenceBody>(
+        specimen.volume, set.supports, set.markers,
+        identify::ReferenceBodyOptions{
+            .density = material.density,
+            .young = material.young,
+            .dilatation = dilatation_for(body.surface, edge > 0 ? edge : default_edge, material.poisson)});
+    return specimen;
+}
+
+Specimen skeleton_specimen(const skeleton::Model& model, const ProbeOptions& probing, const BlindSetOptions& options,
+                           std::uint64_t seed) {
+    if (options.law && *options.law != fem::MaterialLaw::linear) {
+        throw InvalidInput(
+            "a skeleton has the law of its model.json, or with --linear that of small displacements; "
+            "leave --law out");
+    }
+    Specimen specimen;
+    identify::MeasurementSet& set = specimen.set;
+    set.name = model.name;
+    set.rest_surface = model.surface;
+    set.supports = model.supports;
+    if (is_bare(model)) {
+        set.markers = identify::markers_on_spheres(model);
+        specimen.contacts = twin_contacts(model, probing, seed);
+    } else {
+        set.markers = spread_markers(model.surface, model.supports, probing.markers);
+        specimen.contacts = probing_contacts(model.surface, model.supports, probing, seed);
+    }
+    specimen.most_force = std::numeric_limits<double>::infinity();
+    specimen.stiffness = stiffness_of(model);
+    const skeleton::EquilibriumLaw law = options.law ? skeleton::EquilibriumLaw::linear : model.law;
+    specimen.model = std::make_unique<identify::SkeletonBody>(model, set.markers, specimen.stiffness);
+    const Eigen::VectorXd as_told = Eigen::VectorXd::Zero(std::ssize(specimen.model->parameters()));
+    specimen.setting = {static_cast<int>(law), as_told, skeleton::physics_of(model.effects)};
+    return specimen;
+}
+
+}  // namespace palpate::pipeline

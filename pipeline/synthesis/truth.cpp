@@ -1,0 +1,51 @@
+#include "pipeline/synthesis/truth.h"
+
+#include <cmath>
+
+namespace palpate::pipeline {
+namespace {
+
+using nlohmann::json;
+
+json parameters_of(const skeleton::EffectRecord& effect) {
+    json parameters = json::object();
+    for (const auto& [name, value, unit] : effect.parameters) parameters[name] = {{"value", value}, {"unit", unit}};
+    return parameters;
+}
+
+}  // namespace
+
+json truth_of(const BlindSet& blind_set, const Specimen& specimen, const BlindSetOptions& options, std::uint64_t seed) {
+    json effects = json::array(), hide = json::array();
+    for (const HiddenEffect& hidden : blind_set.hidden) {
+        const bool of_body = skeleton::is_body_effect(hidden.effect.name);
+        effects.push_back({{"effect", hidden.effect.name},
+                           {"kind", of_body ? "body" : "measurement"},
+                           {"parameters", parameters_of(hidden.effect)},
+                           {"change_rms_mm", hidden.strength.change},
+                           {"beyond_stiffness_rms_mm", hidden.strength.beyond}});
+        hide.push_back(to_spec(hidden.effect));
+    }
+    json truth = {{"format", "palpate-truth/1"},
+                  {"body", specimen.is_skeleton() ? "skeleton" : "finite elements"},
+                  {"law", specimen.law()},
+                  {"material", nullptr},
+                  {"noise_mm", blind_set.noise},
+                  {"missing", options.missing},
+                  {"unlabelled", options.unlabelled},
+                  {"seed", seed},
+                  {"effects", effects},
+                  {"hide", hide},
+                  {"displacement_rms_mm", blind_set.strength.displacement},
+                  {"change_rms_mm", blind_set.strength.change},
+                  {"beyond_stiffness_rms_mm", blind_set.strength.beyond}};
+    if (specimen.material) {
+        const fem::Material& m = *specimen.material;
+        truth["material"] = {{"young_mpa", m.young},
+                             {"poisson", m.poisson},
+                             {"density_kg_m3", std::round(1e6 * m.density / fem::tonne_per_mm3) / 1e6}};
+    }
+    return truth;
+}
+
+}  // namespace palpate::pipeline

@@ -1,0 +1,84 @@
+#pragma once
+
+#include <Eigen/SparseCore>
+#include <vector>
+
+#include "skeleton/links/fibres/plastic_fibre.h"
+#include "skeleton/links/full_link.h"
+#include "skeleton/links/placed/placed_volumes.h"
+#include "skeleton/model/stiffness_order.h"
+
+namespace palpate::skeleton {
+
+/// Propagation of plastic flow from one state to the next, to first order. With z the strain and the sum of each fibre
+/// (24L), as FibreState orders them,
+///   d net force = force_by_flow dz_before, dz = flow_by_step step + flow_by_flow dz_before.
+struct FlowDerivatives {
+    Eigen::SparseMatrix<double> force_by_flow;  // [N] (6N x 24L)
+    Eigen::SparseMatrix<double> flow_by_step;   // (24L x 6N)
+    Eigen::SparseMatrix<double> flow_by_flow;   // (24L x 24L)
+};
+
+/// A model's links, with the effects in force that are in the material or in the links themselves. At stiffness
+/// (kE, kF, kT) a link's energy is
+///   s (kE e_E + kF e_F + kT e_T + torsion kF e_T + shear kE e_S + L^2 sum_j K_j (w(lambda_j) / 3 + p(lambda_j)))
+/// with e_E, e_F, e_T as link_terms has them (a full link's as full_link_terms, with those of its other stiffnesses),
+/// e_S of Shear, and over the fibres, of stiffnesses K_j (fibre_shares), w of the material
+/// effects at the link's middle (uniaxial) and p of yielding (plastic_terms). The factor of w is mu V = kE L^2 / 3 for
+/// kE = E A / L, and E = 3 mu as the material keeps its volume. s is the material's scale: the mean over the fibres in
+/// each slice of the link, whose softnesses add up. So all is linear in the stiffnesses, conservative, and the same
+/// after any rigid motion. Full links come with what keeps their spheres' volumes (PlacedVolumes).
+class PlacedLinks {
+public:
+    PlacedLinks(const Model& model, const fem::Effects& effects);
+
+    /// Energies at unit stiffness, each with all that goes with it. `before`, here and below: how far the fibres had
+    /// flowed. @throws SolverFailure when ends of the link or of a fibre coincide.
+    LinkTerms terms(size_t link, const State& state, bool with_hessian, const FibreStates& before = {}) const;
+    /// The sum of their second derivatives at stiffness k, at a third of the cost.
+    Mat12 hessian(size_t link, const Stiffnesses& k, const State& state, const FibreStates& before = {}) const;
+
+    const StiffnessOrder& order() const { return order_; }
+    const PlacedVolumes& volumes() const { return volumes_; }
+
+    /// d net force / d k in a state (6N x stiffnesses, in their order): each column the force at unit stiffness.
+    Eigen::SparseMatrix<double> forces(const State& state, const FibreStates& before = {}) const;
+    /// The same after a step from rest (6N), to first order.
+    Eigen::SparseMatrix<double> linear_forces(const Eigen::VectorXd& step, const FibreStates& before = {}) const;
+
+    /// How far the fibres have flowed once they stood in a state (12L); empty when nothing yields.
+    FibreStates flowed(const State& state, const FibreStates& before = {}) const;
+    /// Its derivatives in a state at stiffnesses k. @pre the material yields.
+    FlowDerivatives flow_derivatives(const Eigen::VectorXd& k, const State& state,
+                                     const FibreStates& before = {}) const;
+
+    /// A link's stiffnesses at rest, with what effects add to them.
+    Stiffnesses rest_stiffness(size_t link, const Stiffnesses& k) const;
+    /// Largest force of a link's fibres at rest, at stiffnesses k [N]: of prestress, or what has flowed.
+    double largest_rest_force(const Eigen::VectorXd& k, const FibreStates& before = {}) const;
+
+private:
+    double scale_of(const Link& link, const FibreOffsets& offsets, const fem::Effects& effects) const;
+    LinkFibre fibre(size_t link, int j, const State& state) const;
+    StretchTerms fibre_terms(size_t link, int j, double stretch, bool with_second, const FibreStates& before) const;
+    void add_effects(size_t link, const State& state, const FibreStates& before, bool with_hessian,
+                     LinkTerms& terms) const;
+    template <typename ForcesOf>
+    Eigen::SparseMatrix<double> assembled(const ForcesOf& forces_of,
+                                          std::vector<Eigen::Triplet<double>> of_volumes) const;
+
+    StiffnessOrder order_;
+    PlacedVolumes volumes_;
+    std::vector<Link> links_;
+    std::vector<Vec3> directions_;  // at rest (L)
+    State rest_;
+    std::vector<std::shared_ptr<const fem::MaterialEffect>> material_;  // those with an energy of their own
+    std::optional<fem::Plasticity> plasticity_;
+    double torsion_, shear_;
+    bool plain_;                         // no effect is in force
+    std::vector<double> scales_;         // s (L); empty when plain
+    std::vector<FibreOffsets> offsets_;  // (L); empty when no fibre has an energy
+    std::vector<FibreShares> shares_;    // the same
+};
+
+}  // namespace palpate::skeleton

@@ -1,0 +1,78 @@
+#include "skeleton/model/state.h"
+
+#include <Eigen/Geometry>
+#include <cassert>
+#include <cmath>
+
+#include "skeleton/model/carried_point.h"
+
+namespace palpate::skeleton {
+
+State rest_state(const Model& model) {
+    State state;
+    state.x.resize(static_cast<Eigen::Index>(model.spheres.size()), 3);
+    for (size_t i = 0; i < model.spheres.size(); ++i) state.x.row(i) = model.spheres[i].center.transpose();
+    state.R.assign(model.spheres.size(), Mat3::Identity());
+    return state;
+}
+
+State advance(const State& state, const Eigen::VectorXd& step) {
+    assert(step.size() == 6 * state.x.rows());
+    State next = state;
+    for (Eigen::Index i = 0; i < state.x.rows(); ++i) {
+        next.x.row(i) += step.segment<3>(6 * i).transpose();
+        next.R[i] = rotation(step.segment<3>(6 * i + 3)) * state.R[i];
+    }
+    return next;
+}
+
+Mat3 skew(const Vec3& w) {
+    Mat3 W;
+    W << 0, -w.z(), w.y(),  //
+        w.z(), 0, -w.x(),   //
+        -w.y(), w.x(), 0;
+    return W;
+}
+
+Mat3 rotation(const Vec3& w) {
+    // exp(i w/2) as a unit quaternion: (cos |w|/2, sin(|w|/2) w/|w|), whose norm is 1 however small w is.
+    const double half = 0.5 * w.norm();
+    const double sinc = half > 1e-9 ? std::sin(half) / half : 1.0;
+    const Vec3 v = 0.5 * sinc * w;
+    return Eigen::Quaterniond(std::cos(half), v.x(), v.y(), v.z()).toRotationMatrix();
+}
+
+Vec3 rotation_vector(const Mat3& R) {
+    Eigen::Quaterniond q(R);
+    if (q.w() < 0) q.coeffs() = -q.coeffs();
+    const double sine = q.vec().norm();
+    const double scale = sine > 1e-12 ? 2 * std::atan2(sine, q.w()) / sine : 2.0;
+    return scale * q.vec();
+}
+
+Points observe(const Model& model, const State& state, const std::vector<Attachment>& points) {
+    const State rest = rest_state(model);
+    Points positions(static_cast<Eigen::Index>(points.size()), 3);
+    for (size_t i = 0; i < points.size(); ++i)
+        positions.row(static_cast<Eigen::Index>(i)) = CarriedPoint(points[i], rest, state).x().transpose();
+    return positions;
+}
+
+Eigen::SparseMatrix<double> observation_jacobian(const Model& model, const State& state,
+                                                 const std::vector<Attachment>& points) {
+    const State rest = rest_state(model);
+    std::vector<Eigen::Triplet<double>> entries;
+    for (size_t i = 0; i < points.size(); ++i) {
+        const CarriedPoint point(points[i], rest, state);
+        for (int share = 0; share < point.shares(); ++share)
+            for (int c = 0; c < 3; ++c)
+                for (int d = 0; d < 6; ++d)
+                    entries.emplace_back(3 * static_cast<int>(i) + c, 6 * point.sphere(share) + d,
+                                         point.jacobian(share)(c, d));
+    }
+    Eigen::SparseMatrix<double> P(3 * static_cast<Eigen::Index>(points.size()), model.dofs());
+    P.setFromTriplets(entries.begin(), entries.end());
+    return P;
+}
+
+}  // namespace palpate::skeleton

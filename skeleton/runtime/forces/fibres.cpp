@@ -1,0 +1,112 @@
+#include "skeleton/runtime/forces/fibres.h"
+
+#include <algorithm>
+
+#include "skeleton/effects/link_effects.h"
+#include "skeleton/links/fibres/uniaxial.h"
+#include "skeleton/links/shear.h"
+#include "skeleton/runtime/kernels/tables.h"
+#include "skeleton/statics/statics.h"
+
+namespace palpate::runtime {
+
+Fibres::Fibres(const skeleton::Model& model, const fem::Effects& effects, const std::vector<skeleton::Stiffnesses>& k)
+    : plasticity_(effects.plasticity) {
+    std::ranges::copy_if(effects.material, std::back_inserter(material_),
+                         [](const auto& effect) { return !effect->is_scale(); });
+    const double shear = skeleton::link_effects(effects).shear;
+    for (std::size_t l = 0; l < model.links.size(); ++l) {
+        const skeleton::Link& link = model.links[l];
+        OfLink own;
+        own.a = link.a;
+        own.b = link.b;
+        own.length = link.length;
+        own.shear = shear * k[l][0];
+        own.direction = skeleton::rest_direction(model, link);
+        own.middle = 0.5 * (model.spheres[link.a].center + model.spheres[link.b].center);
+        own.offsets = skeleton::fibre_offsets(link, own.direction);
+        own.strengths = skeleton::fibre_shares(link) * k[l];
+        links_.push_back(own);
+    }
+    if (plasticity_) flowed_.resize(skeleton::fibres_per_link * links_.size());
+}
+
+bool Fibres::needed(const fem::Effects& effects) {
+    return skeleton::link_effects(effects).shear != 0 || effects.plasticity ||
+           std::ranges::any_of(effects.material, [](const auto& effect) { return !effect->is_scale(); });
+}
+
+skeleton::LinkFibre Fibres::fibre(const OfLink& link, int j, const Poses& poses) const {
+    return {link.length, link.offsets[j], poses.x[link.a], poses.R[link.a], poses.x[link.b], poses.R[link.b]};
+}
+
+// K L^2 (w / 3 + p) of one fibre.
+skeleton::StretchTerms Fibres::terms(std::size_t l, int j, double stretch, bool with_second) const {
+    const OfLink& link = links_[l];
+    const double share = link.strengths[j] * link.length * link.length;
+    skeleton::StretchTerms sum;
+    for (const auto& effect : material_) {
+        sum += (share / 3) * skeleton::uniaxial(*effect, link.middle, link.direction, stretch, with_second);
+    }
+    if (plasticity_) {
+        sum += share * skeleton::plastic_terms(*plasticity_, flowed_[skeleton::fibres_per_link * l + j], stretch);
+    }
+    return sum;
+}
+
+double Fibres::add_forces(const Poses& poses, double* force) const {
+    double energy = 0;
+    for (std::size_t l = 0; l < links_.size(); ++l) {
+        const OfLink& link = links_[l];
+        skeleton::Vec12 g = skeleton::Vec12::Zero();
+        if (link.shear != 0) {
+            const skeleton::Shear shear(link.length, link.direction, poses.x[link.a], poses.R[link.a], poses.x[link.b],
+                                        poses.R[link.b]);
+            energy += link.shear * shear.energy();
+            shear.add_gradient(link.shear, g);
+        }
+        if (!material_.empty() || plasticity_) {
+            for (int j = 0; j < skeleton::fibres_per_link; ++j) {
+                const skeleton::LinkFibre one = fibre(link, j, poses);
+                const skeleton::StretchTerms its = terms(l, j, one.stretch(), false);
+                energy += its.energy;
+                one.add_gradient(its, g);
+            }
+        }
+        double *to_a = force + row_length * link.a, *to_b = force + row_length * link.b;
+        for (int c = 0; c < 3; ++c) {
+            to_a[c] -= g[c];
+            to_a[4 + c] -= g[3 + c];
+            to_b[c] -= g[6 + c];
+            to_b[4 + c] -= g[9 + c];
+        }
+    }
+    return energy;
+}
+
+void Fibres::add_hessian(std::size_t l, const Poses& poses, skeleton::Mat12& H) const {
+    const OfLink& link = links_[l];
+    if (link.shear != 0) {
+        skeleton::Shear(link.length, link.direction, poses.x[link.a], poses.R[link.a], poses.x[link.b], poses.R[link.b])
+            .add_hessian(link.shear, H);
+    }
+    if (material_.empty() && !plasticity_) return;
+    for (int j = 0; j < skeleton::fibres_per_link; ++j) {
+        const skeleton::LinkFibre one = fibre(link, j, poses);
+        one.add_hessian(terms(l, j, one.stretch(), true), H);
+    }
+}
+
+void Fibres::settle(const Poses& poses) {
+    if (!plasticity_) return;
+    for (std::size_t l = 0; l < links_.size(); ++l) {
+        for (int j = 0; j < skeleton::fibres_per_link; ++j) {
+            skeleton::FibreState& had = flowed_[skeleton::fibres_per_link * l + j];
+            had = skeleton::flow(*plasticity_, had, fibre(links_[l], j, poses).stretch());
+        }
+    }
+}
+
+void Fibres::forget_flow() { std::ranges::fill(flowed_, skeleton::FibreState()); }
+
+}  // namespace palpate::runtime

@@ -1,0 +1,43 @@
+#pragma once
+
+#include "skeleton/links/placed/placed_links.h"
+#include "skeleton/runtime/forces/poses.h"
+
+namespace palpate::runtime {
+
+/// The effects in the links that are no mere stiffness: of the material along the links' fibres, and shear. The laws
+/// are those of PlacedLinks.
+class Fibres {
+public:
+    /// `k`: in force, of each link.
+    Fibres(const skeleton::Model& model, const fem::Effects& effects, const std::vector<skeleton::Stiffnesses>& k);
+
+    static bool needed(const fem::Effects& effects);
+
+    /// Adds their forces to the spheres' rows; returns their energy [N mm].
+    double add_forces(const Poses& poses, double* force) const;
+    /// Adds the second derivative of a link's.
+    void add_hessian(std::size_t link, const Poses& poses, skeleton::Mat12& H) const;
+
+    bool yield() const { return plasticity_.has_value(); }
+    void settle(const Poses& poses);
+    void forget_flow();
+
+private:
+    struct OfLink {
+        int a = 0, b = 0;
+        double length = 0, shear = 0;  // [mm], [N/mm]
+        Vec3 direction, middle;        // at rest
+        skeleton::FibreOffsets offsets;
+        Eigen::Matrix<double, skeleton::fibres_per_link, 1> strengths;  // [N/mm]
+    };
+    skeleton::LinkFibre fibre(const OfLink& link, int j, const Poses& poses) const;
+    skeleton::StretchTerms terms(std::size_t link, int j, double stretch, bool with_second) const;
+
+    std::vector<std::shared_ptr<const fem::MaterialEffect>> material_;
+    std::optional<fem::Plasticity> plasticity_;
+    std::vector<OfLink> links_;
+    skeleton::FibreStates flowed_;
+};
+
+}  // namespace palpate::runtime

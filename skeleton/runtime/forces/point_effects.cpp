@@ -1,0 +1,97 @@
+#include "skeleton/runtime/forces/point_effects.h"
+
+#include <Eigen/Geometry>
+#include <map>
+
+#include "mesh/errors.h"
+#include "skeleton/effects/point_sets.h"
+#include "skeleton/loads/cavities.h"
+#include "skeleton/runtime/forces/link_tables.h"
+#include "skeleton/runtime/kernels/tables.h"
+
+namespace palpate::runtime {
+
+namespace {
+
+void add_carried(const RuntimePoint& point, const Vec3& f, double* rows) {
+    point.pull_back(f, [&](int sphere, const Vec3& force, const Vec3& torque) {
+        double* row = rows + row_length * sphere;
+        Eigen::Map<Vec3>(row) += force;
+        Eigen::Map<Vec3>(row + 4) += torque;
+    });
+}
+
+}  // namespace
+
+PointEffects::PointEffects(const skeleton::Model& model, const fem::Effects& effects)
+    : supported_(model.spheres.size(), 0), pressure_(effects.pressure) {
+    for (const auto& potential : effects.points) {
+        const skeleton::PointSet set = skeleton::point_set(model, potential->acts_on());
+        Points stand(std::ssize(set.at), 3);
+        for (std::size_t i = 0; i < set.at.size(); ++i) {
+            stand.row(static_cast<Eigen::Index>(i)) = set.at[i].rest.transpose();
+        }
+        const Eigen::VectorXd weights = potential->weights(stand, set.weights);
+        Placed& placed = effects_.emplace_back();
+        placed.potential = potential;
+        for (std::size_t i = 0; i < set.at.size(); ++i) {
+            const double weight = weights[static_cast<Eigen::Index>(i)];
+            if (potential->acts_on() == fem::ActsOn::support) supported_[set.at[i].shares.front().sphere] = 1;
+            if (weight == 0) continue;
+            placed.points.emplace_back().assign(set.at[i], model.spheres);
+            placed.weights.push_back(weight);
+        }
+    }
+    if (pressure_ == 0) return;
+    std::map<int, int> corner_of;
+    for (std::array<int, 3> wall : skeleton::cavity_walls(model)) {
+        for (int& corner : wall) {
+            const auto [at, fresh] = corner_of.try_emplace(corner, static_cast<int>(corners_.size()));
+            if (fresh) corners_.emplace_back().assign(model.skin[corner], model.spheres);
+            corner = at->second;
+        }
+        walls_.push_back(wall);
+    }
+    if (walls_.empty())
+        throw InvalidInput(
+            "the model's skin encloses no cavity, in which a pressure could act: give it one, closed and turned "
+            "inwards, or take the pressure away");
+    growth_.resize(corners_.size());
+    const SphereRows rest = rest_rows(model);
+    SphereRows nothing(rest.size(), 0.0);
+    rest_volume_ = -add_pressure(rest.data(), nothing.data()) / pressure_;
+}
+
+double PointEffects::add_forces(const double* pose, double* force) {
+    double energy = 0;
+    for (Placed& effect : effects_) {
+        for (std::size_t p = 0; p < effect.points.size(); ++p) {
+            RuntimePoint& point = effect.points[p];
+            point.place(pose);
+            const fem::PointTerms terms = effect.potential->terms(point.rest(), point.x());
+            energy += effect.weights[p] * terms.energy;
+            if (!terms.gradient.isZero(0)) add_carried(point, -effect.weights[p] * terms.gradient, force);
+        }
+    }
+    return pressure_ == 0 ? energy : energy + add_pressure(pose, force);
+}
+
+// A triangle's part in V is -1/6 x_0 . (x_1 x x_2), as its outward normal points into the cavity.
+double PointEffects::add_pressure(const double* pose, double* force) {
+    for (std::size_t c = 0; c < corners_.size(); ++c) {
+        corners_[c].place(pose);
+        growth_[c].setZero();
+    }
+    const Vec3 origin = corners_.front().x();
+    double volume = 0;
+    for (const auto& wall : walls_) {
+        const Vec3 x[3] = {corners_[wall[0]].x() - origin, corners_[wall[1]].x() - origin,
+                           corners_[wall[2]].x() - origin};
+        volume -= x[0].dot(x[1].cross(x[2])) / 6;
+        for (int v = 0; v < 3; ++v) growth_[wall[v]] -= x[(v + 1) % 3].cross(x[(v + 2) % 3]) / 6;
+    }
+    for (std::size_t c = 0; c < corners_.size(); ++c) add_carried(corners_[c], pressure_ * growth_[c], force);
+    return -pressure_ * (volume - rest_volume_);
+}
+
+}  // namespace palpate::runtime

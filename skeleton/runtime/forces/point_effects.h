@@ -1,0 +1,86 @@
+#pragma once
+
+#include <array>
+
+#include "fem/effects/effects.h"
+#include "skeleton/runtime/forces/carried.h"
+
+namespace palpate::runtime {
+
+/// Effects on points that the spheres carry, and pressure in the cavities of the skin. The laws are those of
+/// skeleton::PlacedEffects.
+class PointEffects {
+public:
+    using Block = Eigen::Matrix<double, 6, 6>;
+
+    /// @throws InvalidInput when the model has nothing that one of them acts on.
+    PointEffects(const skeleton::Model& model, const fem::Effects& effects);
+
+    /// Spheres that support points hang on (flags, N).
+    const std::vector<char>& supported() const { return supported_; }
+
+    /// Adds their forces to the spheres' rows; returns their energy [N mm].
+    double add_forces(const double* pose, double* force);
+
+    /// Calls visit(a, b) with a <= b for each pair of spheres, in the order of for_each_block.
+    template <typename Visit>
+    void for_each_pair(const Visit& visit) const;
+    /// Calls visit(block) with the second derivative of each pair, without the turning of the points' arms.
+    template <typename Visit>
+    void for_each_block(const double* pose, const Visit& visit);
+
+private:
+    struct Placed {
+        std::shared_ptr<const fem::PointPotential> potential;
+        std::vector<RuntimePoint> points;
+        std::vector<double> weights;
+    };
+    double add_pressure(const double* pose, double* force);
+
+    std::vector<Placed> effects_;
+    std::vector<char> supported_;
+    double pressure_ = 0;                    // [MPa]
+    std::vector<std::array<int, 3>> walls_;  // by their corners among `corners_`
+    std::vector<RuntimePoint> corners_;
+    std::vector<Vec3> growth_;  // of the volume by each corner
+    double rest_volume_ = 0;    // [mm^3]
+    std::vector<Eigen::Matrix<double, 3, 6>> by_share_;
+};
+
+template <typename Visit>
+void PointEffects::for_each_pair(const Visit& visit) const {
+    for (const Placed& effect : effects_) {
+        for (const RuntimePoint& point : effect.points) {
+            for (int i = 0; i < point.shares(); ++i) {
+                for (int j = 0; j < point.shares(); ++j) {
+                    if (point.sphere(i) <= point.sphere(j)) visit(point.sphere(i), point.sphere(j));
+                }
+            }
+        }
+    }
+}
+
+template <typename Visit>
+void PointEffects::for_each_block(const double* pose, const Visit& visit) {
+    for (Placed& effect : effects_) {
+        for (std::size_t p = 0; p < effect.points.size(); ++p) {
+            RuntimePoint& point = effect.points[p];
+            point.place(pose);
+            const Mat3 H = effect.weights[p] * effect.potential->terms(point.rest(), point.x()).hessian;
+            const bool flat = H.isZero(0);
+            if (!flat) point.jacobians(by_share_);
+            for (int i = 0; i < point.shares(); ++i) {
+                for (int j = 0; j < point.shares(); ++j) {
+                    if (point.sphere(i) > point.sphere(j)) continue;
+                    if (flat) {
+                        visit(Block(Block::Zero()));
+                    } else {
+                        visit(Block(by_share_[i].transpose() * H * by_share_[j]));
+                    }
+                }
+            }
+        }
+    }
+}
+
+}  // namespace palpate::runtime

@@ -1,0 +1,23 @@
+# For palpate_runtime, for libpalpate_runtime.so and for the module for browsers.
+set(runtime_kernels
+  kernels/full_links.cpp
+  kernels/motion.cpp
+  kernels/paper_links.cpp
+  kernels/skinning.cpp)
+set(runtime_sources
+  body.cpp
+  walk_order.cpp
+  contacts/contacts.cpp
+  contacts/creep.cpp
+  contacts/springs.cpp
+  forces/carried.cpp
+  forces/fibres.cpp
+  forces/force_field.cpp
+  forces/link_tables.cpp
+  forces/point_effects.cpp
+  forces/poses.cpp
+  solver/learnt_curvature.cpp
+  solver/solver.cpp)
+list(TRANSFORM runtime_kernels PREPEND "${CMAKE_CURRENT_LIST_DIR}/")
+list(TRANSFORM runtime_sources PREPEND "${CMAKE_CURRENT_LIST_DIR}/")
+list(APPEND runtime_sources ${runtime_kernels})

@@ -1,0 +1,317 @@
+#include "identify/effects/catalogue.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <map>
+#include <set>
+
+#include "identify/diagnosis/verdict/verdict.h"
+#include "mesh/errors.h"
+#include "tests/identify/lattice.h"
+#include "tests/identify/small_body.h"
+#include "tests/messages.h"
+
+namespace palpate::identify {
+namespace {
+
+using testing::HasSubstr;
+
+/// Names that users may rely on.
+const std::set<std::string> promised{
+    "gravity",  "stiffening", "anisotropy",        "inclusion", "volume",     "torsion",      "shear",      "contact",
+    "pressure", "prestress",  "compliant-support", "viscosity", "plasticity", "misalignment", "force-gain", "outliers"};
+const std::set<std::string> probe_kinds{"load", "orientation", "pressure", "dwell", "unload", "repeat", "fiducials"};
+
+class EveryEffect : public testing::TestWithParam<std::shared_ptr<const EffectHypothesis>> {
+protected:
+    const EffectHypothesis& effect() const { return *GetParam(); }
+
+    /// A body and a set in which all effects of bodies and rigs can show.
+    EveryEffect() {
+        if (effect().name() == "pressure") body_ = SmallBody::hollow();
+        if (effect().is_of_links()) {
+            model_ = body_.skeleton();
+        } else {
+            model_ = body_.reference();
+        }
+        MeasurementSet set = body_.set(SmallBody::dwells(0.01, 3));
+        set.material = MaterialGuess{.poisson = 0.45};
+        problem_ = make_problem(make_twin(*model_, set, bare_truth(*model_, 0), 0), 0.05);
+    }
+
+    SmallBody body_;
+    std::unique_ptr<BodyModel> model_;
+    Problem problem_;
+};
+
+TEST_P(EveryEffect, IsDescribedWithoutEmptyFields) {
+    const EffectDescription& text = effect().description();
+    for (const std::string& field : {text.name, text.meaning, text.reveals, text.separating_probe, text.next_probe}) {
+        EXPECT_FALSE(field.empty());
+    }
+    EXPECT_FALSE(text.parameters.empty());
+    for (const std::string& parameter : text.parameters) EXPECT_THAT(parameter, HasSubstr("["));  // its unit
+    EXPECT_TRUE(promised.contains(text.name));
+    EXPECT_TRUE(probe_kinds.contains(text.next_probe));
+}
+
+TEST_P(EveryEffect, IsConfusedWithOthersThatHaveNames) {
+    EXPECT_FALSE(effect().description().confused_with.empty());
+    for (const std::string& other : effect().description().confused_with) {
+        EXPECT_TRUE(promised.contains(other)) << other;
+        EXPECT_NE(other, effect().name());
+    }
+}
+
+TEST_P(EveryEffect, IsFoundByItsName) { EXPECT_EQ(find_effect(effect().name())->name(), effect().name()); }
+
+TEST_P(EveryEffect, HasARowOfPhysicsOfItsKind) {
+    const skeleton::KnownEffect* row = skeleton::find_known_effect(effect().name());
+    ASSERT_NE(row, nullptr);
+    EXPECT_EQ(row->kind, effect().description().kind);
+    EXPECT_EQ(static_cast<bool>(row->make), effect().is_of_body());
+}
+
+TEST_P(EveryEffect, HasNumbersWithNamesUnitsAndWidths) {
+    std::set<std::string> names;
+    for (const EffectNumber& number : effect().numbers(*model_, problem_)) {
+        EXPECT_FALSE(number.name.empty());
+        EXPECT_FALSE(number.unit.empty());
+        EXPECT_GT(number.prior_sd, 0);
+        EXPECT_TRUE(names.insert(number.name).second) << number.name;
+    }
+}
+
+TEST_P(EveryEffect, WhatIsToldCanBeTakenBack) {
+    const auto numbers = effect().numbers(*model_, problem_);
+    const Eigen::VectorXd values = example(effect(), numbers);
+    const skeleton::EffectRecord estimate = effect().record(numbers, values);
+    EXPECT_EQ(estimate.name, effect().name());
+    for (const skeleton::EffectParameter& parameter : estimate.parameters) {
+        const auto number = std::ranges::find(numbers, parameter.name, &EffectNumber::name);
+        ASSERT_NE(number, numbers.end()) << parameter.name;
+        EXPECT_EQ(parameter.unit, number->unit);
+    }
+    EXPECT_LT((effect().values(numbers, estimate) - values).norm(), 1e-13 * values.norm() + 1e-300);  // rounding
+}
+
+TEST_P(EveryEffect, HasNumbersWhereItCanShow) {
+    EXPECT_EQ(effect().numbers(*model_, problem_).empty(), effect().sets_readings_aside());
+}
+
+TEST_P(EveryEffect, WhatIsNotToldStartsAsAFitDoes) {
+    const auto numbers = effect().numbers(*model_, problem_);
+    const Eigen::VectorXd values = effect().values(numbers, {effect().name(), {}});
+    ASSERT_EQ(values.size(), std::ssize(numbers));
+    for (Eigen::Index j = 0; j < values.size(); ++j) EXPECT_EQ(values[j], numbers[j].start) << numbers[j].name;
+}
+
+TEST_P(EveryEffect, SpeaksASentence) {
+    const auto numbers = effect().numbers(*model_, problem_);
+    skeleton::EffectRecord estimate = effect().record(numbers, example(effect(), numbers));
+    if (effect().name() == "outliers")
+        estimate.parameters = {{"share", 0.02, "1"}, {"readings", 3, "1"}, {"width", 8, "1"}};
+    const std::string sentence = effect().sentence(estimate);
+    EXPECT_TRUE(sentence.ends_with('.')) << sentence;
+    EXPECT_THAT(sentence, testing::Not(HasSubstr("nan")));
+}
+
+TEST_P(EveryEffect, OfABodyIsWhatAModelFilePlays) {
+    // In force by the fit's numbers and by what a model file says, the body feels the same.
+    const auto numbers = effect().numbers(*model_, problem_);
+    if (!effect().is_of_body()) return;
+    const Eigen::VectorXd values = example(effect(), numbers);
+    const ModelSetting bare = bare_truth(*model_, 1).setting();
+    ModelSetting own = bare, file = bare;
+    effect().enforce(values, own);
+    own.theta = bare.theta;  // a Poisson's ratio is in no file
+    file.effects = skeleton::make_physics(effect().record(numbers, values));
+    EXPECT_EQ(own.effects.points.size(), file.effects.points.size());
+    EXPECT_EQ(own.effects.material.size(), file.effects.material.size());
+    ASSERT_EQ(own.effects.creep.has_value(), file.effects.creep.has_value());
+    if (own.effects.creep) {
+        EXPECT_DOUBLE_EQ(own.effects.creep->creep, file.effects.creep->creep);
+        EXPECT_DOUBLE_EQ(own.effects.creep->tau, file.effects.creep->tau);
+    }
+    const Action push{.contacts = SmallBody::probes(0.01)[1].contacts};
+    const Eigen::VectorXd bent = model_->equilibrium(bare, push);
+    const Eigen::VectorXd force = model_->residual(bent, own, push);
+    const double without = model_->residual(bent, bare, push).norm();
+    EXPECT_LT((force - model_->residual(bent, file, push)).norm(), 1e-12 * (force.norm() + without));  // rounding
+}
+
+TEST_P(EveryEffect, OfABodyComesToNumbersThatAModelFileTakes) {
+    // A fit leads numbers anywhere down to their least, and far from where their priors have them; with a ratio of
+    // Poisson's below -0.9 no body plays.
+    const auto numbers = effect().numbers(*model_, problem_);
+    if (!effect().is_of_body()) return;
+    for (const double far : {-1.5, -0.5, 0.5, 1.5}) {
+        Eigen::VectorXd values = example(effect(), numbers);
+        for (Eigen::Index j = 0; j < values.size(); ++j) {
+            values[j] = std::max(values[j] + far * numbers[j].prior_sd, numbers[j].least);
+        }
+        EXPECT_NO_THROW(skeleton::make_physics(effect().record(numbers, values))) << far;
+    }
+}
+
+TEST_P(EveryEffect, OfTheMeasurementIsTakenOutOfASet) {
+    // Readings with the fault in, corrected, are readings without it.
+    if (effect().is_of_body()) return;
+    const auto numbers = effect().numbers(*model_, problem_);
+    if (numbers.empty()) return;
+    Eigen::VectorXd values(std::ssize(numbers));
+    for (Eigen::Index j = 0; j < values.size(); ++j) values[j] = 0.2 * static_cast<double>(j % 2 ? 1 : -1);
+    const Explanation truth = bare_truth(*model_, 2), faulty = with(truth, GetParam(), values);
+    const MeasurementSet set = effect().corrected(make_twin(*model_, body_.set(SmallBody::dwells(0.01, 3)), faulty, 0),
+                                                  effect().record(numbers, values));
+    const Problem understood = make_problem(set, 0.05);
+    const Eigen::VectorXd modelled = understood.pick(solve_forward(*model_, understood, truth, 1).markers);
+    EXPECT_LT((understood.measured - modelled).cwiseAbs().maxCoeff(),
+              1e-5);  // two equilibria, each to 1e-7 of its load
+}
+
+INSTANTIATE_TEST_SUITE_P(Catalogue, EveryEffect, testing::ValuesIn(catalogue()), [](const auto& about) {
+    std::string name = about.param->name();
+    std::erase(name, '-');
+    return name;
+});
+
+/// Six probes, each with twice the load of the one before.
+Problem doubling_loads() {
+    Problem problem;
+    for (int k = 0; k < 6; ++k) {
+        problem.actions.push_back(
+            {.contacts = {{.point = Vec3(10 * k, 0, 0), .force = Vec3(0, 0, -std::pow(2.0, k)), .radius = 1}}});
+        problem.probe.push_back(k + 1);
+    }
+    return problem;
+}
+
+TEST(Inclusion, HasAWidthAcrossASheet) {
+    const SkeletonBody sheet(make_lattice({3, 3, 1}), {}, 1);
+    for (const EffectNumber& number : find_effect("inclusion")->numbers(sheet, {})) {
+        EXPECT_GT(number.prior_sd, 0) << number.name;
+    }
+}
+
+TEST(Stiffening, OfAHundredTimesTheUsualIsNoSurprise) {
+    const auto effect = find_effect("stiffening");
+    const SkeletonBody lattice(make_lattice({3, 3, 1}), {}, 1);
+    const auto numbers = effect->numbers(lattice, {});
+    const auto away = [&](double c2, double c3) -> Eigen::VectorXd {  // in prior standard deviations
+        const skeleton::EffectRecord estimate{"stiffening", {{"c2", c2, "1"}, {"c3", c3, "1"}}};
+        const Eigen::VectorXd values = effect->values(numbers, estimate);
+        return Eigen::Vector2d((values[0] - numbers[0].prior_mean) / numbers[0].prior_sd,
+                               (values[1] - numbers[1].prior_mean) / numbers[1].prior_sd)
+            .cwiseAbs();
+    };
+    EXPECT_NEAR(away(3, 30)[0], 1, 0.05);
+    EXPECT_LT(away(3, 12).maxCoeff(), 1.1);  // exponential laws
+    EXPECT_LT(away(100, 4 / 3. * 1e4).maxCoeff(), 4);
+    EXPECT_DOUBLE_EQ(away(0, 0).norm(), 0);
+}
+
+TEST(Stiffening, OfEitherCoefficientAloneComesBack) {
+    const auto effect = find_effect("stiffening");
+    const SkeletonBody lattice(make_lattice({3, 3, 1}), {}, 1);
+    const auto numbers = effect->numbers(lattice, {});
+    for (const auto& [c2, c3] : {std::pair{3.0, 0.0}, {0.0, 30.0}}) {
+        const skeleton::EffectRecord estimate{"stiffening", {{"c2", c2, "1"}, {"c3", c3, "1"}}};
+        const skeleton::EffectRecord back = effect->record(numbers, effect->values(numbers, estimate));
+        EXPECT_NEAR(back.parameters[0].value, c2, 1e-6);
+        EXPECT_NEAR(back.parameters[1].value, c3, 1e-6);
+    }
+}
+
+TEST(Judge, AsksForMoreBesideWhatFlows) {
+    Problem problem;
+    problem.measured = problem.sigma = Eigen::VectorXd::Ones(0);
+    const DiagnoseOptions options;
+    const auto least_beside = [&](const char* name) {
+        FittedExplanation there;
+        there.effects = {find_effect(name)};
+        there.log_bayes_factor = 1e6;
+        return least_next_to_effect(*find_effect("gravity"), there, problem, options);
+    };
+    EXPECT_DOUBLE_EQ(least_beside("viscosity"), 500);
+    EXPECT_DOUBLE_EQ(least_beside("plasticity"), 3000);
+}
+
+TEST(ForceGain, IsObjectedToWhereTheBodyStiffens) {
+    // effective force F^0.8: gains that fall with the load in one line
+    const Eigen::VectorXd falling = -0.2 * std::log(2.0) * Eigen::VectorXd::LinSpaced(6, 0, 5);
+    EXPECT_THAT(find_effect("force-gain")->objection(doubling_loads(), falling, false), HasSubstr("stiffens"));
+}
+
+TEST(ForceGain, IsAClaimWhereGainsComeAndGo) {
+    Eigen::VectorXd alternating(6);
+    alternating << 0.2, -0.2, 0.2, -0.2, 0.2, -0.2;
+    EXPECT_EQ(find_effect("force-gain")->objection(doubling_loads(), alternating, false), "");
+    EXPECT_THAT(find_effect("force-gain")->objection(doubling_loads(), alternating, true), HasSubstr("noise already"));
+}
+
+TEST(ForceGain, LoadsAlongOneLineShareOneUnlessOneIsRepeated) {
+    Problem curve = doubling_loads();
+    for (Action& action : curve.actions) action.contacts.front().point.setZero();
+    const EffectHypothesis& gain = *find_effect("force-gain");
+    const SkeletonBody body(make_lattice({2, 1, 1}), {}, 1);
+    EXPECT_TRUE(gain.numbers(body, curve).empty());  // one gain is a stiffness
+    curve.actions.push_back(curve.actions[2]);
+    curve.probe.push_back(9);
+    const auto numbers = gain.numbers(body, curve);
+    ASSERT_EQ(numbers.size(), 2U);
+    EXPECT_EQ(numbers[0].name, "probe1");
+    EXPECT_EQ(numbers[1].name, "probe9");
+    Eigen::VectorXd values(2);
+    values << std::log(1.5), std::log(0.5);
+    for (int k = 0; k < 7; ++k)
+        EXPECT_NEAR(gain.act(curve, k, curve.actions[k], values).contacts.front().force.z(),
+                    (k < 6 ? 1.5 : 0.5) * curve.actions[k].contacts.front().force.z(), 1e-12);  // rounding
+    // Along another line it is another way of loading.
+    curve.actions[6].contacts.front().force = Vec3(1, 0, 0);
+    EXPECT_EQ(gain.numbers(body, curve).size(), 2U);
+}
+
+TEST(Catalogue, RefusesASecondEffectOfAName) {
+    const std::size_t before = catalogue().size();
+    try {
+        register_effect(gravity_effect());
+        FAIL() << "nothing was thrown";
+    } catch (const InvalidInput& error) {
+        EXPECT_STREQ(error.what(), "there is an effect 'gravity' already; give yours another name");
+    }
+    EXPECT_EQ(catalogue().size(), before);
+}
+
+TEST(Catalogue, NamesAreAllDifferent) {
+    std::set<std::string> names;
+    for (const auto& effect : catalogue()) EXPECT_TRUE(names.insert(effect->name()).second) << effect->name();
+}
+
+TEST(Catalogue, EachEffectDrawsFromTheStreamThatItAlwaysDid) {  // digits of a seed hang on them
+    const std::map<std::string, std::uint64_t> streams{
+        {"gravity", 0},    {"compliant-support", 1}, {"pressure", 2},    {"prestress", 3},
+        {"volume", 4},     {"torsion", 5},           {"shear", 6},       {"stiffening", 7},
+        {"anisotropy", 8}, {"viscosity", 9},         {"plasticity", 10}, {"inclusion", 11},
+        {"contact", 12},   {"misalignment", 13},     {"force-gain", 14}, {"outliers", 15}};
+    for (const auto& [name, stream] : streams) EXPECT_EQ(find_effect(name)->stream(), stream) << name;
+}
+
+TEST(Catalogue, OneEffectStandsForSingleReadings) {
+    EXPECT_EQ(std::ranges::count_if(catalogue(), &EffectHypothesis::sets_readings_aside), 1);
+    EXPECT_EQ(effect_of_single_readings()->name(), "outliers");
+}
+
+TEST(Catalogue, AWrongNameGetsASuggestion) {
+    EXPECT_EQ(message_of([] {
+                  find_effect("gravitiy");
+              }).rfind("there is no effect 'gravitiy'; did you mean 'gravity'? Known are: ", 0),
+              0u);
+    EXPECT_THAT(message_of([] { find_effect("outlier"); }), HasSubstr("did you mean 'outliers'?"));
+    for (const auto& effect : catalogue()) EXPECT_THAT(message_of([] { find_effect("x"); }), HasSubstr(effect->name()));
+}
+
+}  // namespace
+}  // namespace palpate::identify

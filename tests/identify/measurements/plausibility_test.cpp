@@ -1,0 +1,49 @@
+#include "identify/measurements/plausibility.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace palpate::identify {
+namespace {
+
+using ::testing::Contains;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+
+/// A cube of 100 mm and 0.1 MPa that 2 N press in by about 0.2 mm, its numbers off by these factors.
+MeasurementSet pressed_cube(double length, double force, double moved) {
+    MeasurementSet set;
+    set.rest_surface = mesh::make_box({0, 0, 0}, Vec3::Constant(100 * length), {1, 1, 1});
+    set.markers.push_back({7, Vec3(100, 50, 50) * length, std::nullopt});
+    set.states.push_back({.probe = 1,
+                          .contacts = {{Vec3(100, 50, 50) * length, Vec3(-2, 0, 0) * force, 0}},
+                          .readings = {{0, Vec3(100 - 0.2 * moved, 50, 50) * length, missing}}});
+    return set;
+}
+
+TEST(Plausibility, ASoundSetIsLeftAlone) {
+    EXPECT_THAT(implausible(pressed_cube(1, 1, 1)), IsEmpty());
+    EXPECT_THAT(implausible(pressed_cube(1, 1e-3, 100)), IsEmpty());  // very soft
+}
+
+TEST(Plausibility, ASlipOfUnitsShows) {
+    EXPECT_THAT(implausible(pressed_cube(1e-4, 1, 1)), Contains(HasSubstr("0.01 mm long")));
+    EXPECT_THAT(implausible(pressed_cube(1e4, 1, 1)), ElementsAre(HasSubstr("1e+06 mm long")));
+    EXPECT_THAT(implausible(pressed_cube(1, 1, 1000)), ElementsAre(HasSubstr("marker 7 in probe 1 at time 0")));
+    EXPECT_THAT(implausible(pressed_cube(1, 1e9, 1)), ElementsAre(HasSubstr("block of steel")));
+    EXPECT_THAT(implausible(pressed_cube(1, 1e-13, 1)), ElementsAre(HasSubstr("less than any solid")));
+}
+
+TEST(Plausibility, AnAbsurdModulusNamesTheLikelyCause) {
+    MeasurementSet set = pressed_cube(1, 1, 1);
+    EXPECT_EQ(implausible_modulus(0.1, set), "");
+    EXPECT_THAT(implausible_modulus(1e8, set), HasSubstr("no solid"));
+    EXPECT_THAT(implausible_modulus(1e-7, set), HasSubstr("mN"));
+    set.material = MaterialGuess{.young = 0.1};
+    EXPECT_EQ(implausible_modulus(0.3, set), "");
+    EXPECT_THAT(implausible_modulus(100, set), HasSubstr("1e+03 times"));
+}
+
+}  // namespace
+}  // namespace palpate::identify

@@ -1,0 +1,127 @@
+// What a child process does, and what is seen of it, however it ends.
+
+#include "mesh/system/child_process.h"
+
+#include <fcntl.h>
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <csignal>
+#include <filesystem>
+#include <stdexcept>
+#include <string>
+#include <thread>
+
+#include "mesh/text/atomic_file.h"
+#include "tests/temporary_folder.h"
+
+namespace palpate::mesh {
+namespace {
+
+using namespace std::chrono_literals;
+using End = ChildResult::End;
+
+/// Waits until it holds, for ten seconds at most.
+template <typename Condition>
+bool comes_true(const Condition& condition) {
+    for (int i = 0; i < 1000; ++i) {
+        if (condition()) return true;
+        std::this_thread::sleep_for(10ms);
+    }
+    return false;
+}
+
+TEST(ChildProcess, Answers) {
+    const std::string long_answer(3'000'000, 'x');  // more than a pipe holds
+    const ChildResult result = run_in_child([&] { return long_answer; }, {});
+    EXPECT_EQ(result.end, End::Answered);
+    EXPECT_EQ(result.answer, long_answer);
+}
+
+TEST(ChildProcess, TellsTheSignalThatEndedIt) {
+    const ChildResult result = run_in_child(
+        []() -> std::string {
+            raise(SIGKILL);
+            return "";
+        },
+        {});
+    EXPECT_EQ(result.end, End::Crashed);
+    EXPECT_EQ(result.signal, SIGKILL);
+}
+
+TEST(ChildProcess, ThrowingIsFailing) {
+    EXPECT_EQ(run_in_child([]() -> std::string { throw std::runtime_error("no"); }, {}).end, End::Failed);
+}
+
+TEST(ChildProcess, LeavingHalfwayIsFailing) {
+    const ChildResult result = run_in_child([]() -> std::string { _exit(5); }, {});
+    EXPECT_EQ(result.end, End::Failed);
+    EXPECT_EQ(result.code, 5);
+}
+
+TEST(ChildProcess, EndsWithItsTime) {
+    const ChildResult result = run_in_child(
+        [] {
+            std::this_thread::sleep_for(1h);
+            return std::string();
+        },
+        {.seconds = 0.2});
+    EXPECT_EQ(result.end, End::OutOfTime);
+}
+
+#ifndef __SANITIZE_ADDRESS__  // which addresses terabytes itself
+TEST(ChildProcess, EndsWithItsMemory) {
+    const auto greed = [] { return std::string(std::size_t{512} << 20, 'x'); };
+    EXPECT_EQ(run_in_child(greed, {.mebibytes = 64}).end, End::OutOfMemory);
+}
+#endif
+
+/// A lock on an open file is the child's too: were the parent killed, the file would stay locked.
+TEST(ChildProcess, HoldsNoFileOfItsParent) {
+    const TemporaryFolder folder;
+    const int file = open((folder / "file").c_str(), O_RDWR | O_CREAT, 0644);
+    const int late = fcntl(file, F_DUPFD, 200);
+    const ChildResult result = run_in_child(
+        [&] {
+            std::string held;
+            for (const int one : {file, late}) held += fcntl(one, F_GETFD) < 0 ? "no" : "yes";
+            return held;
+        },
+        {});
+    EXPECT_EQ(result.answer, "nono");
+    EXPECT_GE(fcntl(file, F_GETFD), 0);
+    close(file);
+    close(late);
+}
+
+TEST(ChildProcess, EndsWithItsParent) {
+    const TemporaryFolder folder;
+    const std::string told = folder / "child";
+    const pid_t parent = fork();
+    if (parent == 0) {
+        run_in_child(
+            [&] {
+                write_text(told, std::to_string(getpid()));
+                std::this_thread::sleep_for(1h);
+                return std::string();
+            },
+            {});
+        _exit(0);
+    }
+    ASSERT_TRUE(comes_true([&] { return std::filesystem::exists(told); }));
+    const auto child = static_cast<pid_t>(std::stol(read_text(told)));
+    EXPECT_EQ(kill(child, 0), 0);
+    kill(parent, SIGKILL);
+    waitpid(parent, nullptr, 0);
+    // an orphan that nobody waits for stays as a zombie: it runs no more
+    const std::string state = "/proc/" + std::to_string(child) + "/stat";
+    EXPECT_TRUE(comes_true([&] {
+        return kill(child, 0) != 0 || !std::filesystem::exists(state) ||
+               read_text(state).find(") Z") != std::string::npos;
+    }));
+}
+
+}  // namespace
+}  // namespace palpate::mesh

@@ -1,0 +1,68 @@
+// The program as a shell sees it: exit codes, and what stands on which stream.
+
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+
+#include <array>
+#include <cstdio>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "mesh/formats/surface/read_surface.h"
+#include "tests/temporary_folder.h"
+
+namespace palpate::pipeline {
+namespace {
+
+struct Finished {
+    int code;
+    std::string out;
+};
+
+Finished palpate(const std::string& arguments) {
+    const std::string command = std::string(PALPATE_PROGRAM) + " " + arguments + " 2>/dev/null";
+    FILE* pipe = popen(command.c_str(), "r");
+    std::string out;
+    std::array<char, 4096> buffer{};
+    while (const std::size_t count = fread(buffer.data(), 1, buffer.size(), pipe)) out.append(buffer.data(), count);
+    return {WEXITSTATUS(pclose(pipe)), out};
+}
+
+TEST(CommandLine, ExitCodesTellWhatWentWrong) {
+    const TemporaryFolder scratch;
+    EXPECT_EQ(palpate("--version").code, 0);
+    EXPECT_EQ(palpate("--help").code, 0);
+    EXPECT_EQ(palpate("").code, 2);
+    EXPECT_EQ(palpate("rnu x").code, 2);
+    EXPECT_EQ(palpate("run --spheres many x.stl").code, 2);
+    EXPECT_EQ(palpate("improve model.json set").code, 2);  // what is to be added?
+    EXPECT_EQ(palpate("improve model.json set --auto --add gravity").code, 2);
+    EXPECT_EQ(palpate("diagnose model.json set --body spheres").code, 2);
+    EXPECT_EQ(palpate("effects gravty").code, 3);
+    EXPECT_EQ(palpate("check " + (scratch / "none.stl").string()).code, 3);
+}
+
+TEST(CommandLine, JsonStandsAloneOnStandardOutput) {
+    const TemporaryFolder scratch;
+    mesh::write_surface(scratch / "box.stl", mesh::make_box({0, 0, 0}, {10, 2, 2}, {5, 1, 1}));
+    const Finished check = palpate("check --json " + (scratch / "box.stl").string());
+    EXPECT_EQ(check.code, 0);
+    const auto result = nlohmann::json::parse(check.out);
+    EXPECT_TRUE(result["surface"]["sound"].get<bool>());
+    EXPECT_NEAR(result["surface"]["volume_mm3"].get<double>(), 40.0, 1e-4);  // STL holds single precision
+
+    EXPECT_TRUE(nlohmann::json::parse(palpate("effects --json").out)["effects"].is_array());
+    EXPECT_EQ(nlohmann::json::parse(palpate("effects gravity --json").out)["kind"], "body");
+
+    const Finished failed = palpate("check --json " + (scratch / "none.stl").string());
+    EXPECT_EQ(failed.code, 3);
+    EXPECT_TRUE(nlohmann::json::parse(failed.out).contains("error"));
+}
+
+TEST(CommandLine, HelpBeginsWithExamples) {
+    const std::string help = palpate("run --help").out;
+    EXPECT_LT(help.find("Examples:"), help.find("Options:"));
+}
+
+}  // namespace
+}  // namespace palpate::pipeline

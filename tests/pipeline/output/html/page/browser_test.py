@@ -1,0 +1,71 @@
+"""The report in a browser: it draws, every control works by mouse and keyboard, nothing is logged as an error.
+
+browser_test.py PALPATE SOURCE_FOLDER [PICTURES]; ends with 77 (skipped) where there is no Chromium. Screenshots at laptop
+and phone widths go to PICTURES.
+"""
+import os
+import pathlib
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+
+chromium = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
+if not chromium:
+    print("skipped: there is no Chromium")
+    sys.exit(77)
+
+program, source = sys.argv[1], pathlib.Path(sys.argv[2])
+test_script = (source / "tests/pipeline/output/html/page/browser_test.js").read_text()
+failures = []
+
+
+def palpate(*arguments):
+    subprocess.run([program, *map(str, arguments), "-q"], check=True, stdout=subprocess.DEVNULL)
+
+
+def browse(page, width, height, profile, *what):
+    command = [chromium, "--headless=new", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--hide-scrollbars",
+               "--enable-logging=stderr", f"--user-data-dir={profile}", f"--window-size={width},{height}",
+               "--host-resolver-rules=MAP * ~NOTFOUND", *what, page.as_uri()]
+    if os.geteuid() == 0:
+        command.insert(1, "--no-sandbox")  # Chromium's sandbox does not start as root
+    return subprocess.run(command, capture_output=True, text=True, timeout=240)
+
+
+def check(report, scratch, name):
+    size = report.stat().st_size
+    if size > 5_000_000:
+        failures.append(f"{name}: {size} bytes are more than 5 MB")
+    tested = scratch / f"{name}.html"
+    tested.write_text(report.read_text() + f"<script>{test_script}</script>")
+    for width, height in ((1366, 900), (390, 844)):
+        profile = scratch / f"profile-{name}-{width}"
+        done = browse(tested, width, height, profile, "--virtual-time-budget=60000", "--dump-dom")
+        title = re.search(r"<title>(.*?)</title>", done.stdout, re.S)
+        verdict = title.group(1) if title else "no title"
+        print(f"{name} at {width} px: {verdict}; {size} bytes")
+        if verdict != "tested: fine":
+            failures.append(f"{name} at {width} px: {verdict}")
+        failures.extend(f"{name} at {width} px: {line}" for line in done.stderr.splitlines() if "CONSOLE" in line)
+        if len(sys.argv) > 3:
+            picture = pathlib.Path(sys.argv[3]) / f"{name}-{width}.png"
+            browse(report.resolve(), width, 5200 if width > 1000 else 9000, profile, "--virtual-time-budget=4000", f"--screenshot={picture}")
+
+
+with tempfile.TemporaryDirectory() as folder:
+    at = pathlib.Path(folder)
+    palpate("new", at / "case")
+    palpate("run", at / "case/case.yaml", "-o", at / "run", "--probes", 6, "--spheres", 8, "--parameters", "links",
+            "--particles", 40, "--edge-length", 8)
+    check(at / "run/report.html", at, "simulated")
+    if 'id="density-of"' not in (at / "run/report.html").read_text():
+        failures.append("simulated: no number's density can be chosen")
+    palpate("probe", at / "run/identify/model.json", "-o", at / "blind", "--hide", "gravity", "--probes", 5, "--markers", 25)
+    palpate("run", at / "blind", "-o", at / "measured", "--parameters", "uniform", "--particles", 40, "--edge-length", 12)
+    check(at / "measured/report.html", at, "measured")
+
+for failure in failures:
+    print("FAILED", failure)
+sys.exit(1 if failures else 0)

@@ -1,0 +1,236 @@
+// The report page of a small run: what it says, and the numbers behind its view.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <map>
+#include <nlohmann/json.hpp>
+
+#include "identify/comparison/compare.h"
+#include "identify/loading/readings.h"
+#include "mesh/errors.h"
+#include "mesh/formats/surface/read_surface.h"
+#include "mesh/formats/vtk/poly_data.h"
+#include "mesh/text/atomic_file.h"
+#include "pipeline/analysis/link_uncertainty.h"
+#include "pipeline/analysis/playback.h"
+#include "pipeline/command_line/commands.h"
+#include "pipeline/output/csv/posterior.h"
+#include "pipeline/output/html/charts/charts.h"
+#include "pipeline/output/html/report.h"
+#include "pipeline/output/html/sections/fit_sections.h"
+#include "pipeline/output/html/sections/inquiry_sections.h"
+#include "pipeline/output/html/view_data.h"
+#include "skeleton/model/io/model_io.h"
+#include "tests/temporary_folder.h"
+
+namespace palpate::pipeline {
+namespace {
+
+using nlohmann::json;
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+commands::RunOptions beam_options(const std::filesystem::path& from, const std::filesystem::path& to) {
+    commands::RunOptions options{.input = from / "beam.stl", .output = to, .overrides = {}};
+    options.overrides.set("volume.edge_length", 14);
+    options.overrides.set("skeleton.spheres", 6);
+    options.overrides.set("probing.probes", 6);
+    options.overrides.set("identify.particles", 40);
+    options.overrides.set("identify.parameters", "uniform");
+    return options;
+}
+
+/// A run on a small beam, made once for all tests.
+const std::filesystem::path& beam_run() {
+    static const TemporaryFolder scratch;
+    static const std::filesystem::path run = [] {
+        mesh::write_surface(scratch / "beam.stl", mesh::make_box({0, 0, 0}, {100, 20, 20}, {10, 2, 2}));
+        commands::run(beam_options(scratch.path(), scratch / "run"), {});
+        return scratch / "run";
+    }();
+    return run;
+}
+
+json data_of(const std::filesystem::path& run, std::size_t budget = 3'000'000) {
+    return view_data(run, json::parse(mesh::read_text(run / "run.json")),
+                     json::parse(mesh::read_text(run / "compare/compare.json")), nullptr,
+                     read_posterior(run / "identify/posterior.csv"), budget);
+}
+
+/// Bytes behind base64.
+std::size_t bytes_of(const json& array) {
+    const std::string text = array["data"];
+    return text.size() / 4 * 3 - static_cast<std::size_t>(std::ranges::count(text, '='));
+}
+
+TEST(ReportPage, NeedsNoNetwork) {
+    const std::string page = mesh::read_text(beam_run() / "report.html");
+    EXPECT_EQ(page.find("http"), std::string::npos);
+    EXPECT_EQ(page.find("src="), std::string::npos);
+    EXPECT_LT(page.size(), 5'000'000U);
+}
+
+TEST(ReportPage, HoldsEverySectionThatTheRunHasAndNoOther) {
+    const std::string page = mesh::read_text(beam_run() / "report.html");
+    for (const char* section :
+         {"id=\"view\"", "id=\"budget\"", "id=\"errors\"", "id=\"stiffness\"", "id=\"convergence\"", "id=\"files\"",
+          "id=\"times\"", "id=\"settings\"", "id=\"run-data\""}) {
+        EXPECT_THAT(page, HasSubstr(section));
+    }
+    EXPECT_THAT(page, AllOf(Not(HasSubstr("id=\"missing\"")), Not(HasSubstr("id=\"ladder\""))));
+    EXPECT_THAT(page, HasSubstr("<a href=\"#stiffness\">Stiffness</a>"));
+}
+
+TEST(ReportPage, OfNoRunSaysSo) {
+    const TemporaryFolder scratch;
+    EXPECT_THROW(write_report(scratch.path(), scratch / "report.html"), InvalidInput);
+}
+
+/// A quarter, half, as many and twice as many spheres as the run has; gone again where they are not asked for.
+TEST(SphereCurve, IsMeasuredWhereItIsAskedFor) {
+    const TemporaryFolder scratch;
+    std::filesystem::copy(beam_run(), scratch / "run", std::filesystem::copy_options::recursive);
+    commands::RunOptions options = beam_options(beam_run().parent_path(), scratch / "run");
+    options.overrides.set("skeleton.sphere_curve", "true");
+    commands::run(options, {});
+    const json curve = json::parse(mesh::read_text(scratch / "run/skeleton/sphere_curve.json"));
+    std::map<int, bool> steps;
+    for (const json& step : curve["rungs"]) steps[step["spheres"]] = step["own"];
+    EXPECT_EQ(steps, (std::map<int, bool>{{1, false}, {3, false}, {6, true}, {12, false}}));
+    EXPECT_THAT(mesh::read_text(scratch / "run/report.html"), HasSubstr("id=\"spheres\""));
+
+    options.overrides.set("skeleton.sphere_curve", "false");
+    commands::run(options, {});
+    EXPECT_FALSE(std::filesystem::exists(scratch / "run/skeleton/sphere_curve.json"));
+    EXPECT_FALSE(json::parse(mesh::read_text(scratch / "run/run.json"))["stages"].contains("sphere_curve"));
+    EXPECT_THAT(mesh::read_text(scratch / "run/report.html"),
+                AllOf(Not(HasSubstr("id=\"spheres\"")), HasSubstr("--sphere-curve")));
+}
+
+TEST(ViewData, HoldsTheBodyAndEachAnswer) {
+    const json data = data_of(beam_run());
+    const mesh::PolyData skin = mesh::read_poly_data(beam_run() / "compare/skin_000.vtp");
+    const mesh::PolyData spheres = mesh::read_poly_data(beam_run() / "compare/skeleton_000.vtp");
+    const auto vertices = static_cast<std::size_t>(skin.points.rows()),
+               balls = static_cast<std::size_t>(spheres.points.rows());
+    EXPECT_EQ(bytes_of(data["surface"]["points"]), 12 * vertices);
+    EXPECT_EQ(bytes_of(data["spheres"]["radii"]), 4 * balls);
+    EXPECT_EQ(bytes_of(data["links"]), 8 * static_cast<std::size_t>(spheres.lines.rows()));
+    ASSERT_EQ(data["steps"].size(), 1U);
+    EXPECT_EQ(data["steps"][0]["states"].size(), data["states"].size());
+    for (const json& state : data["steps"][0]["states"]) {
+        EXPECT_EQ(bytes_of(state["skin"]), 6 * vertices);
+        EXPECT_EQ(bytes_of(state["spheres"]), 6 * balls);
+        EXPECT_EQ(bytes_of(state["markers"]["error"]), 12 * state["markers"]["id"].size());
+    }
+    const auto held = std::ranges::count_if(data["states"], [](const json& s) { return s["held_out"].get<bool>(); });
+    EXPECT_GT(held, 0);
+    EXPECT_LT(static_cast<std::size_t>(held), data["states"].size());
+    for (const json& state : data["states"])
+        EXPECT_FALSE(state["measured"].is_null()) << "simulated: the field is known";
+}
+
+/// Where not all states fit, those with the largest errors are kept.
+TEST(ViewData, KeepsTheWorstStatesWithinItsBudget) {
+    const json whole = data_of(beam_run()), small = data_of(beam_run(), 1);
+    ASSERT_EQ(small["states"].size(), 1U);
+    EXPECT_EQ(small["left_out"], whole["states"].size() - 1);
+    const json compare = json::parse(mesh::read_text(beam_run() / "compare/compare.json"));
+    json worst = compare["probes"][0];
+    for (const json& probe : compare["probes"]) {
+        if (probe["rms_mm"] > worst["rms_mm"]) worst = probe;
+    }
+    EXPECT_EQ(small["states"][0]["probe"], worst["probe"]);
+}
+
+/// The pictures show what the errors were told of.
+TEST(Play, EndsWhereTheComparisonDoes) {
+    const skeleton::Model model = skeleton::read_model(beam_run() / "identify/model.json");
+    const identify::MeasurementSet set = identify::read_measurement_set(beam_run() / "measurements");
+    const identify::Comparison comparison = identify::compare(model, set);
+    const std::vector<identify::ReducedLoadEquilibrium> played = play(model, set);
+    ASSERT_EQ(played.size(), set.states.size());
+    for (const identify::StateReadings& read : identify::collect_readings(model, set)) {
+        const identify::ReducedLoadEquilibrium& answer = played[static_cast<std::size_t>(read.state)];
+        const Points seen = skeleton::observed(model, answer.equilibrium, answer.load, read.points);
+        const Points told = comparison.predicted[static_cast<std::size_t>(read.state)](read.rows, Eigen::all);
+        EXPECT_NEAR((seen - told).norm(), 0, 1e-9) << "to what two solves of one equilibrium differ by";
+    }
+}
+
+identify::PosteriorRow stiffness_row(const std::string& name, int link, double mean, double sd) {
+    return {name, link, "N/mm", mean, sd, mean - sd, mean, mean + sd, 1, 1, false};
+}
+
+TEST(LinkUncertainty, FollowsTheScopeOfEachRow) {
+    const Eigen::VectorXd zones = (Eigen::VectorXd(3) << 0, 1, 1).finished();
+    const auto of = [&](const std::vector<identify::PosteriorRow>& rows) { return link_uncertainty(rows, zones); };
+    EXPECT_EQ(of({stiffness_row("elongation", -1, 2, 1)})[0].values.col(0), Eigen::Vector3d(0.5, 0.5, 0.5));
+    const auto by_zone = of({stiffness_row("flexion:zone0", -1, 2, 1), stiffness_row("flexion:zone1", -1, 4, 1)});
+    EXPECT_EQ(by_zone[0].name, "flexion sd/mean [-]");
+    EXPECT_EQ(by_zone[0].values.col(0), Eigen::Vector3d(0.5, 0.25, 0.25));
+    const auto by_link = of({stiffness_row("torsion:link2", 2, 10, 1), stiffness_row("volume:sphere1", -1, 1, 1)});
+    ASSERT_EQ(by_link.size(), 1U);  // a sphere's is none of a link's
+    EXPECT_TRUE(std::isnan(by_link[0].values(0, 0)));
+    EXPECT_EQ(by_link[0].values(2, 0), 0.1);
+}
+
+TEST(MissingSection, PutsEveryCandidateInWords) {
+    const json diagnosis = {{"verdict", "missing-effect"},
+                            {"explanation", {"gravity"}},
+                            {"noise_mm", 0.1},
+                            {"noise_known", true},
+                            {"baseline",
+                             {{"law", "neo-hooke"},
+                              {"young_mpa", 0.1},
+                              {"poisson", nullptr},
+                              {"rms_mm", 2.0},
+                              {"held_out_rms_mm", 2.1},
+                              {"whitened_rms", 20.0}}},
+                            {"ranking",
+                             {{{"effect", "gravity"},
+                               {"log_bayes_factor", 412.3},
+                               {"probability", 1.0},
+                               {"rms_mm", 0.1},
+                               {"held_out_rms_mm", 0.11},
+                               {"whitened_rms", 1.0},
+                               {"predicted_rms_mm", 0.1},
+                               {"parameters", {{"gz", {{"value", -9810.0}, {"sd", 12.0}, {"unit", "mm/s^2"}}}}},
+                               {"sentence", "Gravity is <missing>."}},
+                              {{"effect", "contact"},
+                               {"log_bayes_factor", 3.0},
+                               {"probability", 0.0},
+                               {"rms_mm", nullptr},
+                               {"held_out_rms_mm", nullptr},
+                               {"whitened_rms", nullptr},
+                               {"predicted_rms_mm", 1.7},
+                               {"parameters", json::object()},
+                               {"objection", "too much of the misfit"}}}}};
+    EXPECT_THAT(missing_section(diagnosis),
+                AllOf(HasSubstr("<b>Claimed.</b> Gravity is &lt;missing&gt;."), HasSubstr("gz -9810 ± 12 mm/s^2"),
+                      HasSubstr("The body meets an unreported flat obstacle"), HasSubstr("No claim: too much of the misfit."),
+                      HasSubstr("Screened only: it would leave 1.7 mm rms.")));
+    EXPECT_EQ(missing_section(nullptr), "");
+}
+
+TEST(SpheresSection, DrawsTheCurveWhereThereIsOne) {
+    const auto step = [](int spheres, double rms, bool own) {
+        return json{
+            {"own", own}, {"spheres", spheres}, {"error", {{"rms", rms}, {"median", rms / 2}, {"p90", 2 * rms}}}};
+    };
+    const json steps{step(8, 0.3, true), step(64, 0.1, false)};
+    EXPECT_THAT(spheres_section({{"rungs", steps}}),
+                AllOf(HasSubstr("rms at 8: 30"), HasSubstr("90th percentile at 64: 20"), HasSubstr("8 free spheres")));
+    EXPECT_EQ(spheres_section(nullptr), "");
+}
+
+TEST(LineChart, NeedsTwoPlaces) {
+    EXPECT_EQ(line_chart({{"a", {}}}, "t", "x"), "");
+    EXPECT_EQ(line_chart({{"a", {{1, 2}}}}, "t", "x"), "");
+    EXPECT_THAT(line_chart({{"a", {{1, 2}, {2, 2}}}}, "t", "x"), HasSubstr("polyline"));
+}
+
+}  // namespace
+}  // namespace palpate::pipeline

@@ -1,0 +1,115 @@
+// The main job on a small beam: what it leaves behind, and what it does not do twice.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "mesh/formats/surface/read_surface.h"
+#include "mesh/text/atomic_file.h"
+#include "pipeline/command_line/commands.h"
+#include "tests/temporary_folder.h"
+
+namespace palpate::pipeline {
+namespace {
+
+using nlohmann::json;
+
+commands::RunOptions small_run(const TemporaryFolder& scratch) {
+    mesh::write_surface(scratch / "beam.stl", mesh::make_box({0, 0, 0}, {100, 20, 20}, {10, 2, 2}));
+    commands::RunOptions options{.input = scratch / "beam.stl", .output = scratch / "run", .overrides = {}};
+    options.overrides.set("volume.edge_length", 12);
+    options.overrides.set("skeleton.spheres", 8);
+    options.overrides.set("probing.probes", 10);
+    options.overrides.set("identify.particles", 40);
+    options.overrides.set("identify.parameters", "uniform");
+    return options;
+}
+
+json record(const TemporaryFolder& scratch) { return json::parse(mesh::read_text(scratch / "run/run.json"))["stages"]; }
+
+TEST(Run, LeavesTheFilesThatItPromises) {
+    const TemporaryFolder scratch;
+    const commands::Outcome outcome = commands::run(small_run(scratch), {});
+    EXPECT_EQ(outcome.code, commands::done);
+    for (const char* file :
+         {"case.yaml", "run.json", "mesh/body.vtu", "skeleton/model.json", "skeleton/skeleton.vtp",
+          "skeleton/medial_axis.vtp", "reference/reference.pvd", "measurements/set.yaml", "identify/model.json",
+          "identify/posterior.csv", "identify/history.pvd", "compare/compare.json", "compare/markers.pvd",
+          "compare/skin.pvd", "report.html", "view.py"}) {
+        EXPECT_TRUE(std::filesystem::exists(scratch / "run" / file)) << file;
+    }
+    // Eight spheres in a slender beam follow finite elements to far better than half: what is left is their coarseness.
+    EXPECT_LT(outcome.json["compare"]["error"]["relative"].get<double>(), 0.5);
+    EXPECT_TRUE(outcome.json["compare"].contains("held_out"));
+}
+
+/// A simulation's fields are measurements too: without markers, the surface's vertices are read from them.
+TEST(Run, TakesASetOfFieldsWithoutMarkers) {
+    const TemporaryFolder scratch;
+    commands::run(small_run(scratch), {});
+    const auto set = scratch / "run/measurements";
+    std::filesystem::remove(set / "markers.csv");
+    std::filesystem::remove(set / "positions.csv");
+    const commands::Outcome outcome = commands::compare({.model = scratch / "run/identify/model.json",
+                                                         .set = set,
+                                                         .output = scratch / "compared",
+                                                         .tolerance = {},
+                                                         .no_reference = true},
+                                                        {});
+    EXPECT_EQ(outcome.code, commands::done);
+    EXPECT_LT(outcome.json["error"]["relative"].get<double>(), 0.5);
+    EXPECT_TRUE(std::filesystem::exists(scratch / "compared/markers.pvd"));
+}
+
+TEST(Run, RepeatsNothingWhoseInputsAreUnchanged) {
+    const TemporaryFolder scratch;
+    commands::RunOptions options = small_run(scratch);
+    commands::run(options, {});
+    const json before = record(scratch);
+    commands::run(options, {});
+    EXPECT_EQ(before, record(scratch));
+
+    // Other particles: identification and what follows from it are done again, and nothing else.
+    options.overrides.set("identify.particles", 50);
+    commands::run(options, {});
+    const json after = record(scratch);
+    for (const char* same : {"mesh", "skeleton", "measurements"}) EXPECT_EQ(before[same], after[same]) << same;
+    for (const char* other : {"identify", "compare"}) EXPECT_NE(before[other]["key"], after[other]["key"]) << other;
+}
+
+TEST(Run, SettingsReadBackGiveTheSameRun) {
+    const TemporaryFolder scratch;
+    commands::run(small_run(scratch), {});
+    const json before = record(scratch);
+    std::filesystem::copy(scratch / "run/case.yaml", scratch / "again.yaml");
+    commands::run({.input = scratch / "again.yaml", .output = scratch / "run", .overrides = {}}, {});
+    EXPECT_EQ(before, record(scratch));
+}
+
+TEST(Run, ThreadCountChangesNoNumber) {
+    const TemporaryFolder scratch;
+    commands::RunOptions options = small_run(scratch);
+    commands::run(options, {.json = false, .force = false, .threads = 1, .seed = {}});
+    const std::string one = mesh::read_text(scratch / "run/identify/posterior.csv");
+    options.output = scratch / "other";
+    commands::run(options, {.json = false, .force = false, .threads = 3, .seed = {}});
+    EXPECT_EQ(one, mesh::read_text(scratch / "other/identify/posterior.csv"));
+}
+
+TEST(Run, TellsExpectationsThatAreNotMet) {
+    const TemporaryFolder scratch;
+    small_run(scratch);
+    const auto file =
+        scratch.write("case.yaml",
+                      "format: palpate-case/1\nmesh: beam.stl\nvolume: {edge_length: 12}\nskeleton: {spheres: 8}\n"
+                      "probing: {probes: 5, held_out: 1}\nidentify: {parameters: uniform, particles: 40}\n"
+                      "expect: {relative_at_most: 0.000001}\n");
+    const commands::Outcome outcome = commands::run({.input = file, .output = scratch / "run", .overrides = {}}, {});
+    EXPECT_EQ(outcome.code, commands::not_met);
+    EXPECT_EQ(outcome.json["expectations_not_met"].size(), 1U);
+}
+
+}  // namespace
+}  // namespace palpate::pipeline
