@@ -21,4 +21,4 @@ configure_package_config_file("${PROJECT_SOURCE_DIR}/pipeline/package/palpateCon
   "${PROJECT_BINARY_DIR}/palpateConfig.cmake" INSTALL_DESTINATION "${package_folder}")
 write_basic_package_version_file("${PROJECT_BINARY_DIR}/palpateConfigVersion.cmake" COMPATIBILITY SameMinorVersion)
 install(FILES "${PROJECT_BINARY_DIR}/palpateConfig.cmake" "${PROJECT_BINARY_DIR}/palpateConfigVersion.cmake"
-  mesh/TetGen.cmake fem/SuiteSparse.cmake DESTINATION "${package_folder}")
+  mesh/meshing/TetGen.cmake fem/SuiteSparse.cmake DESTINATION "${package_folder}")

@@ -15,8 +15,10 @@
 
 #include <cmath>
 
-#include "identify/effects/catalogue.h"
 #include "skeleton/effects/effect.h"
+#ifndef PALPATE_PHYSICS_ONLY
+#include "identify/effects/catalogue.h"
+#endif
 
 namespace {
 
@@ -47,6 +49,8 @@ const bool physics_known = skeleton::register_effect(
      }});
 
 // --- How a diagnosis sees it -----------------------------------------------------------------------------------------
+
+#ifndef PALPATE_PHYSICS_ONLY  // libpalpate_runtime.so plays effects and diagnoses nothing: it compiles the physics alone
 
 class EmbeddingEffect : public identify::EffectHypothesis {
 public:
@@ -84,5 +88,7 @@ public:
 };
 
 const bool diagnosis_knows = identify::register_effect(std::make_shared<EmbeddingEffect>());
+
+#endif
 
 }  // namespace

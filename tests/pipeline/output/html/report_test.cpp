@@ -208,10 +208,11 @@ TEST(MissingSection, PutsEveryCandidateInWords) {
                                {"predicted_rms_mm", 1.7},
                                {"parameters", json::object()},
                                {"objection", "too much of the misfit"}}}}};
-    EXPECT_THAT(missing_section(diagnosis),
-                AllOf(HasSubstr("<b>Claimed.</b> Gravity is &lt;missing&gt;."), HasSubstr("gz -9810 ± 12 mm/s^2"),
-                      HasSubstr("The body meets an unreported flat obstacle"), HasSubstr("No claim: too much of the misfit."),
-                      HasSubstr("Screened only: it would leave 1.7 mm rms.")));
+    EXPECT_THAT(
+        missing_section(diagnosis),
+        AllOf(HasSubstr("<b>Claimed.</b> Gravity is &lt;missing&gt;."), HasSubstr("gz -9810 ± 12 mm/s^2"),
+              HasSubstr("The body meets an unreported flat obstacle"), HasSubstr("No claim: too much of the misfit."),
+              HasSubstr("Screened only: it would leave 1.7 mm rms.")));
     EXPECT_EQ(missing_section(nullptr), "");
 }
 
