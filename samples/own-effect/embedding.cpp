@@ -50,7 +50,8 @@ const bool physics_known = skeleton::register_effect(
 
 // --- How a diagnosis sees it -----------------------------------------------------------------------------------------
 
-#ifndef PALPATE_PHYSICS_ONLY  // libpalpate_runtime.so plays effects and diagnoses nothing: it compiles the physics alone
+// libpalpate_runtime.so plays effects and diagnoses nothing: it compiles the physics alone.
+#ifndef PALPATE_PHYSICS_ONLY
 
 class EmbeddingEffect : public identify::EffectHypothesis {
 public:
