@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cassert>
 #include <type_traits>
 
 #include "identify/diagnosis/diagnose.h"

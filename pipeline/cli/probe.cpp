@@ -78,7 +78,9 @@ void describe_hidden(const BlindSet& blind_set, bool has_fields) {
                                     hidden.effect.name, hidden.strength.change, blind_set.noise));
     }
     if (blind_set.is_blind && has_fields) {
-        Console::notice("Blind set: neither full fields nor the material are written; truth.json holds them.");
+        Console::notice(
+            "The set is blind: neither full fields nor the material are written, which would disclose what is hidden; "
+            "truth.json tells it.");
     }
 }
 
