@@ -38,6 +38,7 @@ void CaseOverrides::apply(Case& c) const {
         const std::string objection = objection_on_reading(setting, value, c);
         if (!objection.empty()) throw InvalidInput(fmt::format("{}: {}", flag_or_place(setting), objection));
     }
+    if (seed) c.identify.seed = *seed;
 }
 
 Case CaseOverrides::on_defaults() const {

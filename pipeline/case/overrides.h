@@ -1,6 +1,8 @@
 #pragma once
 
+#include <cstdint>
 #include <map>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -16,6 +18,8 @@ public:
     void set(std::string_view place, std::string value);
     void set(std::string_view place, double value);
     bool has(std::string_view place) const;
+    std::optional<std::uint64_t> seed;  // --seed, of any size; a case file holds up to 2e9
+
     /// @throws InvalidInput naming the flag, the value and what is allowed.
     void apply(Case& settings) const;
     /// Defaults, but for what is said.

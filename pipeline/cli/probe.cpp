@@ -277,7 +277,7 @@ void Subcommands::add_probe(CLI::App& app) {
                    "  palpate probe liver.stl --to inp -o deck    # for your own solver; then (cd deck && ccx body)\n"
                    "  palpate probe liver.stl --from deck -o set  # and what it computed\n",
                    [this] {
-                       if (common.seed) probe.overrides.set("seed", static_cast<double>(*common.seed));
+                       probe.overrides.seed = common.seed;
                        return commands::probe(probe, common);
                    });
     sub->add_option("INPUT", probe.input, "A mesh, a case.yaml, a measurement set, or a model.json")->required();

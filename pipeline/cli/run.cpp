@@ -14,7 +14,7 @@ void Subcommands::add_run(CLI::App& app) {
                 run.output =
                     std::filesystem::path(std::filesystem::weakly_canonical(run.input).stem().string() + "-run");
             }
-            if (common.seed) run.overrides.set("seed", static_cast<double>(*common.seed));
+            run.overrides.seed = common.seed;
             return commands::run(run, common);
         });
     sub->add_option("INPUT", run.input, "A case.yaml, a measurement set (folder or set.yaml), or a mesh")->required();
