@@ -260,7 +260,7 @@ def check_model(browser, run, page, scratch):
     browser.still()
     strength = browser.run("return p.feel()?.strength ?? 0;")
     expect(strength > 1e-6, "keys do not pull")
-    browser.run("for (let i = 0; i < 400 && !p.at('spoken').textContent; ++i) await new Promise((r) => setTimeout(r, 25));")
+    browser.run("for (let i = 0; i < 400 && !p.at('spoken').textContent.includes('newton'); ++i) await new Promise((r) => setTimeout(r, 25));")
     expect("newton" in browser.run("return p.at('spoken').textContent;"), "the force is not spoken")
     link = browser.run("return p.link();")
     browser.key("Escape")
