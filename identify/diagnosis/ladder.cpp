@@ -126,10 +126,11 @@ public:
             added.push_back(effects[number - 1]);
             const UniformFit near = near_;
             const Verdict verdict = result_.verdict;
-            add_step(added, diagnosis);
-            if (!options_.only_better || !is_worse(added.back())) continue;
+            if (!fails(added, diagnosis)) {
+                if (!options_.only_better || !is_worse(added.back())) continue;
+                result_.steps.pop_back();
+            }
             added.pop_back();
-            result_.steps.pop_back();
             near_ = near;
             result_.verdict = verdict;
         }
@@ -138,6 +139,19 @@ public:
     }
 
 private:
+    /// Adds the step. True where it has no equilibria, and effects are added only where they are better.
+    bool fails(const std::vector<std::string>& added, const Diagnosis* diagnosis) {
+        try {
+            add_step(added, diagnosis);
+            return false;
+        } catch (const SolverFailure& failure) {
+            if (!options_.only_better) throw;
+            result_.notes.push_back(fmt::format("{} is not added: with it a state of the set has no equilibrium: {}",
+                                                added.back(), failure.what()));
+            return true;
+        }
+    }
+
     /// Does the last step predict held-out probes worse than the one before, on the body or on the skeleton?
     bool is_worse(const std::string& name) {
         const LadderStep& now = result_.steps.back();
