@@ -18,6 +18,7 @@ struct Format {
     Polygons (*read)(const std::string& content, const std::filesystem::path& file);
 };
 
+// A new one has to stand in read_body.cpp and write_surface.cpp, too.
 constexpr std::array<Format, 5> formats{
     {{".stl", read_stl}, {".obj", read_obj}, {".ply", read_ply}, {".off", read_off}, {".vtp", read_vtp}}};
 

@@ -56,7 +56,7 @@ void write_surface(const std::filesystem::path& file, const Surface& surface) {
                              n, m, lines(surface, "", "3 ", 0)));
     } else if (extension == ".off") {
         write_text(file, fmt::format("OFF\n{} {} 0\n{}", n, m, lines(surface, "", "3 ", 0)));
-    } else {
+    } else {  // .vtp
         write_vtp(file, surface);
     }
 }

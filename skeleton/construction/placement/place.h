@@ -7,8 +7,8 @@
 namespace palpate::skeleton {
 
 /// Places `spheres` free sites, all that are held, and, where links would not follow the body, others between them
-/// (mend.h). `exactly`: those count among the spheres, so that fewer are spread evenly; else they come on top, half
-/// as many at most.
+/// (topology_repair.h). `exactly`: those count among the spheres, so that fewer are spread evenly; else they come on
+/// top, half as many at most.
 /// @throws InvalidInput when the body has no place for so many.
 std::vector<Site> place_sites(const PlacementBody& body, const mesh::SurfaceTree& tree, const Handles& handles,
                               const std::vector<mesh::Region>& supports, double spacing, double tolerance, int spheres,
