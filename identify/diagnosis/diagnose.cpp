@@ -28,7 +28,7 @@ class DiagnosisInProgress {
 public:
     DiagnosisInProgress(const BodyModel& model, const MeasurementSet& set, const DiagnoseOptions& options,
                         const Progress& progress)
-        : model_(model), options_(options), progress_(progress), baselines_(model, options) {
+        : model_(model), set_(set), options_(options), progress_(progress), baselines_(model, options) {
         result_.noise_known = all_noise_known(set);
         result_.problem = make_problem(set, first_noise(set));
         moved_ = rms(result_.problem.displacement());
@@ -177,6 +177,13 @@ private:
         result_.problem = result_.problem.with_rows(keep);
         result_.notes.push_back(
             fmt::format("{} of {} readings are outliers and were set aside.", found.readings.size(), before));
+        for (const ExchangedMarkers& one : found.exchanged) {
+            const LoadState& state = set_.states[one.state];
+            result_.notes.push_back(fmt::format(
+                "In probe {} at {:g} s the markers {} and {} look exchanged: with their labels swapped both fit. Swap "
+                "them in positions.csv to use their readings.",
+                state.probe, state.time, set_.markers[one.markers.first].id, set_.markers[one.markers.second].id));
+        }
         return true;
     }
 
@@ -226,6 +233,7 @@ private:
 
     const std::shared_ptr<const EffectHypothesis> single_readings_ = effect_of_single_readings();
     const BodyModel& model_;
+    const MeasurementSet& set_;
     const DiagnoseOptions& options_;
     const Progress& progress_;
     std::vector<std::shared_ptr<const EffectHypothesis>> effects_;
@@ -272,6 +280,7 @@ void DiagnoseOptions::validate() const {
     const auto no_less = [](const char* name, double value) {
         if (!(value >= 0)) throw InvalidInput(fmt::format("{} is {}; it must be 0 or more", name, value));
     };
+    no_less("effect_error", effect_error);
     no_less("mesh_error", mesh_error);
     no_less("resolution", resolution);
     no_less("idealisation_evidence", idealisation_evidence);

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <set>
 
 namespace palpate::identify {
 namespace {
@@ -93,14 +94,32 @@ Outliers find_outliers(const Problem& problem, const Eigen::VectorXd& residual) 
     const Roughness rough_ones = roughness(problem, residual);
     const double scale = std::max(rough_ones.scale, noise_roughness());
     Outliers result;
-    std::vector<double> squares;
-    for (std::size_t i = 0; i < rough_ones.size.size(); ++i) {
-        squares.push_back(std::pow(rough_ones.size[i] / scale, 2));
-        if (squares.back() > rough * rough) result.readings.push_back(static_cast<int>(i));
+    result.exchanged = find_exchanged_markers(problem, residual);
+    std::set<int> exchanged;
+    for (const ExchangedMarkers& one : result.exchanged) {
+        exchanged.insert({one.readings.first, one.readings.second});
+        result.log_bayes_factor += one.log_likelihood_ratio;
     }
-    if (result.readings.empty() ||
-        static_cast<double>(result.readings.size()) > most_share * static_cast<double>(squares.size()))
-        return {};
+    std::vector<double> squares;
+    std::vector<int> single;
+    for (int i = 0; i < static_cast<int>(rough_ones.size.size()); ++i) {
+        if (exchanged.contains(i)) continue;
+        squares.push_back(std::pow(rough_ones.size[i] / scale, 2));
+        if (squares.back() > rough * rough) single.push_back(i);
+    }
+    if (static_cast<double>(single.size()) > most_share * static_cast<double>(squares.size())) single.clear();
+    if (single.empty() && exchanged.empty()) return {};
+    result.readings = single;
+    result.readings.insert(result.readings.end(), exchanged.begin(), exchanged.end());
+    std::ranges::sort(result.readings);
+    if (single.empty()) {
+        const auto count = static_cast<double>(exchanged.size());
+        double sum = 0;
+        for (const int i : exchanged) sum += std::pow(rough_ones.size[i] / scale, 2);
+        result.share = count / static_cast<double>(problem.readings());
+        result.width = std::sqrt(sum / (3 * count));
+        return result;
+    }
 
     // ln of (1 - eps) N(0, 1) + eps N(0, w^2) over N(0, 1), for vectors of three, summed over the readings
     std::vector<double> logs;
@@ -123,7 +142,7 @@ Outliers find_outliers(const Problem& problem, const Eigen::VectorXd& residual) 
     }
     double mean = 0;
     for (const double l : logs) mean += std::exp(l - best) / static_cast<double>(logs.size());
-    result.log_bayes_factor = best + std::log(mean);
+    result.log_bayes_factor += best + std::log(mean);
     return result;
 }
 

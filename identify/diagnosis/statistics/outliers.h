@@ -1,6 +1,7 @@
 #pragma once
 
 #include "identify/diagnosis/fit/refit.h"
+#include "identify/diagnosis/statistics/exchanged_markers.h"
 
 namespace palpate::identify {
 
@@ -20,14 +21,15 @@ double noise_by_roughness(const Problem& problem, const Eigen::VectorXd& error_m
 
 /// Readings that are off by themselves.
 struct Outliers {
-    std::vector<int> readings;    // of the problem
-    double log_bayes_factor = 0;  // that some readings come from a wider distribution, against none
-    double share = 0, width = 0;  // the most probable: of the readings, over the noise
+    std::vector<int> readings;                     // of the problem
+    double log_bayes_factor = 0;                   // that some readings come from a wider distribution, against none
+    double share = 0, width = 0;                   // the most probable: of the readings, over the noise
+    std::vector<ExchangedMarkers> exchanged = {};  // whose readings are among them
 };
 
-/// Readings rougher than 5 scales, or 5 times what noise of 1 sigma makes, if they are no more than a tenth of all;
-/// more is no matter of single readings. The evidence is that of a mixture, averaged over shares of .3 to 10 % and
-/// widths of 4 to 60. `residual` (N), in sigmas.
+/// Readings of markers whose labels are exchanged, and those rougher than 5 scales, or 5 times what noise of 1 sigma
+/// makes, if they are no more than a tenth of all; more is no matter of single readings. The evidence is that of a
+/// mixture, averaged over shares of .3 to 10 % and widths of 4 to 60. `residual` (N), in sigmas.
 Outliers find_outliers(const Problem& problem, const Eigen::VectorXd& residual);
 
 /// Flags of the rows that belong to none of the readings (N).

@@ -104,18 +104,27 @@ std::string objection_of_held_out(const Diagnosis& diagnosis, const FittedExplan
     return fmt::format("probes left out are predicted worse with it, to {:.3g} mm instead of {:.3g} mm", with, without);
 }
 
+/// Left-out probes that err more than fitted ones tell of an overfit to single probes, unless the excess is within what
+/// the body's discretisation alters of the effect that is predicted there.
+std::string objection_of_overfit(const Diagnosis& diagnosis, const FittedExplanation& explained,
+                                 const DiagnoseOptions& options) {
+    constexpr double chance = 10;  // over the number of rows: an allowance for small sets
+    const double fitted = explained.fit.whitened_rms, unseen = explained.held_out.whitened_rms;
+    const double without = diagnosis.baseline_held_out.whitened_rms;
+    const double most = fitted * (options.most_gap + chance / static_cast<double>(diagnosis.problem.rows()));
+    const double predicted = std::max(0.0, without * without - unseen * unseen);
+    if (unseen <= 1 || unseen * unseen <= most * most + std::pow(options.effect_error, 2) * predicted) return {};
+    return fmt::format("it overfits single probes: the error of left-out probes is {:.2f} times that of fitted ones",
+                       unseen / fitted);
+}
+
 std::string objection_to(const Diagnosis& diagnosis, const FittedExplanation& explained,
                          const DiagnoseOptions& options) {
     if (leaves_too_much(diagnosis.baseline, explained))
         return "too much of the misfit that it should explain remains beyond the noise, as with discretisation error";
     if (std::string few = objection_of_few_readings(diagnosis, explained); !few.empty()) return few;
     if (std::string worse = objection_of_held_out(diagnosis, explained); !worse.empty()) return worse;
-    const double unseen = explained.held_out.whitened_rms, gap = unseen / explained.fit.whitened_rms;
-    constexpr double chance = 10;  // over the number of rows: an allowance for small sets
-    if (unseen > 1 && gap > options.most_gap + chance / static_cast<double>(diagnosis.problem.rows())) {
-        return fmt::format(
-            "it overfits single probes: the error of left-out probes is {:.2f} times that of fitted ones", gap);
-    }
+    if (std::string overfit = objection_of_overfit(diagnosis, explained, options); !overfit.empty()) return overfit;
     if (explained.effects.size() == 1 && is_claimable(explained, options) &&
         leaves_only_noise(diagnosis.baseline, options)) {
         const double least = least_next_to_noise(*explained.effects.front(), diagnosis.problem, options);
