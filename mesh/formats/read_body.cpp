@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <optional>
 #include <string_view>
 
 #include "mesh/errors.h"
@@ -13,6 +14,7 @@
 #include "mesh/formats/label_image/label_surface.h"
 #include "mesh/formats/solution/vtk_cells.h"
 #include "mesh/formats/surface/read_surface.h"
+#include "mesh/formats/surface/surface_formats.h"
 #include "mesh/formats/volume/elements.h"
 #include "mesh/formats/vtk/vtk_polygons.h"
 #include "mesh/formats/well_formed.h"
@@ -20,12 +22,6 @@
 namespace palpate::mesh {
 
 namespace fs = std::filesystem;
-
-const char* const body_extensions =
-    ".stl, .obj, .ply, .off, .vtp (surfaces), .vtk (either), .vtu, .msh, .mesh, .node, .ele, .inp (tetrahedra), .step, "
-    ".stp, .iges, "
-    ".igs "
-    "(CAD), .nii, .nii.gz, .nrrd, .nhdr, .mha, .mhd (labels of organs)";
 
 namespace {
 
@@ -94,8 +90,8 @@ BodyFile of_labels(const fs::path& file, const ReadBodyOptions& options) {
 BodyFile of_points(const fs::path& file, const ReadBodyOptions&) {
     throw InvalidInput(fmt::format(
         "{}: a point cloud has no surface. Mesh the points first (for instance Poisson reconstruction in MeshLab or "
-        "CloudCompare), and give the surface as STL, OBJ or PLY.",
-        file.string()));
+        "CloudCompare), and give the surface as one of {}.",
+        file.string(), surface_extensions()));
 }
 
 struct BodyFormat {
@@ -103,12 +99,8 @@ struct BodyFormat {
     BodyFile (*read)(const fs::path& file, const ReadBodyOptions& options);
 };
 
+/// All but the surface files, which surface_formats() holds.
 constexpr std::array body_formats{
-    BodyFormat{".stl", of_surface},
-    BodyFormat{".obj", of_surface},
-    BodyFormat{".ply", of_surface},
-    BodyFormat{".off", of_surface},
-    BodyFormat{".vtp", of_surface},
     BodyFormat{".vtk", of_legacy_vtk},
     BodyFormat{".vtu", of_elements<read_vtu_elements>},
     BodyFormat{".msh", of_elements<read_gmsh>},
@@ -134,34 +126,42 @@ constexpr std::array body_formats{
     BodyFormat{".e57", of_points},
 };
 
-/// The format that the name ends with; null when none.
-const BodyFormat* format_of(const fs::path& file) {
+/// The format that the name ends with.
+std::optional<BodyFormat> format_of(const fs::path& file) {
     std::string name = file.filename().string();
     std::ranges::transform(name, name.begin(), [](unsigned char c) { return std::tolower(c); });
     const auto found = std::ranges::find_if(body_formats, [&](const BodyFormat& f) {
         return name.size() > f.extension.size() && name.ends_with(f.extension);
     });
-    return found == body_formats.end() ? nullptr : &*found;
+    if (found != body_formats.end()) return *found;
+    if (const SurfaceFormat* surface = surface_format_of(file)) return BodyFormat{surface->extension, of_surface};
+    return std::nullopt;
 }
 
 }  // namespace
 
 BodyFile read_body(const fs::path& file, const ReadBodyOptions& options) {
-    const BodyFormat* format = format_of(file);
+    const auto format = format_of(file);
     if (!format)
         throw InvalidInput(fmt::format("{}: the extension '{}' names no kind of body; allowed are {}.", file.string(),
-                                       file.extension().string(), body_extensions));
+                                       file.extension().string(), body_extensions()));
     BodyFile body = format->read(file, options);
     if (body.files.empty()) body.files = {file};
     return body;
 }
 
-bool is_body_file(const fs::path& file) { return format_of(file) != nullptr; }
+bool is_body_file(const fs::path& file) { return format_of(file).has_value(); }
 
 std::string body_name(const fs::path& file) {
-    const BodyFormat* format = format_of(file);
+    const auto format = format_of(file);
     const std::string name = file.filename().string();
     return format ? name.substr(0, name.size() - format->extension.size()) : file.stem().string();
+}
+
+std::string body_extensions() {
+    return surface_extensions() +
+           " (surfaces), .vtk (either), .vtu, .msh, .mesh, .node, .ele, .inp (tetrahedra), .step, .stp, .iges, .igs "
+           "(CAD), .nii, .nii.gz, .nrrd, .nhdr, .mha, .mhd (labels of organs)";
 }
 
 }  // namespace palpate::mesh

@@ -23,9 +23,9 @@ struct BodyFile {
     std::vector<std::filesystem::path> files;  // that were read
 };
 
-/// Reads a body from a surface (STL, OBJ, PLY, OFF, VTP, legacy .vtk), a mesh of tetrahedra (VTU, .vtk, Gmsh .msh,
-/// MEDIT .mesh, TetGen .node and .ele, Abaqus and CalculiX .inp), CAD (STEP, IGES) or an image of labels (NIfTI, NRRD,
-/// MetaImage), told apart by extension. Surfaces are not repaired here.
+/// Reads a body from a surface file (or legacy .vtk), a mesh of tetrahedra (VTU, .vtk, Gmsh .msh, MEDIT .mesh, TetGen
+/// .node and .ele, Abaqus and CalculiX .inp), CAD (STEP, IGES) or an image of labels (NIfTI, NRRD, MetaImage), told
+/// apart by extension. Surfaces are not repaired here.
 /// @throws IoError, InvalidInput naming file and line or element, the value, what is allowed, what to do.
 BodyFile read_body(const std::filesystem::path& file, const ReadBodyOptions& options = {});
 
@@ -36,6 +36,6 @@ bool is_body_file(const std::filesystem::path& file);
 std::string body_name(const std::filesystem::path& file);
 
 /// The extensions, for a message.
-extern const char* const body_extensions;
+std::string body_extensions();
 
 }  // namespace palpate::mesh

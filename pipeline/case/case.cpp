@@ -89,7 +89,7 @@ Case case_of_input(const fs::path& input) {
         throw InvalidInput(
             fmt::format("{}: not a kind of input that is known: give a case.yaml, a measurement set (its "
                         "folder or set.yaml) or a body: {}",
-                        input.string(), mesh::body_extensions));
+                        input.string(), mesh::body_extensions()));
     }
     const fs::path named = c.measurements ? fs::weakly_canonical(*c.measurements) : input;
     c.name = mesh::body_name(named);

@@ -203,10 +203,13 @@ void add_skeleton(std::vector<CaseSetting>& all) {
     skeleton(number(
         "skeleton.zones", "number of zones of equal stiffness, from the support outwards",
         {1, skeleton::BuildOptions::most_zones}, [](auto& c) -> auto& { return c.skeleton.zones; }));
-    skeleton(of_stage("sphere_curve", yes_or_no(
-                                          "skeleton.sphere_curve",
-                                          "measure what fewer and more spheres would do: takes several times as long",
-                                          [](auto& c) -> auto& { return c.sphere_curve; })));
+    // Of a run alone: `palpate skeleton` takes the others.
+    all.push_back(with_flag(
+        "Sphere curve",
+        of_stage("sphere_curve", yes_or_no(
+                                     "skeleton.sphere_curve",
+                                     "measure what fewer and more spheres would do: takes several times as long",
+                                     [](auto& c) -> auto& { return c.sphere_curve; }))));
 }
 
 void add_probing(std::vector<CaseSetting>& all) {

@@ -19,7 +19,7 @@ void Subcommands::add_run(CLI::App& app) {
         });
     sub->add_option("INPUT", run.input, "A case.yaml, a measurement set (folder or set.yaml), or a mesh")->required();
     sub->add_option("-o,--output", run.output, "The run folder; <input>-run by default");
-    for (const char* group : {"Body", "Skeleton", "Probing", "Identification", "Diagnosis"})
+    for (const char* group : {"Body", "Skeleton", "Sphere curve", "Probing", "Identification", "Diagnosis"})
         add_flags_of(sub, run.overrides, group);
 }
 

@@ -95,9 +95,7 @@ void Subcommands::add_skeleton(CLI::App& app) {
     sub->add_option("INPUT", skeleton.input, "A mesh, a case.yaml, or a measurement set")->required();
     sub->add_option("-o,--output", skeleton.output, "The model; model.json by default");
     add_flags_of(sub, skeleton.overrides, "Body");
-    // All settings of the skeleton but sphere_curve.
-    for (const char* place : {"skeleton.spheres", "skeleton.coverage", "skeleton.links", "skeleton.zones"})
-        add_flag(sub, skeleton.overrides, place);
+    add_flags_of(sub, skeleton.overrides, "Skeleton");
     auto* measured = sub->add_flag("--quality", with_quality,
                                    "Measures how well skeletons follow the body, at several numbers of spheres")
                          ->group("Quality");

@@ -95,12 +95,12 @@ std::vector<Link> make_links(const std::vector<Section>& sections, const fem::Ma
     links.reserve(sections.size());
     for (const Section& s : sections) {
         Link link{s.a, s.b, s.length, start_stiffness(s, material, kind), 0, radius_of_gyration(s), {}};
-        if (kind == LinkKind::full) link.section = {s.centroid, s.axes, s.area};
+        if (is_full(kind)) link.section = {s.centroid, s.axes, s.area};
         links.push_back(std::move(link));
     }
 
     // No link is softer than a thousandth of the median one: slivers must not make the model singular.
-    for (int k = 0; k < (kind == LinkKind::full ? 6 : 3); ++k) {
+    for (int k = 0; k < (is_full(kind) ? 6 : 3); ++k) {
         std::vector<double> values(links.size());
         std::transform(links.begin(), links.end(), values.begin(), [&](const Link& link) { return link.stiffness(k); });
         std::nth_element(values.begin(), values.begin() + values.size() / 2, values.end());
@@ -209,7 +209,7 @@ Model build_skeleton(const mesh::Surface& surface, const mesh::VolumeMesh& volum
     std::erase_if(sections, [&](const Section& s) { return redundant.count({s.a, s.b}) != 0; });
     thicken_extras(sites, sections);
     model.links = make_links(sections, material, options.links);
-    if (options.links == LinkKind::full) set_volume_stiffness(body, sites, material, model.spheres);
+    if (is_full(options.links)) set_volume_stiffness(body, sites, material, model.spheres);
     set_zones(body, sites, options.zones, model.links);
     model.surface = surface;
     model.supports = supports;

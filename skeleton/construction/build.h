@@ -15,6 +15,9 @@ enum class LinkKind {
     burion2008,  // the paper's: elongation, flexion, torsion
 };
 
+/// Do its links have a section and six stiffnesses?
+constexpr bool is_full(LinkKind kind) { return kind != LinkKind::burion2008; }
+
 struct BuildOptions {
     static constexpr int most_spheres = 20000, most_zones = 1000;
 

@@ -8,6 +8,7 @@
 #include "mesh/formats/read_body.h"
 #include "mesh/formats/solution/solution.h"
 #include "mesh/formats/surface/read_surface.h"
+#include "mesh/formats/surface/surface_formats.h"
 #include "mesh/formats/volume/write_volume.h"
 #include "mesh/formats/vtk/vtk_files.h"
 #include "mesh/text/atomic_file.h"
@@ -24,9 +25,10 @@ namespace fs = std::filesystem;
 
 mesh::Surface small_box() { return mesh::make_box({0, 0, 0}, {100, 20, 20}, {2, 1, 1}); }
 
+/// A format that is written; the others' inputs stand below.
 Reader surface(const char* extension) {
-    const std::string name = std::string("body.") + extension;
-    return {extension,
+    const std::string name = std::string("body") + extension;
+    return {extension + 1,
             [=](const fs::path& folder) {
                 mesh::write_surface(folder / name, small_box());
                 return folder / name;
@@ -184,36 +186,35 @@ void read_body(const fs::path& file) { mesh::read_body(file); }
 }  // namespace
 
 std::vector<Reader> all_readers() {
-    return {surface("stl"),
-            surface("obj"),
-            surface("ply"),
-            surface("off"),
-            surface("vtp"),
-            volume(),
-            model(),
-            written("text_stl", "text.stl", text_stl, [](const fs::path& f) { mesh::read_surface(f); }),
-            written("text_ply", "text.ply", text_ply, [](const fs::path& f) { mesh::read_surface(f); }),
-            written("case", "case.yaml", case_with_all_settings(), [](const fs::path& f) { pipeline::read_case(f); }),
-            written("inp", "body.inp", deck, read_body),
-            written("msh", "body.msh", gmsh(), read_body),
-            written("msh1", "one.msh", gmsh_1, read_body),
-            written("strips", "strips.ply", ply_strips, [](const fs::path& f) { mesh::read_surface(f); }),
-            written("vtk", "body.vtk", vtk_grid, read_body),
-            written("vtk_surface", "surface.vtk", vtk_surface, read_body),
-            written("medit", "body.mesh", medit, read_body),
-            tetgen(),
-            written("mha", "body.mha", meta_image(), read_body),
-            written("nrrd", "body.nrrd", nrrd(), read_body),
-            written("nii", "body.nii", nifti(), read_body),
-            written("frd", "job.frd", frd, [](const fs::path& f) { mesh::read_solution(f); }),
-            written("posterior", "posterior.csv", posterior, [](const fs::path& f) { pipeline::read_posterior(f); }),
-            set("set.yaml"),
-            set("probes.csv"),
-            set("markers.csv"),
-            set("positions.csv"),
-            set("states.csv"),
-            set("motion_probes.csv"),
-            set("motion_positions.csv")};
+    std::vector<Reader> readers{
+        volume(),
+        model(),
+        written("text_stl", "text.stl", text_stl, [](const fs::path& f) { mesh::read_surface(f); }),
+        written("text_ply", "text.ply", text_ply, [](const fs::path& f) { mesh::read_surface(f); }),
+        written("case", "case.yaml", case_with_all_settings(), [](const fs::path& f) { pipeline::read_case(f); }),
+        written("inp", "body.inp", deck, read_body),
+        written("msh", "body.msh", gmsh(), read_body),
+        written("msh1", "one.msh", gmsh_1, read_body),
+        written("strips", "strips.ply", ply_strips, [](const fs::path& f) { mesh::read_surface(f); }),
+        written("vtk", "body.vtk", vtk_grid, read_body),
+        written("vtk_surface", "surface.vtk", vtk_surface, read_body),
+        written("medit", "body.mesh", medit, read_body),
+        tetgen(),
+        written("mha", "body.mha", meta_image(), read_body),
+        written("nrrd", "body.nrrd", nrrd(), read_body),
+        written("nii", "body.nii", nifti(), read_body),
+        written("frd", "job.frd", frd, [](const fs::path& f) { mesh::read_solution(f); }),
+        written("posterior", "posterior.csv", posterior, [](const fs::path& f) { pipeline::read_posterior(f); }),
+        set("set.yaml"),
+        set("probes.csv"),
+        set("markers.csv"),
+        set("positions.csv"),
+        set("states.csv"),
+        set("motion_probes.csv"),
+        set("motion_positions.csv")};
+    for (const mesh::SurfaceFormat& format : mesh::surface_formats())
+        if (format.write) readers.push_back(surface(format.extension));
+    return readers;
 }
 
 }  // namespace palpate::fuzz

@@ -1,7 +1,7 @@
 #include <fmt/format.h>
 
 #include "mesh/errors.h"
-#include "mesh/formats/surface/polygons.h"
+#include "mesh/formats/surface/surface_formats.h"
 #include "mesh/text/text_lines.h"
 #include "mesh/text/words.h"
 

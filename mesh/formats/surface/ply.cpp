@@ -10,7 +10,7 @@
 
 #include "mesh/errors.h"
 #include "mesh/formats/surface/ply_header.h"
-#include "mesh/formats/surface/polygons.h"
+#include "mesh/formats/surface/surface_formats.h"
 #include "mesh/text/words.h"
 
 namespace palpate::mesh {

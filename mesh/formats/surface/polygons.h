@@ -29,11 +29,4 @@ Surface triangulate(const Polygons& polygons, const std::filesystem::path& file)
 /// Ear clipping in the polygon's best plane: right for concave polygons too; three corner numbers a triangle.
 std::vector<int> cut_ears(const std::vector<Vec3>& corners);
 
-/// One reader a format; each takes the whole file. VTP is read by VTK, in a process of its own.
-Polygons read_stl(const std::string& content, const std::filesystem::path& file);
-Polygons read_obj(const std::string& content, const std::filesystem::path& file);
-Polygons read_ply(const std::string& content, const std::filesystem::path& file);
-Polygons read_off(const std::string& content, const std::filesystem::path& file);
-Polygons read_vtp(const std::string& content, const std::filesystem::path& file);
-
 }  // namespace palpate::mesh

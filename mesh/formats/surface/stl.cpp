@@ -6,7 +6,7 @@
 #include <cstring>
 
 #include "mesh/errors.h"
-#include "mesh/formats/surface/polygons.h"
+#include "mesh/formats/surface/surface_formats.h"
 #include "mesh/text/text_lines.h"
 #include "mesh/text/words.h"
 

@@ -1,9 +1,10 @@
-#include "mesh/formats/vtk/vtk_polygons.h"
-
 #include <vtkCellType.h>
 
 #include <algorithm>
 #include <array>
+
+#include "mesh/formats/surface/surface_formats.h"
+#include "mesh/formats/vtk/vtk_polygons.h"
 
 namespace palpate::mesh {
 namespace {

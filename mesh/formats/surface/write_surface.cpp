@@ -3,7 +3,9 @@
 #include <cstdint>
 #include <string>
 
+#include "mesh/errors.h"
 #include "mesh/formats/surface/read_surface.h"
+#include "mesh/formats/surface/surface_formats.h"
 #include "mesh/formats/vtk/vtk_files.h"
 #include "mesh/text/atomic_file.h"
 
@@ -42,23 +44,34 @@ std::string lines(const Surface& surface, const std::string& vertex_prefix, cons
 
 }  // namespace
 
+void write_stl(const std::filesystem::path& file, const Surface& surface) { write_text(file, binary_stl(surface)); }
+
+void write_obj(const std::filesystem::path& file, const Surface& surface) {
+    write_text(file, lines(surface, "v ", "f ", 1));
+}
+
+void write_ply(const std::filesystem::path& file, const Surface& surface) {
+    write_text(file,
+               fmt::format("ply\nformat ascii 1.0\nelement vertex {}\nproperty double x\nproperty double y\nproperty "
+                           "double z\nelement face {}\nproperty list uchar int vertex_indices\nend_header\n{}",
+                           surface.vertices.rows(), surface.triangles.rows(), lines(surface, "", "3 ", 0)));
+}
+
+void write_off(const std::filesystem::path& file, const Surface& surface) {
+    write_text(file, fmt::format("OFF\n{} {} 0\n{}", surface.vertices.rows(), surface.triangles.rows(),
+                                 lines(surface, "", "3 ", 0)));
+}
+
+void write_bare_vtp(const std::filesystem::path& file, const Surface& surface) { write_vtp(file, surface); }
+
 void write_surface(const std::filesystem::path& file, const Surface& surface) {
-    const std::string extension = surface_extension(file);
-    const auto n = surface.vertices.rows(), m = surface.triangles.rows();
-    if (extension == ".stl") {
-        write_text(file, binary_stl(surface));
-    } else if (extension == ".obj") {
-        write_text(file, lines(surface, "v ", "f ", 1));
-    } else if (extension == ".ply") {
-        write_text(file, fmt::format(
-                             "ply\nformat ascii 1.0\nelement vertex {}\nproperty double x\nproperty double y\nproperty "
-                             "double z\nelement face {}\nproperty list uchar int vertex_indices\nend_header\n{}",
-                             n, m, lines(surface, "", "3 ", 0)));
-    } else if (extension == ".off") {
-        write_text(file, fmt::format("OFF\n{} {} 0\n{}", n, m, lines(surface, "", "3 ", 0)));
-    } else {  // .vtp
-        write_vtp(file, surface);
-    }
+    const SurfaceFormat* format = surface_format_of(file);
+    if (!format || !format->write)
+        throw InvalidInput(
+            fmt::format("{}: no surface can be written with the extension '{}'; allowed are {}. Name the "
+                        "file with one of them.",
+                        file.string(), file.extension().string(), written_surface_extensions()));
+    format->write(file, surface);
 }
 
 }  // namespace palpate::mesh

@@ -12,6 +12,7 @@
 #include <unordered_map>
 
 #include "mesh/errors.h"
+#include "mesh/formats/surface/surface_formats.h"
 #include "mesh/topology/weld.h"
 
 namespace palpate::mesh {
@@ -200,8 +201,8 @@ VolumeMesh assemble(const Elements& elements, const std::filesystem::path& file,
     if (elements.element_numbers.empty())
         throw InvalidInput(
             fmt::format("{}: holds no tetrahedra. Give a mesh of tetrahedra (4 or 10 nodes), or the body's surface as "
-                        "STL, OBJ, PLY, OFF or VTP.",
-                        file.string()));
+                        "one of {}.",
+                        file.string(), surface_extensions()));
     VolumeMesh mesh{rows_of(elements.nodes), resolved(elements, file), {}};
     check_midsides(mesh, elements, file);
     const Tetrahedra rows = mesh.tetrahedra;

@@ -2,6 +2,7 @@
 
 #include "mesh/errors.h"
 #include "mesh/formats/surface/read_surface.h"
+#include "mesh/formats/surface/surface_formats.h"
 #include "mesh/text/atomic_file.h"
 #include "pipeline/case/settings.h"
 #include "pipeline/cli/shell/templates.h"
@@ -36,6 +37,7 @@ std::string commented_case() {
         fill_in(section, example_section_yaml(section, examples));
     for (const char* place : {"unit", "longest", "label", "seed"})
         fill_in(place, example_yaml(setting_at(place), examples));
+    fill_in("surface_formats", mesh::surface_extensions());
     return text;
 }
 

@@ -4,6 +4,7 @@
 
 namespace palpate::pipeline {
 
-extern const std::string_view new_case_text;  // new_case.yaml of this folder: {section} and {setting} stand for lines
+// new_case.yaml of this folder: {section} and {setting} stand for lines, {surface_formats} for their extensions.
+extern const std::string_view new_case_text;
 
 }  // namespace palpate::pipeline

@@ -180,7 +180,7 @@ Stiffnesses start_of_full_link(const Section& s, const fem::Material& material) 
 }  // namespace
 
 Stiffnesses start_stiffness(const Section& section, const fem::Material& material, LinkKind kind) {
-    if (kind == LinkKind::full) return start_of_full_link(section, material);
+    if (is_full(kind)) return start_of_full_link(section, material);
     return start_of_paper_link(section, material);
 }
 

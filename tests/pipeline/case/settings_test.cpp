@@ -11,6 +11,7 @@
 
 #include "mesh/errors.h"
 #include "mesh/formats/surface/read_surface.h"
+#include "mesh/formats/surface/surface_formats.h"
 #include "mesh/text/atomic_file.h"
 #include "pipeline/case/overrides.h"
 #include "pipeline/command_line/commands.h"
@@ -122,6 +123,7 @@ TEST(NewCase, ShowsEverySetting) {
     const std::string text = mesh::read_text(scratch / "body/case.yaml");
     for (const CaseSetting& setting : settings()) EXPECT_THAT(text, HasSubstr(setting.key + ":")) << setting.place();
     EXPECT_THAT(text, Not(HasSubstr("{skeleton}")));
+    EXPECT_THAT(text, HasSubstr(mesh::surface_extensions()));
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 // The program as a shell sees it: exit codes, and what stands on which stream.
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 
@@ -9,10 +10,14 @@
 #include <nlohmann/json.hpp>
 
 #include "mesh/formats/surface/read_surface.h"
+#include "pipeline/case/settings.h"
 #include "tests/temporary_folder.h"
 
 namespace palpate::pipeline {
 namespace {
+
+using ::testing::HasSubstr;
+using ::testing::Not;
 
 struct Finished {
     int code;
@@ -62,6 +67,18 @@ TEST(CommandLine, JsonStandsAloneOnStandardOutput) {
 TEST(CommandLine, HelpBeginsWithExamples) {
     const std::string help = palpate("run --help").out;
     EXPECT_LT(help.find("Examples:"), help.find("Options:"));
+}
+
+TEST(CommandLine, RunTakesTheFlagsOfAllSettingsAndSkeletonThoseOfItsGroup) {
+    const std::string run = palpate("run --help").out, skeleton = palpate("skeleton --help").out;
+    for (const CaseSetting& setting : settings()) {
+        if (setting.flag.empty()) continue;
+        EXPECT_THAT(run, HasSubstr(setting.flag));
+        if (setting.group == "Skeleton") {
+            EXPECT_THAT(skeleton, HasSubstr(setting.flag));
+        }
+    }
+    EXPECT_THAT(skeleton, Not(HasSubstr("--sphere-curve")));
 }
 
 }  // namespace

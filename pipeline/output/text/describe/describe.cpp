@@ -7,6 +7,7 @@
 
 #include "mesh/errors.h"
 #include "mesh/formats/read_body.h"
+#include "mesh/formats/surface/surface_formats.h"
 #include "mesh/formats/yaml/yaml_fields.h"
 #include "pipeline/case/case.h"
 #include "pipeline/case/subject.h"
@@ -17,9 +18,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* known_kinds =
-    "a run folder, a measurement set, a case.yaml, our JSON and CSV files, .pvd, .vtp, .vtu, a body (.stl, .obj, "
-    ".ply, .off, .msh, .mesh, .node, .ele, .inp, CAD, labels), or results of CalculiX (.frd)";
+std::string known_kinds() {
+    return fmt::format(
+        "a run folder, a measurement set, a case.yaml, our JSON and CSV files, .pvd, .vtu, a body ({}, .msh, .mesh, "
+        ".node, .ele, .inp, CAD, labels), or results of CalculiX (.frd)",
+        mesh::surface_extensions());
+}
 
 Description describe_folder(const fs::path& folder) {
     if (fs::exists(folder / "run.json")) return describe_run(folder);
@@ -35,7 +39,7 @@ Description describe_folder(const fs::path& folder) {
         }
     }
     throw InvalidInput(
-        fmt::format("{}: the folder holds nothing that is known; known are {}", folder.string(), known_kinds));
+        fmt::format("{}: the folder holds nothing that is known; known are {}", folder.string(), known_kinds()));
 }
 
 std::string extension_of(const fs::path& file) {
@@ -61,12 +65,10 @@ Description describe(const fs::path& file) {
     if (extension == ".pvd") return describe_series(file);
     if (extension == ".vtp") return describe_poly_data(file);
     if (extension == ".vtu") return describe_volume(file);
-    if (extension == ".stl" || extension == ".obj" || extension == ".ply" || extension == ".off") {
-        return describe_surface(file);
-    }
+    if (mesh::surface_format_of(file)) return describe_surface(file);
     if (extension == ".frd") return describe_solution(file);
     if (mesh::is_body_file(file)) return describe_body(file);
-    throw InvalidInput(fmt::format("{}: not a kind of file that is known; known are {}", file.string(), known_kinds));
+    throw InvalidInput(fmt::format("{}: not a kind of file that is known; known are {}", file.string(), known_kinds()));
 }
 
 Description describe_set(const fs::path& path) {

@@ -5,6 +5,7 @@
 
 #include "mesh/errors.h"
 #include "mesh/formats/surface/read_surface.h"
+#include "mesh/formats/surface/surface_formats.h"
 #include "mesh/text/atomic_file.h"
 #include "mesh/topology/check_surface.h"
 #include "pipeline/command_line/command_tree.h"
@@ -176,7 +177,8 @@ TEST(Info, SaysWhatIsKnownWhereItIsNone) {
         }
         return "nothing";
     };
-    EXPECT_THAT(message(scratch.write("notes.txt", "x")), HasSubstr("known are a run folder"));
+    EXPECT_THAT(message(scratch.write("notes.txt", "x")),
+                AllOf(HasSubstr("known are a run folder"), HasSubstr("a body (" + mesh::surface_extensions())));
     EXPECT_THAT(message(scratch.write("other.json", R"({"format": "other/1"})")), HasSubstr("palpate-model/1"));
     EXPECT_THAT(message(scratch.write("other.csv", "a,b\n1,2\n")), HasSubstr("none of ours"));
     EXPECT_THAT(message(scratch / "missing"), HasSubstr("no such file"));
