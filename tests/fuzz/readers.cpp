@@ -6,7 +6,7 @@
 
 #include "identify/measurements/measurement_set.h"
 #include "mesh/formats/read_body.h"
-#include "mesh/formats/solution/solution.h"
+#include "mesh/formats/solution/read_solution.h"
 #include "mesh/formats/surface/read_surface.h"
 #include "mesh/formats/volume/write_volume.h"
 #include "mesh/formats/vtk/vtk_files.h"
