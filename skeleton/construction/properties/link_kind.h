@@ -1,0 +1,11 @@
+#pragma once
+
+namespace palpate::skeleton {
+
+/// What joins two spheres.
+enum class LinkKind {
+    full,        // elongation, torsion, and shear apart from flexion in two planes; beside them a volume term a sphere
+    burion2008,  // the paper's: elongation, flexion, torsion
+};
+
+}  // namespace palpate::skeleton
