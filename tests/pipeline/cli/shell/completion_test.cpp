@@ -7,6 +7,7 @@
 #include "mesh/formats/surface/read_surface.h"
 #include "mesh/text/atomic_file.h"
 #include "mesh/topology/check_surface.h"
+#include "pipeline/case/read_case.h"
 #include "pipeline/command_line/command_tree.h"
 #include "pipeline/command_line/commands.h"
 #include "pipeline/command_line/tree.h"
