@@ -4,60 +4,17 @@
 #include <memory>
 #include <vector>
 
-#include "fem/effects/effects.h"
-#include "fem/elements/stiffness.h"
-#include "fem/material.h"
+#include "fem/elements/dilatation.h"
+#include "fem/large_deformation/body/node_weights.h"
+#include "fem/large_deformation/body_equilibrium.h"
+#include "fem/large_deformation/body_setting.h"
+#include "fem/large_deformation/body_tangent.h"
 #include "mesh/core/volume_mesh.h"
 
 namespace palpate::fem {
 
-/// How a body's stress follows from its deformation gradient F; all agree in small strain.
-/// mu: shear modulus, K: bulk modulus; J = det F, E = (F^T F - I) / 2.
-enum class MaterialLaw {
-    linear,       // small strain: as linear solvers write
-    svk,          // St. Venant-Kirchhoff: mu dev(E):dev(E) + K/2 (tr E)^2
-    neo_hookean,  // mu/2 (J^-2/3 tr F^T F - 3) + K/2 (J - 1)^2
-};
-
-/// What a body is made of and what acts on it besides contact forces.
-struct BodySetting {
-    MaterialLaw law = MaterialLaw::neo_hookean;
-    Material material;
-    Effects effects;
-};
-
-struct NewtonOptions {
-    double tolerance = 1e-8;  // of the residual's norm, as a share of the load's, > 0
-    int iterations = 60;      // at one load, >= 1
-    int load_steps = 16;      // parts that the load may be put on in where it fails at once; 0: from the start only
-    void validate() const;    // @throws InvalidInput naming option, value and bound
-};
-
-struct BodyEquilibrium {
-    Eigen::VectorXd u;       // displacement of the nodes (3n) [mm]
-    int iterations = 0;      // steps, in all
-    int factorisations = 0;  // of the tangent, in all
-    double residual = 0;     // norm of the net force left at free nodes [N]
-};
-
-/// J = d(internal force + effects)/du, factored in some configuration.
-class BodyTangent {
-public:
-    virtual ~BodyTangent() = default;
-    /// J^-1 B (3n x p); rows of held nodes are ignored in B and zero in the result. Safe from several threads.
-    virtual Eigen::MatrixXd solve(const Eigen::MatrixXd& B) const = 0;
-    /// Memory that it takes [GB].
-    virtual double gigabytes() const = 0;
-};
-
 /// How far a yielding material has flowed, point by point; made by HyperelasticBody::plastic_state.
 struct PlasticState;
-
-/// Points that an effect acts on: nodes of the mesh, and their weights.
-struct NodeWeights {
-    std::vector<int> nodes;
-    Eigen::VectorXd weights;
-};
 
 /// A body of quadratic tetrahedra in large deformation: its elastic energy, forces, tangent and equilibria under dead
 /// loads. Elements keep their volume in the mean (P2/P0), which does not lock near nu = 0.5. [Simo, Taylor & Pister

@@ -1,26 +1,12 @@
 #include "identify/identify.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 
 #include "identify/inference/methods/methods.h"
 #include "identify/measurements/field.h"
 #include "identify/measurements/labels/label_readings.h"
-#include "mesh/errors.h"
 
 namespace palpate::identify {
-
-void IdentifyOptions::validate() const {
-    const auto demand = [](bool holds, const char* option, double value, const char* allowed) {
-        if (!holds) throw InvalidInput(fmt::format("option {} is {}; it must be {}", option, value, allowed));
-    };
-    demand(particles == 0 || particles >= 10, "particles", particles, "0 (by the method) or at least 10");
-    demand(iterations >= 1, "iterations", iterations, "at least 1");
-    demand(search_low > 0, "search_low", search_low, "above 0");
-    demand(search_high > search_low, "search_high", search_high, "above search_low");
-    demand(threads >= 1, "threads", threads, "at least 1");
-}
 
 namespace {
 

@@ -9,6 +9,7 @@ set(shared_skeleton_sources
   links/branches.cpp
   links/full_link.cpp
   links/link_energy.cpp
+  links/rest_direction.cpp
   links/shear.cpp
   links/fibres/link_fibre.cpp
   links/fibres/plastic_fibre.cpp
@@ -20,6 +21,7 @@ set(shared_skeleton_sources
   loads/load.cpp
   model/attach.cpp
   model/carried_point.cpp
+  model/observation.cpp
   model/state.cpp
   model/io/json_fields.cpp
   model/io/read_model.cpp

@@ -4,8 +4,10 @@
 #include <cstdint>
 #include <vector>
 
-#include "fem/elements/stiffness.h"
+#include "fem/elements/dilatation.h"
 #include "fem/linear_algebra/blocks/block_matrix.h"
+#include "fem/material.h"
+#include "mesh/core/volume_mesh.h"
 
 namespace palpate::fem {
 

@@ -2,18 +2,13 @@
 
 #include <Eigen/SparseCore>
 
+#include "fem/elements/dilatation.h"
 #include "fem/material.h"
 #include "mesh/core/volume_mesh.h"
 
 namespace palpate::fem {
 
 using SparseMatrix = Eigen::SparseMatrix<double>;
-
-/// How an element keeps its volume.
-enum class Dilatation {
-    full,  // the displacement's own divergence
-    mean,  // P2/P0: the divergence is replaced by its mean over the element, which does not lock near nu = 0.5
-};
 
 /// Stiffness matrix K of a linearly elastic body (3n x 3n), symmetric, both halves [N/mm];
 /// degree of freedom 3 i + c is component c of node i.

@@ -11,6 +11,7 @@
 #include "identify/loading/reduced_load.h"
 #include "identify/numerics/parallel.h"
 #include "mesh/errors.h"
+#include "skeleton/statics/equilibrium.h"
 #include "skeleton/statics/statics.h"
 
 namespace palpate::identify {

@@ -1,11 +1,17 @@
 #pragma once
 
 #include <optional>
+#include <string>
 #include <vector>
 
-#include "identify/comparison/compare.h"
-
 namespace palpate::identify {
+
+/// The error grows with the load, measured by how far it moves the model, to this power: 0 there without any load, 1
+/// like a wrong stiffness, 2 and more a nonlinearity.
+struct LoadExponent {
+    double value = 0, sd = 0;
+    std::string words;
+};
 
 /// The error of a state, against what acted on it. A load is measured by how far it moves the model: a soft place and a
 /// hard one compare, and the same wrong stiffness shows as the same share of it.

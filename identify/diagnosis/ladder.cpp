@@ -5,7 +5,10 @@
 #include <algorithm>
 #include <set>
 
+#include "identify/comparison/compare.h"
+#include "identify/diagnosis/diagnose.h"
 #include "identify/effects/catalogue.h"
+#include "identify/identify.h"
 #include "identify/inference/maximum/calibrate.h"
 #include "identify/loading/readings.h"
 #include "identify/models/skeleton_body.h"

@@ -1,8 +1,12 @@
 #pragma once
 
-#include "identify/comparison/compare.h"
-#include "identify/diagnosis/diagnose.h"
-#include "identify/identify.h"
+#include "identify/comparison/comparison.h"
+#include "identify/diagnosis/diagnose_options.h"
+#include "identify/diagnosis/diagnosis.h"
+#include "identify/inference/identify_result.h"
+#include "identify/inference/problem/identify_options.h"
+#include "identify/measurements/measurement_set.h"
+#include "mesh/progress.h"
 
 namespace palpate::identify {
 

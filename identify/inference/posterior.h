@@ -1,6 +1,6 @@
 #pragma once
 
-#include "identify/identify.h"
+#include "identify/inference/identify_result.h"
 #include "identify/inference/maximum/fit_map.h"
 #include "identify/inference/particles/tempered_filter.h"
 

@@ -11,6 +11,7 @@
 #include "skeleton/effects/placed_effects.h"
 #include "skeleton/model/attach.h"
 #include "skeleton/model/stiffness_order.h"
+#include "skeleton/statics/equilibrium.h"
 #include "skeleton/statics/statics.h"
 
 namespace palpate::identify {

@@ -5,6 +5,7 @@
 
 #include "identify/loading/loads.h"
 #include "identify/loading/readings.h"
+#include "skeleton/statics/equilibrium.h"
 #include "skeleton/statics/statics.h"
 
 namespace palpate::identify {

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "identify/inference/priors/log_normal_prior.h"
-#include "identify/motion/damping.h"
+#include "identify/motion/damping_result.h"
 #include "identify/motion/ringing.h"
 
 namespace palpate::identify {

@@ -7,6 +7,7 @@
 #include "fem/interpolation/interpolation.h"
 #include "mesh/errors.h"
 #include "pipeline/body/body.h"
+#include "pipeline/body/subject_body.h"
 
 namespace palpate::pipeline {
 namespace {

@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "identify/identify.h"
+#include "identify/inference/posterior_row.h"
 #include "pipeline/output/csv/particles.h"
 
 namespace palpate::pipeline {

@@ -18,6 +18,7 @@
 #include "pipeline/output/csv/particles.h"
 #include "pipeline/output/vtk/series.h"
 #include "skeleton/effects/effect.h"
+#include "skeleton/statics/equilibrium.h"
 #include "skeleton/statics/statics.h"
 
 namespace palpate::pipeline {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "identify/identify.h"
+#include "identify/inference/identify_result.h"
 #include "skeleton/statics/equilibrium.h"
 
 namespace palpate::pipeline {

@@ -2,6 +2,8 @@
 
 #include <string>
 
+#include "identify/measurements/measurement_set.h"
+
 namespace palpate::pipeline {
 
 std::vector<mesh::DataArray> link_uncertainty(const std::vector<identify::PosteriorRow>& posterior,

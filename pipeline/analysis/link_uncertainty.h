@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "identify/identify.h"
+#include "identify/inference/posterior_row.h"
 #include "mesh/formats/vtk/vtk_files.h"
 
 namespace palpate::pipeline {

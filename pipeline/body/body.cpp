@@ -11,7 +11,6 @@
 #include "mesh/meshing/repair_surface.h"
 #include "mesh/meshing/tetrahedralise.h"
 #include "mesh/topology/check_surface.h"
-#include "pipeline/case/subject.h"
 
 namespace palpate::pipeline {
 
@@ -75,11 +74,6 @@ MeshedBody make_body(const mesh::Surface& surface, const MeshingOptions& options
     if (!options.linear_elements) body.volume = mesh::to_quadratic(body.volume);
     report(progress, "filling with tetrahedra", 1.0);
     return body;
-}
-
-MeshedBody make_body(const Subject& subject, const MeshingOptions& options, const Progress& progress) {
-    if (!subject.volume) return make_body(subject.surface, options, progress);
-    return ready_made_body(*subject.volume, subject.surface, options);
 }
 
 MeshedBody ready_made_body(const mesh::VolumeMesh& given, const mesh::Surface& surface, const MeshingOptions& options) {

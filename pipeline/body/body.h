@@ -10,8 +10,6 @@
 
 namespace palpate::pipeline {
 
-struct Subject;
-
 struct MeshingOptions {
     double edge_length = 0;  // of the tetrahedra [mm]; 0: 6 % of the longest side, less in a thin body
     bool linear_elements = false;
@@ -34,9 +32,6 @@ MeshedBody make_body(const mesh::Surface& surface, const MeshingOptions& options
 /// A ready-made mesh behind its boundary as a body: used as it is, with midside nodes unless linear elements were asked
 /// for. @throws InvalidInput where the boundary crosses itself or meets itself along an edge.
 MeshedBody ready_made_body(const mesh::VolumeMesh& mesh, const mesh::Surface& boundary, const MeshingOptions& options);
-
-/// The body of a subject, ready-made where it has a mesh. @throws InvalidInput, SolverFailure.
-MeshedBody make_body(const Subject& subject, const MeshingOptions& options, const Progress& progress = {});
 
 /// Elements by default: 6 % of the longest side, and shorter where the body is thinner (`edge_for_thickness`) [mm].
 double default_edge_length(const mesh::Surface& surface);

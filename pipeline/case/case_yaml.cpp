@@ -1,7 +1,7 @@
 #include <fmt/format.h>
 
 #include "mesh/supports/region_yaml.h"
-#include "pipeline/case/case.h"
+#include "pipeline/case/read_case.h"
 #include "pipeline/case/settings.h"
 
 namespace palpate::pipeline {

@@ -6,9 +6,10 @@
 #include <string>
 #include <utility>
 
-#include "identify/identify.h"
+#include "identify/inference/problem/identify_options.h"
 #include "mesh/errors.h"
-#include "skeleton/construction/build.h"
+#include "skeleton/construction/properties/link_kind.h"
+#include "skeleton/model/model.h"
 
 namespace palpate::pipeline {
 

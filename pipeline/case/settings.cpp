@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <type_traits>
 
-#include "identify/diagnosis/diagnose.h"
+#include "identify/diagnosis/diagnosis.h"
 #include "mesh/errors.h"
 #include "pipeline/case/names.h"
 

@@ -8,6 +8,7 @@
 #include "mesh/formats/vtk/vtk_files.h"
 #include "mesh/supports/held_parts.h"
 #include "mesh/text/atomic_file.h"
+#include "pipeline/case/read_case.h"
 #include "pipeline/case/subject.h"
 #include "pipeline/command_line/commands.h"
 #include "pipeline/command_line/flags.h"

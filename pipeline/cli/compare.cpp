@@ -1,5 +1,7 @@
 #include <fmt/format.h>
 
+#include "identify/comparison/compare.h"
+#include "identify/diagnosis/diagnose.h"
 #include "mesh/errors.h"
 #include "mesh/text/atomic_file.h"
 #include "pipeline/command_line/flags.h"

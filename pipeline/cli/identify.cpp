@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include "identify/identify.h"
 #include "mesh/errors.h"
 #include "mesh/text/atomic_file.h"
 #include "pipeline/command_line/flags.h"

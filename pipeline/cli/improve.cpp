@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include "identify/diagnosis/diagnose.h"
 #include "identify/diagnosis/ladder.h"
 #include "identify/effects/catalogue.h"
 #include "pipeline/command_line/flags.h"

@@ -7,6 +7,8 @@
 #include "mesh/formats/vtk/vtk_files.h"
 #include "mesh/text/atomic_file.h"
 #include "pipeline/body/body.h"
+#include "pipeline/body/subject_body.h"
+#include "pipeline/case/read_case.h"
 #include "pipeline/case/subject.h"
 #include "pipeline/command_line/commands.h"
 #include "pipeline/command_line/flags.h"

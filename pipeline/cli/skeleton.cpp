@@ -7,11 +7,14 @@
 #include "mesh/formats/vtk/vtk_files.h"
 #include "mesh/text/atomic_file.h"
 #include "pipeline/body/body.h"
+#include "pipeline/body/subject_body.h"
+#include "pipeline/case/read_case.h"
 #include "pipeline/case/subject.h"
 #include "pipeline/command_line/commands.h"
 #include "pipeline/command_line/flags.h"
 #include "pipeline/command_line/subcommands.h"
 #include "pipeline/output/quality.h"
+#include "skeleton/construction/build.h"
 #include "skeleton/model/io/model_io.h"
 
 namespace palpate::pipeline::commands {

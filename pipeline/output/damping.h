@@ -4,7 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "identify/motion/damping.h"
+#include "identify/motion/damping_result.h"
 
 namespace palpate::pipeline {
 

@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "identify/identify.h"
+#include "identify/inference/identify_result.h"
 
 namespace palpate::pipeline {
 

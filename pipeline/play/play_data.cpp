@@ -9,6 +9,7 @@
 #include "identify/loading/creep.h"
 #include "mesh/errors.h"
 #include "mesh/text/atomic_file.h"
+#include "pipeline/case/read_case.h"
 #include "pipeline/case/subject.h"
 #include "pipeline/output/html/run_files.h"
 #include "pipeline/output/text/words.h"

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "identify/identify.h"
+#include "identify/inference/posterior_row.h"
 #include "pipeline/case/case.h"
 
 namespace palpate::pipeline {

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "identify/diagnosis/diagnose.h"
 #include "identify/diagnosis/ladder.h"
 #include "mesh/errors.h"
 #include "mesh/supports/region_yaml.h"

@@ -1,6 +1,7 @@
 #pragma once
 
-#include "identify/comparison/compare.h"
+#include "identify/comparison/comparison.h"
+#include "identify/diagnosis/diagnosis.h"
 #include "pipeline/case/subject.h"
 #include "pipeline/run/folder/run_folder.h"
 #include "pipeline/run/model_and_set.h"

@@ -7,6 +7,7 @@
 #include "identify/effects/catalogue.h"
 #include "identify/measurements/plausibility.h"
 #include "identify/models/skeleton_body.h"
+#include "identify/motion/damping.h"
 #include "mesh/errors.h"
 #include "mesh/supports/region_yaml.h"
 #include "pipeline/body/reference_body.h"

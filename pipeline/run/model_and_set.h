@@ -3,10 +3,10 @@
 #include <filesystem>
 #include <memory>
 
-#include "identify/diagnosis/diagnose.h"
+#include "identify/diagnosis/diagnose_options.h"
 #include "identify/measurements/measurement_set.h"
 #include "identify/models/reference_body.h"
-#include "identify/motion/damping.h"
+#include "identify/motion/damping_result.h"
 #include "pipeline/command_line/commands.h"
 #include "skeleton/model/model.h"
 

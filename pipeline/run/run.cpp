@@ -3,6 +3,8 @@
 #include <optional>
 
 #include "fem/elastic_body.h"
+#include "identify/comparison/compare.h"
+#include "identify/identify.h"
 #include "mesh/errors.h"
 #include "mesh/formats/surface/read_surface.h"
 #include "mesh/formats/vtk/vtk_files.h"
@@ -12,6 +14,8 @@
 #include "mesh/text/words.h"
 #include "pipeline/analysis/accuracy.h"
 #include "pipeline/body/body.h"
+#include "pipeline/body/subject_body.h"
+#include "pipeline/case/read_case.h"
 #include "pipeline/case/settings.h"
 #include "pipeline/output/csv/posterior.h"
 #include "pipeline/output/html/report.h"
@@ -26,6 +30,7 @@
 #include "pipeline/run/summary.h"
 #include "pipeline/synthesis/probing/held_out.h"
 #include "pipeline/synthesis/probing/probing.h"
+#include "skeleton/construction/build.h"
 #include "skeleton/model/io/model_io.h"
 
 namespace palpate::pipeline::commands {

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "fem/hyperelastic_body.h"
+#include "fem/large_deformation/material_law.h"
 
 namespace palpate::pipeline {
 

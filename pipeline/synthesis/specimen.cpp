@@ -13,6 +13,7 @@
 #include "mesh/meshing/smooth_surface.h"
 #include "pipeline/body/body.h"
 #include "pipeline/body/reference_body.h"
+#include "pipeline/body/subject_body.h"
 #include "pipeline/synthesis/probing/probing.h"
 #include "pipeline/synthesis/probing/skeleton_probing.h"
 

@@ -12,6 +12,7 @@
 #include "mesh/progress.h"
 #include "pipeline/case/subject.h"
 #include "pipeline/synthesis/options.h"
+#include "pipeline/synthesis/probing/probe_options.h"
 #include "skeleton/model/model.h"
 
 namespace palpate::pipeline {

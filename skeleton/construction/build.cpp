@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <numeric>
 
 #include "mesh/errors.h"
@@ -133,19 +132,6 @@ void set_zones(const PlacementBody& body, const std::vector<Site>& sites, int zo
 }
 
 }  // namespace
-
-void BuildOptions::validate() const {
-    if (spheres < 0 || spheres > most_spheres) {
-        throw InvalidInput(fmt::format("spheres is {}: allowed are 1 to {}, or 0 to let the body's shape decide",
-                                       spheres, most_spheres));
-    }
-    if (!(coverage >= 0) || !std::isfinite(coverage)) {
-        throw InvalidInput(fmt::format(
-            "coverage is {} mm: allowed are positive lengths, or 0 for 5 % of the body's longest side", coverage));
-    }
-    if (zones < 1 || zones > most_zones)
-        throw InvalidInput(fmt::format("zones is {}: allowed are 1 to {}", zones, most_zones));
-}
 
 Model build_skeleton(const mesh::Surface& surface, const mesh::VolumeMesh& volume, const fem::Material& material,
                      const std::vector<mesh::Region>& supports, const BuildOptions& options, BuildReport* report) {

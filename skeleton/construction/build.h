@@ -4,30 +4,13 @@
 #include <vector>
 
 #include "fem/material.h"
+#include "mesh/core/region.h"
+#include "mesh/core/surface.h"
 #include "mesh/core/volume_mesh.h"
+#include "skeleton/construction/build_options.h"
 #include "skeleton/model/model.h"
 
 namespace palpate::skeleton {
-
-/// What joins two spheres.
-enum class LinkKind {
-    full,        // elongation, torsion, and shear apart from flexion in two planes; beside them a volume term a sphere
-    burion2008,  // the paper's: elongation, flexion, torsion
-};
-
-/// Do its links have a section and six stiffnesses?
-constexpr bool is_full(LinkKind kind) { return kind != LinkKind::burion2008; }
-
-struct BuildOptions {
-    static constexpr int most_spheres = 20000, most_zones = 1000;
-
-    int spheres = 0;  // free spheres, [1, most_spheres]; 0: by the body's shape, and as many as the coverage asks for
-    double coverage = 0;  // [mm] no free surface vertex further outside the spheres; 0: 5 % of the longest side
-    LinkKind links = LinkKind::full;
-    bool condense = true;  // the skin follows the body in finite elements; else the nearest link or sphere
-    int zones = 1;         // [1, most_zones]: links are split in so many along the body, from the support outwards
-    void validate() const;
-};
 
 struct BuildReport {
     Points medial_centers;           // poles of the medial axis (n x 3) [mm]

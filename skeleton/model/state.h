@@ -1,6 +1,5 @@
 #pragma once
 
-#include <Eigen/SparseCore>
 #include <vector>
 
 #include "skeleton/model/model.h"
@@ -22,12 +21,5 @@ Mat3 rotation(const Vec3& w);
 /// Its inverse; the angle lies in [0, pi].
 Vec3 rotation_vector(const Mat3& R);
 Mat3 skew(const Vec3& w);
-
-/// Positions of attached points (m x 3) [mm].
-Points observe(const Model& model, const State& state, const std::vector<Attachment>& points);
-
-/// P = d observe / d step (3m x 6N).
-Eigen::SparseMatrix<double> observation_jacobian(const Model& model, const State& state,
-                                                 const std::vector<Attachment>& points);
 
 }  // namespace palpate::skeleton

@@ -7,6 +7,7 @@
 
 #include "skeleton/links/fibres/plastic_fibre.h"
 #include "skeleton/loads/load.h"
+#include "skeleton/model/observation.h"
 
 namespace palpate::skeleton {
 

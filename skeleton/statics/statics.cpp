@@ -1,10 +1,7 @@
 #include "skeleton/statics/statics.h"
 
-#include <fmt/format.h>
-
 #include <cassert>
 
-#include "mesh/errors.h"
 #include "skeleton/effects/placed_effects.h"
 #include "skeleton/links/placed/placed_links.h"
 
@@ -25,18 +22,6 @@ PlacedLinks links_of(const Model& model, const fem::Effects& extra) {
 int row_of(const Link& link, int i) { return i < 6 ? 6 * link.a + i : 6 * link.b + i - 6; }
 
 }  // namespace
-
-Vec3 rest_direction(const Model& model, const Link& link) {
-    const Vec3 dx = model.spheres[link.b].center - model.spheres[link.a].center;
-    const double distance = dx.norm();
-    if (!(distance > 0))
-        throw InvalidInput(
-            fmt::format("spheres {} and {} are linked but have the same centre ({}, {}, {}): "
-                        "move one of them or take the link away",
-                        link.a, link.b, model.spheres[link.a].center.x(), model.spheres[link.a].center.y(),
-                        model.spheres[link.a].center.z()));
-    return dx / distance;
-}
 
 Eigen::SparseMatrix<double> link_forces(const Model& model, const State& state, const fem::Effects& extra) {
     return links_of(model, extra).forces(state);

@@ -2,9 +2,10 @@
 
 #include <Eigen/SparseCore>
 
+#include "skeleton/links/fibres/plastic_fibre.h"
+#include "skeleton/links/rest_direction.h"
 #include "skeleton/loads/load.h"
 #include "skeleton/model/state.h"
-#include "skeleton/statics/equilibrium.h"
 
 namespace palpate::skeleton {
 
@@ -19,9 +20,6 @@ Eigen::SparseMatrix<double> link_forces(const Model& model, const State& state, 
 Eigen::VectorXd stiffness_vector(const Model& model);
 /// Sets them; the links keep their sections.
 void set_stiffness(Model& model, const Eigen::VectorXd& k);
-
-/// Unit vector from a to b at rest. @throws InvalidInput when the two spheres have the same centre.
-Vec3 rest_direction(const Model& model, const Link& link);
 
 /// Force of the effects that are not in the links (6N), at held spheres too [N, N mm].
 /// @throws InvalidInput as make_physics, and when the model has nothing that an effect acts on.

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "mesh/errors.h"
+#include "skeleton/statics/equilibrium.h"
 #include "skeleton/statics/newton.h"
 #include "skeleton/statics/skeleton_system.h"
 #include "skeleton/statics/statics.h"

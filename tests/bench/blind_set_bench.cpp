@@ -23,6 +23,7 @@
 #include "mesh/formats/surface/read_surface.h"
 #include "mesh/text/atomic_file.h"
 #include "pipeline/body/reference_body.h"
+#include "pipeline/case/read_case.h"
 #include "pipeline/case/subject.h"
 #include "pipeline/synthesis/truth.h"
 

@@ -22,6 +22,7 @@
 #include <mutex>
 
 #include "diagnosis/tally.h"
+#include "identify/diagnosis/diagnose.h"
 #include "identify/diagnosis/ladder.h"
 #include "identify/effects/catalogue.h"
 #include "identify/models/skeleton_body.h"

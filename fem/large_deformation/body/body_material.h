@@ -3,6 +3,8 @@
 #include <optional>
 
 #include "fem/large_deformation/body/body_shape.h"
+#include "fem/large_deformation/body_setting.h"
+#include "fem/large_deformation/elements/element_effects.h"
 
 namespace palpate::fem {
 

@@ -1,7 +1,11 @@
 #pragma once
 
+#include "fem/effects/effects.h"
+#include "fem/elements/dilatation.h"
 #include "fem/large_deformation/body/cavities.h"
 #include "fem/large_deformation/body/node_integrals.h"
+#include "fem/large_deformation/body/node_weights.h"
+#include "fem/large_deformation/elements/element_kernel.h"
 
 namespace palpate::fem {
 

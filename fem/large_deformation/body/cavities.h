@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "fem/large_deformation/body/unknowns.h"
+#include "mesh/core/volume_mesh.h"
 
 namespace palpate::fem {
 

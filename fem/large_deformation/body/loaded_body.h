@@ -1,6 +1,7 @@
 #pragma once
 
 #include "fem/large_deformation/body/body_material.h"
+#include "fem/large_deformation/body/node_weights.h"
 #include "fem/large_deformation/body/unknowns.h"
 
 namespace palpate::fem {

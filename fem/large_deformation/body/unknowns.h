@@ -5,6 +5,8 @@
 
 #include "fem/large_deformation/elements/element_kernel.h"
 #include "fem/linear_algebra/cholesky/cholesky.h"
+#include "fem/linear_algebra/cholesky/lower_matrix.h"
+#include "mesh/core/volume_mesh.h"
 
 namespace palpate::fem {
 

@@ -2,9 +2,10 @@
 
 #include <span>
 
-#include "fem/hyperelastic_body.h"
+#include "fem/effects/effects.h"
 #include "fem/large_deformation/elements/element_shape.h"
 #include "fem/large_deformation/elements/plastic_point.h"
+#include "fem/large_deformation/material_law.h"
 
 namespace palpate::fem {
 

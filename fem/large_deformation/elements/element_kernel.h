@@ -2,8 +2,10 @@
 
 #include <array>
 
-#include "fem/hyperelastic_body.h"
+#include "fem/elements/dilatation.h"
+#include "fem/large_deformation/body_setting.h"
 #include "fem/large_deformation/elements/element_effects.h"
+#include "fem/large_deformation/elements/element_shape.h"
 
 namespace palpate::fem {
 

@@ -1,6 +1,7 @@
 #pragma once
 
-#include "fem/hyperelastic_body.h"
+#include "fem/effects/effects.h"
+#include "fem/large_deformation/material_law.h"
 
 namespace palpate::fem {
 

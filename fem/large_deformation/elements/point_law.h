@@ -4,7 +4,8 @@
 #include <Eigen/LU>
 #include <cmath>
 
-#include "fem/hyperelastic_body.h"
+#include "fem/large_deformation/material_law.h"
+#include "mesh/types.h"
 
 namespace palpate::fem {
 

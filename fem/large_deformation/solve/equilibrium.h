@@ -1,6 +1,7 @@
 #pragma once
 
 #include "fem/large_deformation/body/loaded_body.h"
+#include "fem/large_deformation/body_equilibrium.h"
 
 namespace palpate::fem {
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "fem/large_deformation/body/unknowns.h"
+#include "fem/large_deformation/body_tangent.h"
 
 namespace palpate::fem {
 

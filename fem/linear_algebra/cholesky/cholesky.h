@@ -4,12 +4,11 @@
 #include <cstdint>
 #include <memory>
 
+#include "fem/linear_algebra/cholesky/lower_matrix.h"
 #include "fem/linear_algebra/cholesky/supernodes.h"
 
 namespace palpate::fem {
 
-/// The lower half of a symmetric matrix.
-using LowerMatrix = Eigen::SparseMatrix<double, Eigen::ColMajor, std::int64_t>;
 /// Right-hand sides beside each other, those of one unknown together in memory (n x p).
 using MultiVector = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 

@@ -1,6 +1,7 @@
 #pragma once
 
-#include "fem/linear_algebra/cholesky/cholesky.h"
+#include "fem/linear_algebra/cholesky/lower_matrix.h"
+#include "fem/linear_algebra/cholesky/supernodes.h"
 
 namespace palpate::fem {
 

@@ -1,6 +1,7 @@
 #pragma once
 
-#include "identify/diagnosis/diagnose.h"
+#include "identify/diagnosis/diagnose_options.h"
+#include "mesh/progress.h"
 
 namespace palpate::identify {
 

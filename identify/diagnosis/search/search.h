@@ -1,5 +1,7 @@
 #pragma once
 
+#include "identify/diagnosis/diagnose_options.h"
+#include "identify/diagnosis/diagnosis.h"
 #include "identify/diagnosis/search/baselines.h"
 #include "identify/diagnosis/search/screen.h"
 

@@ -2,8 +2,9 @@
 
 #include <optional>
 
-#include "identify/comparison/compare.h"
+#include "identify/comparison/comparison.h"
 #include "identify/comparison/error_location.h"
+#include "identify/comparison/load_exponent.h"
 #include "identify/diagnosis/fit/refit.h"
 
 namespace palpate::identify {

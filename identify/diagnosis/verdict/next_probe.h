@@ -1,6 +1,6 @@
 #pragma once
 
-#include "identify/diagnosis/diagnose.h"
+#include "identify/diagnosis/diagnosis.h"
 
 namespace palpate::identify {
 

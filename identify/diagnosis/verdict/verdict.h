@@ -1,6 +1,7 @@
 #pragma once
 
-#include "identify/diagnosis/diagnose.h"
+#include "identify/diagnosis/diagnose_options.h"
+#include "identify/diagnosis/diagnosis.h"
 
 namespace palpate::identify {
 

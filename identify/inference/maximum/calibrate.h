@@ -3,8 +3,10 @@
 #include <string>
 #include <vector>
 
-#include "identify/identify.h"
 #include "identify/inference/maximum/fit_map.h"
+#include "identify/inference/problem/identify_options.h"
+#include "identify/loading/readings.h"
+#include "mesh/progress.h"
 
 namespace palpate::identify {
 

@@ -2,8 +2,8 @@
 
 #include <vector>
 
-#include "identify/identify.h"
 #include "identify/inference/maximum/fit_map.h"
+#include "identify/inference/maximum/forecast_error.h"
 
 namespace palpate::identify {
 

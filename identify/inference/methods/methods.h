@@ -1,11 +1,15 @@
 #pragma once
 
-#include "identify/identify.h"
 #include "identify/inference/domains/force/force_domain.h"
+#include "identify/inference/identify_result.h"
+#include "identify/inference/problem/identify_options.h"
 #include "identify/loading/readings.h"
+#include "identify/measurements/measurement_set.h"
 #include "mesh/progress.h"
 
 namespace palpate::identify {
+
+struct UniformFit;
 
 inline constexpr int default_particles = 200, default_burion_particles = 600;
 

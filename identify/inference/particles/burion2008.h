@@ -4,7 +4,7 @@
 #include <functional>
 #include <vector>
 
-#include "identify/identify.h"
+#include "identify/inference/particles/filter_step.h"
 #include "mesh/progress.h"
 
 namespace palpate::identify {

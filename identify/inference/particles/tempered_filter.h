@@ -4,7 +4,7 @@
 #include <functional>
 #include <vector>
 
-#include "identify/identify.h"
+#include "identify/inference/particles/filter_step.h"
 #include "identify/inference/particles/proposal.h"
 #include "mesh/progress.h"
 

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "identify/identify.h"
 #include "identify/inference/priors/markov_field.h"
+#include "identify/inference/problem/identify_options.h"
 #include "skeleton/model/model.h"
 
 namespace palpate::identify {

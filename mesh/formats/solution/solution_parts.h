@@ -1,13 +1,17 @@
 #pragma once
 
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "mesh/formats/deck/deck.h"
 #include "mesh/formats/solution/solution.h"
 
 // What the readers of solutions share.
 
 namespace palpate::mesh {
-
-/// Nodes, body and surface out of cells. @throws InvalidInput as assemble.
-void set_mesh(Solution& solution, const Cells& cells);
 
 Solution read_frd(const std::filesystem::path& file);
 Solution read_dat(const std::filesystem::path& file, const Deck* deck);

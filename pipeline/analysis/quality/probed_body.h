@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "fem/hyperelastic_body.h"
+#include "fem/large_deformation/material_law.h"
 #include "identify/measurements/measurement_set.h"
 #include "mesh/progress.h"
 #include "pipeline/case/subject.h"

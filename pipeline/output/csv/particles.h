@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "identify/identify.h"
+#include "identify/inference/identify_result.h"
 
 namespace palpate::pipeline {
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "identify/identify.h"
+#include "identify/inference/posterior_row.h"
 #include "pipeline/analysis/density.h"
 #include "pipeline/output/html/charts/picture.h"
 #include "skeleton/model/model.h"

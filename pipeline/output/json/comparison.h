@@ -4,10 +4,9 @@
 #include <string>
 #include <vector>
 
-#include "identify/comparison/compare.h"
-#include "identify/identify.h"
+#include "identify/comparison/comparison.h"
+#include "identify/inference/identify_result.h"
 #include "mesh/topology/check_surface.h"
-#include "skeleton/construction/build.h"
 
 namespace palpate::pipeline {
 

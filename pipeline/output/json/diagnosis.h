@@ -2,7 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "identify/diagnosis/diagnose.h"
+#include "identify/diagnosis/diagnosis.h"
 
 namespace palpate::pipeline {
 

@@ -2,8 +2,8 @@
 
 #include <nlohmann/json.hpp>
 
-#include "identify/comparison/compare.h"
-#include "identify/diagnosis/diagnose.h"
+#include "identify/comparison/comparison.h"
+#include "identify/diagnosis/diagnosis.h"
 
 namespace palpate::pipeline {
 

@@ -2,8 +2,8 @@
 
 #include <filesystem>
 
-#include "identify/comparison/compare.h"
-#include "identify/identify.h"
+#include "identify/comparison/comparison.h"
+#include "identify/inference/identify_result.h"
 #include "identify/measurements/measurement_set.h"
 #include "mesh/formats/vtk/vtk_files.h"
 #include "skeleton/model/model.h"

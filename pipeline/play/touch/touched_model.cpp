@@ -6,6 +6,7 @@
 
 #include "mesh/errors.h"
 #include "skeleton/loads/dent.h"
+#include "skeleton/model/observation.h"
 
 namespace palpate::pipeline {
 namespace {

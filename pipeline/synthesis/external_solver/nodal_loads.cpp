@@ -9,6 +9,7 @@
 #include <map>
 
 #include "mesh/errors.h"
+#include "mesh/formats/solution/solution.h"
 #include "mesh/geometry/surface_tree.h"
 
 namespace palpate::pipeline {

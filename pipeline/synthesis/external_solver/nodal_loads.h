@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "identify/measurements/measurement_set.h"
-#include "mesh/formats/solution/solution.h"
+#include "mesh/formats/deck/deck.h"
 
 namespace palpate::pipeline {
 

@@ -8,6 +8,7 @@
 #include <set>
 
 #include "mesh/errors.h"
+#include "mesh/formats/solution/read_solution.h"
 #include "mesh/formats/vtk/poly_data.h"
 #include "pipeline/synthesis/external_solver/nodal_loads.h"
 

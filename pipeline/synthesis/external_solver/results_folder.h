@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "identify/measurements/measurement_set.h"
+#include "mesh/formats/deck/deck.h"
 #include "mesh/formats/solution/solution.h"
 
 namespace palpate::pipeline {

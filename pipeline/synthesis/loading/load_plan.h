@@ -1,7 +1,6 @@
 #pragma once
 
 #include "mesh/progress.h"
-#include "pipeline/case/case.h"
 #include "pipeline/synthesis/loading/simulation.h"
 
 namespace palpate::pipeline {

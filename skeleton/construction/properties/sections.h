@@ -3,8 +3,9 @@
 #include <vector>
 
 #include "fem/material.h"
-#include "skeleton/construction/build.h"
+#include "skeleton/construction/properties/link_kind.h"
 #include "skeleton/construction/shape/cells.h"
+#include "skeleton/model/model.h"
 
 namespace palpate::skeleton {
 

@@ -5,8 +5,8 @@
 
 #include "skeleton/effects/link_effects.h"
 #include "skeleton/links/fibres/uniaxial.h"
+#include "skeleton/links/rest_direction.h"
 #include "skeleton/links/shear.h"
-#include "skeleton/statics/statics.h"
 
 namespace palpate::skeleton {
 

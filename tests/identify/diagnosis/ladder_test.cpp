@@ -6,6 +6,7 @@
 #include <Eigen/Geometry>
 #include <cmath>
 
+#include "identify/comparison/compare.h"
 #include "identify/effects/catalogue.h"
 #include "mesh/errors.h"
 #include "skeleton/model/state.h"

@@ -8,6 +8,7 @@
 #include "identify/motion/ringing.h"
 #include "skeleton/model/attach.h"
 #include "skeleton/runtime/body.h"
+#include "skeleton/statics/equilibrium.h"
 #include "tests/identify/lattice.h"
 #include "tests/messages.h"
 

@@ -1,6 +1,7 @@
 // What a second mesh says of a reference's error, against what a much finer one says.
 
 #include "pipeline/analysis/accuracy.h"
+#include "pipeline/body/subject_body.h"
 #include "pipeline/case/overrides.h"
 
 #include <gtest/gtest.h>
@@ -9,6 +10,7 @@
 #include "fem/interpolation/interpolation.h"
 #include "mesh/formats/surface/read_surface.h"
 #include "pipeline/body/body.h"
+#include "pipeline/case/read_case.h"
 #include "pipeline/synthesis/probing/probing.h"
 #include "tests/temporary_folder.h"
 

@@ -6,16 +6,19 @@
 #include <random>
 
 #include "identify/comparison/compare.h"
+#include "identify/identify.h"
 #include "identify/loading/loads.h"
 #include "identify/measurements/twin.h"
 #include "mesh/errors.h"
 #include "mesh/text/atomic_file.h"
 #include "pipeline/analysis/quality/probed_body.h"
 #include "pipeline/body/body.h"
+#include "pipeline/body/subject_body.h"
 #include "pipeline/output/csv/particles.h"
 #include "pipeline/output/identification.h"
 #include "samples/lattice.h"
 #include "skeleton/construction/build.h"
+#include "skeleton/statics/equilibrium.h"
 #include "tests/messages.h"
 #include "tests/temporary_folder.h"
 

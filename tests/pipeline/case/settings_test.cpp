@@ -14,6 +14,7 @@
 #include "mesh/formats/surface/surface_formats.h"
 #include "mesh/text/atomic_file.h"
 #include "pipeline/case/overrides.h"
+#include "pipeline/case/read_case.h"
 #include "pipeline/command_line/commands.h"
 #include "tests/messages.h"
 #include "tests/temporary_folder.h"

@@ -9,6 +9,7 @@
 #include "mesh/formats/volume/write_volume.h"
 #include "mesh/formats/vtk/vtk_files.h"
 #include "mesh/text/atomic_file.h"
+#include "pipeline/case/read_case.h"
 #include "pipeline/case/subject.h"
 #include "pipeline/command_line/commands.h"
 #include "tests/messages.h"

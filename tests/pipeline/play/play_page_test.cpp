@@ -18,6 +18,7 @@
 #include "pipeline/play/touch/touched_model.h"
 #include "samples/lattice.h"
 #include "skeleton/model/io/model_io.h"
+#include "skeleton/statics/equilibrium.h"
 #include "skeleton/statics/statics.h"
 #include "tests/messages.h"
 #include "tests/temporary_folder.h"

@@ -7,6 +7,7 @@
 
 #include "mesh/errors.h"
 #include "mesh/text/atomic_file.h"
+#include "pipeline/case/read_case.h"
 #include "pipeline/command_line/commands.h"
 #include "pipeline/run/expectation.h"
 #include "skeleton/model/io/model_io.h"

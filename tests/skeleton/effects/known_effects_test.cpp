@@ -3,6 +3,7 @@
 #include <thread>
 
 #include "skeleton/effects/link_effects.h"
+#include "skeleton/statics/equilibrium.h"
 #include "tests/messages.h"
 #include "tests/skeleton/test_effects.h"
 

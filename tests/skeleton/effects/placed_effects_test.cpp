@@ -5,6 +5,7 @@
 #include "fem/effects/prestress.h"
 #include "fem/effects/stiffening.h"
 #include "skeleton/effects/link_effects.h"
+#include "skeleton/statics/equilibrium.h"
 #include "tests/skeleton/test_effects.h"
 
 namespace palpate::skeleton {

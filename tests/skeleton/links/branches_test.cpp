@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "skeleton/statics/equilibrium.h"
 #include "skeleton/statics/statics.h"
 #include "tests/skeleton/test_models.h"
 

@@ -3,6 +3,7 @@
 #include "skeleton/effects/link_effects.h"
 #include "skeleton/links/placed/placed_links.h"
 #include "skeleton/links/shear.h"
+#include "skeleton/statics/equilibrium.h"
 #include "tests/skeleton/test_effects.h"
 
 namespace palpate::skeleton {

@@ -2,6 +2,7 @@
 
 #include "skeleton/effects/placed_effects.h"
 #include "skeleton/loads/cavities.h"
+#include "skeleton/statics/equilibrium.h"
 #include "tests/messages.h"
 #include "tests/skeleton/test_effects.h"
 

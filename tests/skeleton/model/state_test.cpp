@@ -4,6 +4,7 @@
 
 #include <numbers>
 
+#include "skeleton/model/observation.h"
 #include "tests/skeleton/test_models.h"
 
 namespace palpate::skeleton {

@@ -4,6 +4,7 @@
 
 #include "mesh/errors.h"
 #include "skeleton/runtime/body.h"
+#include "skeleton/statics/equilibrium.h"
 #include "tests/messages.h"
 #include "tests/skeleton/runtime/live_models.h"
 

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include "skeleton/statics/equilibrium.h"
 #include "skeleton/statics/statics.h"
 #include "tests/skeleton/test_models.h"
 

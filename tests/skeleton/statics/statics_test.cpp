@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "mesh/errors.h"
+#include "skeleton/model/observation.h"
 #include "tests/skeleton/test_models.h"
 
 namespace palpate::skeleton {

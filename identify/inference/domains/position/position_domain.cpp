@@ -10,6 +10,7 @@
 #include "identify/numerics/parallel.h"
 #include "skeleton/effects/placed_effects.h"
 #include "skeleton/loads/dent.h"
+#include "skeleton/statics/equilibrium.h"
 #include "skeleton/statics/statics.h"
 
 namespace palpate::identify {

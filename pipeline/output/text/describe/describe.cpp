@@ -9,7 +9,7 @@
 #include "mesh/formats/read_body.h"
 #include "mesh/formats/surface/surface_formats.h"
 #include "mesh/formats/yaml/yaml_fields.h"
-#include "pipeline/case/case.h"
+#include "pipeline/case/read_case.h"
 #include "pipeline/case/subject.h"
 #include "pipeline/output/text/words.h"
 

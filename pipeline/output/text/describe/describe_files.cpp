@@ -7,7 +7,7 @@
 
 #include "mesh/errors.h"
 #include "mesh/formats/read_body.h"
-#include "mesh/formats/solution/solution.h"
+#include "mesh/formats/solution/read_solution.h"
 #include "mesh/formats/surface/read_surface.h"
 #include "mesh/formats/vtk/poly_data.h"
 #include "mesh/text/atomic_file.h"

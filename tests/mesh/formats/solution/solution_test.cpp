@@ -4,7 +4,7 @@
 
 #include "mesh/errors.h"
 #include "mesh/formats/read_body.h"
-#include "mesh/formats/solution/solution.h"
+#include "mesh/formats/solution/read_solution.h"
 #include "mesh/formats/volume/write_volume.h"
 #include "mesh/formats/vtk/vtk_files.h"
 #include "mesh/text/atomic_file.h"

@@ -8,6 +8,7 @@
 #include "mesh/formats/surface/surface_formats.h"
 #include "mesh/text/atomic_file.h"
 #include "mesh/topology/check_surface.h"
+#include "pipeline/case/read_case.h"
 #include "pipeline/command_line/command_tree.h"
 #include "pipeline/command_line/commands.h"
 #include "pipeline/command_line/tree.h"

@@ -22,6 +22,7 @@
 #include "pipeline/output/html/sections/inquiry_sections.h"
 #include "pipeline/output/html/view_data.h"
 #include "skeleton/model/io/model_io.h"
+#include "skeleton/statics/equilibrium.h"
 #include "tests/temporary_folder.h"
 
 namespace palpate::pipeline {

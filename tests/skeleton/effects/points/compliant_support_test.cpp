@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "skeleton/effects/point_sets.h"
+#include "skeleton/statics/equilibrium.h"
 #include "tests/skeleton/test_effects.h"
 
 namespace palpate::skeleton {

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "skeleton/statics/equilibrium.h"
 #include "tests/skeleton/test_effects.h"
 
 namespace palpate::skeleton {

@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "skeleton/links/fibres/plastic_fibre.h"
+#include "skeleton/statics/equilibrium.h"
 #include "tests/skeleton/test_effects.h"
 
 namespace palpate::skeleton {

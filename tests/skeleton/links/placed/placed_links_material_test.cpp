@@ -8,6 +8,7 @@
 #include "fem/effects/stiffening.h"
 #include "skeleton/effects/link_effects.h"
 #include "skeleton/links/placed/placed_links.h"
+#include "skeleton/statics/equilibrium.h"
 #include "tests/skeleton/test_effects.h"
 
 namespace palpate::skeleton {

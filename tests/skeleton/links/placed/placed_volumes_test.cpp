@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "skeleton/statics/equilibrium.h"
 #include "tests/skeleton/test_models.h"
 
 namespace palpate::skeleton {

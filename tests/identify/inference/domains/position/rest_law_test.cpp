@@ -5,6 +5,7 @@
 
 #include "identify/numerics/random.h"
 #include "mesh/errors.h"
+#include "skeleton/statics/equilibrium.h"
 #include "tests/identify/lattice.h"
 #include "tests/skeleton/test_models.h"
 

@@ -1,0 +1,38 @@
+#include "identify/diagnosis/diagnose_options.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "identify/effects/catalogue.h"
+#include "mesh/errors.h"
+
+namespace palpate::identify {
+
+bool DiagnoseOptions::leaves_out(const EffectHypothesis& effect) const {
+    return std::ranges::find(without, effect.name()) != without.end();
+}
+
+void DiagnoseOptions::validate() const {
+    for (const std::string& name : without) find_effect(name);
+    const auto above = [](const char* name, double value) {
+        if (!(value > 0)) throw InvalidInput(fmt::format("{} is {}; it must be above 0", name, value));
+    };
+    above("most_left", most_left);
+    above("most_left_held_out", most_left_held_out);
+    above("most_gap", most_gap);
+    above("most_pull", most_pull);
+    const auto no_less = [](const char* name, double value) {
+        if (!(value >= 0)) throw InvalidInput(fmt::format("{} is {}; it must be 0 or more", name, value));
+    };
+    no_less("effect_error", effect_error);
+    no_less("mesh_error", mesh_error);
+    no_less("resolution", resolution);
+    no_less("idealisation_evidence", idealisation_evidence);
+    no_less("least_outliers", least_outliers);
+    if (refit.steps < 1) throw InvalidInput(fmt::format("refit.steps is {}; allowed: 1 and more", refit.steps));
+    if (refits < 1) throw InvalidInput(fmt::format("refits is {}; allowed: 1 and more", refits));
+    if (together < 1) throw InvalidInput(fmt::format("together is {}; allowed: 1 and more", together));
+}
+
+}  // namespace palpate::identify

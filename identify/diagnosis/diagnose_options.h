@@ -1,0 +1,42 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "identify/diagnosis/fit/nearby.h"
+#include "identify/diagnosis/fit/refit.h"
+
+namespace palpate::identify {
+
+struct DiagnoseOptions {
+    std::vector<std::string> without;           // effects left out of the catalogue
+    std::vector<skeleton::EffectRecord> known;  // effects that the model has already: in every explanation, fitted anew
+    std::optional<int> law;                     // the only one to be tried; absent: the one that explains most
+    std::optional<NeighbouringFit> near;        // a fit to begin with, instead of a guess
+    bool screen = true;                         // false: the baseline alone, for a comparison
+    int refits = 4;                             // candidates that are confirmed by a refit, at most
+    int together = 4;                           // effects in one explanation, at most; 1: single ones only
+    int refits_together = 8;                    // of several effects, at most
+    double least_screen = 3;                    // ln Bayes factor of the screen below which none is refitted
+    double least_evidence = 10;                 // ln Bayes factor of the refit, to claim an effect
+    double least_lead = 5;                      // over the runner-up
+    double most_left = 1.1;                     // whitened rms, for what is left to be noise
+    double most_left_together = 1.06;           // the same for several effects: they overfit more easily
+    double most_left_held_out = 1.2;            // the same on probes left out
+    double most_gap = 1.06;                     // the same over that on probes fitted, where it is above 1
+    double effect_error = 0.1;                  // share of an effect that discretisation may alter: up to twice the
+                                                // 1 to 6 % that meshes of the default size are off by
+    double most_pull = 8;                       // largest pull of a nuisance, in prior sd; doubled for a plastic body
+    double least_outliers = 100;                // the same for outliers: one reading of 15 sigma, say
+    double mesh_error = 0.005;  // share of the displacement that discretisation error may mimic as an effect
+    double resolution = 0.01;   // of the displacement: noise that is not specified is no less, as of a mesh
+    double idealisation_evidence =
+        60;  // least ln Bayes factor beside an effect whose own idealisation leaves a residual
+    RefitOptions refit;
+    /// Is an effect left out of the catalogue?
+    bool leaves_out(const EffectHypothesis& effect) const;
+    void validate() const;  // @throws InvalidInput naming option, value and bound
+};
+
+}  // namespace palpate::identify
