@@ -5,8 +5,8 @@
 #include <optional>
 #include <vector>
 
-#include "fem/effects/material_effect.h"
-#include "fem/effects/point_potential.h"
+#include "fem/effects/material/material_effect.h"
+#include "fem/effects/point/point_potential.h"
 
 namespace palpate::fem {
 

@@ -1,4 +1,4 @@
-#include "fem/effects/anisotropy.h"
+#include "fem/effects/material/anisotropy.h"
 
 #include <fmt/format.h>
 #include <Eigen/LU>

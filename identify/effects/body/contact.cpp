@@ -1,4 +1,4 @@
-#include "fem/effects/contact.h"
+#include "fem/effects/point/contact.h"
 
 #include <fmt/format.h>
 

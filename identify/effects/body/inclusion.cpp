@@ -1,4 +1,4 @@
-#include "fem/effects/inclusion.h"
+#include "fem/effects/material/inclusion.h"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include "fem/effects/prestress.h"
+#include "fem/effects/material/prestress.h"
 
 #include <fmt/format.h>
 

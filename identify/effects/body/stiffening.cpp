@@ -1,4 +1,4 @@
-#include "fem/effects/stiffening.h"
+#include "fem/effects/material/stiffening.h"
 
 #include <fmt/format.h>
 
