@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "identify/effects/catalogue.h"
+#include "identify/effects/effect.h"
 
 namespace palpate::identify {
 namespace {

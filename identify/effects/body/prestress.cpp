@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "identify/effects/catalogue.h"
+#include "identify/effects/effect.h"
 
 namespace palpate::identify {
 namespace {
