@@ -1,7 +1,11 @@
 #pragma once
 
+#include <memory>
+
 #include "fem/large_deformation/body/cavities.h"
 #include "fem/large_deformation/body/node_integrals.h"
+#include "fem/large_deformation/body/skin.h"
+#include "fem/large_deformation/lazy.h"
 
 namespace palpate::fem {
 
@@ -13,7 +17,9 @@ struct BodyShape {
     std::vector<ElementShape> elements;
     NodeIntegrals integrals;
     Cavities cavities{};
+    std::shared_ptr<const Lazy<Skin>> lazy_skin = std::make_shared<Lazy<Skin>>();  // few bodies have effects in it
 
+    const Skin& skin() const;
     NodeWeights points(ActsOn what, double density) const;
     /// Where an element's quadrature points rest (points x 3) [mm].
     PointPositions quadrature_points(std::size_t element) const;

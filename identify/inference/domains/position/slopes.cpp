@@ -29,7 +29,7 @@ fem::MultiVector sum_of_parts(int count, int threads, const std::function<fem::M
 }
 
 /// An equilibrium of a prediction, whether somebody read it or not.
-struct Stage {
+struct PlayedStage {
     int state;  // the one that was read, here or next
     const skeleton::Load* load;
     const skeleton::Equilibrium* at;
@@ -38,8 +38,8 @@ struct Stage {
 };
 
 /// Of all states, unmeasured ones before the one that was read next.
-std::vector<Stage> stages_of(const std::vector<StateReadings>& states, const Prediction& prediction) {
-    std::vector<Stage> stages;
+std::vector<PlayedStage> stages_of(const std::vector<StateReadings>& states, const Prediction& prediction) {
+    std::vector<PlayedStage> stages;
     std::vector<int> stage_of(states.size());
     for (int s = 0; s < static_cast<int>(states.size()); ++s) {
         int before = states[s].before >= 0 ? stage_of[states[s].before] : -1;
@@ -217,7 +217,7 @@ ErrorJacobian PositionDomain::jacobian(const Eigen::VectorXd& theta, const Predi
     const Eigen::VectorXd k = parameters_.stiffness(theta);
     const bool linear = law() == skeleton::EquilibriumLaw::linear;
 
-    const std::vector<Stage> stages = stages_of(states_, prediction);
+    const std::vector<PlayedStage> stages = stages_of(states_, prediction);
 
     // the linear law has one tangent for all states
     const int count = static_cast<int>(stages.size());
@@ -226,7 +226,7 @@ ErrorJacobian PositionDomain::jacobian(const Eigen::VectorXd& theta, const Predi
     const skeleton::PlacedLinks* const yielding = !linear && is_history_dependent(states_) ? &links_->placed : nullptr;
     std::vector<std::optional<ErrorJacobian::State>> found(count);
     for_each_in_parallel(count, threads_, [&](int i) {
-        const Stage& stage = stages[i];
+        const PlayedStage& stage = stages[i];
         const int s = stage.state;
         const bool is_factored = stage.is_read && !prediction.tangents.empty();
         if (!linear) tangents[i] = is_factored ? prediction.tangents[s] : factored(*stage.load, k, *stage.at);
