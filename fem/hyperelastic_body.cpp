@@ -1,29 +1,14 @@
 #include "fem/hyperelastic_body.h"
 
 #include <cassert>
-#include <mutex>
 #include <numeric>
 
 #include "fem/elements/restraint.h"
+#include "fem/large_deformation/lazy.h"
 #include "fem/large_deformation/solve/equilibrium.h"
 #include "fem/large_deformation/solve/factored_tangent.h"
 
 namespace palpate::fem {
-
-/// Something made when it is first asked for, by whichever thread.
-template <class Value>
-class Lazy {
-public:
-    template <class Make>
-    const Value& get(Make&& make) const {
-        std::call_once(once_, [&] { value_ = std::make_unique<const Value>(make()); });
-        return *value_;
-    }
-
-private:
-    mutable std::once_flag once_;
-    mutable std::unique_ptr<const Value> value_;
-};
 
 namespace {
 

@@ -5,6 +5,7 @@ set(shared_skeleton_sources
   effects/effect.cpp
   effects/link_effects.cpp
   effects/placed_effects.cpp
+  effects/placed_skin.cpp
   effects/point_sets.cpp
   links/branches.cpp
   links/full_link.cpp

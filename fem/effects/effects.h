@@ -5,8 +5,9 @@
 #include <optional>
 #include <vector>
 
-#include "fem/effects/material_effect.h"
-#include "fem/effects/point_potential.h"
+#include "fem/effects/material/material_effect.h"
+#include "fem/effects/point/point_potential.h"
+#include "fem/effects/surface/surface_energy.h"
 
 namespace palpate::fem {
 
@@ -36,6 +37,7 @@ public:
 struct Effects {
     std::vector<std::shared_ptr<const PointPotential>> points{};
     std::vector<std::shared_ptr<const MaterialEffect>> material{};
+    SurfaceEnergies surface{};
     double pressure = 0;  // in closed cavities, above that outside [MPa]
     std::optional<Plasticity> plasticity{};
     std::optional<CreepLaw> creep{};  // used where loads are applied in time; ignored by an equilibrium
@@ -43,13 +45,14 @@ struct Effects {
 
     bool empty() const {
         const auto is_nothing = [](const auto& effect) { return effect->is_nothing(); };
-        return points.empty() && material.empty() && pressure == 0 && !plasticity && !creep &&
+        return points.empty() && material.empty() && surface.empty() && pressure == 0 && !plasticity && !creep &&
                std::all_of(of_model.begin(), of_model.end(), is_nothing);
     }
     /// Puts others in force besides; numbers add up.
     void add(const Effects& more) {
         points.insert(points.end(), more.points.begin(), more.points.end());
         material.insert(material.end(), more.material.begin(), more.material.end());
+        surface.insert(surface.end(), more.surface.begin(), more.surface.end());
         pressure += more.pressure;
         if (more.plasticity) plasticity = more.plasticity;
         if (more.creep) creep = more.creep;

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "fem/effects/effects.h"
+#include "mesh/errors.h"
 
 namespace palpate::fem {
 
@@ -38,6 +39,9 @@ struct KnownParameter {
     Range range = Range::any;
     bool optional = false;
 };
+inline KnownParameter optional_parameter(std::string name, std::string unit, Range range = Range::any) {
+    return {std::move(name), std::move(unit), range, true};
+}
 
 /// The numbers of an effect by name; what is not told is missing.
 class EffectNumbers {
@@ -48,6 +52,12 @@ public:
     double operator[](const std::string& name) const { return values_.at(name); }
     Vec3 vector(const std::string& x, const std::string& y, const std::string& z) const {
         return {(*this)[x], (*this)[y], (*this)[z]};
+    }
+    /// Of unit length, along `n`x, `n`y, `n`z. @throws InvalidInput when all of these are 0.
+    Vec3 direction(const std::string& n) const {
+        const Vec3 v = vector(n + "x", n + "y", n + "z");
+        if (v.isZero(0)) throw InvalidInput(n + "x, " + n + "y and " + n + "z are all 0, but must give a direction");
+        return v.normalized();
     }
 
 private:

@@ -8,6 +8,25 @@
 #include "mesh/errors.h"
 
 namespace palpate::identify {
+
+// Each effect, from its own file.
+std::shared_ptr<const EffectHypothesis> gravity_effect();
+std::shared_ptr<const EffectHypothesis> stiffening_effect();
+std::shared_ptr<const EffectHypothesis> anisotropy_effect();
+std::shared_ptr<const EffectHypothesis> inclusion_effect();
+std::shared_ptr<const EffectHypothesis> volume_effect();
+std::shared_ptr<const EffectHypothesis> torsion_effect();
+std::shared_ptr<const EffectHypothesis> shear_effect();
+std::shared_ptr<const EffectHypothesis> compliant_support_effect();
+std::shared_ptr<const EffectHypothesis> contact_effect();
+std::shared_ptr<const EffectHypothesis> pressure_effect();
+std::shared_ptr<const EffectHypothesis> prestress_effect();
+std::shared_ptr<const EffectHypothesis> viscosity_effect();
+std::shared_ptr<const EffectHypothesis> plasticity_effect();
+std::shared_ptr<const EffectHypothesis> misalignment_effect();
+std::shared_ptr<const EffectHypothesis> force_gain_effect();
+std::shared_ptr<const EffectHypothesis> outliers_effect();
+
 namespace {
 
 /// Number of letters to insert, drop or change between two words. [Levenshtein 1966]
@@ -39,11 +58,15 @@ std::vector<std::shared_ptr<const EffectHypothesis>>& registry() {
 
 const std::vector<std::shared_ptr<const EffectHypothesis>>& catalogue() { return registry(); }
 
-bool register_effect(std::shared_ptr<const EffectHypothesis> effect) {
-    const auto same = [&](const auto& other) { return other->name() == effect->name(); };
-    if (std::ranges::any_of(registry(), same)) {
-        throw InvalidInput(fmt::format("there is an effect '{}' already; give yours another name", effect->name()));
-    }
+bool register_effect(skeleton::KnownEffect physics, std::shared_ptr<const EffectHypothesis> effect) {
+    const EffectDescription& text = effect->description();
+    if (effect_named(text.name))
+        throw InvalidInput(fmt::format("there is an effect '{}' already; give yours another name", text.name));
+    if (physics.name != text.name || physics.kind != text.kind)
+        throw InvalidInput(
+            fmt::format("effect '{}' of the {} is given the physics of '{}' of the {}; let both be told alike",
+                        text.name, fem::kind_name(text.kind), physics.name, fem::kind_name(physics.kind)));
+    skeleton::register_effect(std::move(physics));
     registry().push_back(std::move(effect));
     return true;
 }

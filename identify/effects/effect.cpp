@@ -4,8 +4,6 @@
 #include <cassert>
 #include <cmath>
 
-#include "identify/diagnosis/fit/explanation.h"
-
 namespace palpate::identify {
 
 bool EffectHypothesis::enforce(const Eigen::VectorXd&, ModelSetting&) const { return false; }
@@ -16,29 +14,9 @@ Eigen::VectorXd EffectHypothesis::in(const ProbeConditions&, const Eigen::Vector
 
 Points EffectHypothesis::see(const Problem&, const Points& markers, const Eigen::VectorXd&) const { return markers; }
 
-ScreenPlan EffectHypothesis::screen_plan(const BodyModel& model, const Problem& problem, const Explanation& explanation,
-                                         const ForwardSolution& forward) const {
-    const std::vector<EffectNumber> own = numbers(model, problem);
-    Explanation with = explanation;
-    with.effects.push_back(std::shared_ptr<const EffectHypothesis>(std::shared_ptr<void>(), this));
-    Eigen::VectorXd start(std::ssize(own)), prior_sd(std::ssize(own));
-    for (std::size_t j = 0; j < own.size(); ++j) {
-        start[static_cast<Eigen::Index>(j)] = own[j].start;
-        prior_sd[static_cast<Eigen::Index>(j)] = own[j].prior_sd;
-    }
-    with.values.push_back(start);
-
-    // Forces of its own numbers only, and what they change of what is seen.
-    const Eigen::Index count = std::ssize(own);
-    ScreenPlan plan;
-    plan.signatures = {count, [&model, &problem, with, &forward](int k, const Eigen::VectorXd& q) {
-                           return signatures_of_last_effect(model, problem, with, forward, k, q);
-                       }};
-    plan.columns = [&problem, with, &forward, prior_sd, count](const Eigen::MatrixXd& sensitivities) {
-        return ScreenColumns{sensitivities + seen_directly(problem, with, forward).rightCols(count), prior_sd};
-    };
-    plan.start = [start](Eigen::Index, const Eigen::VectorXd&) { return start; };
-    return plan;
+std::optional<ScreenPlan> EffectHypothesis::screen_plan(const BodyModel&, const Problem&, const Explanation&,
+                                                        const ForwardSolution&) const {
+    return std::nullopt;
 }
 
 std::string EffectHypothesis::objection(const Problem&, const Eigen::VectorXd&, bool) const { return {}; }

@@ -127,10 +127,10 @@ public:
     /// numbers of the fit then.
     virtual bool sets_readings_aside() const { return false; }
 
-    /// By default the signatures of all numbers at their start, which must be neutral, and the start itself as the
-    /// beginning of a refit. Keeps references to the arguments.
-    virtual ScreenPlan screen_plan(const BodyModel& model, const Problem& problem, const Explanation& explanation,
-                                   const ForwardSolution& forward) const;
+    /// None: the signatures of all numbers at their start, which must be neutral, and the start itself as the beginning
+    /// of a refit (screen_plan_by_numbers). Keeps references to the arguments.
+    virtual std::optional<ScreenPlan> screen_plan(const BodyModel& model, const Problem& problem,
+                                                  const Explanation& explanation, const ForwardSolution& forward) const;
 
     /// Why a fit with it is no claim, in words; empty: nothing speaks against it. `enough_without`: what is left
     /// without it is noise already.

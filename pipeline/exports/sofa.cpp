@@ -5,7 +5,7 @@
 #include <optional>
 #include <utility>
 
-#include "fem/effects/gravity.h"
+#include "fem/effects/point/gravity.h"
 #include "mesh/text/atomic_file.h"
 #include "pipeline/exports/four_influences.h"
 #include "pipeline/exports/programs.h"

@@ -15,8 +15,9 @@
 
 #include <cmath>
 
+#ifdef PALPATE_PHYSICS_ONLY
 #include "skeleton/effects/effect.h"
-#ifndef PALPATE_PHYSICS_ONLY
+#else
 #include "identify/effects/catalogue.h"
 #endif
 
@@ -40,18 +41,24 @@ private:
     double k_;
 };
 
-// By name and numbers, as model files and `--hide` tell it.
-const bool physics_known = skeleton::register_effect(
-    {"embedding", {{"stiffness", "N/mm^3", skeleton::Range::positive}}, [](const skeleton::EffectNumbers& numbers) {
-         fem::Effects effects;
-         effects.points.push_back(std::make_shared<Embedding>(numbers["stiffness"]));
-         return effects;
-     }});
+/// By name and numbers, as model files and `--hide` tell it.
+skeleton::KnownEffect known_embedding() {
+    return {"embedding",
+            {{"stiffness", "N/mm^3", skeleton::Range::positive}},
+            [](const skeleton::EffectNumbers& numbers) -> fem::Effects {
+                return {.points = {std::make_shared<Embedding>(numbers["stiffness"])}};
+            }};
+}
 
-// --- How a diagnosis sees it -----------------------------------------------------------------------------------------
+#ifdef PALPATE_PHYSICS_ONLY
 
 // libpalpate_runtime.so plays effects and diagnoses nothing: it compiles the physics alone.
-#ifndef PALPATE_PHYSICS_ONLY
+const bool known = skeleton::register_effect(known_embedding());
+
+#else
+
+// --- How a diagnosis sees it, and hides it: as its physics, stronger until it shows
+// ------------------------------------
 
 class EmbeddingEffect : public identify::EffectHypothesis {
 public:
@@ -88,7 +95,9 @@ public:
     }
 };
 
-const bool diagnosis_knows = identify::register_effect(std::make_shared<EmbeddingEffect>());
+// --- All in one row --------------------------------------------------------------------------------------------------
+
+const bool known = identify::register_effect(known_embedding(), std::make_shared<EmbeddingEffect>());
 
 #endif
 

@@ -14,9 +14,11 @@ private:
     LinkEffects effects_;
 };
 
-fem::Effects torsion(const EffectNumbers& numbers) { return {.of_model = {in_links({.torsion = numbers["torsion"]})}}; }
+fem::Effects torsion(const fem::EffectNumbers& numbers) {
+    return {.of_model = {in_links({.torsion = numbers["torsion"]})}};
+}
 
-fem::Effects shear(const EffectNumbers& numbers) { return {.of_model = {in_links({.shear = numbers["shear"]})}}; }
+fem::Effects shear(const fem::EffectNumbers& numbers) { return {.of_model = {in_links({.shear = numbers["shear"]})}}; }
 
 }  // namespace
 
@@ -35,10 +37,10 @@ LinkEffects link_effects(const fem::Effects& effects) {
     return sum;
 }
 
-std::vector<KnownEffect> known_link_effects() {
+std::vector<fem::KnownEffect> known_link_effects() {
     return {
-        {"torsion", {{"torsion", "1", Range::not_negative}}, torsion},
-        {"shear", {{"shear", "1", Range::not_negative}}, shear},
+        {"torsion", {{"torsion", "1", fem::Range::not_negative}}, torsion},
+        {"shear", {{"shear", "1", fem::Range::not_negative}}, shear},
     };
 }
 

@@ -3,7 +3,7 @@
 #include <memory>
 #include <vector>
 
-#include "skeleton/effects/effect.h"
+#include "fem/effects/known_effect.h"
 
 namespace palpate::skeleton {
 
@@ -20,6 +20,6 @@ std::shared_ptr<const fem::ModelSpecificEffect> in_links(const LinkEffects& effe
 LinkEffects link_effects(const fem::Effects& effects);
 
 /// Their rows: "torsion", "shear".
-std::vector<KnownEffect> known_link_effects();
+std::vector<fem::KnownEffect> known_link_effects();
 
 }  // namespace palpate::skeleton

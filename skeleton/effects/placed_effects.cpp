@@ -12,6 +12,7 @@ namespace palpate::skeleton {
 
 PlacedEffects::PlacedEffects(const Model& model, const fem::Effects& effects)
     : rest_(rest_state(model)),
+      skin_(model, effects.surface),
       pressure_(effects.pressure),
       is_dead_(model.law == EquilibriumLaw::linear),
       supported_(model.spheres.size(), 0) {
@@ -39,6 +40,7 @@ PlacedEffects::PlacedEffects(const Model& model, const fem::Effects& effects)
         }
         effects_.push_back(std::move(placed));
     }
+    skin_.for_each_block(rest_, [&](int a, int b, const Block&) { skin_blocks_.push_back(pair(a, b)); });
     if (pressure_ == 0) return;
     cavities_ = Cavities(model);
     if (cavities_.empty())
@@ -71,6 +73,11 @@ PlacedEffects::Energy PlacedEffects::energy(const State& state, double share) co
         energy.sum += weight * terms.energy;
         energy.size += std::abs(weight * terms.energy);
     });
+    if (!skin_.empty()) {
+        const double of_skin = share * skin_.energy(state);
+        energy.sum += of_skin;
+        energy.size += std::abs(of_skin);
+    }
     if (pressure_ != 0) {
         const double volume = cavities_.volume(state);
         energy.sum -= share * pressure_ * (volume - cavities_.rest_volume());
@@ -86,6 +93,7 @@ Eigen::VectorXd PlacedEffects::force(const State& state, double share) const {
             for (int i = 0; i < at.shares(); ++i)
                 f.segment<6>(Eigen::Index{6} * at.sphere(i)) -= at.jacobian(i).transpose() * (weight * terms.gradient);
         });
+    skin_.add_gradient(state, -share, f);
     if (pressure_ != 0) cavities_.add_gradient(state, share * pressure_, f);
     return f;
 }
@@ -105,6 +113,8 @@ std::vector<PlacedEffects::Block> PlacedEffects::curvature(const State& state, d
                                        turning.block<6, 6>(6 * i, 6 * j);
                 }
         });
+    auto of_skin = skin_blocks_.begin();
+    skin_.for_each_block(state, [&](int, int, const Block& block) { blocks[*of_skin++] += share * block; });
     if (pressure_ != 0 && !is_dead_) {
         auto next = cavity_blocks_.begin();
         cavities_.for_each_block(state,

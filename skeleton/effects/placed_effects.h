@@ -4,18 +4,18 @@
 #include <vector>
 
 #include "fem/effects/effects.h"
+#include "skeleton/effects/placed_skin.h"
 #include "skeleton/effects/point_sets.h"
 #include "skeleton/loads/cavities.h"
 #include "skeleton/model/state.h"
 
 namespace palpate::skeleton {
 
-/// Effects in force on a skeleton that are not in its links: potentials on points that its spheres carry, and pressure
-/// in the cavities of its skin,
-///   Pi = sum_i w_i e(X_i, p_i) - pressure V,  p = sum_s share_s (x_s + R_s r_s),
+/// Effects in force on a skeleton that are not in its links: potentials on points that its spheres carry, energies of
+/// its skin's area, and pressure in the cavities of its skin,
+///   Pi = sum_i w_i e(X_i, p_i) + sum_t A_t w(X_t, J_t) - pressure V,  p = sum_s share_s (x_s + R_s r_s),
 /// so their forces are minus a derivative, as the links' are. By the linear law pressure is a dead load, as it is at
-/// rest. Those that hold the body at its supports take the place
-/// of these: held spheres that are linked are free then.
+/// rest. Those that hold the body at its supports take the place of these: held spheres that are linked are free then.
 class PlacedEffects {
 public:
     using Block = Eigen::Matrix<double, 6, 6>;
@@ -27,7 +27,7 @@ public:
     /// @throws InvalidInput when the model has nothing that one of them acts on.
     PlacedEffects(const Model& model, const fem::Effects& effects);
 
-    bool empty() const { return effects_.empty() && pressure_ == 0; }
+    bool empty() const { return effects_.empty() && skin_.empty() && pressure_ == 0; }
     bool release_supports() const;
     /// Spheres that support points hang on (flags, N).
     const std::vector<char>& supported() const { return supported_; }
@@ -62,8 +62,10 @@ private:
 
     State rest_;
     std::vector<Placed> effects_;
-    double pressure_;  // [MPa]
-    bool is_dead_;     // is it?
+    PlacedSkin skin_;
+    std::vector<int> skin_blocks_;  // the pair of each block that the skin visits
+    double pressure_;               // [MPa]
+    bool is_dead_;                  // is it?
     Cavities cavities_;
     std::vector<int> cavity_blocks_;  // the pair of each block that the cavities visit
     std::vector<std::array<int, 2>> pairs_;

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "fem/effects/point_potential.h"
+#include "fem/effects/point/point_potential.h"
 #include "skeleton/model/model.h"
 
 namespace palpate::skeleton {

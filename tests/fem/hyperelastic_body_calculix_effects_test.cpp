@@ -2,10 +2,10 @@
 
 #include "beam.h"
 #include "calculix.h"
-#include "fem/effects/anisotropy.h"
-#include "fem/effects/contact.h"
-#include "fem/effects/inclusion.h"
-#include "fem/effects/stiffening.h"
+#include "fem/effects/material/anisotropy.h"
+#include "fem/effects/material/inclusion.h"
+#include "fem/effects/material/stiffening.h"
+#include "fem/effects/point/contact.h"
 #include "hollow.h"
 #include "point_potentials.h"
 

@@ -1,6 +1,6 @@
 // A plane that a body leans on: what it bears, and that it does not pull.
 
-#include "fem/effects/contact.h"
+#include "fem/effects/point/contact.h"
 
 #include "beam.h"
 #include "point_potentials.h"

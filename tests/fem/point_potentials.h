@@ -1,6 +1,6 @@
 #pragma once
 
-#include "fem/effects/point_potential.h"
+#include "fem/effects/point/point_potential.h"
 
 namespace palpate::fem {
 

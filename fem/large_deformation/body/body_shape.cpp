@@ -4,6 +4,10 @@
 
 namespace palpate::fem {
 
+const Skin& BodyShape::skin() const {
+    return lazy_skin->get([&] { return Skin(mesh); });
+}
+
 NodeWeights BodyShape::points(ActsOn what, double density) const {
     const Eigen::VectorXd& all = what == ActsOn::material  ? integrals.volume
                                  : what == ActsOn::surface ? integrals.area

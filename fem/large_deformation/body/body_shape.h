@@ -1,11 +1,15 @@
 #pragma once
 
+#include <memory>
+
 #include "fem/effects/effects.h"
 #include "fem/elements/dilatation.h"
 #include "fem/large_deformation/body/cavities.h"
 #include "fem/large_deformation/body/node_integrals.h"
 #include "fem/large_deformation/body/node_weights.h"
+#include "fem/large_deformation/body/skin.h"
 #include "fem/large_deformation/elements/element_kernel.h"
+#include "fem/large_deformation/lazy.h"
 
 namespace palpate::fem {
 
@@ -17,7 +21,9 @@ struct BodyShape {
     std::vector<ElementShape> elements;
     NodeIntegrals integrals;
     Cavities cavities{};
+    std::shared_ptr<const Lazy<Skin>> lazy_skin = std::make_shared<Lazy<Skin>>();  // few bodies have effects in it
 
+    const Skin& skin() const;
     NodeWeights points(ActsOn what, double density) const;
     /// Where an element's quadrature points rest (points x 3) [mm].
     PointPositions quadrature_points(std::size_t element) const;

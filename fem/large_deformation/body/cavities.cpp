@@ -85,58 +85,27 @@ Cavities::Cavities(const mesh::VolumeMesh& mesh) : nodes_(mesh.nodes) {
         const auto x = node_positions<6>(mesh.nodes, mesh.faces.row(f));
         enclosed[part[f]] += volume_of(x.transpose().colwise() - centre);
     }
-    std::map<std::array<int, 3>, int> face_at;  // by its midsides, which are its own
+    std::vector<int> walls;
     Vec3 sum = Vec3::Zero();
     for (int f = 0; f < mesh.faces.rows(); ++f) {
         if (enclosed[part[f]] >= 0) continue;
-        Face face;
-        for (int i = 0; i < 6; ++i) face.node[i] = mesh.faces(f, i);
-        sum += mesh.nodes.row(face.node[0]).transpose();
-        std::array<int, 3> key{face.node[3], face.node[4], face.node[5]};
-        std::ranges::sort(key);
-        face_at[key] = static_cast<int>(faces_.size());
-        faces_.push_back(face);
+        sum += mesh.nodes.row(mesh.faces(f, 0)).transpose();
+        walls.push_back(f);
     }
-    if (faces_.empty()) return;
-    nodes_.rowwise() -= (sum / static_cast<double>(faces_.size())).transpose();
-
-    // The elements behind the faces.
-    constexpr int midsides[4][3] = {{4, 5, 6}, {4, 7, 8}, {5, 8, 9}, {6, 7, 9}};  // of each side
-    for (int e = 0; e < mesh.tetrahedra.rows(); ++e) {
-        const auto element = mesh.tetrahedra.row(e);
-        for (const auto& side : midsides) {
-            std::array<int, 3> key{element(side[0]), element(side[1]), element(side[2])};
-            std::ranges::sort(key);
-            const auto found = face_at.find(key);
-            if (found == face_at.end()) continue;
-            Face& face = faces_[found->second];
-            face.element = e;
-            for (int i = 0; i < 6; ++i) {
-                for (int k = 0; k < element_nodes; ++k) {
-                    if (element(k) == face.node[i]) face.local[i] = k;
-                }
-            }
-        }
-    }
-}
-
-Cavities::FaceNodes Cavities::positions(const Face& face, const Eigen::VectorXd& u) const {
-    FaceNodes x;
-    for (int i = 0; i < 6; ++i) {
-        x.col(i) = nodes_.row(face.node[i]).transpose() + u.segment<3>(std::int64_t(3) * face.node[i]);
-    }
-    return x;
+    if (walls.empty()) return;
+    nodes_.rowwise() -= (sum / static_cast<double>(walls.size())).transpose();
+    faces_ = boundary_faces_with_elements(mesh, walls);
 }
 
 double Cavities::volume(const Eigen::VectorXd& u) const {
     double sum = 0;
-    for (const Face& face : faces_) sum -= volume_of(positions(face, u));
+    for (const BoundaryFace& face : faces_) sum -= volume_of(positions(face, nodes_, u));
     return sum;
 }
 
 void Cavities::add_gradient(const Eigen::VectorXd& u, double factor, Eigen::VectorXd& sum) const {
-    for (const Face& face : faces_) {
-        const FaceNodes x = positions(face, u);
+    for (const BoundaryFace& face : faces_) {
+        const FaceNodes x = positions(face, nodes_, u);
         FaceNodes by_node = FaceNodes::Zero();
         for (const auto& [i, j, k, weight] : face_triples()) {
             by_node.col(i) += weight * x.col(j).cross(x.col(k));
@@ -148,8 +117,8 @@ void Cavities::add_gradient(const Eigen::VectorXd& u, double factor, Eigen::Vect
 }
 
 void Cavities::add_hessian(const Eigen::VectorXd& u, double factor, const Unknowns& unknowns, LowerMatrix& K) const {
-    for (const Face& face : faces_) {
-        const FaceNodes x = positions(face, u);
+    for (const BoundaryFace& face : faces_) {
+        const FaceNodes x = positions(face, nodes_, u);
         ElementTangent tangent;
         for (auto& block : tangent.blocks) block.setZero();
         // d^2 det(a, b, c) / da_c db_d = epsilon_cde c_e; the volume is the cavity's, behind the face.

@@ -1,9 +1,9 @@
 #pragma once
 
-#include <array>
 #include <vector>
 
 #include "fem/large_deformation/body/unknowns.h"
+#include "fem/large_deformation/elements/boundary_face.h"
 #include "mesh/core/volume_mesh.h"
 
 namespace palpate::fem {
@@ -24,15 +24,8 @@ public:
     void add_hessian(const Eigen::VectorXd& u, double factor, const Unknowns& unknowns, LowerMatrix& K) const;
 
 private:
-    struct Face {
-        int element = 0;
-        std::array<int, 6> node{}, local{};  // in the mesh, in the element
-    };
-    using FaceNodes = Eigen::Matrix<double, 3, 6>;
-    FaceNodes positions(const Face& face, const Eigen::VectorXd& u) const;
-
     Points nodes_;  // at rest, from somewhere amid the cavities, so that little is lost to rounding
-    std::vector<Face> faces_;
+    std::vector<BoundaryFace> faces_;
 };
 
 }  // namespace palpate::fem

@@ -8,6 +8,8 @@ LoadedBody::LoadedBody(const BodyShape& body, const BodySetting& setting, const 
                        const PlasticState* before, double share, bool flows)
     : body_(body),
       material_(body, setting, before, flows),
+      surface_(setting.effects.surface),
+      share_(share),
       f_(share * f),
       pressure_(body.cavities.empty() ? 0 : share * setting.effects.pressure) {
     for (const auto& effect : setting.effects.points) {
@@ -62,6 +64,12 @@ Potential LoadedBody::potential(const Eigen::VectorXd& u, Eigen::VectorXd& net) 
         sum.scale += std::abs(more) + std::abs(pressure_) * body_.cavities.volume(rest);
         force -= push;
     }
+    if (!surface_.empty()) {
+        const bool linear = material_.law() == MaterialLaw::linear;
+        const double energy = share_ * body_.skin().add_gradient(surface_, linear, u, share_, force);
+        sum.value += energy;
+        sum.scale += std::abs(energy);
+    }
     const double work = f_.dot(u);
     sum.value -= work;
     sum.scale += std::abs(work);
@@ -90,6 +98,8 @@ void LoadedBody::add_tangent(const Eigen::VectorXd& u, const Unknowns& unknowns,
     }
     if (pressure_ != 0 && material_.law() != MaterialLaw::linear)
         body_.cavities.add_hessian(u, -pressure_, unknowns, K);
+    if (!surface_.empty())
+        body_.skin().add_hessian(surface_, material_.law() == MaterialLaw::linear, u, share_, unknowns, K);
     for (const PlacedPotential& effect : effects_) {
         for (std::size_t k = 0; k < effect.at.nodes.size(); ++k) {
             const double weight = effect.at.weights(static_cast<Eigen::Index>(k));

@@ -46,6 +46,8 @@ private:
     const BodyShape& body_;
     BodyMaterial material_;
     std::vector<PlacedPotential> effects_;
+    const SurfaceEnergies& surface_;
+    double share_;
     Eigen::VectorXd f_;
     double pressure_;  // in cavities [MPa]
 };

@@ -39,9 +39,9 @@ struct Extended : Scaled {
 
 /// The law at an element's quadrature points, and the mean of its volume measure v.
 template <MaterialLaw law>
-class Points {
+class ElementPoints {
 public:
-    Points(const ElementShape& shape, const ElementModel& model, const NodeVectors& u)
+    ElementPoints(const ElementShape& shape, const ElementModel& model, const NodeVectors& u)
         : at_{at(shape, u, 0), at(shape, u, 1), at(shape, u, 2), at(shape, u, 3)} {
         for (int q = 0; q < element_points; ++q) mean_ += shape.w(q) * at_[q].v / shape.w.sum();
         local_ = model.local_bulk();
@@ -71,7 +71,7 @@ private:
 template <MaterialLaw law, class Effects>
 double force_of(const ElementShape& shape, const ElementModel& model, const Effects& effects, const NodeVectors& u,
                 NodeVectors& f) {
-    const Points<law> points(shape, model, u);
+    const ElementPoints<law> points(shape, model, u);
     if (points.inside_out()) return std::numeric_limits<double>::infinity();
     const double local = model.local_bulk();
     double energy = effects.mean_s() * (model.K - local) / 2 * shape.w.sum() * points.mean() * points.mean();
@@ -96,7 +96,7 @@ double force_of(const ElementShape& shape, const ElementModel& model, const Effe
 template <MaterialLaw law, class Effects>
 void tangent_of(const ElementShape& shape, const ElementModel& model, const Effects& effects, const NodeVectors& u,
                 ElementTangent& K) {
-    const Points<law> points(shape, model, u);
+    const ElementPoints<law> points(shape, model, u);
     const double local = model.local_bulk();
     std::array<MaterialTerms, Effects::adds ? element_points : 0> added;
     if constexpr (Effects::adds) {

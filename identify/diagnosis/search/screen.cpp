@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "identify/diagnosis/search/screen_plan.h"
+
 namespace palpate::identify {
 namespace {
 
@@ -114,7 +116,7 @@ std::vector<ScreenedEffect> screen_effects(const BodyModel& model, const Problem
         for (std::size_t e = 0; e < effects.size(); ++e) {
             if (effects[e]->has_memory() != memory || effects[e]->numbers(model, problem).empty()) continue;
             places.push_back(e);
-            plans.push_back(effects[e]->screen_plan(model, asked, at.explanation, at.forward));
+            plans.push_back(screen_plan(*effects[e], model, asked, at.explanation, at.forward));
             signatures.push_back(plans.back().signatures);
         }
         if (plans.empty()) continue;

@@ -1,4 +1,4 @@
-#include "fem/effects/anisotropy.h"
+#include "fem/effects/material/anisotropy.h"
 
 #include <fmt/format.h>
 #include <Eigen/LU>
@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "identify/diagnosis/fit/explanation.h"
-#include "identify/effects/catalogue.h"
+#include "identify/effects/effect.h"
 #include "mesh/geometry/sampling.h"
 
 namespace palpate::identify {
@@ -72,8 +72,8 @@ public:
         return true;
     }
 
-    ScreenPlan screen_plan(const BodyModel& model, const Problem&, const Explanation& explanation,
-                           const ForwardSolution& forward) const override {
+    std::optional<ScreenPlan> screen_plan(const BodyModel& model, const Problem&, const Explanation& explanation,
+                                          const ForwardSolution& forward) const override {
         // The fibres' force is linear in the products of four components of their direction, 15 in all: as many
         // directions tell it for any other.
         constexpr int products = 15, directions = 150;

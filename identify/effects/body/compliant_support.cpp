@@ -1,4 +1,4 @@
-#include "fem/effects/compliant_support.h"
+#include "fem/effects/point/compliant_support.h"
 
 #include <fmt/format.h>
 #include <Eigen/Geometry>
@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "identify/diagnosis/fit/explanation.h"
-#include "identify/effects/catalogue.h"
+#include "identify/effects/effect.h"
 #include "skeleton/model/state.h"
 
 namespace palpate::identify {
@@ -52,8 +52,9 @@ public:
         return true;
     }
 
-    ScreenPlan screen_plan(const BodyModel& model, const Problem& problem, const Explanation& explanation,
-                           const ForwardSolution& forward) const override {
+    std::optional<ScreenPlan> screen_plan(const BodyModel& model, const Problem& problem,
+                                          const Explanation& explanation,
+                                          const ForwardSolution& forward) const override {
         // Compliance c = 1/k is neutral at 0. To first order the base moves as a rigid body by c K_1^-1 (F, M), with
         // (F, M) what the body presses on it, and K_1 that of springs of 1 N/mm in all: 1 for moving, the second
         // moment sum w (r^2 - r r^T) for turning.

@@ -1,4 +1,4 @@
-#include "fem/effects/contact.h"
+#include "fem/effects/point/contact.h"
 
 #include <fmt/format.h>
 
@@ -9,7 +9,7 @@
 
 #include "identify/diagnosis/fit/explanation.h"
 #include "identify/effects/body/plane_scan.h"
-#include "identify/effects/catalogue.h"
+#include "identify/effects/effect.h"
 #include "mesh/errors.h"
 
 namespace palpate::identify {
@@ -98,8 +98,9 @@ public:
         return true;
     }
 
-    ScreenPlan screen_plan(const BodyModel& model, const Problem& problem, const Explanation& explanation,
-                           const ForwardSolution& forward) const override {
+    std::optional<ScreenPlan> screen_plan(const BodyModel& model, const Problem& problem,
+                                          const Explanation& explanation,
+                                          const ForwardSolution& forward) const override {
         const auto scan = std::make_shared<PlaneScan>(model, problem, explanation.setting(), forward);
         const ModelSetting setting = explanation.setting();
         ScreenPlan plan;

@@ -1,10 +1,10 @@
-#include "fem/effects/gravity.h"
+#include "fem/effects/point/gravity.h"
 
 #include <fmt/format.h>
 
 #include <cmath>
 
-#include "identify/effects/catalogue.h"
+#include "identify/effects/effect.h"
 
 namespace palpate::identify {
 namespace {

@@ -1,4 +1,4 @@
-#include "fem/effects/inclusion.h"
+#include "fem/effects/material/inclusion.h"
 
 #include <fmt/format.h>
 
@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "identify/diagnosis/fit/explanation.h"
-#include "identify/effects/catalogue.h"
+#include "identify/effects/effect.h"
 #include "mesh/geometry/sampling.h"
 
 namespace palpate::identify {
@@ -86,8 +86,8 @@ public:
         return true;
     }
 
-    ScreenPlan screen_plan(const BodyModel& model, const Problem&, const Explanation& explanation,
-                           const ForwardSolution& forward) const override {
+    std::optional<ScreenPlan> screen_plan(const BodyModel& model, const Problem&, const Explanation& explanation,
+                                          const ForwardSolution& forward) const override {
         const Places places(model);
         const ModelSetting setting = explanation.setting();
         ScreenPlan plan;

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "identify/effects/catalogue.h"
+#include "identify/effects/effect.h"
 #include "mesh/errors.h"
 #include "skeleton/effects/link_effects.h"
 

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "identify/diagnosis/fit/explanation.h"
-#include "identify/effects/catalogue.h"
+#include "identify/effects/effect.h"
 
 namespace palpate::identify {
 namespace {
@@ -49,8 +49,9 @@ public:
         return true;
     }
 
-    ScreenPlan screen_plan(const BodyModel& model, const Problem& problem, const Explanation& explanation,
-                           const ForwardSolution& forward) const override {
+    std::optional<ScreenPlan> screen_plan(const BodyModel& model, const Problem& problem,
+                                          const Explanation& explanation,
+                                          const ForwardSolution& forward) const override {
         // The body is led through the elastic configurations, and flows there: what its stress lacks then is the
         // signature, for each yield strain.
         constexpr std::array yields{0.005, 0.01, 0.02, 0.03, 0.05, 0.08};

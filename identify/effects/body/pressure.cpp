@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "identify/effects/catalogue.h"
+#include "identify/effects/effect.h"
 #include "mesh/errors.h"
 
 namespace palpate::identify {

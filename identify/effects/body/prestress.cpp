@@ -1,8 +1,8 @@
-#include "fem/effects/prestress.h"
+#include "fem/effects/material/prestress.h"
 
 #include <fmt/format.h>
 
-#include "identify/effects/catalogue.h"
+#include "identify/effects/effect.h"
 
 namespace palpate::identify {
 namespace {

@@ -1,12 +1,12 @@
-#include "fem/effects/stiffening.h"
+#include "fem/effects/material/stiffening.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "identify/diagnosis/fit/explanation.h"
-#include "identify/effects/catalogue.h"
+#include "identify/diagnosis/search/screen_plan.h"
+#include "identify/effects/effect.h"
 #include "mesh/errors.h"
 
 namespace palpate::identify {
@@ -93,12 +93,13 @@ public:
     // A coarse mesh is off by more where it is strained more.
     bool is_like_mesh_error() const override { return true; }
 
-    ScreenPlan screen_plan(const BodyModel& model, const Problem& problem, const Explanation& explanation,
-                           const ForwardSolution& forward) const override {
+    std::optional<ScreenPlan> screen_plan(const BodyModel& model, const Problem& problem,
+                                          const Explanation& explanation,
+                                          const ForwardSolution& forward) const override {
         // Either coefficient for itself, each over its prior. The linearisation promises more than there is: a refit
         // begins with little.
         static const Coefficients coefficients;
-        ScreenPlan plan = coefficients.screen_plan(model, problem, explanation, forward);
+        ScreenPlan plan = screen_plan_by_numbers(coefficients, model, problem, explanation, forward);
         plan.columns = [columns = plan.columns](const Eigen::MatrixXd& sensitivities) {
             const ScreenColumns both = columns(sensitivities);
             return ScreenColumns{both.columns * both.prior_sd.asDiagonal(), Eigen::VectorXd::Ones(1), true};

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "identify/diagnosis/fit/explanation.h"
-#include "identify/effects/catalogue.h"
+#include "identify/effects/effect.h"
 #include "identify/loading/creep.h"
 
 namespace palpate::identify {
@@ -60,8 +60,9 @@ public:
         return false;
     }
 
-    ScreenPlan screen_plan(const BodyModel& model, const Problem& problem, const Explanation& explanation,
-                           const ForwardSolution& forward) const override {
+    std::optional<ScreenPlan> screen_plan(const BodyModel& model, const Problem& problem,
+                                          const Explanation& explanation,
+                                          const ForwardSolution& forward) const override {
         // The load grows in proportion to the creep: its signature is the load itself, stage by stage, for each tau.
         const std::vector<double> times = informative_times(problem);
         constexpr int count = 8;

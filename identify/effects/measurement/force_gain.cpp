@@ -4,7 +4,7 @@
 #include <cmath>
 #include <map>
 
-#include "identify/effects/catalogue.h"
+#include "identify/effects/effect.h"
 #include "mesh/errors.h"
 
 namespace palpate::identify {

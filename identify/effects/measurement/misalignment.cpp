@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "identify/effects/catalogue.h"
+#include "identify/effects/effect.h"
 #include "skeleton/model/state.h"
 
 namespace palpate::identify {

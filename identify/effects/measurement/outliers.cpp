@@ -1,6 +1,6 @@
 #include <fmt/format.h>
 
-#include "identify/effects/catalogue.h"
+#include "identify/effects/effect.h"
 
 namespace palpate::identify {
 namespace {

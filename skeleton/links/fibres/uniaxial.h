@@ -1,6 +1,6 @@
 #pragma once
 
-#include "fem/effects/material_effect.h"
+#include "fem/effects/material/material_effect.h"
 #include "skeleton/links/fibres/link_fibre.h"
 
 namespace palpate::skeleton {

@@ -36,7 +36,8 @@ ForceField::ForceField(const skeleton::Model& model)
     const fem::Effects effects = skeleton::physics_of(model.effects);
     k_ = stiffnesses_in_force(model, effects);
     if (Fibres::needed(effects)) fibres_ = std::make_unique<Fibres>(model, effects, k_);
-    if (!effects.points.empty() || effects.pressure != 0) effects_ = std::make_unique<PointEffects>(model, effects);
+    if (!effects.points.empty() || !effects.surface.empty() || effects.pressure != 0)
+        effects_ = std::make_unique<PointEffects>(model, effects);
 
     // Where an effect takes the place of the supports, what they held moves, as far as something is joined to it.
     const bool released = fem::release_supports(effects);

@@ -33,7 +33,7 @@ public:
     /// Spheres a <= b whose second derivative is not zero.
     const std::vector<std::array<int, 2>>& pairs() const { return pairs_; }
     /// d^2 energy / d step^2 of each pair, in exponential coordinates; that of effects on points without the turning of
-    /// the points' arms, and of pressure none.
+    /// the points' arms, and of the skin's area and of pressure none.
     const std::vector<Block>& curvature(const double* pose);
 
     /// Lets a material that yields flow as it stands: from then on it rests there.

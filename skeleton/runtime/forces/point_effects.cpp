@@ -24,7 +24,7 @@ void add_carried(const RuntimePoint& point, const Vec3& f, double* rows) {
 }  // namespace
 
 PointEffects::PointEffects(const skeleton::Model& model, const fem::Effects& effects)
-    : supported_(model.spheres.size(), 0), pressure_(effects.pressure) {
+    : supported_(model.spheres.size(), 0), surface_(effects.surface), pressure_(effects.pressure) {
     for (const auto& potential : effects.points) {
         const skeleton::PointSet set = skeleton::point_set(model, potential->acts_on());
         Points stand(std::ssize(set.at), 3);
@@ -41,6 +41,11 @@ PointEffects::PointEffects(const skeleton::Model& model, const fem::Effects& eff
             placed.points.emplace_back().assign(set.at[i], model.spheres);
             placed.weights.push_back(weight);
         }
+    }
+    if (!surface_.empty()) {
+        triangles_ = skeleton::skin_triangles(model);
+        for (const skeleton::Attachment& point : model.skin) vertices_.emplace_back().assign(point, model.spheres);
+        pulls_.resize(vertices_.size());
     }
     if (pressure_ == 0) return;
     std::map<int, int> corner_of;
@@ -73,7 +78,25 @@ double PointEffects::add_forces(const double* pose, double* force) {
             if (!terms.gradient.isZero(0)) add_carried(point, -effect.weights[p] * terms.gradient, force);
         }
     }
+    if (!surface_.empty()) energy += add_skin(pose, force);
     return pressure_ == 0 ? energy : energy + add_pressure(pose, force);
+}
+
+double PointEffects::add_skin(const double* pose, double* force) {
+    for (std::size_t v = 0; v < vertices_.size(); ++v) {
+        vertices_[v].place(pose);
+        pulls_[v].setZero();
+    }
+    double energy = 0;
+    for (const skeleton::SkinTriangle& triangle : triangles_) {
+        Mat3 x;
+        for (int v = 0; v < 3; ++v) x.col(v) = vertices_[triangle.corners[v]].x();
+        const fem::FacetEnergy<3> own(surface_, triangle.at_rest, x);
+        energy += own.value();
+        for (int v = 0; v < 3; ++v) pulls_[triangle.corners[v]] -= own.by_node(v);
+    }
+    for (std::size_t v = 0; v < vertices_.size(); ++v) add_carried(vertices_[v], pulls_[v], force);
+    return energy;
 }
 
 // A triangle's part in V is -1/6 x_0 . (x_1 x x_2), as its outward normal points into the cavity.

@@ -3,12 +3,13 @@
 #include <array>
 
 #include "fem/effects/effects.h"
+#include "skeleton/effects/placed_skin.h"
 #include "skeleton/runtime/forces/carried.h"
 
 namespace palpate::runtime {
 
-/// Effects on points that the spheres carry, and pressure in the cavities of the skin. The laws are those of
-/// skeleton::PlacedEffects.
+/// Effects on points that the spheres carry, on the area of the skin, and pressure in its cavities. The laws are those
+/// of skeleton::PlacedEffects.
 class PointEffects {
 public:
     using Block = Eigen::Matrix<double, 6, 6>;
@@ -25,7 +26,8 @@ public:
     /// Calls visit(a, b) with a <= b for each pair of spheres, in the order of for_each_block.
     template <typename Visit>
     void for_each_pair(const Visit& visit) const;
-    /// Calls visit(block) with the second derivative of each pair, without the turning of the points' arms.
+    /// Calls visit(block) with the second derivative of each pair, without the turning of the points' arms; of the
+    /// skin's area and of pressure none.
     template <typename Visit>
     void for_each_block(const double* pose, const Visit& visit);
 
@@ -35,12 +37,17 @@ private:
         std::vector<RuntimePoint> points;
         std::vector<double> weights;
     };
+    double add_skin(const double* pose, double* force);
     double add_pressure(const double* pose, double* force);
 
     std::vector<Placed> effects_;
     std::vector<char> supported_;
-    double pressure_ = 0;                    // [MPa]
-    std::vector<std::array<int, 3>> walls_;  // by their corners among `corners_`
+    fem::SurfaceEnergies surface_;
+    std::vector<skeleton::SkinTriangle> triangles_;  // where there are any
+    std::vector<RuntimePoint> vertices_;             // of the skin
+    std::vector<Vec3> pulls_;                        // on each of them [N]
+    double pressure_ = 0;                            // [MPa]
+    std::vector<std::array<int, 3>> walls_;          // by their corners among `corners_`
     std::vector<RuntimePoint> corners_;
     std::vector<Vec3> growth_;  // of the volume by each corner
     double rest_volume_ = 0;    // [mm^3]

@@ -3,10 +3,10 @@
 #include <Eigen/LU>
 #include <cmath>
 
-#include "fem/effects/anisotropy.h"
-#include "fem/effects/inclusion.h"
-#include "fem/effects/prestress.h"
-#include "fem/effects/stiffening.h"
+#include "fem/effects/material/anisotropy.h"
+#include "fem/effects/material/inclusion.h"
+#include "fem/effects/material/prestress.h"
+#include "fem/effects/material/stiffening.h"
 #include "tests/fem/beam.h"
 #include "tests/fem/point_potentials.h"
 

@@ -5,7 +5,7 @@
 namespace palpate::fem {
 namespace {
 
-const Vec3 size(3, 2, 2);
+const Vec3 extent(3, 2, 2);
 
 Points random_points(int count, const Vec3& min, const Vec3& max) {
     std::mt19937 engine(3);
@@ -19,20 +19,20 @@ Points random_points(int count, const Vec3& min, const Vec3& max) {
 
 class Interpolation : public testing::TestWithParam<Kind> {
 protected:
-    const mesh::VolumeMesh bar = jittered_bar(GetParam(), size, {6, 4, 4});
+    const mesh::VolumeMesh bar = jittered_bar(GetParam(), extent, {6, 4, 4});
 };
 
 INSTANTIATE_TEST_SUITE_P(AllElements, Interpolation, testing::Values(Kind::linear, Kind::quadratic, Kind::curved));
 
 TEST_P(Interpolation, ReproducesPositions) {
-    const Points points = random_points(500, Vec3::Zero(), size);
+    const Points points = random_points(500, Vec3::Zero(), extent);
     const auto N = interpolation(bar, points);
     // A linear field, so exact in every element; near a bowed surface too, where it is continued outwards. Rounding.
     EXPECT_LT((N * bar.nodes - points).cwiseAbs().maxCoeff(), 1e-11);
 }
 
 TEST_P(Interpolation, WeightsAddUpToOne) {
-    const auto N = interpolation(bar, random_points(200, Vec3::Constant(-1), size + Vec3::Ones()));
+    const auto N = interpolation(bar, random_points(200, Vec3::Constant(-1), extent + Vec3::Ones()));
     const Eigen::VectorXd sums = N * Eigen::VectorXd::Ones(bar.nodes.rows());
     // Rounding.
     EXPECT_LT((sums.array() - 1).abs().maxCoeff(), 1e-12);
@@ -53,12 +53,12 @@ TEST_P(Interpolation, FarOutsideTakesTheNearestPoint) {
 }
 
 TEST(QuadraticInterpolation, ReproducesQuadraticFieldsInsideAndCloseBy) {
-    const auto bar = jittered_bar(Kind::quadratic, size, {6, 4, 4});
+    const auto bar = jittered_bar(Kind::quadratic, extent, {6, 4, 4});
     const auto field = [](const auto& x) { return 1 + 2 * x(0) - x(2) + x(0) * x(1) - 3 * x(2) * x(2) + x(1) * x(1); };
     Eigen::VectorXd nodal_values(bar.nodes.rows());
     for (Eigen::Index i = 0; i < bar.nodes.rows(); ++i) nodal_values(i) = field(bar.nodes.row(i));
     // 0.1 outside is less than half an edge: there the element's own polynomial goes on.
-    const Points points = random_points(500, Vec3::Constant(-0.1), size + Vec3::Constant(0.1));
+    const Points points = random_points(500, Vec3::Constant(-0.1), extent + Vec3::Constant(0.1));
     const Eigen::VectorXd values = interpolation(bar, points) * nodal_values;
     for (Eigen::Index i = 0; i < points.rows(); ++i) EXPECT_NEAR(values(i), field(points.row(i)), 1e-11);
 }

@@ -7,6 +7,7 @@
 #include <map>
 #include <set>
 
+#include "fem/effects/registry.h"
 #include "identify/diagnosis/verdict/verdict.h"
 #include "mesh/errors.h"
 #include "tests/identify/lattice.h"
@@ -277,12 +278,42 @@ TEST(ForceGain, LoadsAlongOneLineShareOneUnlessOneIsRepeated) {
 TEST(Catalogue, RefusesASecondEffectOfAName) {
     const std::size_t before = catalogue().size();
     try {
-        register_effect(gravity_effect());
+        register_effect(*skeleton::find_known_effect("gravity"), find_effect("gravity"));
         FAIL() << "nothing was thrown";
     } catch (const InvalidInput& error) {
         EXPECT_STREQ(error.what(), "there is an effect 'gravity' already; give yours another name");
     }
     EXPECT_EQ(catalogue().size(), before);
+}
+
+/// An effect that the catalogue does not have.
+class Wind : public EffectHypothesis {
+public:
+    const EffectDescription& description() const override {
+        static const EffectDescription text{"wind", EffectKind::body, {}, {}, {}, {}, {}, {}};
+        return text;
+    }
+    std::vector<EffectNumber> numbers(const BodyModel&, const Problem&) const override { return {}; }
+    std::string sentence(const skeleton::EffectRecord&) const override { return "Wind."; }
+};
+
+TEST(Catalogue, RefusesARowWhoseHalvesDiffer) {
+    const auto wind = std::make_shared<Wind>();
+    EXPECT_EQ(message_of([&] {
+                  register_effect({"storm", {}, {}}, wind);
+              }),
+              "effect 'wind' of the body is given the physics of 'storm' of the body; let both be told alike");
+    EXPECT_EQ(message_of([&] {
+                  register_effect({"wind", {}, {}, EffectKind::measurement}, wind);
+              }),
+              "effect 'wind' of the body is given the physics of 'wind' of the measurement; let both be told alike");
+    EXPECT_EQ(effect_named("wind"), nullptr);
+    EXPECT_EQ(skeleton::find_known_effect("storm"), nullptr);
+}
+
+TEST(Catalogue, KnowsAllWhosePhysicsIsKnown) {
+    for (const std::string& name : fem::EffectRegistry::instance().names())
+        EXPECT_NE(effect_named(name), nullptr) << name;
 }
 
 TEST(Catalogue, NamesAreAllDifferent) {

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <set>
 
-#include "identify/diagnosis/fit/explanation.h"
+#include "identify/diagnosis/search/screen_plan.h"
 #include "identify/effects/catalogue.h"
 #include "tests/identify/small_body.h"
 
@@ -34,7 +34,7 @@ protected:
         return make_problem(make_twin(*model_, set, bare_, 0), 0.05);
     }
     ScreenColumns screened(const EffectHypothesis& effect, const Problem& all, const ForwardSolution& forward) const {
-        const ScreenPlan plan = effect.screen_plan(*model_, all, bare_, forward);
+        const ScreenPlan plan = screen_plan(effect, *model_, all, bare_, forward);
         return plan.columns(sensitivities(*model_, all, bare_, forward, {plan.signatures}, 1).front());
     }
     /// What is seen of an effect, over sigma (N).
@@ -116,7 +116,7 @@ TEST_P(Screening, OfFibresTellsEveryDirectionFromFifteen) {
     const Problem all = problem(0.03);
     const ForwardSolution forward = solve_forward(*model_, all, bare_, 1);
     const auto effect = find_effect("anisotropy");
-    const ScreenPlan plan = effect->screen_plan(*model_, all, bare_, forward);
+    const ScreenPlan plan = screen_plan(*effect, *model_, all, bare_, forward);
     EXPECT_EQ(plan.signatures.width, 15);
     const ScreenColumns found = plan.columns(sensitivities(*model_, all, bare_, forward, {plan.signatures}, 1).front());
     ASSERT_GT(found.alternatives(), 100);
@@ -142,7 +142,7 @@ TEST_P(Screening, OfFibresIsTheDerivativeByTheirModulus) {
     const Problem all = problem(0.03);
     const ForwardSolution forward = solve_forward(*model_, all, bare_, 1);
     const auto effect = find_effect("anisotropy");
-    const ScreenPlan plan = effect->screen_plan(*model_, all, bare_, forward);
+    const ScreenPlan plan = screen_plan(*effect, *model_, all, bare_, forward);
     const ScreenColumns found = plan.columns(sensitivities(*model_, all, bare_, forward, {plan.signatures}, 1).front());
     Eigen::VectorXd ahead = plan.start(60, Eigen::VectorXd::Ones(1)), behind = ahead;
     constexpr double h = 2e-3;
@@ -159,7 +159,7 @@ TEST_P(Screening, OfAnInclusionIsTheDerivativeByItsRatio) {
     const Problem all = problem(0.03);
     const ForwardSolution forward = solve_forward(*model_, all, bare_, 1);
     const auto effect = find_effect("inclusion");
-    const ScreenPlan plan = effect->screen_plan(*model_, all, bare_, forward);
+    const ScreenPlan plan = screen_plan(*effect, *model_, all, bare_, forward);
     const ScreenColumns found = plan.columns(sensitivities(*model_, all, bare_, forward, {plan.signatures}, 1).front());
     ASSERT_GT(found.alternatives(), 5);
     int tested = 0;
@@ -183,7 +183,7 @@ TEST_P(Screening, OfViscosityIsTheDerivativeByTheCreep) {
         make_problem(make_twin(*model_, body_.set(SmallBody::dwells(0.01, 3)), bare_, 0), 0.05).stage_by_stage();
     const ForwardSolution forward = solve_forward(*model_, all, bare_, 1);
     const auto effect = find_effect("viscosity");
-    const ScreenPlan plan = effect->screen_plan(*model_, all, bare_, forward);
+    const ScreenPlan plan = screen_plan(*effect, *model_, all, bare_, forward);
     const ScreenColumns found = plan.columns(sensitivities(*model_, all, bare_, forward, {plan.signatures}, 1).front());
     EXPECT_TRUE(found.one_sided);
     for (const Eigen::Index tau : {0, 3, 7}) {

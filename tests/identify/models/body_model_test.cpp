@@ -5,12 +5,12 @@
 #include <Eigen/Geometry>
 #include <random>
 
-#include "fem/effects/anisotropy.h"
-#include "fem/effects/compliant_support.h"
-#include "fem/effects/gravity.h"
-#include "fem/effects/inclusion.h"
-#include "fem/effects/prestress.h"
-#include "fem/effects/stiffening.h"
+#include "fem/effects/material/anisotropy.h"
+#include "fem/effects/material/inclusion.h"
+#include "fem/effects/material/prestress.h"
+#include "fem/effects/material/stiffening.h"
+#include "fem/effects/point/compliant_support.h"
+#include "fem/effects/point/gravity.h"
 #include "skeleton/model/state.h"
 #include "tests/identify/small_body.h"
 

@@ -1,12 +1,14 @@
 #include <gtest/gtest.h>
 
-#include "fem/effects/anisotropy.h"
-#include "fem/effects/inclusion.h"
-#include "fem/effects/prestress.h"
-#include "fem/effects/stiffening.h"
+#include "fem/effects/material/anisotropy.h"
+#include "fem/effects/material/inclusion.h"
+#include "fem/effects/material/prestress.h"
+#include "fem/effects/material/stiffening.h"
 #include "skeleton/effects/link_effects.h"
 #include "skeleton/statics/equilibrium.h"
+#include "tests/messages.h"
 #include "tests/skeleton/test_effects.h"
+#include "tests/surface_energies.h"
 
 namespace palpate::skeleton {
 namespace {
@@ -159,6 +161,8 @@ TEST_P(EachEffect, NewtonSquaresItsError) {
 }
 
 const auto slope = std::make_shared<Slope>(2e-3, 0.02);
+const auto tension = std::make_shared<Tension>(0.05);
+const auto area_spring = std::make_shared<AreaSpring>(0.05);
 const auto stiffening = std::make_shared<Stiffening>(0.5, 2);
 const auto fibres = std::make_shared<Anisotropy>(std::vector<Fibre>{{3, {1, 1, 0.5}}});
 const auto prestress = std::make_shared<Prestress>(Vec3(0.05, -0.1, 0.02).asDiagonal());
@@ -166,23 +170,35 @@ const auto inclusion = std::make_shared<Inclusion>(Inclusion::sphere({15, 5, 5},
 
 INSTANTIATE_TEST_SUITE_P(
     Effects, EachEffect,
-    ::testing::Values(InForce{"None", {}, {}}, InForce{"Gravity", {gravity({100, -2e5, 9e5})}, {}},
-                      InForce{"CompliantSupport", {compliant_support(8)}, {}}, InForce{"Skin", {}, {.points = {slope}}},
-                      InForce{"Stiffening", {}, {.material = {stiffening}}},
-                      InForce{"Anisotropy", {}, {.material = {fibres}}},
-                      InForce{"Prestress", {}, {.material = {prestress}}},
-                      InForce{"Inclusion", {}, {.material = {inclusion}}},
-                      InForce{"Plasticity", {}, {.plasticity = fem::Plasticity{0.02, 0.3}}},
-                      InForce{"TorsionAndShear", {}, {.of_model = {in_links({.torsion = 0.7, .shear = 0.4})}}},
-                      InForce{"Pressure", {}, {.pressure = 0.05}},
-                      InForce{"All",
-                              {compliant_support(8), gravity({100, -2e5, 9e5}), {"outliers", {}}},
-                              {.points = {slope},
-                               .material = {stiffening, fibres, prestress, inclusion},
-                               .pressure = 0.05,
-                               .plasticity = fem::Plasticity{0.02, 0.3},
-                               .of_model = {in_links({.torsion = 0.7, .shear = 0.4})}}}),
+    ::testing::Values(
+        InForce{"None", {}, {}}, InForce{"Gravity", {gravity({100, -2e5, 9e5})}, {}},
+        InForce{"CompliantSupport", {compliant_support(8)}, {}}, InForce{"Skin", {}, {.points = {slope}}},
+        InForce{"Stiffening", {}, {.material = {stiffening}}}, InForce{"Anisotropy", {}, {.material = {fibres}}},
+        InForce{"Prestress", {}, {.material = {prestress}}}, InForce{"Inclusion", {}, {.material = {inclusion}}},
+        InForce{"Plasticity", {}, {.plasticity = fem::Plasticity{0.02, 0.3}}},
+        InForce{"TorsionAndShear", {}, {.of_model = {in_links({.torsion = 0.7, .shear = 0.4})}}},
+        InForce{"Area", {}, {.surface = {tension, area_spring}}}, InForce{"Pressure", {}, {.pressure = 0.05}},
+        InForce{"All",
+                {compliant_support(8), gravity({100, -2e5, 9e5}), {"outliers", {}}},
+                {.points = {slope},
+                 .material = {stiffening, fibres, prestress, inclusion},
+                 .surface = {tension, area_spring},
+                 .pressure = 0.05,
+                 .plasticity = fem::Plasticity{0.02, 0.3},
+                 .of_model = {in_links({.torsion = 0.7, .shear = 0.4})}}}),
     [](const auto& tested) { return tested.param.name; });
+
+TEST(SurfaceEnergy, CostsTheAreaOfTheSkin) {
+    const Model model = lattice_with_skin();
+    const State rest = rest_state(model);
+    EXPECT_NEAR(PlacedEffects(model, {.surface = {tension}}).energy(rest).sum,
+                0.05 * mesh::area_vectors(model.surface).rowwise().norm().sum(), 1e-10);  // rounding
+}
+
+TEST(SurfaceEnergy, NeedsASkin) {
+    const Model bare = make_lattice({3, 2, 2});
+    EXPECT_TRUE(says(message_of([&] { PlacedEffects(bare, {.surface = {tension}}); }), {"has no skin", "give it one"}));
+}
 
 TEST(EffectsByTheLinearLaw, AreTheLimitOfSmallDisplacements) {
     const Model model = with_effects(hollow_lattice(), {gravity({100, -2e5, 9e5})});

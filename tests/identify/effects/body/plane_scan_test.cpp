@@ -6,6 +6,7 @@
 
 #include <cmath>
 
+#include "identify/diagnosis/search/screen_plan.h"
 #include "identify/effects/catalogue.h"
 #include "tests/identify/small_body.h"
 
@@ -131,7 +132,7 @@ TEST_P(Planes, DoWhatAPlaneInTheWayDoes) {
     Eigen::VectorXd values(5);
     values << 0, 0, 1, offset, std::log(1.0);
     const auto effect = find_effect("contact");
-    const ScreenPlan plan = effect->screen_plan(*model_, problem_, bare_, played_);
+    const ScreenPlan plan = screen_plan(*effect, *model_, problem_, bare_, played_);
     const ScreenColumns found =
         plan.columns(sensitivities(*model_, problem_, bare_, played_, {plan.signatures}, 1).front());
     ASSERT_EQ(found.columns.cols(), scan_->width());
@@ -171,7 +172,7 @@ TEST(PlaneScan, OfABodyThatNothingMovesHasNoPlanes) {
     const Problem problem = make_problem(make_twin(*model, body.set({LoadState{.probe = 0}}), bare, 0), noise);
     const ForwardSolution forward = solve_forward(*model, problem, bare, 1);
     EXPECT_EQ(PlaneScan(*model, problem, bare.setting(), forward).width(), 0);
-    EXPECT_TRUE(find_effect("contact")->screen_plan(*model, problem, bare, forward).signatures.width == 0);
+    EXPECT_TRUE(screen_plan(*find_effect("contact"), *model, problem, bare, forward).signatures.width == 0);
 }
 
 INSTANTIATE_TEST_SUITE_P(Laws, Planes, testing::Values(0, 2),

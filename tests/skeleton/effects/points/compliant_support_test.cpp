@@ -1,4 +1,4 @@
-#include "fem/effects/compliant_support.h"
+#include "fem/effects/point/compliant_support.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "fem/effects/gravity.h"
+#include "fem/effects/point/gravity.h"
 
 #include <gtest/gtest.h>
 

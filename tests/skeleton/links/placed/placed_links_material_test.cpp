@@ -2,10 +2,10 @@
 
 #include <numbers>
 
-#include "fem/effects/anisotropy.h"
-#include "fem/effects/inclusion.h"
-#include "fem/effects/prestress.h"
-#include "fem/effects/stiffening.h"
+#include "fem/effects/material/anisotropy.h"
+#include "fem/effects/material/inclusion.h"
+#include "fem/effects/material/prestress.h"
+#include "fem/effects/material/stiffening.h"
 #include "skeleton/effects/link_effects.h"
 #include "skeleton/links/placed/placed_links.h"
 #include "skeleton/statics/equilibrium.h"

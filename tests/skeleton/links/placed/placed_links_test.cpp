@@ -2,10 +2,10 @@
 
 #include <gtest/gtest.h>
 
-#include "fem/effects/anisotropy.h"
-#include "fem/effects/inclusion.h"
-#include "fem/effects/prestress.h"
-#include "fem/effects/stiffening.h"
+#include "fem/effects/material/anisotropy.h"
+#include "fem/effects/material/inclusion.h"
+#include "fem/effects/material/prestress.h"
+#include "fem/effects/material/stiffening.h"
 #include "skeleton/effects/link_effects.h"
 #include "skeleton/statics/statics.h"
 #include "tests/skeleton/test_effects.h"

@@ -5,6 +5,7 @@
 #include "skeleton/runtime/forces/force_field.h"
 #include "skeleton/runtime/walk_order.h"
 #include "tests/skeleton/runtime/live_models.h"
+#include "tests/surface_energies.h"
 
 namespace palpate::runtime {
 namespace {
@@ -92,6 +93,18 @@ TEST(ForceField, ACavityUnderPressurePushesAsItDoesInTheModel) {
     give_skin(model);
     add_cavity(model);
     model.effects = {{"pressure", {{"pressure", 0.01, "MPa"}}}};
+    const Mismatch by = mismatch(model, 0.5, 0.1);
+    EXPECT_LT(by.force, 10 * rounding);
+    EXPECT_LT(by.energy, 1e-9);
+}
+
+TEST(ForceField, TheSkinsAreaPullsAsItDoesInTheModel) {
+    skeleton::register_effect({"tension-in-a-test", {{"gamma", "N/mm"}}, [](const skeleton::EffectNumbers& numbers) {
+                                   return fem::Effects{.surface = {std::make_shared<Tension>(numbers["gamma"])}};
+                               }});
+    skeleton::Model model = make_full_lattice({3, 3, 2});
+    give_skin(model);
+    model.effects = {{"tension-in-a-test", {{"gamma", 0.01, "N/mm"}}}};
     const Mismatch by = mismatch(model, 0.5, 0.1);
     EXPECT_LT(by.force, 10 * rounding);
     EXPECT_LT(by.energy, 1e-9);

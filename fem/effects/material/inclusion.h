@@ -1,6 +1,6 @@
 #pragma once
 
-#include "fem/effects/material_effect.h"
+#include "fem/effects/known_effect.h"
 
 namespace palpate::fem {
 
@@ -23,5 +23,8 @@ private:
     Vec3 centre_, half_widths_;
     double log_ratio_;
 };
+
+/// How files and users tell it.
+KnownEffect known_inclusion();
 
 }  // namespace palpate::fem

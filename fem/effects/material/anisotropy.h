@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "fem/effects/material_effect.h"
+#include "fem/effects/known_effect.h"
 
 namespace palpate::fem {
 
@@ -22,5 +22,8 @@ public:
 private:
     std::vector<Fibre> fibres_;  // of unit directions
 };
+
+/// How files and users tell it.
+KnownEffect known_anisotropy();
 
 }  // namespace palpate::fem

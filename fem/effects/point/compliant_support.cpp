@@ -1,4 +1,4 @@
-#include "fem/effects/compliant_support.h"
+#include "fem/effects/point/compliant_support.h"
 
 #include <algorithm>
 
@@ -19,6 +19,15 @@ Eigen::VectorXd CompliantSupport::weights(const Points& rest, const Eigen::Vecto
     if (spread < least_spread) return even;
     const double s = std::clamp((turning_ - 1) / spread, -most, most);
     return even.array() * (1 + s * (square.array() / mean - 1));
+}
+
+KnownEffect known_compliant_support() {
+    return {"compliant-support",
+            {{"stiffness", "N/mm", Range::positive}, optional_parameter("turning", "1", Range::positive)},
+            [](const EffectNumbers& numbers) -> Effects {
+                const double turning = numbers.has("turning") ? numbers["turning"] : 1;
+                return {.points = {std::make_shared<CompliantSupport>(numbers["stiffness"], turning)}};
+            }};
 }
 
 }  // namespace palpate::fem

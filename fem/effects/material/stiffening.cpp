@@ -1,4 +1,4 @@
-#include "fem/effects/stiffening.h"
+#include "fem/effects/material/stiffening.h"
 
 #include "fem/large_deformation/elements/point_law.h"
 
@@ -19,6 +19,14 @@ MaterialTerms Stiffening::terms(const Vec3& /*X*/, const Mat3& F, bool with_seco
         }
     }
     return result;
+}
+
+KnownEffect known_stiffening() {
+    return {"stiffening",
+            {{"c2", "1", Range::not_negative}, {"c3", "1", Range::not_negative}},
+            [](const EffectNumbers& numbers) -> Effects {
+                return {.material = {std::make_shared<Stiffening>(numbers["c2"], numbers["c3"])}};
+            }};
 }
 
 }  // namespace palpate::fem

@@ -1,6 +1,8 @@
-#include "fem/effects/anisotropy.h"
+#include "fem/effects/material/anisotropy.h"
 
 #include <cassert>
+
+#include "mesh/errors.h"
 
 namespace palpate::fem {
 
@@ -29,6 +31,27 @@ MaterialTerms Anisotropy::terms(const Vec3& /*X*/, const Mat3& F, bool with_seco
         }
     }
     return result;
+}
+
+KnownEffect known_anisotropy() {
+    return {"anisotropy",
+            {{"k", "1"},
+             {"nx", "1"},
+             {"ny", "1"},
+             {"nz", "1"},
+             optional_parameter("k2", "1"),
+             optional_parameter("n2x", "1"),
+             optional_parameter("n2y", "1"),
+             optional_parameter("n2z", "1")},
+            [](const EffectNumbers& numbers) -> Effects {
+                std::vector<Fibre> fibres{{numbers["k"], numbers.direction("n")}};
+                int given = 0;
+                for (const char* name : {"k2", "n2x", "n2y", "n2z"}) given += numbers.has(name) ? 1 : 0;
+                if (given != 0 && given != 4)
+                    throw InvalidInput("a second family of fibres needs all of k2, n2x, n2y and n2z");
+                if (given == 4) fibres.push_back({numbers["k2"], numbers.direction("n2")});
+                return {.material = {std::make_shared<Anisotropy>(std::move(fibres))}};
+            }};
 }
 
 }  // namespace palpate::fem

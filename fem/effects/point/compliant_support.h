@@ -1,6 +1,6 @@
 #pragma once
 
-#include "fem/effects/point_potential.h"
+#include "fem/effects/known_effect.h"
 
 namespace palpate::fem {
 
@@ -19,5 +19,8 @@ public:
 private:
     double k_, turning_;
 };
+
+/// How files and users tell it.
+KnownEffect known_compliant_support();
 
 }  // namespace palpate::fem

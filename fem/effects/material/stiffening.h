@@ -1,6 +1,6 @@
 #pragma once
 
-#include "fem/effects/material_effect.h"
+#include "fem/effects/known_effect.h"
 
 namespace palpate::fem {
 
@@ -14,5 +14,8 @@ public:
 private:
     double c2_, c3_;
 };
+
+/// How files and users tell it.
+KnownEffect known_stiffening();
 
 }  // namespace palpate::fem

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "fem/effects/point_potential.h"
+#include "fem/effects/known_effect.h"
 
 namespace palpate::fem {
 
@@ -15,5 +15,8 @@ public:
 private:
     Vec3 g_;
 };
+
+/// How files and users tell it.
+KnownEffect known_gravity();
 
 }  // namespace palpate::fem
