@@ -5,6 +5,7 @@
 #include "fem/effects/material/prestress.h"
 #include "fem/effects/material/stiffening.h"
 #include "skeleton/effects/link_effects.h"
+#include "skeleton/effects/placed_effects.h"
 #include "skeleton/statics/equilibrium.h"
 #include "tests/messages.h"
 #include "tests/skeleton/test_effects.h"
