@@ -10,6 +10,7 @@
 #include <chrono>
 
 #include "fem/elements/patch_load.h"
+#include "fem/hyperelastic_body.h"
 #include "fem/large_deformation/body/loaded_body.h"
 
 using namespace palpate;
