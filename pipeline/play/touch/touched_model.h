@@ -5,6 +5,7 @@
 
 #include "identify/loading/loads.h"
 #include "skeleton/runtime/body.h"
+#include "skeleton/statics/equilibrium.h"
 
 namespace palpate::pipeline {
 
