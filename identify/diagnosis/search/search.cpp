@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 
 #include "identify/diagnosis/verdict/verdict.h"
 #include "mesh/errors.h"
@@ -108,52 +107,12 @@ std::optional<FittedExplanation> Search::refit_with(const Refit& base, const Scr
         const double begins = objective_near(model_, problem_for(explanation), explanation, options_.refit, from);
         if (begins < objective(base)) break;
     }
-    if (screened.effect->has_memory()) explanation = scanned_start(explanation, from);
     std::optional<FittedExplanation> found = refit_from(explanation, from, {screened.effect});
     const bool is_settled = found && found->fit.whitened_rms <= options_.most_left_together;
     if (!screened.elsewhere || is_settled) return found;
     explanation.values.back() = *screened.elsewhere;
     std::optional<FittedExplanation> other = refit_from(explanation, from, {screened.effect});
     return !found || (other && other->log_bayes_factor > found->log_bayes_factor) ? other : found;
-}
-
-/// Where to begin with an effect that has a memory, the last of the explanation. What accumulates from state to state
-/// may be far from any linearisation: where the fit begins with more than half of what is left without the effect,
-/// stiffness, then the effect's numbers one after the other, are moved by a factor of two or a prior's width as long as
-/// it begins with less.
-Explanation Search::scanned_start(Explanation explanation, const Refit& from) const {
-    const Problem& problem = problem_for(explanation);
-    double least = objective_near(model_, problem, explanation, options_.refit, from);
-    constexpr double strong = 3;  // whitened rms that is left without it
-    if (from.whitened_rms < strong || least < 0.5 * objective(from)) return explanation;
-    const auto lowers = [&](const std::function<void(Explanation&)>& move) {
-        Explanation trial = explanation;
-        move(trial);
-        const double then = objective_near(model_, problem, trial, options_.refit, from);
-        if (!(then < least)) return false;
-        least = then;
-        explanation = std::move(trial);
-        return true;
-    };
-    constexpr int most_moves = 3;  // in one direction
-    const auto scan = [&](const std::function<void(Explanation&, double)>& move) {
-        for (const double sign : {1.0, -1.0}) {
-            int moves = 0;
-            while (moves < most_moves && lowers([&](Explanation& trial) { move(trial, sign); })) ++moves;
-            if (moves > 0) return;
-        }
-    };
-    scan([&](Explanation& trial, double sign) {
-        for (Eigen::Index p = 0; p < trial.theta.size(); ++p)
-            if (model_.parameters()[p].stiffens) trial.theta[p] += sign * std::log(2.0);
-    });
-    const std::vector<EffectNumber> numbers = explanation.effects.back()->numbers(model_, problem);
-    for (std::size_t p = 0; p < numbers.size(); ++p) {
-        scan([&](Explanation& trial, double sign) {
-            trial.values.back()[static_cast<Eigen::Index>(p)] += sign * numbers[p].prior_sd;
-        });
-    }
-    return explanation;
 }
 
 std::optional<FittedExplanation> Search::refit_from(

@@ -30,7 +30,6 @@ public:
 
 private:
     std::optional<FittedExplanation> refit_with(const Refit& base, const ScreenedEffect& screened) const;
-    Explanation scanned_start(Explanation explanation, const Refit& from) const;
     std::optional<FittedExplanation> refit_from(
         const Explanation& explanation, const Refit& start,
         const std::vector<std::shared_ptr<const EffectHypothesis>>& effects) const;

@@ -31,13 +31,16 @@ Vec3 error_with_label_of(const WholeReading& one, const WholeReading& other) {
     return one.error + (other.at - one.at).cwiseQuotient(one.sigma);
 }
 
-/// Length of an error that is no more than others of a state have [sigmas].
-double ordinary_error(const std::vector<WholeReading>& state) {
+/// Length of an error that is no more than the other readings of a state have, those of a pair apart [sigmas].
+double ordinary_error(const std::vector<WholeReading>& state, std::size_t one, std::size_t other) {
     constexpr double rough = 5;           // times the median, as an outlier's
     constexpr double chi_median = 1.538;  // of three normal numbers
     std::vector<double> lengths;
     lengths.reserve(state.size());
-    for (const WholeReading& reading : state) lengths.push_back(reading.error.norm());
+    for (std::size_t i = 0; i < state.size(); ++i) {
+        if (i != one && i != other) lengths.push_back(state[i].error.norm());
+    }
+    if (lengths.empty()) return rough * chi_median;
     const auto middle = lengths.begin() + std::ssize(lengths) / 2;
     std::ranges::nth_element(lengths, middle);
     return rough * std::max(*middle, chi_median);
@@ -46,30 +49,31 @@ double ordinary_error(const std::vector<WholeReading>& state) {
 }  // namespace
 
 std::vector<ExchangedMarkers> find_exchanged_markers(const Problem& problem, const Eigen::VectorXd& residual) {
+    const auto states = whole_readings(problem, residual);
+    double pairs = 1;
+    for (const auto& [number, state] : states) pairs += 0.5 * static_cast<double>(state.size() * (state.size() - 1));
+    constexpr double false_alarms = 1e-6;  // expected in a set; labels are exchanged rarely
+    const double least = std::log(pairs / false_alarms);
     std::vector<ExchangedMarkers> likely;
-    double pairs = 0;
-    for (const auto& [number, state] : whole_readings(problem, residual)) {
-        const double most = ordinary_error(state);
+    for (const auto& [number, state] : states) {
         for (std::size_t i = 0; i < state.size(); ++i) {
             for (std::size_t j = i + 1; j < state.size(); ++j) {
-                ++pairs;
                 const Vec3 first = error_with_label_of(state[i], state[j]);
                 const Vec3 second = error_with_label_of(state[j], state[i]);
-                if (first.norm() > most || second.norm() > most) continue;
                 const double told = state[i].error.squaredNorm() + state[j].error.squaredNorm();
                 const double ratio = 0.5 * (told - first.squaredNorm() - second.squaredNorm());
+                if (ratio < least) continue;
+                const double most = ordinary_error(state, i, j);
+                if (first.norm() > most || second.norm() > most) continue;
                 likely.push_back(
                     {number, {state[i].marker, state[j].marker}, {state[i].reading, state[j].reading}, ratio});
             }
         }
     }
     std::ranges::stable_sort(likely, std::greater{}, &ExchangedMarkers::log_likelihood_ratio);
-    constexpr double false_alarms = 1e-6;  // expected in a set; labels are exchanged rarely
-    const double least = std::log(std::max(pairs, 1.0) / false_alarms);
     std::vector<ExchangedMarkers> result;
     std::set<int> taken;
     for (const ExchangedMarkers& one : likely) {
-        if (one.log_likelihood_ratio < least) break;
         if (taken.contains(one.readings.first) || taken.contains(one.readings.second)) continue;
         taken.insert({one.readings.first, one.readings.second});
         result.push_back(one);
