@@ -26,7 +26,7 @@ struct DiagnoseOptions {
     double most_left_held_out = 1.2;            // the same on probes left out
     double most_gap = 1.06;                     // the same over that on probes fitted, where it is above 1
     double effect_error = 0.1;                  // share of an effect that discretisation may alter: up to twice the
-                                                // 1 to 6 % that meshes of the default size are off by
+                                                // 1 to 6 % that default meshes are off by (README)
     double most_pull = 8;                       // largest pull of a nuisance, in prior sd; doubled for a plastic body
     double least_outliers = 100;                // the same for outliers: one reading of 15 sigma, say
     double mesh_error = 0.005;  // share of the displacement that discretisation error may mimic as an effect

@@ -41,7 +41,9 @@ struct Ladder {
 struct LadderOptions {
     IdentifyOptions identify;
     DiagnoseOptions diagnose;
-    bool only_better = false;  // an effect that makes held-out probes worse is told in the notes, and not added
+    /// An effect that makes held-out probes worse, or leaves a state without equilibrium, is told in the notes and not
+    /// added.
+    bool only_better = false;
 };
 
 /// Adds effects to a model, fits anew, and tells the error before and after, on fitted and on held-out probes.

@@ -7,7 +7,7 @@
 // How to run it, in the project's folder:
 //   cmake --preset release -DPALPATE_OWN_EFFECTS=samples/own-effect/embedding.cpp && cmake --build --preset release
 //   build/palpate probe samples/organ/organ.stl --hide embedding:stiffness=2e-4 -o hidden
-//   build/palpate diagnose hidden
+//   build/palpate run hidden
 //
 // What should be seen: "missing-effect: embedding", with the stiffness that was hidden.
 
@@ -57,8 +57,7 @@ const bool known = skeleton::register_effect(known_embedding());
 
 #else
 
-// --- How a diagnosis sees it, and hides it: as its physics, stronger until it shows
-// ------------------------------------
+// --- How a diagnosis sees and hides it: stronger until it shows ------------------------------------------------------
 
 class EmbeddingEffect : public identify::EffectHypothesis {
 public:

@@ -5,8 +5,10 @@
 // how it is hidden, and registers all that in one row at its end.
 //
 // How to run it, in the project's folder:
-//   cmake --preset release -DPALPATE_OWN_EFFECTS=samples/own-effect/surface_tension.cpp && cmake --build --preset
-//   release build/palpate probe samples/organ/organ.stl --hide surface-tension -o hidden build/palpate diagnose hidden
+//   cmake --preset release -DPALPATE_OWN_EFFECTS=samples/own-effect/surface_tension.cpp
+//   cmake --build --preset release
+//   build/palpate probe samples/organ/organ.stl --hide surface-tension -o hidden
+//   build/palpate run hidden
 //
 // What should be seen: "surface-tension" with the gamma that was hidden, where its shrinking is not taken for another
 // effect's.
@@ -24,8 +26,7 @@ namespace {
 
 using namespace palpate;
 
-// --- The physics: an energy of the skin's area
-// -------------------------------------------------------------------------
+// --- The physics: an energy of the skin's area -----------------------------------------------------------------------
 
 /// gamma per area as it stands: gamma J per area at rest, J how many times as large it has become.
 class SurfaceTension : public fem::SurfaceEnergy {
@@ -57,7 +58,8 @@ const bool known = skeleton::register_effect(known_surface_tension());
 
 // --- How a diagnosis sees it -----------------------------------------------------------------------------------------
 
-/// A body a fifth as thick as it is long shrinks by some per cent under this share of E times its size [-].
+/// gamma over E times the body's size: a round bar a fifth as thick as it is long, of radius r and nu = 0.45, shortens
+/// by 2 gamma (1 - nu) / (E r) = 1.1 %.
 constexpr double felt = 1e-3;
 
 class SurfaceTensionEffect : public identify::EffectHypothesis {

@@ -9,6 +9,25 @@
 
 namespace palpate::pipeline {
 
+/// Reads the beam's markers in each of its states anew, in a mesh finer than those that are fitted to it. `weight`:
+/// gravity [mm/s^2]; noise as the set tells it, drawn from `seed`.
+inline void read_beam(identify::MeasurementSet& set, const identify::ModelSetting& setting, const Vec3& weight,
+                      unsigned seed) {
+    const Reference truth = make_reference(set, 9);
+    std::mt19937 engine(seed);
+    std::normal_distribution<double> noise(0, *set.position_noise);
+    for (identify::LoadState& state : set.states) {
+        state.readings.clear();
+        const Eigen::VectorXd u =
+            truth.body->equilibrium(setting, {.contacts = state.contacts, .gravity = weight}, nullptr);
+        const Points seen = truth.body->observe(u, setting);
+        for (int m = 0; m < seen.rows(); ++m) {
+            const Vec3 off(noise(engine), noise(engine), noise(engine));
+            state.readings.push_back({m, seen.row(m).transpose() + off});
+        }
+    }
+}
+
 /// A cantilever of 1 MPa, 100 x 20 x 20 mm, pressed and pulled in five probes, whose own weight of 9.81 m/s^2 along -z
 /// not specified: it sags by some 4 mm. Noise of 0.05 mm.
 inline identify::MeasurementSet heavy_beam(bool heavy) {
@@ -33,19 +52,7 @@ inline identify::MeasurementSet heavy_beam(bool heavy) {
                   {.probe = 4, .contacts = load(60, 20, 10, {0, -0.2, 0.1})},
                   {.probe = 5, .contacts = load(80, 10, 0, {0, 0, 0.15})}};
 
-    const Reference truth = make_reference(set, 9);  // finer than the body that is fitted
-    const identify::ModelSetting setting{2, Eigen::Vector2d(std::log(1.0), std::log(0.1)), {}};
-    std::mt19937 engine(7);
-    std::normal_distribution<double> noise(0, *set.position_noise);
-    for (identify::LoadState& state : set.states) {
-        const Vec3 weight(0, 0, heavy ? -9810 : 0);
-        const Eigen::VectorXd u = truth.body->equilibrium(setting, {state.contacts, weight}, nullptr);
-        const Points seen = truth.body->observe(u, setting);
-        for (int m = 0; m < seen.rows(); ++m) {
-            const Vec3 off(noise(engine), noise(engine), noise(engine));
-            state.readings.push_back({m, seen.row(m).transpose() + off});
-        }
-    }
+    read_beam(set, {2, Eigen::Vector2d(std::log(1.0), std::log(0.1)), {}}, Vec3(0, 0, heavy ? -9810 : 0), 7);
     return set;
 }
 

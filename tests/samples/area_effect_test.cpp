@@ -2,8 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <random>
-
 #include "identify/diagnosis/diagnose.h"
 #include "identify/effects/catalogue.h"
 #include "mesh/errors.h"
@@ -19,21 +17,10 @@ skeleton::EffectRecord tension(double gamma) { return {"surface-tension", {{"gam
 /// The beam's own readings, in a skin under tension.
 identify::MeasurementSet taut_beam() {
     identify::MeasurementSet set = heavy_beam(false);
-    const Reference truth = make_reference(set, 9);  // finer than the body that is fitted
     identify::ModelSetting setting{.law = 2, .theta = Eigen::Vector2d(std::log(1.0), std::log(0.1)), .effects = {}};
     setting.effects = skeleton::make_physics(tension(hidden));
-    std::mt19937 engine(11);
-    std::normal_distribution<double> noise(0, 0.02);
     set.position_noise = 0.02;
-    for (identify::LoadState& state : set.states) {
-        state.readings.clear();
-        const Eigen::VectorXd u = truth.body->equilibrium(setting, {.contacts = state.contacts}, nullptr);
-        const Points seen = truth.body->observe(u, setting);
-        for (int m = 0; m < seen.rows(); ++m) {
-            const Vec3 off(noise(engine), noise(engine), noise(engine));
-            state.readings.push_back({m, seen.row(m).transpose() + off});
-        }
-    }
+    read_beam(set, setting, Vec3::Zero(), 11);
     return set;
 }
 
