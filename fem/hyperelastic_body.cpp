@@ -26,15 +26,15 @@ BodyShape shape_of(mesh::VolumeMesh mesh, std::vector<char> held, Dilatation dil
 
 struct HyperelasticBody::Impl {
     BodyShape shape;
-    EliminationOrder held_order;
-    Lazy<EliminationOrder> released_order;
+    Lazy<EliminationOrder> held_order, released_order;
     Lazy<Unknowns> all_nodes;  // in the mesh's order
 
-    explicit Impl(BodyShape body) : shape(std::move(body)), held_order(elimination_order(shape.mesh, shape.held)) {}
+    explicit Impl(BodyShape body) : shape(std::move(body)) {}
 
     /// The unknowns that these effects leave.
     const EliminationOrder& order(const Effects& effects) const {
-        if (!release_supports(effects)) return held_order;
+        if (!release_supports(effects))
+            return held_order.get([&] { return elimination_order(shape.mesh, shape.held); });
         return released_order.get(
             [&] { return elimination_order(shape.mesh, std::vector<char>(shape.held.size(), 0)); });
     }

@@ -8,6 +8,7 @@
 #include "identify/diagnosis/search/baselines.h"
 #include "identify/diagnosis/search/crushing.h"
 #include "identify/diagnosis/search/search.h"
+#include "identify/diagnosis/statistics/discretisation.h"
 #include "identify/diagnosis/statistics/independent_readings.h"
 #include "identify/diagnosis/verdict/verdict.h"
 #include "identify/effects/catalogue.h"
@@ -16,6 +17,9 @@
 namespace palpate::identify {
 namespace {
 
+/// Change of the mesh's error after which it is computed anew, rms over sigma. The next change is a third of it or
+/// less, 0.1, which alters a whitened rms of 1 by half a per cent.
+constexpr double much_for_noise = 0.3;
 constexpr const char* noise_note = "The set does not tell its noise: ";
 
 /// [mm]
@@ -44,7 +48,9 @@ public:
         if (!options_.law || *options_.law != 0) {
             result_.problem = without_crushing_probes(model_, result_.problem, options_.refit.threads, result_.notes);
         }
+        const bool is_corrected = take_correction_of_neighbour();
         baselines_.fit(result_.problem, result_.notes, progress_);
+        if (!is_corrected && options_.refit.correct_for_mesh) correct_for_mesh();
         if (!result_.noise_known) estimate_noise();
         set_plain_outliers_aside();
         if (options_.screen) {
@@ -56,6 +62,7 @@ public:
                 estimate_noise();
                 search_and_refit();
             }
+            correct_for_mesh_with_effect();
         }
         result_.baseline = baseline();
         result_.baseline_held_out = leave_probes_out(result_.problem, result_.baseline);
@@ -67,6 +74,7 @@ public:
         result_.large_deformation_failed = baselines_.large_deformation_failed();
         decide_verdict(model_, options_, result_);
         note_mesh_error();
+        note_correction();
         return std::move(result_);
     }
 
@@ -86,6 +94,61 @@ private:
 
     void tell(const std::string& what, double share) const { report(progress_, what, share); }
 
+    /// The mesh's error as a neighbouring fit tells it.
+    bool take_correction_of_neighbour() {
+        if (!options_.near) return false;
+        result_.problem.correct_for(discretisation_of(*options_.near->problem, result_.problem));
+        return result_.problem.discretisation.size() > 0;
+    }
+
+    /// The error of the mesh in an explanation, taken off the readings; how much that changes, rms over sigma.
+    double correct_for_mesh(const Explanation& explanation, const ForwardSolution& forward) {
+        Problem& problem = result_.problem;
+        tell("error of the mesh", 0.35);
+        const Eigen::VectorXd before = problem.measured;
+        problem.correct_for(discretisation_error(model_, problem, explanation, forward, options_.refit.threads));
+        return rms((problem.measured - before).cwiseQuotient(problem.sigma));
+    }
+
+    /// A coarse mesh bends the numbers that are fitted with it: one that keeps its volume badly looks compressible, or
+    /// not at all. So the error is first computed with those that are believed before the measurements, and then where
+    /// the fit to what it leaves stands, until it hardly changes.
+    void correct_for_mesh() {
+        Explanation explanation = baseline().explanation;
+        for (Eigen::Index p = 0; p < explanation.theta.size(); ++p) {
+            const StiffnessParameter& parameter = model_.parameters()[p];
+            if (!parameter.stiffens) explanation.theta[p] = parameter.prior_mean;
+        }
+        ForwardSolution forward;
+        try {
+            forward =
+                solve_forward(model_, result_.problem, explanation, options_.refit.threads, &baseline().forward.q);
+        } catch (const SolverFailure&) {
+            explanation = baseline().explanation;
+            forward = baseline().forward;
+        }
+        constexpr int most_rounds = 4;  // each changes a third as much as the one before, or less
+        for (int round = 0; round < most_rounds; ++round) {
+            const double change = correct_for_mesh(explanation, forward);
+            if (change == 0) return;
+            baselines_.refit(result_.problem);
+            if (change < much_for_noise) return;
+            explanation = baseline().explanation;
+            forward = baseline().forward;
+        }
+    }
+
+    /// Once more where an effect explains the readings: it may move the body far from where the baseline stood.
+    void correct_for_mesh_with_effect() {
+        if (!explained() || result_.problem.discretisation.size() == 0) return;
+        const Refit& fit = leader()->fit;
+        if (fit.explanation.has_memory() || correct_for_mesh(fit.explanation, fit.forward) < much_for_noise) return;
+        baselines_.refit(result_.problem);
+        search_->refit_tried(result_.problem);
+        result_.ranking = search_->ranking();
+        result_.tried = search_->tried();
+    }
+
     /// Sensors finer than the body's mesh see its errors, which no effect explains.
     void note_mesh_error() {
         if (result_.verdict != Verdict::unexplained) return;
@@ -97,6 +160,24 @@ private:
             fmt::format("The residual, {:.3g} mm rms, is {:.2g} % of the displacement, which discretisation error may "
                         "explain. Shorter elements (--edge-length) reduce it; a noise of {:.3g} mm or more covers it.",
                         left, 100 * left / moved_, options_.resolution * moved_));
+    }
+
+    /// What was taken off for the mesh, where it would have shown.
+    void note_correction() {
+        const Problem& problem = result_.problem;
+        if (problem.discretisation.size() == 0) return;
+        const double error = rms(problem.discretisation), share = error / moved_;
+        if (error < problem.rms_sigma()) return;
+        result_.notes.push_back(fmt::format(
+            "The error of the body's mesh, {:.3g} mm rms or {:.2g} % of the displacement, was computed with "
+            "halved edges and taken off the readings.",
+            error, 100 * share));
+        constexpr double most = 0.2;  // halved edges leave up to a third of it, more than most effects are worth
+        if (share > most) {
+            result_.notes.back() += fmt::format(
+                " That is too much to correct reliably: shorter elements (--edge-length) reduce it to a quarter where "
+                "they are half as long.");
+        }
     }
 
     void estimate_noise() {

@@ -111,8 +111,15 @@ Eigen::VectorXd Problem::pick(const std::vector<Points>& positions) const {
 
 Eigen::VectorXd Problem::displacement() const {
     Eigen::VectorXd result = measured;
+    if (discretisation.size() > 0) result += discretisation;
     for (Eigen::Index n = 0; n < rows(); ++n) result[n] -= rest(coordinate[n] / 3, coordinate[n] % 3);
     return result;
+}
+
+void Problem::correct_for(Eigen::VectorXd error) {
+    if (discretisation.size() > 0) measured += discretisation;
+    discretisation = std::move(error);
+    if (discretisation.size() > 0) measured -= discretisation;
 }
 
 Problem Problem::with_rows(const std::vector<char>& keep) const {
@@ -140,6 +147,7 @@ Problem Problem::with_rows(const std::vector<char>& keep) const {
     }
     result.measured = measured(kept);
     result.sigma = sigma(kept);
+    if (discretisation.size() > 0) result.discretisation = discretisation(kept);
     return result;
 }
 

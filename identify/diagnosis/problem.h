@@ -30,7 +30,8 @@ struct Problem {
     std::vector<int> reading;         // rows of one reading share a number (N)
     std::vector<int> set_reading;     // the same, as the whole set numbers its readings (N)
     std::vector<char> is_guessed;     // rows whose sigma was not specified (N)
-    Eigen::VectorXd measured, sigma;  // [mm] (N)
+    Eigen::VectorXd measured, sigma;  // [mm] (N); without the next
+    Eigen::VectorXd discretisation;   // how far the model would be off by its mesh [mm] (N); empty: not known
     double declared_poisson = missing;
 
     Eigen::Index rows() const { return measured.size(); }
@@ -48,6 +49,8 @@ struct Problem {
     Eigen::VectorXd pick(const std::vector<Points>& positions) const;
     /// The same of displacements from rest, as they were measured [mm].
     Eigen::VectorXd displacement() const;
+    /// Takes another discretisation error off what was measured.
+    void correct_for(Eigen::VectorXd error);
     /// The problem with only those rows that `keep` (N flags) holds for.
     Problem with_rows(const std::vector<char>& keep) const;
     /// The problem without some of the actions (K flags), renumbered, and without their rows; as if nothing had acted.

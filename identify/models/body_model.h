@@ -2,6 +2,7 @@
 
 #include <Eigen/SparseCore>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -94,6 +95,13 @@ public:
     virtual Eigen::SparseMatrix<double> observation(const Eigen::VectorXd& q, const ModelSetting& setting) const = 0;
 
     // Further queries of the diagnosis.
+
+    /// How far the markers of an equilibrium with the tangent J would move on a mesh of halved edges (m x 3) [mm];
+    /// nothing where the model has no such mesh, or cannot tell.
+    virtual std::optional<Points> discretisation_error(const Eigen::VectorXd& /*q*/, const ModelSetting& /*setting*/,
+                                                       const Action& /*action*/, const Tangent& /*J*/) const {
+        return std::nullopt;
+    }
 
     virtual Eigen::VectorXd advance(const Eigen::VectorXd& q, const Eigen::VectorXd& step,
                                     const ModelSetting& setting) const = 0;

@@ -9,6 +9,9 @@
 #include <tuple>
 
 #include "fem/elements/patch_load.h"
+#include "fem/interpolation/refine.h"
+#include "fem/large_deformation/lazy.h"
+#include "fem/large_deformation/refined_equilibrium.h"
 #include "identify/models/marker_frames.h"
 #include "mesh/errors.h"
 #include "skeleton/model/state.h"
@@ -77,12 +80,23 @@ std::vector<char> cut_by_support(const mesh::VolumeMesh& mesh, const std::vector
 }  // namespace
 
 struct ReferenceBody::Impl {
-    Impl(fem::HyperelasticBody the_body, MarkerFrames the_frames, double the_density)
-        : body(std::move(the_body)), frames(std::move(the_frames)), density(the_density) {}
+    Impl(const mesh::VolumeMesh& mesh, const std::vector<mesh::Region>& the_supports,
+         const std::vector<Marker>& the_markers, const ReferenceBodyOptions& the_options)
+        : supports(the_supports),
+          markers(the_markers),
+          options(the_options),
+          body(mesh, mesh::contains(supports, mesh.nodes), options.dilatation),
+          frames(mesh, markers),
+          density(options.density),
+          size((mesh.nodes.colwise().maxCoeff() - mesh.nodes.colwise().minCoeff()).maxCoeff()) {}
+
+    std::vector<mesh::Region> supports;
+    std::vector<Marker> markers;
+    ReferenceBodyOptions options;
 
     fem::HyperelasticBody body;
     MarkerFrames frames;
-    double density, size = 0;
+    double density, size;
     std::vector<std::string> laws{"linear", "svk", "neo-hooke"};
     std::vector<StiffnessParameter> parameters;
     mesh::Surface surface;  // by the faces' corners
@@ -92,6 +106,10 @@ struct ReferenceBody::Impl {
     std::vector<int> skin_nodes;
     Points skin;
     Eigen::VectorXd skin_areas;
+
+    /// The body on a mesh of halved edges.
+    struct Finer;
+    fem::Lazy<Finer> finer;
 
     // A contact's nodal forces per newton do not depend on the configuration: each is made once.
     using Place = std::tuple<double, double, double, double>;
@@ -108,16 +126,22 @@ struct ReferenceBody::Impl {
     Eigen::VectorXd load(const Action& action) const;
 };
 
+struct ReferenceBody::Impl::Finer {
+    explicit Finer(const Impl& coarse, fem::RefinedMesh refined)
+        : own(std::make_unique<Impl>(refined.mesh, coarse.supports, coarse.markers, coarse.options)),
+          interpolation(std::move(refined.interpolation)) {}
+
+    std::unique_ptr<const Impl> own;
+    Eigen::SparseMatrix<double, Eigen::RowMajor> interpolation;
+};
+
 ReferenceBody::ReferenceBody(const mesh::VolumeMesh& mesh, const std::vector<mesh::Region>& supports,
                              const std::vector<Marker>& markers, const ReferenceBodyOptions& options) {
-    const std::vector<char> held = mesh::contains(supports, mesh.nodes);
-    impl_ = std::make_unique<Impl>(fem::HyperelasticBody(mesh, held, options.dilatation), MarkerFrames(mesh, markers),
-                                   options.density);
+    impl_ = std::make_unique<Impl>(mesh, supports, markers, options);
     Impl& i = *impl_;
-    i.size = (mesh.nodes.colwise().maxCoeff() - mesh.nodes.colwise().minCoeff()).maxCoeff();
     i.surface = {mesh.nodes, mesh.faces.leftCols(3)};
     i.centres = centres_of(mesh);
-    i.cut = cut_by_support(mesh, held);
+    i.cut = cut_by_support(mesh, i.body.held());
     const fem::NodeWeights support = i.body.points(fem::ActsOn::support, i.density);
     i.support_points = mesh.nodes(support.nodes, Eigen::all);
     i.support_shares = support.weights;
@@ -237,6 +261,19 @@ Points ReferenceBody::observe(const Eigen::VectorXd& q, const ModelSetting& sett
 
 Eigen::SparseMatrix<double> ReferenceBody::observation(const Eigen::VectorXd& q, const ModelSetting& setting) const {
     return impl_->frames.derivative(q, in_small_strain(setting));
+}
+
+std::optional<Points> ReferenceBody::discretisation_error(const Eigen::VectorXd& q, const ModelSetting& setting,
+                                                          const Action& action, const Tangent& J) const {
+    if (impl_->options.measured_on_mesh || action.memory) return std::nullopt;
+    const Impl::Finer& finer = impl_->finer.get([&] { return Impl::Finer(*impl_, fem::refine(impl_->body.mesh())); });
+    const auto& factor = dynamic_cast<const FemTangent&>(J).factor();
+    const std::optional<Eigen::VectorXd> u =
+        fem::refined_equilibrium({finer.own->body, finer.interpolation}, q, factor,
+                                 impl_->setting(setting, material(setting), action), finer.own->load(action));
+    if (!u) return std::nullopt;
+    const bool small_strain = in_small_strain(setting);
+    return finer.own->frames.positions(*u, small_strain) - impl_->frames.positions(q, small_strain);
 }
 
 Eigen::VectorXd ReferenceBody::advance(const Eigen::VectorXd& q, const Eigen::VectorXd& step,

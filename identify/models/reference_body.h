@@ -11,6 +11,7 @@ struct ReferenceBodyOptions {
     std::optional<double> young = {};    // a first guess [MPa]
     std::optional<double> poisson = {};  // as it is told, not to be fitted; absent: it is
     fem::Dilatation dilatation = fem::Dilatation::mean;
+    bool measured_on_mesh = false;  // what is measured was computed on this very mesh, and has its errors
 };
 
 /// The body of finite elements as a model: laws linear, svk, neo-hooke; parameters ln E and ln(1 - 2 nu).
@@ -41,6 +42,8 @@ public:
                                     const Action& action) const override;
     Points observe(const Eigen::VectorXd& q, const ModelSetting& setting) const override;
     Eigen::SparseMatrix<double> observation(const Eigen::VectorXd& q, const ModelSetting& setting) const override;
+    std::optional<Points> discretisation_error(const Eigen::VectorXd& q, const ModelSetting& setting,
+                                               const Action& action, const Tangent& J) const override;
     Eigen::VectorXd advance(const Eigen::VectorXd& q, const Eigen::VectorXd& step,
                             const ModelSetting& setting) const override;
     std::shared_ptr<const Memory> remember(const Eigen::VectorXd& q, const ModelSetting& setting,

@@ -26,6 +26,7 @@ std::unique_ptr<identify::ReferenceBody> fill(const identify::MeasurementSet& se
                                 ? ready_made_body(*set.rest_volume, set.rest_surface, {})
                                 : make_body(set.rest_surface, {.edge_length = edge, .volume_change = 0.06}, progress);
     identify::ReferenceBodyOptions options;
+    options.measured_on_mesh = set.rest_volume.has_value();
     options.density = set.density.value_or(default_density * fem::tonne_per_mm3);
     if (set.material && set.material->young > 0) options.young = set.material->young;
     if (set.material && !std::isnan(set.material->poisson)) {

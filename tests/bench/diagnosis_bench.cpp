@@ -8,7 +8,8 @@
 // --ladder adds what is named, and tells the skeleton's error before and after, fitted and on held-out probes.
 // --tell lists all that was screened and fitted, with its numbers; on standard error what goes on.
 // --ablate leaves a part of the method out, to show what it is for: "whitening" (contacts and clamps are taken at their
-// word), "mesh-error" (so is the body next to them), "gates" (whatever has evidence is claimed, the likeliest first).
+// word), "mesh-error" (so is the body next to them), "correction" (of the mesh by halved edges), "gates" (whatever has
+// evidence is claimed, the likeliest first).
 // "--body skeleton" does without the reference body.
 
 #include <fmt/format.h>
@@ -67,6 +68,9 @@ identify::DiagnoseOptions ablated(const std::vector<std::string>& parts) {
         } else if (part == "mesh-error") {
             nuisances.softness = nuisances.clamp = nuisances.dent = nuisances.ragged = nuisances.flow = none;
             options.mesh_error = 0;
+            options.refit.correct_for_mesh = false;
+        } else if (part == "correction") {
+            options.refit.correct_for_mesh = false;
         } else if (part == "gates") {
             options.least_lead = 0;
             options.most_left = options.most_left_together = options.most_left_held_out = options.most_pull = INFINITY;
@@ -218,7 +222,7 @@ int main(int argc, char** argv) {
     app.add_option("--ablate", options.ablations, "A part to leave out of the method")
         ->expected(1)
         ->take_all()
-        ->check(CLI::IsMember({"whitening", "mesh-error", "gates"}));
+        ->check(CLI::IsMember({"whitening", "mesh-error", "correction", "gates"}));
     app.add_option("--coarser", options.coarser, "Elements so much longer")->check(CLI::PositiveNumber);
     app.add_flag("--ladder", options.ladder, "Add what is named");
     app.add_flag("--tell", options.tell, "All that was screened and fitted");

@@ -61,8 +61,10 @@ struct SmallBody {
         return body;
     }
 
+    /// For twins, whose readings are those of this very mesh.
     std::unique_ptr<ReferenceBody> reference() const {
-        return std::make_unique<ReferenceBody>(mesh, supports, markers, ReferenceBodyOptions{.young = 0.1});
+        return std::make_unique<ReferenceBody>(mesh, supports, markers,
+                                               ReferenceBodyOptions{.young = 0.1, .measured_on_mesh = true});
     }
 
     /// Five spheres along the axis; stiffnesses of the section: EA/L, 2 EI/L at both ends, GJ/L.

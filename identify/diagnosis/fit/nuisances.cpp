@@ -165,6 +165,16 @@ std::vector<std::vector<mesh::Contact>> contacts_that_dent(const Problem& proble
     return dents;
 }
 
+/// What was taken off for the mesh, more or less of it.
+void add_discretisation(const Problem& problem, double sd, Nuisances& nuisances) {
+    const Eigen::Index last = nuisances.columns.cols();
+    nuisances.columns.conservativeResize(Eigen::NoChange, last + 1);
+    nuisances.columns.col(last) = problem.discretisation.cwiseQuotient(problem.sigma);
+    nuisances.precisions.conservativeResize(last + 1);
+    nuisances.precisions[last] = 1 / (sd * sd);
+    nuisances.names.emplace_back("error of the mesh");
+}
+
 }  // namespace
 
 double effective_radius(const BodyModel& model, const mesh::Contact& contact) {
@@ -206,8 +216,10 @@ Nuisances make_nuisances(const BodyModel& model, const Problem& problem, const E
                               }
                               return result;
                           }};
-    return {sensitivities(model, problem, explanation, forward, {signatures}, threads).front(),
-            Eigen::Map<Eigen::VectorXd>(all.precisions.data(), std::ssize(all.precisions)), all.names};
+    Nuisances result{sensitivities(model, problem, explanation, forward, {signatures}, threads).front(),
+                     Eigen::Map<Eigen::VectorXd>(all.precisions.data(), std::ssize(all.precisions)), all.names};
+    if (problem.discretisation.size() > 0) add_discretisation(problem, options.discretisation, result);
+    return result;
 }
 
 Eigen::VectorXd reading_weights(const BodyModel& model, const Problem& problem, const Explanation& explanation,

@@ -34,7 +34,8 @@ struct Refit {
 
 struct RefitOptions {
     int threads = 1;
-    int steps = 12;  // Gauss-Newton's in each of two rounds, at most
+    bool correct_for_mesh = true;  // take the mesh's error, as halved edges tell it, off the readings
+    int steps = 12;                // Gauss-Newton's in each of two rounds, at most
     /// Whitened rms that another fit has left. A fit is abandoned if it would leave 1.5 times as much even with three
     /// times the predicted decrease, or if it has five times as much after six steps.
     double rival = INFINITY;

@@ -64,6 +64,19 @@ std::vector<ScreenedEffect> Search::screen_at(const Refit& base, const std::vect
     return result;
 }
 
+void Search::refit_tried(const Problem& corrected) {
+    problem_ = corrected;
+    stages_ = problem_.by_stage ? problem_ : problem_.stage_by_stage();
+    const double least = leader() ? 0.5 * leader()->log_bayes_factor : 0;
+    for (FittedExplanation& one : tried_) {
+        if (one.log_bayes_factor < least) continue;
+        report(progress_, "refit with a finer mesh's correction", 0.9);
+        Refit start = one.fit;
+        start.V.reset();
+        if (auto found = refit_from(one.fit.explanation, start, one.effects)) one = std::move(*found);
+    }
+}
+
 void Search::screen_all() {
     screened_.assign(baselines_.laws(), {});
     // small strain, and the best of the laws of large deformation: they are alike

@@ -22,6 +22,9 @@ public:
 
     void single_effects();
     void put_together();  // @pre single_effects
+    /// Fits once more, from where they stand, to a problem whose readings were corrected: the explanations with at
+    /// least half the leader's evidence. @pre the baselines were
+    void refit_tried(const Problem& corrected);
 
     std::vector<Candidate> ranking() const;  // by evidence, most first
     const std::vector<FittedExplanation>& tried() const { return tried_; }
@@ -53,7 +56,7 @@ private:
     bool was_tried(const std::vector<std::string>& names) const;
 
     const BodyModel& model_;
-    const Problem problem_, stages_;
+    Problem problem_, stages_;
     const Baselines& baselines_;
     const std::vector<std::shared_ptr<const EffectHypothesis>>& effects_;
     const DiagnoseOptions& options_;

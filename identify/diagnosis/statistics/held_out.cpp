@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "identify/diagnosis/search/crushing.h"
+#include "identify/diagnosis/statistics/discretisation.h"
 #include "mesh/errors.h"
 
 namespace palpate::identify {
@@ -110,7 +111,9 @@ HeldOutPrediction predict_response(const BodyModel& model, const Problem& unseen
 }
 
 HeldOut predict(const BodyModel& model, const Problem& merged, const Refit& fit, const RefitOptions& options) {
-    const auto [explanation, covariance, unseen, forward] = predict_response(model, merged, fit, options);
+    auto [explanation, covariance, unseen, forward] = predict_response(model, merged, fit, options);
+    if (options.correct_for_mesh)
+        unseen.correct_for(discretisation_error(model, unseen, explanation, forward, options.threads));
     const Eigen::VectorXd error = (unseen.measured - unseen.pick(forward.markers)).cwiseQuotient(unseen.sigma);
     const Nuisances nuisances = make_nuisances(model, unseen, explanation, forward, options.threads, options.nuisances);
     const Eigen::MatrixXd own = sensitivities(model, unseen, explanation, forward,

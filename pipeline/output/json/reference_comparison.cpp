@@ -51,7 +51,12 @@ json baseline_json(const identify::BodyModel& model, const identify::Problem& pr
                    {"young_mpa", model.young(setting)},
                    {"poisson", nullptr},
                    {"poisson_sd", nullptr},
-                   {"unsure_mm", identify::errors_of(problem, fit).nuisance_sd}};
+                   {"unsure_mm", identify::errors_of(problem, fit).nuisance_sd},
+                   {"discretisation_mm", nullptr}};
+    if (problem.discretisation.size() > 0) {
+        result["discretisation_mm"] =
+            std::sqrt(problem.discretisation.squaredNorm() / static_cast<double>(problem.rows()));
+    }
     const auto& parameters = model.parameters();
     const auto nu = std::ranges::find(parameters, "compressibility", &identify::StiffnessParameter::name);
     if (nu != parameters.end()) {

@@ -95,7 +95,7 @@ TEST_F(HeavyBeam, ComparisonHasTheKeysOfTheContract) {
     for (const char* key : {"rms_mm", "max_mm", "relative", "whitened_rms"}) {
         EXPECT_TRUE(compare["reference"].contains(key)) << key;
     }
-    for (const char* key : {"law", "young_mpa", "poisson", "poisson_sd", "unsure_mm"}) {
+    for (const char* key : {"law", "young_mpa", "poisson", "poisson_sd", "unsure_mm", "discretisation_mm"}) {
         EXPECT_TRUE(compare["baseline"].contains(key)) << key;
     }
     for (const char* key : {"rms_mm", "whitened_rms", "p_value", "strange"}) {

@@ -15,7 +15,7 @@ using testing::IsEmpty;
 using testing::UnorderedElementsAre;
 
 constexpr int markers = 3, states = 6;
-constexpr double sigma = 0.1;
+constexpr double reading_sigma = 0.1;
 
 /// Three markers 20 mm apart in six states, as a small rig reads them: 18 readings.
 class SmallRig : public testing::Test {
@@ -28,7 +28,7 @@ protected:
             for (int m = 0; m < markers; ++m) state.readings.push_back({m, set.markers[m].rest});
             set.states.push_back(state);
         }
-        problem_ = make_problem(set, sigma);
+        problem_ = make_problem(set, reading_sigma);
         errors_ = RandomStream(3, 0, 0).normals(static_cast<int>(problem_.rows()));
     }
 
@@ -37,8 +37,8 @@ protected:
         const Vec3 apart = problem_.measured.segment<3>(3 * other) - problem_.measured.segment<3>(3 * one);
         problem_.measured.segment<3>(3 * one) += apart;
         problem_.measured.segment<3>(3 * other) -= apart;
-        errors_.segment<3>(3 * one) += apart / sigma;
-        errors_.segment<3>(3 * other) -= apart / sigma;
+        errors_.segment<3>(3 * one) += apart / reading_sigma;
+        errors_.segment<3>(3 * other) -= apart / reading_sigma;
     }
 
     Problem problem_;

@@ -13,7 +13,7 @@ namespace {
 
 using testing::IsEmpty;
 
-constexpr int states = 8;
+constexpr int grid_states = 8;
 
 /// Markers on a 6 x 5 grid, 5 mm apart, in eight states: 240 readings, 720 rows.
 class Grid : public testing::Test {
@@ -22,7 +22,7 @@ protected:
         MeasurementSet set;
         set.name = "grid";
         for (int m = 0; m < 30; ++m) set.markers.push_back({m, Vec3(5 * (m % 6), 5 * (m / 6), 0), {}});
-        for (int s = 0; s < states; ++s) {
+        for (int s = 0; s < grid_states; ++s) {
             LoadState state{.probe = s, .contacts = {{Vec3::Zero(), Vec3(0, 0, 1 + s), 1}}};
             for (const Marker& marker : set.markers) state.readings.push_back({marker.id, marker.rest});
             set.states.push_back(state);

@@ -69,14 +69,14 @@ TEST(SolveShifted, ColumnsShareTheirDirections) {
 }
 
 /// A block whose links differ, seen at its spheres.
-struct Body {
+struct FittedBody {
     skeleton::Model model;
     MeasurementSet set;
     PositionDomain domain;
     LogNormalPrior prior;
     FitResult fit;
 
-    explicit Body(EquilibriumLaw law)
+    explicit FittedBody(EquilibriumLaw law)
         : model(with_law(make_lattice({3, 2, 2}), law)),
           set(measured()),
           domain(make_domain(model, Scope::links, set)) {
@@ -100,7 +100,7 @@ INSTANTIATE_TEST_SUITE_P(Perturbed, OfBothLaws,
                          testing::Values(EquilibriumLaw::linear, EquilibriumLaw::large_rotation));
 
 TEST_P(OfBothLaws, TransposedProductsGoWithTheOthers) {
-    const Body body(GetParam());
+    const FittedBody body(GetParam());
     const ErrorJacobian jacobian = body.jacobian();
     const Eigen::MatrixXd V = columns(body.domain.parameters().size(), 3, 5);
     std::vector<Eigen::MatrixXd> D;  // -J V
@@ -112,7 +112,7 @@ TEST_P(OfBothLaws, TransposedProductsGoWithTheOthers) {
 }
 
 TEST_P(OfBothLaws, StepsAreAsWideAsThePosterior) {
-    const Body body(GetParam());
+    const FittedBody body(GetParam());
     const ErrorJacobian jacobian = body.jacobian();
     const auto P = static_cast<int>(body.prior.mean.size());
     const SymmetricProduct A = whitened_curvature(jacobian, body.prior);
@@ -137,7 +137,7 @@ TEST_P(OfBothLaws, StepsAreAsWideAsThePosterior) {
 }
 
 TEST_P(OfBothLaws, APromiseOfTheLinearLawIsKept) {
-    const Body body(GetParam());
+    const FittedBody body(GetParam());
     PositionDomain sharper = body.domain;
     sharper.set_model_error(1e-6);
     const FitResult found = fit_map(sharper, body.prior, body.fit.theta, 1);
@@ -149,7 +149,7 @@ TEST_P(OfBothLaws, APromiseOfTheLinearLawIsKept) {
 }
 
 TEST(PerturbedParticles, MixturesOfFewDrawsAreAsWide) {
-    const Body body(EquilibriumLaw::linear);
+    const FittedBody body(EquilibriumLaw::linear);
     const auto P = static_cast<int>(body.prior.mean.size());
     const GaussianProposal proposal = laplace_proposal(body.fit, body.prior);
     const PerturbedSteps steps = perturbed_steps(body.jacobian(), body.prior, body.fit.spectrum, 40, 1);

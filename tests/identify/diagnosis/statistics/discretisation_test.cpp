@@ -1,0 +1,89 @@
+#include "identify/diagnosis/statistics/discretisation.h"
+
+#include <gtest/gtest.h>
+
+#include "identify/diagnosis/diagnose.h"
+#include "tests/identify/small_body.h"
+
+namespace palpate::identify {
+namespace {
+
+constexpr double noise = 0.02;  // [mm]
+
+/// A plate of one element in thickness, held along an edge, which readings of a finer mesh are fitted to.
+class Discretisation : public testing::Test {
+protected:
+    static mesh::VolumeMesh plate(const Eigen::Vector3i& cells) {
+        return mesh::to_quadratic(mesh::make_bar(Vec3::Zero(), Vec3(60, 40, 4), cells));
+    }
+    Discretisation() {
+        body_.mesh = plate({5, 3, 1});
+        body_.supports = {mesh::BoxRegion{Vec3(-1, -1, -1), Vec3(0.1, 41, 5)}};
+        body_.markers.clear();
+        for (const double x : {8.0, 17.0, 26.0, 35.0, 44.0, 53.0, 59.0}) {
+            for (const double y : {3.0, 12.0, 21.0, 30.0, 38.0})
+                body_.markers.push_back({static_cast<int>(body_.markers.size()), Vec3(x, y, 4), {}});
+        }
+        std::vector<LoadState> states{LoadState{.probe = 0}};
+        for (const auto& [x, y, force] : {std::tuple{55, 8, -0.002}, {55, 32, 0.002}, {30, 20, -0.006}, {50, 20, 0.003}}) {
+            states.push_back({.probe = static_cast<int>(states.size()),
+                              .time = 1,
+                              .contacts = {{Vec3(x, y, 4), Vec3(0, 0, force), 5}}});
+        }
+        set_ = body_.set(std::move(states));
+    }
+
+    /// As a mesh of half the edges reads it, which differs from that of the body halved.
+    MeasurementSet read() const {
+        const ReferenceBody truth(plate({12, 8, 2}), body_.supports, body_.markers);
+        return make_twin(truth, set_, bare_truth(truth, 2), noise);
+    }
+
+    Diagnosis diagnose(bool measured_on_mesh) const {
+        const ReferenceBody model(body_.mesh, body_.supports, body_.markers,
+                                  {.young = 0.1, .measured_on_mesh = measured_on_mesh});
+        DiagnoseOptions options;
+        options.screen = false;
+        return identify::diagnose(model, read(), options);
+    }
+
+    SmallBody body_;
+    MeasurementSet set_;
+};
+
+TEST_F(Discretisation, IsTakenOffWhatAThinPlateIsFittedTo) {
+    const Diagnosis corrected = diagnose(false), plain = diagnose(true);
+    const auto young = [](const Diagnosis& d) { return std::exp(d.baseline.explanation.theta[0]); };
+    // Halved edges leave a quarter of the error of plates, whose bending converges with the square of the edge.
+    EXPECT_LT(std::abs(young(corrected) - SmallBody::young), 0.25 * std::abs(young(plain) - SmallBody::young));
+    EXPECT_EQ(corrected.verdict, Verdict::adequate);
+    EXPECT_EQ(corrected.problem.discretisation.size(), corrected.problem.rows());
+    EXPECT_EQ(plain.problem.discretisation.size(), 0);
+}
+
+TEST_F(Discretisation, OfAnotherProblemIsFoundByActionAndMarker) {
+    Problem whole = make_problem(set_, noise);
+    whole.correct_for(Eigen::VectorXd::LinSpaced(whole.rows(), 0, 1));
+    std::vector<char> drop(whole.actions.size(), 0);
+    drop[1] = 1;
+    Problem part = whole.without_actions(drop);
+    const Eigen::VectorXd expected = part.discretisation;
+    part.correct_for({});
+    EXPECT_EQ(discretisation_of(whole, part), expected);
+    EXPECT_EQ(discretisation_of(part, whole).size(), 0);  // which does not tell
+    part.correct_for(expected);
+    EXPECT_EQ(discretisation_of(part, whole).size(), 0);  // which lacks an action
+}
+
+TEST_F(Discretisation, ReadingsStayWhatTheyWere) {
+    Problem problem = make_problem(set_, noise);
+    const Eigen::VectorXd measured = problem.measured, moved = problem.displacement();
+    problem.correct_for(Eigen::VectorXd::Constant(problem.rows(), 0.5));
+    EXPECT_EQ(problem.measured, measured - Eigen::VectorXd::Constant(problem.rows(), 0.5));
+    EXPECT_LT((problem.displacement() - moved).cwiseAbs().maxCoeff(), 1e-12);  // rounding
+    problem.correct_for({});
+    EXPECT_LT((problem.measured - measured).cwiseAbs().maxCoeff(), 1e-12);
+}
+
+}  // namespace
+}  // namespace palpate::identify
