@@ -8,7 +8,7 @@ namespace {
 
 constexpr double left = 0.05;         // of the difference between the meshes, at the end
 constexpr double forcing = 0.02;      // of a step's error, below what Newton's linearisation leaves [Dembo et al. 1982]
-constexpr int most_steps = 4;         // of Newton's method; one or two suffice
+constexpr int most_steps = 3;         // of Newton's method; one or two suffice
 constexpr double shortest = 1.0 / 8;  // step
 
 void clear_held(const std::vector<char>& held, Eigen::VectorXd& x) {

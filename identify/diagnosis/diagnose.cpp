@@ -140,11 +140,13 @@ private:
 
     /// Once more where an effect explains the readings: it may move the body far from where the baseline stood.
     void correct_for_mesh_with_effect() {
-        if (!explained() || result_.problem.discretisation.size() == 0) return;
+        const Problem& problem = result_.problem;
+        if (!explained() || problem.discretisation.size() == 0) return;
+        if (rms(problem.discretisation.cwiseQuotient(problem.sigma)) < much_for_noise) return;
         const Refit& fit = leader()->fit;
         if (fit.explanation.has_memory() || correct_for_mesh(fit.explanation, fit.forward) < much_for_noise) return;
-        baselines_.refit(result_.problem);
-        search_->refit_tried(result_.problem);
+        baselines_.refit(problem);
+        search_->refit_tried(problem);
         result_.ranking = search_->ranking();
         result_.tried = search_->tried();
     }

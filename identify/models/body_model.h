@@ -96,7 +96,7 @@ public:
 
     // Further queries of the diagnosis.
 
-    /// How far the markers of an equilibrium with the tangent J would move on a mesh of halved edges (m x 3) [mm];
+    /// How far the markers of an equilibrium with the tangent J would move on a finer mesh (m x 3) [mm];
     /// nothing where the model has no such mesh, or cannot tell.
     virtual std::optional<Points> discretisation_error(const Eigen::VectorXd& /*q*/, const ModelSetting& /*setting*/,
                                                        const Action& /*action*/, const Tangent& /*J*/) const {

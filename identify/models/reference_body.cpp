@@ -9,6 +9,7 @@
 #include <tuple>
 
 #include "fem/elements/patch_load.h"
+#include "fem/interpolation/interpolation.h"
 #include "fem/interpolation/refine.h"
 #include "fem/large_deformation/lazy.h"
 #include "fem/large_deformation/refined_equilibrium.h"
@@ -107,7 +108,7 @@ struct ReferenceBody::Impl {
     Points skin;
     Eigen::VectorXd skin_areas;
 
-    /// The body on a mesh of halved edges.
+    /// The body on a finer mesh.
     struct Finer;
     fem::Lazy<Finer> finer;
 
@@ -127,9 +128,11 @@ struct ReferenceBody::Impl {
 };
 
 struct ReferenceBody::Impl::Finer {
-    explicit Finer(const Impl& coarse, fem::RefinedMesh refined)
-        : own(std::make_unique<Impl>(refined.mesh, coarse.supports, coarse.markers, coarse.options)),
-          interpolation(std::move(refined.interpolation)) {}
+    Finer(const Impl& coarse, const fem::RefinedMesh& refined) : interpolation(refined.interpolation) {
+        ReferenceBodyOptions own_options = coarse.options;
+        own_options.finer.reset();
+        own = std::make_unique<Impl>(refined.mesh, coarse.supports, coarse.markers, own_options);
+    }
 
     std::unique_ptr<const Impl> own;
     Eigen::SparseMatrix<double, Eigen::RowMajor> interpolation;
@@ -266,7 +269,12 @@ Eigen::SparseMatrix<double> ReferenceBody::observation(const Eigen::VectorXd& q,
 std::optional<Points> ReferenceBody::discretisation_error(const Eigen::VectorXd& q, const ModelSetting& setting,
                                                           const Action& action, const Tangent& J) const {
     if (impl_->options.measured_on_mesh || action.memory) return std::nullopt;
-    const Impl::Finer& finer = impl_->finer.get([&] { return Impl::Finer(*impl_, fem::refine(impl_->body.mesh())); });
+    const Impl::Finer& finer = impl_->finer.get([&] {
+        const mesh::VolumeMesh& coarse = impl_->body.mesh();
+        const std::optional<mesh::VolumeMesh>& given = impl_->options.finer;
+        if (!given) return Impl::Finer(*impl_, fem::refine(coarse));
+        return Impl::Finer(*impl_, {*given, fem::interpolation(coarse, given->nodes)});
+    });
     const auto& factor = dynamic_cast<const FemTangent&>(J).factor();
     const std::optional<Eigen::VectorXd> u =
         fem::refined_equilibrium({finer.own->body, finer.interpolation}, q, factor,

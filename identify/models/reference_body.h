@@ -12,6 +12,8 @@ struct ReferenceBodyOptions {
     std::optional<double> poisson = {};  // as it is told, not to be fitted; absent: it is
     fem::Dilatation dilatation = fem::Dilatation::mean;
     bool measured_on_mesh = false;  // what is measured was computed on this very mesh, and has its errors
+    /// Quadratic tetrahedra of the same body that tell the error of the others; absent: those with halved edges.
+    std::optional<mesh::VolumeMesh> finer = {};
 };
 
 /// The body of finite elements as a model: laws linear, svk, neo-hooke; parameters ln E and ln(1 - 2 nu).

@@ -95,15 +95,18 @@ MeshedBody ready_made_body(const mesh::VolumeMesh& given, const mesh::Surface& s
     return body;
 }
 
+double thickness_of(const mesh::Surface& surface) {
+    return 2 * std::abs(mesh::signed_volume(surface)) / mesh::area(surface);
+}
+
 double edge_of_sheet(const mesh::Surface& surface, double nodes) {
     // A sheet of one element has A / (sqrt(3)/4 h^2) triangles on its surface and some 3.2 nodes for each of them.
     return std::sqrt(3.2 / (std::sqrt(3.0) / 4) * mesh::area(surface) / nodes);
 }
 
 double edge_for_thickness(const mesh::Surface& surface, double edge, double nodes) {
-    const double thickness = 2 * std::abs(mesh::signed_volume(surface)) / mesh::area(surface);
     constexpr double slenderest = 4;
-    return std::min(edge, std::max(slenderest * thickness, edge_of_sheet(surface, nodes)));
+    return std::min(edge, std::max(slenderest * thickness_of(surface), edge_of_sheet(surface, nodes)));
 }
 
 double default_edge_length(const mesh::Surface& surface) {

@@ -36,6 +36,9 @@ MeshedBody ready_made_body(const mesh::VolumeMesh& mesh, const mesh::Surface& bo
 /// Elements by default: 6 % of the longest side, and shorter where the body is thinner (`edge_for_thickness`) [mm].
 double default_edge_length(const mesh::Surface& surface);
 
+/// How thick a closed body is on average, 2 V / A [mm].
+double thickness_of(const mesh::Surface& surface);
+
 /// The edge length, no longer than `edge`, at which a thin body bends as it should: elements are at most four times as
 /// long as the body is thick on average, 2 V / A, as far as `nodes` quadratic nodes allow [mm].
 double edge_for_thickness(const mesh::Surface& surface, double edge, double nodes);

@@ -11,8 +11,13 @@ Eigen::VectorXd discretisation_error(const BodyModel& model, const Problem& prob
                                      const ForwardSolution& forward, int threads) {
     const ModelSetting setting = explanation.setting();
     const auto count = static_cast<int>(problem.actions.size());
+    // What could not be told elsewhere, or is none as nothing acts, is not tried again: it takes longest.
+    std::vector<char> is_worth(count, problem.discretisation.size() == 0);
+    for (Eigen::Index n = 0; n < problem.discretisation.size(); ++n)
+        if (problem.discretisation[n] != 0) is_worth[problem.action[n]] = 1;
     std::vector<std::optional<Points>> seen(count);  // by how much the markers are seen elsewhere
     for_each_in_parallel(count, threads, [&](int k) {
+        if (!is_worth[k]) return;
         const Action& action = forward.actions[k];
         const auto tangent = model.tangent(forward.q[k], setting, action);
         const std::optional<Points> error = model.discretisation_error(forward.q[k], setting, action, *tangent);
