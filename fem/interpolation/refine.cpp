@@ -54,6 +54,7 @@ const std::array<Pieces, 3>& pieces_by_diagonal() {
 RefinedMesh refine(const mesh::VolumeMesh& body) {
     assert(body.is_quadratic());
     std::vector<Eigen::Triplet<double>> weights;
+    weights.reserve(60 * body.nodes.rows());  // about eight nodes for one, of ten weights or less
     for (int n = 0; n < body.nodes.rows(); ++n) weights.emplace_back(n, n, 1);
     auto count = static_cast<int>(body.nodes.rows());
     std::map<std::pair<int, int>, int> middles;  // of the edges of pieces
