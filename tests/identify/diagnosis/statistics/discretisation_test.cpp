@@ -25,7 +25,8 @@ protected:
                 body_.markers.push_back({static_cast<int>(body_.markers.size()), Vec3(x, y, 4), {}});
         }
         std::vector<LoadState> states{LoadState{.probe = 0}};
-        for (const auto& [x, y, force] : {std::tuple{55, 8, -0.002}, {55, 32, 0.002}, {30, 20, -0.006}, {50, 20, 0.003}}) {
+        for (const auto& [x, y, force] :
+             {std::tuple{55, 8, -0.002}, {55, 32, 0.002}, {30, 20, -0.006}, {50, 20, 0.003}}) {
             states.push_back({.probe = static_cast<int>(states.size()),
                               .time = 1,
                               .contacts = {{Vec3(x, y, 4), Vec3(0, 0, force), 5}}});
