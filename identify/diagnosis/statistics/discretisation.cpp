@@ -4,6 +4,7 @@
 #include <map>
 
 #include "identify/numerics/parallel.h"
+#include "mesh/errors.h"
 
 namespace palpate::identify {
 
@@ -19,11 +20,14 @@ Eigen::VectorXd discretisation_error(const BodyModel& model, const Problem& prob
     for_each_in_parallel(count, threads, [&](int k) {
         if (!is_worth[k]) return;
         const Action& action = forward.actions[k];
-        const auto tangent = model.tangent(forward.q[k], setting, action);
-        const std::optional<Points> error = model.discretisation_error(forward.q[k], setting, action, *tangent);
-        if (error) seen[k] = explanation.see(problem, forward.stand[k] + *error) - forward.markers[k];
+        try {
+            const auto tangent = model.tangent(forward.q[k], setting, action);
+            const std::optional<Points> error = model.discretisation_error(forward.q[k], setting, action, *tangent);
+            if (error) seen[k] = explanation.see(problem, forward.stand[k] + *error) - forward.markers[k];
+        } catch (const SolverFailure&) {  // on the verge of buckling: not told
+        }
     });
-    if (std::ranges::none_of(seen, [](const auto& one) { return one.has_value(); })) return {};
+    if (std::ranges::none_of(seen, [](const auto& one) { return one.has_value(); })) return problem.discretisation;
     Eigen::VectorXd result = Eigen::VectorXd::Zero(problem.rows());
     if (problem.discretisation.size() > 0) result = problem.discretisation;
     for (Eigen::Index n = 0; n < problem.rows(); ++n) {
