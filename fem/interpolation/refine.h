@@ -9,8 +9,8 @@ namespace palpate::fem {
 /// A body whose elements were each cut into eight.
 struct RefinedMesh {
     mesh::VolumeMesh mesh;
-    Eigen::SparseMatrix<double, Eigen::RowMajor>
-        interpolation;  // a field of the coarse nodes at the fine ones (n' x n)
+    /// A field of the coarse nodes at the fine ones (n' x n).
+    Eigen::SparseMatrix<double, Eigen::RowMajor> interpolation;
 };
 
 /// Halves the edges of quadratic elements: four of the pieces lie at the corners, the octahedron between them is cut

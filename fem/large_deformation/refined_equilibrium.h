@@ -7,7 +7,7 @@
 
 namespace palpate::fem {
 
-/// A body on a mesh and on that of halved edges (fem/interpolation/refine.h).
+/// A body on a finer mesh, as one of halved edges (fem/interpolation/refine.h), and how it follows from a coarser one.
 struct RefinedBody {
     const HyperelasticBody& body;                                       // on the finer mesh
     const Eigen::SparseMatrix<double, Eigen::RowMajor>& interpolation;  // coarse fields at its nodes (n' x n)
@@ -15,7 +15,8 @@ struct RefinedBody {
 
 /// Where the finer body stands in a state whose equilibrium on the coarse mesh is `coarse` (3n), with the tangent J
 /// there, under the dead load f on the finer nodes (3n'): by Newton's method, solved on two grids. It ends once
-/// a twentieth of the difference between the two meshes is left to go.
+/// a twentieth of the difference between the two meshes is left to go, by the
+/// preconditioner's estimate.
 /// @return (3n'); nothing where it does not get there, as where elements turn inside out under a sharp contact, and
 /// where effects release what is held.
 std::optional<Eigen::VectorXd> refined_equilibrium(const RefinedBody& refined, const Eigen::VectorXd& coarse,

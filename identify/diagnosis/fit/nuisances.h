@@ -14,7 +14,8 @@ struct NuisanceOptions {
     double gain_at_support = 0.3;  // of ln force of a probe that reaches a support
     double dent = 0.1;             // of the local indentation, unknown for each reading
     double ragged = 0.15;          // of what a marker at a support's border moves against it, unknown for each reading
-    /// Of the mesh's error that was computed and taken off: halved edges leave a third of it or less, and what another
+    /// Of the mesh's error that was computed and taken off: halved edges leave a third of it where it falls with
+    /// the square of the edge, and what another
     /// program computed on such a mesh has it, too.
     double discretisation = 0.5;
     double flow = 0.01;  // of the displacement of a body that yields, unknown for each reading

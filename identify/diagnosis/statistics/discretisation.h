@@ -4,7 +4,7 @@
 
 namespace palpate::identify {
 
-/// How far the readings would be off by the model's mesh: what halved edges would alter in an explanation's equilibria
+/// How far the readings would be off by the model's mesh: what a finer one would alter in an explanation's equilibria
 /// (N) [mm]. An action where that cannot be told keeps what `problem.discretisation` tells of it, else 0; empty where
 /// the model cannot tell of any.
 Eigen::VectorXd discretisation_error(const BodyModel& model, const Problem& problem, const Explanation& explanation,
