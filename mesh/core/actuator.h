@@ -1,0 +1,27 @@
+#pragma once
+
+#include <string>
+#include <variant>
+
+#include "mesh/core/surface.h"
+#include "mesh/types.h"
+
+namespace palpate::mesh {
+
+/// Pressure in the closed cavity nearest to a point, or in one that a surface describes.
+struct PressureActuator {
+    std::variant<Vec3, Surface> cavity;
+};
+/// A cable through the body along a path, straight between its points and fixed at the last one.
+struct TendonActuator {
+    Points path;             // (p x 3) [mm], at rest
+    bool by_length = false;  // a value is the length drawn in [mm]; else the tension [N]
+};
+
+/// What acts on a body from inside, and is known.
+struct Actuator {
+    std::string name;
+    std::variant<PressureActuator, TendonActuator> kind;
+};
+
+}  // namespace palpate::mesh
