@@ -232,22 +232,29 @@ private:
     bool explained() const { return leader() != nullptr; }
     const Refit& leading() const { return explained() ? leader()->fit : baseline(); }
 
-    static double rms_of(const Eigen::VectorXd& v, const std::vector<char>& keep) {
-        double sum = 0;
-        for (Eigen::Index n = 0; n < v.size(); ++n) sum += keep[n] ? v[n] * v[n] : 0;
-        return std::sqrt(sum / static_cast<double>(std::ranges::count(keep, 1)));
+    /// What a fit to some of the readings alone would leave of their errors d, rms in sigmas, by its linearisation.
+    static double rms_without(const Whitening& V, const Eigen::VectorXd& d, const std::vector<char>& keep) {
+        std::vector<Eigen::Index> dropped;
+        for (std::size_t n = 0; n < keep.size(); ++n) {
+            if (!keep[n]) dropped.push_back(static_cast<Eigen::Index>(n));
+        }
+        const Eigen::VectorXd y = V.apply(d), own = y(dropped);
+        const double chi_square = d.dot(y) - own.dot(V.solve_within(dropped, own));
+        return std::sqrt(chi_square / static_cast<double>(std::ranges::count(keep, 1)));
     }
 
     /// Readings that are off by themselves, as a fit sees them; true where some were set aside.
     bool set_outliers_aside(const Refit& fit, double least) {
         if (options_.leaves_out(*single_readings_) || !result_.outliers.readings.empty()) return false;
         tell(single_readings_->name(), 0.4);
-        const Outliers found = find_outliers(result_.problem, fit.residual);
+        const Whitening V = with_numbers_unknown(fit);
+        const Outliers found =
+            find_outliers(result_.problem, fit.residual, find_exchanged_markers(result_.problem, V, fit.error));
         if (found.log_bayes_factor < std::max(least, options_.least_outliers)) return false;
         const int before = result_.problem.readings();
         const std::vector<char> keep = rows_without(result_.problem, found.readings);
         constexpr double little = 3;  // rms, whitened: where more is left without them, they are not what is wrong
-        if (rms_of(fit.residual, keep) > little) return false;
+        if (rms_without(V, fit.error, keep) > little) return false;
         result_.outliers = found;
         result_.outliers.readings.clear();
         for (std::size_t n = 0; n < keep.size(); ++n) {
@@ -289,13 +296,26 @@ private:
     /// Once an effect explains the rest, or nothing does, the same; only where noise is left then. True where some were
     /// set aside.
     bool set_outliers_aside_next_to_effect() {
+        if (!explained()) return set_outliers_aside_next_to(baseline(), 0);
+        if (leaves_only_noise(leader()->fit, options_)) {
+            return set_outliers_aside_next_to(
+                leader()->fit, least_next_to_effect(*single_readings_, *leader(), result_.problem, options_));
+        }
+        // Wrong readings favour what bends to them: another effect may lead without them.
+        std::vector<FittedExplanation> rivals;
+        for (const FittedExplanation& one : result_.tried) {
+            if (one.log_bayes_factor > 0.5 * leader()->log_bayes_factor) rivals.push_back(one);
+        }
+        std::ranges::stable_sort(rivals, std::greater{}, &FittedExplanation::log_bayes_factor);
+        return std::ranges::any_of(
+            rivals, [&](const FittedExplanation& one) { return set_outliers_aside_next_to(one.fit, 0); });
+    }
+
+    bool set_outliers_aside_next_to(const Refit& fit, double least) {
         const Diagnosis before = result_;
-        const Refit leads = leading();
-        const bool is_explained = explained() && leaves_only_noise(leads, options_);
-        const double least =
-            is_explained ? least_next_to_effect(*single_readings_, *leader(), result_.problem, options_) : 0;
-        if (!set_outliers_aside(leads, least)) return false;
-        if (!leaves_only_noise(without_them(leads), options_)) {
+        const Refit at = fit;
+        if (!set_outliers_aside(at, least)) return false;
+        if (!leaves_only_noise(without_them(at), options_)) {
             result_ = before;
             return false;
         }

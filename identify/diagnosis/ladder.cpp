@@ -277,7 +277,10 @@ private:
         const Refit& fit = found.best();
         Unseen result{held_out, predict(body_, make_problem(held_out, found.noise), fit, how)};
         if (!set_readings_aside(effects)) return result;
-        const Outliers off = find_outliers(make_problem(held_out, found.noise), result.predicted.residual);
+        const Problem problem = make_problem(held_out, found.noise);
+        const Eigen::VectorXd& residual = result.predicted.residual;
+        const Outliers off =
+            find_outliers(problem, residual, find_exchanged_markers(problem, noise_alone(problem.rows()), residual));
         result.set = without_readings(held_out, off.readings);
         result.predicted = predict(body_, make_problem(result.set, found.noise), fit, how);
         return result;

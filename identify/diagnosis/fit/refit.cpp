@@ -317,6 +317,14 @@ Refit refit(const BodyModel& model, const Problem& problem, const Explanation& e
     return at;
 }
 
+Whitening with_numbers_unknown(const Refit& fit) {
+    Eigen::MatrixXd columns(fit.error.size(), fit.nuisances.columns.cols() + fit.columns.cols());
+    columns << fit.nuisances.columns, fit.columns;
+    Eigen::VectorXd precisions(columns.cols());
+    precisions << fit.nuisances.precisions, fit.prior_sd.cwiseAbs2().cwiseInverse();
+    return {fit.V->weights(), columns, precisions};
+}
+
 double objective(const Refit& fit) {
     return objective(*fit.V, fit.error, {fit.prior_mean, fit.prior_sd, {}, {}, {}, {}}, fit.explanation.all());
 }

@@ -49,6 +49,9 @@ struct RefitOptions {
 Refit refit(const BodyModel& model, const Problem& problem, const Explanation& explanation, const RefitOptions& options,
             const Refit* start = nullptr);
 
+/// Whitening with the numbers of a fit among the unknowns, about where it stands: what readings tell of each other.
+Whitening with_numbers_unknown(const Refit& fit);
+
 /// Half of chi^2 and of the priors' squares: what a refit lowers.
 double objective(const Refit& fit);
 

@@ -56,6 +56,11 @@ Eigen::VectorXd Whitening::solve_within(const std::vector<Eigen::Index>& rows, c
     return unweighted.cwiseProduct(x);
 }
 
+Eigen::MatrixXd Whitening::absorbed() const {
+    if (B_.cols() == 0) return Eigen::MatrixXd(0, weights_.size());
+    return inner_.matrixL().solve((weights_.asDiagonal() * B_).transpose());
+}
+
 Eigen::VectorXd Whitening::nuisance_sd() const {
     // In sigmas: the nuisances' share A Lambda^-1 A^T, and what a weight below 1 stands for, W^-2 - 1.
     const Eigen::VectorXd of_weights = weights_.array().square().inverse() - 1;
@@ -63,6 +68,8 @@ Eigen::VectorXd Whitening::nuisance_sd() const {
     const Eigen::MatrixXd A = weights_.cwiseInverse().asDiagonal() * B_;
     return ((A * precisions_.cwiseSqrt().cwiseInverse().asDiagonal()).rowwise().squaredNorm() + of_weights).cwiseSqrt();
 }
+
+Whitening noise_alone(Eigen::Index N) { return {Eigen::VectorXd::Ones(N), Eigen::MatrixXd(N, 0), Eigen::VectorXd(0)}; }
 
 ScreenResult screen(const Whitening& V, const Eigen::VectorXd& d, const Eigen::MatrixXd& b,
                     const Eigen::VectorXd& tau) {

@@ -24,6 +24,8 @@ public:
     /// [V^-1]_gg^-1 y for some rows g (n) and y (n), at the price of one factorisation of the nuisances: it is
     ///   W_g^-1 (1 + B_g (B^T B + Lambda - B_g^T B_g)^-1 B_g^T) W_g^-1. [Woodbury]
     Eigen::VectorXd solve_within(const std::vector<Eigen::Index>& rows, const Eigen::VectorXd& y) const;
+    /// G (c x N) of V^-1 = W^2 - G^T G: blocks of V^-1 at the price of a product.
+    Eigen::MatrixXd absorbed() const;
     const Eigen::VectorXd& weights() const { return weights_; }
     /// Prior standard deviation of each error by nuisances (N), in sigmas of noise; noise itself not
     /// counted.
@@ -35,6 +37,9 @@ private:
     Eigen::LLT<Eigen::MatrixXd> inner_;  // B^T B + Lambda
     double log_determinant_ = 0;
 };
+
+/// V of noise alone, 1 sigma each (N).
+Whitening noise_alone(Eigen::Index N);
 
 /// The evidence of columns b (N x p) with prior standard deviations tau (p), beside no such effect:
 ///   s = b^T V^-1 d, M = b^T V^-1 b: ln BF = s^T (M + tau^-2)^-1 s / 2 - ln |1 + tau M tau| / 2.

@@ -191,6 +191,23 @@ void Search::confirm_single_effects() {
     for (int other = 0; other < baselines_.laws(); ++other) {
         if (other != law && !screened_[other].empty()) confirm_under(other);
     }
+    restart_leader();
+}
+
+/// A strong effect lies far from where the screen's linearisation holds, which may have led it to the wrong law. A
+/// leader that leaves far more than noise is fitted anew under the others, whatever the screen promised there.
+void Search::restart_leader() {
+    constexpr double much = 2;  // whitened rms: where less is left, a second effect may account for it
+    if (!leader() || leader()->fit.whitened_rms < much) return;
+    const std::size_t leads = index_of_leader();
+    const int own = tried_[leads].fit.explanation.law;
+    for (int law = 0; law < baselines_.laws(); ++law) {
+        if (law == own || screened_[law].empty()) continue;
+        report(progress_,
+               fmt::format("restart with {}, law {}", tried_[leads].effects.front()->name(), model_.laws()[law]), 0.78);
+        std::optional<FittedExplanation> found = carry_over(tried_[leads], law);
+        if (found) keep_better(std::move(*found));
+    }
 }
 
 /// Where nothing explains the readings under the law that promised most, something may under this one: what leads its

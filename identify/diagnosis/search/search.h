@@ -43,6 +43,7 @@ private:
     void confirm_at_load_response(int law);
     void try_other_laws(std::size_t tried);
     void confirm_under(int law);
+    void restart_leader();
     void keep_better(FittedExplanation found);
     std::optional<FittedExplanation> carry_over(const FittedExplanation& single, int law) const;
     bool extend(std::size_t from, int most);

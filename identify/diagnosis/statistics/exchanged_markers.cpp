@@ -9,27 +9,62 @@
 namespace palpate::identify {
 namespace {
 
+using Vec6 = Eigen::Vector<double, 6>;
+using Mat6 = Eigen::Matrix<double, 6, 6>;
+
 /// A reading of three coordinates.
 struct WholeReading {
     int marker = 0, reading = 0;
-    Vec3 error, at, sigma;  // in sigmas; [mm]
+    Eigen::Index row = 0;  // of its first coordinate
+    Vec3 at, sigma;        // [mm]
+    double residual = 0;   // length, in sigmas
 };
 
-/// Readings of three coordinates, by state.
+/// Readings of three coordinates, by state. `residual` (N): in sigmas.
 std::map<int, std::vector<WholeReading>> whole_readings(const Problem& problem, const Eigen::VectorXd& residual) {
     std::map<int, std::vector<WholeReading>> states;
     for (Eigen::Index n = 0; n + 2 < problem.rows(); ++n) {
         if (problem.reading[n] != problem.reading[n + 2]) continue;
-        states[problem.state[n]].push_back({problem.coordinate[n] / 3, problem.reading[n], residual.segment<3>(n),
-                                            problem.measured.segment<3>(n), problem.sigma.segment<3>(n)});
+        states[problem.state[n]].push_back({problem.coordinate[n] / 3, problem.reading[n], n,
+                                            problem.measured.segment<3>(n), problem.sigma.segment<3>(n),
+                                            residual.segment<3>(n).norm()});
     }
     return states;
 }
 
-/// The error of reading `one` if the other's position were its own [sigmas].
-Vec3 error_with_label_of(const WholeReading& one, const WholeReading& other) {
-    return one.error + (other.at - one.at).cwiseQuotient(one.sigma);
+/// What an exchange of labels adds to the errors of a pair [sigmas].
+Vec6 exchanged(const WholeReading& one, const WholeReading& other) {
+    Vec6 change;
+    change << (other.at - one.at).cwiseQuotient(one.sigma), (one.at - other.at).cwiseQuotient(other.sigma);
+    return change;
 }
+
+/// What the other readings tell of pairs.
+class PairPredictions {
+public:
+    PairPredictions(const Whitening& V, const Eigen::VectorXd& d)
+        : y_(V.apply(d)), absorbed_(V.absorbed()), weights_(V.weights()) {}
+
+    /// [V^-1 d] of a pair.
+    Vec6 pull(const WholeReading& one, const WholeReading& other) const {
+        Vec6 y;
+        y << y_.segment<3>(one.row), y_.segment<3>(other.row);
+        return y;
+    }
+    /// [V^-1] of a pair: precision of its errors as predicted from all other readings.
+    Mat6 precision(const WholeReading& one, const WholeReading& other) const {
+        Eigen::Matrix<double, Eigen::Dynamic, 6> G(absorbed_.rows(), 6);
+        G << absorbed_.middleCols<3>(one.row), absorbed_.middleCols<3>(other.row);
+        Vec6 w;
+        w << weights_.segment<3>(one.row), weights_.segment<3>(other.row);
+        return Mat6(w.cwiseAbs2().asDiagonal()) - G.transpose() * G;
+    }
+
+private:
+    Eigen::VectorXd y_;         // V^-1 d
+    Eigen::MatrixXd absorbed_;  // G of V^-1 = W^2 - G^T G
+    Eigen::VectorXd weights_;
+};
 
 /// Length of an error that is no more than the other readings of a state have, those of a pair apart [sigmas].
 double ordinary_error(const std::vector<WholeReading>& state, std::size_t one, std::size_t other) {
@@ -38,7 +73,7 @@ double ordinary_error(const std::vector<WholeReading>& state, std::size_t one, s
     std::vector<double> lengths;
     lengths.reserve(state.size());
     for (std::size_t i = 0; i < state.size(); ++i) {
-        if (i != one && i != other) lengths.push_back(state[i].error.norm());
+        if (i != one && i != other) lengths.push_back(state[i].residual);
     }
     if (lengths.empty()) return rough * chi_median;
     const auto middle = lengths.begin() + std::ssize(lengths) / 2;
@@ -48,8 +83,10 @@ double ordinary_error(const std::vector<WholeReading>& state, std::size_t one, s
 
 }  // namespace
 
-std::vector<ExchangedMarkers> find_exchanged_markers(const Problem& problem, const Eigen::VectorXd& residual) {
-    const auto states = whole_readings(problem, residual);
+std::vector<ExchangedMarkers> find_exchanged_markers(const Problem& problem, const Whitening& V,
+                                                     const Eigen::VectorXd& d) {
+    const auto states = whole_readings(problem, V.residual(d));
+    const PairPredictions predictions(V, d);
     double pairs = 1;
     for (const auto& [number, state] : states) pairs += 0.5 * static_cast<double>(state.size() * (state.size() - 1));
     constexpr double false_alarms = 1e-6;  // expected in a set; labels are exchanged rarely
@@ -58,13 +95,15 @@ std::vector<ExchangedMarkers> find_exchanged_markers(const Problem& problem, con
     for (const auto& [number, state] : states) {
         for (std::size_t i = 0; i < state.size(); ++i) {
             for (std::size_t j = i + 1; j < state.size(); ++j) {
-                const Vec3 first = error_with_label_of(state[i], state[j]);
-                const Vec3 second = error_with_label_of(state[j], state[i]);
-                const double told = state[i].error.squaredNorm() + state[j].error.squaredNorm();
-                const double ratio = 0.5 * (told - first.squaredNorm() - second.squaredNorm());
+                // chi^2 falls by y^T P^-1 y - (y + P change)^T P^-1 (y + P change)
+                const Vec6 change = exchanged(state[i], state[j]), y = predictions.pull(state[i], state[j]);
+                if (change.dot(y) >= 0) continue;
+                const Mat6 P = predictions.precision(state[i], state[j]);
+                const double ratio = -change.dot(y) - 0.5 * change.dot(P * change);
                 if (ratio < least) continue;
+                const Vec6 left = y + P * change;
                 const double most = ordinary_error(state, i, j);
-                if (first.norm() > most || second.norm() > most) continue;
+                if (left.dot(P.ldlt().solve(left)) > 2 * most * most) continue;
                 likely.push_back(
                     {number, {state[i].marker, state[j].marker}, {state[i].reading, state[j].reading}, ratio});
             }

@@ -3,6 +3,7 @@
 #include <utility>
 #include <vector>
 
+#include "identify/diagnosis/fit/whitening.h"
 #include "identify/diagnosis/problem.h"
 
 namespace palpate::identify {
@@ -16,8 +17,10 @@ struct ExchangedMarkers {
 };
 
 /// Pairs of markers, each with three coordinates, that fit a state far better with their labels exchanged: more likely
-/// than by chance among all pairs of all states, and left with errors as its other readings have. `residual` (N), in
-/// sigmas. The likeliest first, each reading once.
-std::vector<ExchangedMarkers> find_exchanged_markers(const Problem& problem, const Eigen::VectorXd& residual);
+/// than by chance among all pairs of all states, and left with errors as its other readings have. `d` (N): errors of a
+/// fit, in sigmas; V: of noise and all that is unknown, the numbers of the fit among it, which few readings bend to a
+/// wrong label. The likeliest first, each reading once.
+std::vector<ExchangedMarkers> find_exchanged_markers(const Problem& problem, const Whitening& V,
+                                                     const Eigen::VectorXd& d);
 
 }  // namespace palpate::identify

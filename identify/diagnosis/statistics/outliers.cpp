@@ -90,11 +90,12 @@ double noise_by_roughness(const Problem& problem, const Eigen::VectorXd& error_m
     return roughness(problem, error_mm).scale / noise_roughness();
 }
 
-Outliers find_outliers(const Problem& problem, const Eigen::VectorXd& residual) {
+Outliers find_outliers(const Problem& problem, const Eigen::VectorXd& residual,
+                       std::vector<ExchangedMarkers> exchanged_ones) {
     const Roughness rough_ones = roughness(problem, residual);
     const double scale = std::max(rough_ones.scale, noise_roughness());
     Outliers result;
-    result.exchanged = find_exchanged_markers(problem, residual);
+    result.exchanged = std::move(exchanged_ones);
     std::set<int> exchanged;
     for (const ExchangedMarkers& one : result.exchanged) {
         exchanged.insert({one.readings.first, one.readings.second});

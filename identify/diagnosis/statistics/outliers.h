@@ -27,10 +27,11 @@ struct Outliers {
     std::vector<ExchangedMarkers> exchanged = {};  // whose readings are among them
 };
 
-/// Readings of markers whose labels are exchanged, and those rougher than 5 scales, or 5 times what noise of 1 sigma
+/// Readings of markers whose labels are `exchanged`, and those rougher than 5 scales, or 5 times what noise of 1 sigma
 /// makes, if they are no more than a tenth of all; more is no matter of single readings. The evidence is that of a
 /// mixture, averaged over shares of .3 to 10 % and widths of 4 to 60. `residual` (N), in sigmas.
-Outliers find_outliers(const Problem& problem, const Eigen::VectorXd& residual);
+Outliers find_outliers(const Problem& problem, const Eigen::VectorXd& residual,
+                       std::vector<ExchangedMarkers> exchanged = {});
 
 /// Flags of the rows that belong to none of the readings (N).
 std::vector<char> rows_without(const Problem& problem, const std::vector<int>& readings);
