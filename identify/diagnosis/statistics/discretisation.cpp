@@ -1,40 +1,128 @@
 #include "identify/diagnosis/statistics/discretisation.h"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 
 #include "identify/numerics/parallel.h"
 #include "mesh/errors.h"
 
 namespace palpate::identify {
+namespace {
+
+/// Under which tolerance, rms over sigma, the error may be scaled from a larger load of the same kind: that it is not
+/// in proportion to the displacement alters it by a tenth or so, which is nothing next to noise then.
+constexpr double small_for_noise = 1;
+
+double total(const Action& action) {
+    double sum = 0;
+    for (const mesh::Contact& contact : action.contacts) sum += contact.force.norm();
+    return sum;
+}
+
+/// Do the same contacts press along the same lines, by more or less, on a body that remembers nothing?
+bool press_alike(const Action& a, const Action& b) {
+    return !a.memory && !b.memory && a.pressure == b.pressure && a.gravity == b.gravity &&
+           std::ranges::equal(a.contacts, b.contacts, [](const mesh::Contact& x, const mesh::Contact& y) {
+               constexpr double aligned = 0.999;
+               return x.point == y.point && x.radius == y.radius &&
+                      x.force.dot(y.force) > aligned * x.force.norm() * y.force.norm();
+           });
+}
+
+/// For each action the one with the largest load of its kind, often itself.
+std::vector<int> largest_alike(const std::vector<Action>& actions) {
+    std::vector<int> largest(actions.size());
+    for (std::size_t k = 0; k < actions.size(); ++k) {
+        largest[k] = static_cast<int>(k);
+        for (std::size_t j = 0; j < actions.size(); ++j) {
+            if (total(actions[j]) > total(actions[largest[k]]) && press_alike(actions[j], actions[k]))
+                largest[k] = static_cast<int>(j);
+        }
+    }
+    return largest;
+}
+
+/// Errors of the mesh in an explanation's equilibria, as the markers are seen.
+class MeshErrors {
+public:
+    MeshErrors(const BodyModel& model, const Problem& problem, const Explanation& explanation,
+               const ForwardSolution& forward, int threads)
+        : model_(model),
+          problem_(problem),
+          explanation_(explanation),
+          forward_(forward),
+          threads_(threads),
+          seen_(problem.actions.size()),
+          is_worth_(problem.actions.size(), problem.discretisation.size() == 0) {
+        // What could not be told elsewhere, or is none as nothing acts, is not tried again: it takes longest.
+        for (Eigen::Index n = 0; n < problem.discretisation.size(); ++n)
+            if (problem.discretisation[n] != 0) is_worth_[problem.action[n]] = 1;
+    }
+
+    void compute(const std::vector<int>& actions) {
+        const ModelSetting setting = explanation_.setting();
+        for_each_in_parallel(static_cast<int>(actions.size()), threads_, [&](int i) {
+            const int k = actions[i];
+            if (!is_worth_[k]) return;
+            const Action& action = forward_.actions[k];
+            try {
+                const auto tangent = model_.tangent(forward_.q[k], setting, action);
+                const auto error = model_.discretisation_error(forward_.q[k], setting, action, *tangent);
+                if (error) seen_[k] = explanation_.see(problem_, forward_.stand[k] + *error) - forward_.markers[k];
+            } catch (const SolverFailure&) {  // on the verge of buckling: not told
+            }
+        });
+    }
+
+    /// In proportion to that of another action, by how far the markers move.
+    void scale(int k, int from) {
+        if (!seen_[from]) return;
+        const Points own = forward_.stand[k] - problem_.rest, other = forward_.stand[from] - problem_.rest;
+        seen_[k] = own.cwiseProduct(other).sum() / other.squaredNorm() * *seen_[from];
+    }
+
+    bool is_told() const {
+        return std::ranges::any_of(seen_, [](const auto& one) { return one.has_value(); });
+    }
+
+    /// (N) [mm]
+    Eigen::VectorXd in_rows() const {
+        Eigen::VectorXd result = Eigen::VectorXd::Zero(problem_.rows());
+        if (problem_.discretisation.size() > 0) result = problem_.discretisation;
+        for (Eigen::Index n = 0; n < problem_.rows(); ++n) {
+            const auto& own = seen_[problem_.action[n]];
+            if (own) result[n] = (*own)(problem_.coordinate[n] / 3, problem_.coordinate[n] % 3);
+        }
+        return result;
+    }
+
+private:
+    const BodyModel& model_;
+    const Problem& problem_;
+    const Explanation& explanation_;
+    const ForwardSolution& forward_;
+    int threads_;
+    std::vector<std::optional<Points>> seen_;  // by how much the markers are seen elsewhere (K of m x 3) [mm]
+    std::vector<char> is_worth_;
+};
+
+}  // namespace
 
 Eigen::VectorXd discretisation_error(const BodyModel& model, const Problem& problem, const Explanation& explanation,
                                      const ForwardSolution& forward, int threads) {
-    const ModelSetting setting = explanation.setting();
-    const auto count = static_cast<int>(problem.actions.size());
-    // What could not be told elsewhere, or is none as nothing acts, is not tried again: it takes longest.
-    std::vector<char> is_worth(count, problem.discretisation.size() == 0);
-    for (Eigen::Index n = 0; n < problem.discretisation.size(); ++n)
-        if (problem.discretisation[n] != 0) is_worth[problem.action[n]] = 1;
-    std::vector<std::optional<Points>> seen(count);  // by how much the markers are seen elsewhere
-    for_each_in_parallel(count, threads, [&](int k) {
-        if (!is_worth[k]) return;
-        const Action& action = forward.actions[k];
-        try {
-            const auto tangent = model.tangent(forward.q[k], setting, action);
-            const std::optional<Points> error = model.discretisation_error(forward.q[k], setting, action, *tangent);
-            if (error) seen[k] = explanation.see(problem, forward.stand[k] + *error) - forward.markers[k];
-        } catch (const SolverFailure&) {  // on the verge of buckling: not told
-        }
-    });
-    if (std::ranges::none_of(seen, [](const auto& one) { return one.has_value(); })) return problem.discretisation;
-    Eigen::VectorXd result = Eigen::VectorXd::Zero(problem.rows());
-    if (problem.discretisation.size() > 0) result = problem.discretisation;
-    for (Eigen::Index n = 0; n < problem.rows(); ++n) {
-        const auto& own = seen[problem.action[n]];
-        if (own) result[n] = (*own)(problem.coordinate[n] / 3, problem.coordinate[n] % 3);
-    }
-    return result;
+    const std::vector<int> largest = largest_alike(forward.actions);
+    std::vector<int> large, smaller;
+    for (int k = 0; k < static_cast<int>(largest.size()); ++k) (largest[k] == k ? large : smaller).push_back(k);
+    MeshErrors errors(model, problem, explanation, forward, threads);
+    errors.compute(large);
+    if (!errors.is_told()) return problem.discretisation;
+    for (const int k : smaller) errors.scale(k, largest[k]);
+    const Eigen::VectorXd scaled = errors.in_rows();
+    const double size = scaled.cwiseQuotient(problem.sigma).norm() / std::sqrt(static_cast<double>(problem.rows()));
+    if (size < small_for_noise) return scaled;
+    errors.compute(smaller);
+    return errors.in_rows();
 }
 
 Eigen::VectorXd discretisation_of(const Problem& known, const Problem& problem) {

@@ -77,6 +77,29 @@ TEST_F(Discretisation, IsToldByAFinerMeshThatIsGiven) {
     EXPECT_LT((*error - expected).norm(), 0.2 * expected.norm());
 }
 
+TEST_F(Discretisation, OfSmallerLoadsIsScaledWhereNoiseHidesTheDifference) {
+    LoadState strong = set_.states[1];
+    strong.contacts[0].force *= 2;
+    std::vector<LoadState> states{strong};
+    for (const double share : {1.0 / 3, 2.0 / 3}) {
+        states.push_back(strong);
+        states.back().time += share;
+        states.back().contacts[0].force *= share;
+    }
+    const ReferenceBody model(body_.mesh, body_.supports, body_.markers);
+    const MeasurementSet set = body_.set(std::move(states));
+    const Explanation bare = bare_truth(model, 2);
+    const auto error_at = [&](double sigma) {
+        const Problem problem = make_problem(set, sigma);
+        return discretisation_error(model, problem, bare, solve_forward(model, problem, bare, 1), 1);
+    };
+    const Eigen::VectorXd scaled = error_at(10), own = error_at(1e-3);
+    ASSERT_GT(own.norm(), 0);
+    EXPECT_NE(scaled, own);
+    // Geometry stiffens a plate that is bent so far: a tenth of the error.
+    EXPECT_LT((scaled - own).norm(), 0.1 * own.norm());
+}
+
 TEST_F(Discretisation, OfAnotherProblemIsFoundByActionAndMarker) {
     Problem whole = make_problem(set_, noise);
     whole.correct_for(Eigen::VectorXd::LinSpaced(whole.rows(), 0, 1));

@@ -74,7 +74,7 @@ TEST_F(SmallRig, TwoStatesMayEachHaveAnExchange) {
     EXPECT_EQ(found().size(), 2u);
 }
 
-/// A fit of a few numbers to few readings bends to the wrong labels: judged by what it leaves, they are no exchange.
+/// A fit of a few numbers to few readings bends to the wrong labels: judged by what it leaves, others look exchanged.
 TEST_F(SmallRig, AFitThatWasBentByThemHidesNoExchange) {
     constexpr int numbers = 6;
     exchange(12, 14);
@@ -84,7 +84,7 @@ TEST_F(SmallRig, AFitThatWasBentByThemHidesNoExchange) {
     const Eigen::VectorXd precisions = Eigen::VectorXd::Constant(numbers, 1e-6);
     const Whitening V(Eigen::VectorXd::Ones(problem_.rows()), C, precisions);
     errors_ = V.residual(errors_);  // less what the fit explains
-    EXPECT_THAT(found(), IsEmpty());
+    for (const ExchangedMarkers& pair : found()) EXPECT_NE(pair.readings, std::pair(12, 14));
     const auto pairs = find_exchanged_markers(problem_, V, errors_);
     ASSERT_EQ(pairs.size(), 1u);
     EXPECT_EQ(pairs[0].readings, std::pair(12, 14));
