@@ -8,6 +8,7 @@
 #include "identify/measurements/field.h"
 #include "identify/measurements/labels/label_readings.h"
 #include "identify/measurements/plausibility.h"
+#include "identify/measurements/rig/fittable.h"
 #include "mesh/errors.h"
 #include "mesh/formats/read_body.h"
 #include "mesh/supports/support_points.h"
@@ -114,8 +115,11 @@ void choose_material(Subject& subject) {
 
 identify::MeasurementSet read_measurements(const std::filesystem::path& path, std::vector<std::string>& notes,
                                            double edge_length) {
-    identify::LabelledSet labelled =
-        identify::label_readings(identify::with_markers_of_fields(identify::read_measurement_set(path)));
+    identify::MeasurementSet read = identify::read_measurement_set(path);
+    identify::take_displacements_from_rest(read);
+    std::ranges::move(read.notes, std::back_inserter(notes));
+    read.notes.clear();
+    identify::LabelledSet labelled = identify::label_readings(identify::with_markers_of_fields(read));
     std::ranges::transform(identify::notes(labelled), std::back_inserter(notes),
                            [](const std::string& words) { return words + "."; });
     std::ranges::copy(identify::implausible(labelled.set), std::back_inserter(notes));

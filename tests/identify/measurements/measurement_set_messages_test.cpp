@@ -13,8 +13,8 @@ namespace fs = std::filesystem;
 // What a user can get wrong in set.yaml.
 
 TEST_F(MeasurementSetFiles, OfAnotherFormatAreRefused) {
-    EXPECT_TRUE(says(refusal_of_yaml("measurements/1", "measurements/2"),
-                     {"set.yaml, line 1", "palpate-measurements/2", "/1"}));
+    EXPECT_TRUE(says(refusal_of_yaml("measurements/1", "measurements/3"),
+                     {"set.yaml, line 1", "palpate-measurements/3", "/1", "/2"}));
     EXPECT_TRUE(says(refusal_of_yaml("format: palpate-measurements/1\n", ""), {"set.yaml", "'format' is missing"}));
     EXPECT_TRUE(says(refusal_of_yaml("name:", "nam:"), {"line 2", "unknown field 'nam'", "did you mean 'name'"}));
 }

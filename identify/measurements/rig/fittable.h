@@ -1,0 +1,26 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "identify/measurements/measurement_set.h"
+
+namespace palpate::identify {
+
+/// What of a set no model answers to yet, each part by its name and with what to do about it; empty: it can be fitted.
+///
+/// The one place that decides: a part whose physics and likelihood have come is taken out here.
+std::vector<std::string> parts_not_fitted_yet(const MeasurementSet& set);
+
+/// @throws InvalidInput where there are such parts: a fit that ignored them would be wrong.
+void require_fittable(const MeasurementSet& set);
+
+/// Displacements that count from a state in which nothing is known to act (force, gravity, pressure, tool or actuator)
+/// become positions from rest; others stay. The set's notes tell so.
+void take_displacements_from_rest(MeasurementSet& set);
+
+/// Does a set tell any force: of a contact, a tool, a pressure, a tension, or its weight? Without one, stiffness is
+/// known up to a common factor.
+bool tells_a_force(const MeasurementSet& set);
+
+}  // namespace palpate::identify
