@@ -12,12 +12,12 @@ namespace palpate::identify {
 namespace {
 
 [[noreturn]] void refuse(const std::string& what, const Vec3& place, double distance, double allowed,
-                         const mesh::Box& body) {
+                         const mesh::Box& body, const char* hint = "") {
     throw InvalidInput(fmt::format(
         "{} at [{:.4g}] mm lies {:.4g} mm off the rest surface, {:.4g} mm are allowed. The body reaches from [{:.4g}] "
         "to "
-        "[{:.4g}] mm: are the unit (units.length in set.yaml) and the frame the same?",
-        what, fmt::join(place, ", "), distance, allowed, fmt::join(body.min, ", "), fmt::join(body.max, ", ")));
+        "[{:.4g}] mm: are the unit (units.length in set.yaml) and the frame the same?{}",
+        what, fmt::join(place, ", "), distance, allowed, fmt::join(body.min, ", "), fmt::join(body.max, ", "), hint));
 }
 
 }  // namespace
@@ -44,7 +44,8 @@ void check_places(const MeasurementSet& set) {
         const double distance = rest.tree.closest(place).distance;
         if (distance > allowed && (marker.anchor || !rest.holds(place)))
             refuse(fmt::format("markers.csv: {} {}", marker.anchor ? "the anchor of marker" : "marker", marker.id),
-                   place, distance, allowed, body);
+                   place, distance, allowed, body,
+                   marker.anchor ? "" : " A marker that stands off the body is told with its anchor (ax,ay,az).");
         if (marker.anchor && (marker.rest - place).norm() > body.longest_side())
             throw InvalidInput(
                 fmt::format("markers.csv: marker {} at [{:.4g}] mm stands {:.4g} mm off its anchor at [{:.4g}] mm, "

@@ -27,7 +27,7 @@ std::string describe_set(const identify::MeasurementSet& set) {
     std::string text = fmt::format("{} states ({} loaded), {} markers, {} readings", set.states.size(),
                                    loaded_states(set), set.markers.size(), readings);
     if (!set.recordings.empty()) text += fmt::format(", {} recordings of motion", set.recordings.size());
-    if (!set.position_noise) text += "; no noise is stated";
+    if (!set.position_noise && readings > 0) text += "; no noise is stated";
     text += ".\n";
     for (std::string line : rig_in_words(set)) {
         line.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(line.front())));
@@ -158,8 +158,8 @@ void add_grips(const Subject& subject, Outcome& outcome) {
             whole.nodes += part.nodes;
             whole.area += part.area;
         }
-        outcome.text += fmt::format("Tool '{}' grips {} {}, {:.3g} mm^2 of the surface.\n", tool.name, whole.nodes,
-                                    subject.volume ? "nodes of the mesh" : "vertices of the surface", whole.area);
+        outcome.text += fmt::format("Tool '{}' grips {} {} and {:.3g} mm^2 of the surface.\n", tool.name, whole.nodes,
+                                    subject.volume ? "nodes of the mesh" : "vertices", whole.area);
         outcome.json["set"]["tools"][t]["grips"] = {{"nodes", whole.nodes}, {"area_mm2", whole.area}};
         if (whole.nodes > 0 || whole.area > 0) continue;
         const std::string warning = fmt::format(
@@ -206,7 +206,8 @@ Outcome check(const CheckOptions& options, const Common& common) {
     }
     add_supports(subject, outcome);
     if (subject.set) add_grips(subject, outcome);
-    if (subject.set) add_preflight(*subject.set, outcome);
+    const bool is_fittable = !subject.set || identify::parts_not_fitted_yet(*subject.set).empty();
+    if (subject.set && is_fittable) add_preflight(*subject.set, outcome);
     if (!options.output.empty()) {
         write_faults(options.output, subject.surface, places);
         mesh::write_text(options.output / "check.json", outcome.json.dump(2) + "\n");
@@ -214,7 +215,7 @@ Outcome check(const CheckOptions& options, const Common& common) {
             "Written to {}: check.json; surface.vtp and faults.vtp, coloured by 'fault', show where (ParaView).\n",
             options.output.string());
     }
-    if (!subject.set || identify::parts_not_fitted_yet(*subject.set).empty())
+    if (is_fittable)
         outcome.text +=
             "Next: palpate run " + options.input.string() + (faults.empty() ? "" : "    # repairs what it can") + "\n";
     return outcome;

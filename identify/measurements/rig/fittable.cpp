@@ -11,9 +11,9 @@
 namespace palpate::identify {
 namespace {
 
-constexpr const char* what_it_needs =
-    "this version fits forces (probes.csv), gravity and pressure (states.csv) to positions. Take its rows and its "
-    "entry in set.yaml away to fit the states without it; 'palpate check' and 'palpate info' read the set as it is";
+constexpr const char* what_rigs_need =
+    "this version fits forces (probes.csv), gravity and pressure (states.csv) to positions. Take tools and actuators "
+    "out of set.yaml and their tables away to fit the rest; 'palpate check' and 'palpate info' read the set as it is";
 
 int count_of_differences(const MeasurementSet& set) {
     int count = 0;
@@ -44,34 +44,38 @@ bool acts_with_force(const MeasurementSet& set, const Actuation& actuation) {
 
 }  // namespace
 
-std::vector<std::string> parts_not_fitted_yet(const MeasurementSet& set) {
-    std::vector<std::string> parts;
+std::vector<UnfittedPart> parts_not_fitted_yet(const MeasurementSet& set) {
+    std::vector<UnfittedPart> parts;
     for (std::size_t t = 0; t < set.tools.size(); ++t)
         if (moves(set, static_cast<int>(t)))
-            parts.push_back(
-                fmt::format("tool '{}' (motions.csv, reactions.csv): {}", set.tools[t].name, what_it_needs));
+            parts.push_back({fmt::format("tool '{}'", set.tools[t].name), what_rigs_need});
     for (std::size_t a = 0; a < set.actuators.size(); ++a)
         if (acts(set, static_cast<int>(a)))
-            parts.push_back(fmt::format("actuator '{}' (actuations.csv): {}", set.actuators[a].name, what_it_needs));
+            parts.push_back({fmt::format("actuator '{}'", set.actuators[a].name), what_rigs_need});
     if (const int differences = count_of_differences(set); differences > 0)
-        parts.push_back(
-            fmt::format("{} displacements since a state in which something acts (displacements.csv): this version fits "
-                        "positions. Let them count from an unloaded state ('displacements.since' in set.yaml), or from "
-                        "rest",
-                        differences));
+        parts.push_back({fmt::format("{} displacements since a state in which something acts", differences),
+                         "displacements are fitted as positions. Let them count from an unloaded state "
+                         "('displacements.since' in set.yaml), or from rest"});
     if (set.position_correlation)
-        parts.push_back(
-            fmt::format("'correlated.position' ({:.4g} mm): this version takes each reading's noise for its own. Take "
-                        "it out, and give one marker for each such length rather than all, so that none counts twice",
-                        *set.position_correlation));
+        parts.push_back({fmt::format("'correlated.position' ({:.4g} mm)", *set.position_correlation),
+                         "each reading's noise is taken for its own. Take 'correlated' out, and keep one marker for "
+                         "each such length rather than all, so that none counts twice"});
     return parts;
 }
 
+std::string in_words(const std::vector<UnfittedPart>& parts) {
+    std::vector<std::string> names, remedies;
+    for (const UnfittedPart& part : parts) {
+        names.push_back(part.what);
+        if (std::ranges::find(remedies, part.remedy) == remedies.end()) remedies.push_back(part.remedy);
+    }
+    return fmt::format("{}: {}", fmt::join(names, ", "), fmt::join(remedies, "; "));
+}
+
 void require_fittable(const MeasurementSet& set) {
-    const std::vector<std::string> parts = parts_not_fitted_yet(set);
-    if (parts.empty()) return;
-    throw InvalidInput(fmt::format("set '{}': it cannot be fitted yet with {}{}.", set.name, parts.front(),
-                                   parts.size() > 1 ? fmt::format(" (and {} more such parts)", parts.size() - 1) : ""));
+    const std::vector<UnfittedPart> parts = parts_not_fitted_yet(set);
+    if (!parts.empty())
+        throw InvalidInput(fmt::format("set '{}': it cannot be fitted yet with {}.", set.name, in_words(parts)));
 }
 
 void take_displacements_from_rest(MeasurementSet& set) {

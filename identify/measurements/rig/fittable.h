@@ -7,10 +7,18 @@
 
 namespace palpate::identify {
 
-/// What of a set no model answers to yet, each part by its name and with what to do about it; empty: it can be fitted.
-///
-/// The one place that decides: a part whose physics and likelihood have come is taken out here.
-std::vector<std::string> parts_not_fitted_yet(const MeasurementSet& set);
+/// A part of a set that no model answers to yet.
+struct UnfittedPart {
+    std::string what;    // "tool 'ball'"
+    std::string remedy;  // what this version fits, and what to do, without a full stop
+};
+
+/// Those of a set; empty: it can be fitted. The one place that decides: a part whose physics and likelihood have come
+/// is taken out here.
+std::vector<UnfittedPart> parts_not_fitted_yet(const MeasurementSet& set);
+
+/// "tool 'ball', actuator 'cable': this version fits ...": all parts, and each remedy once.
+std::string in_words(const std::vector<UnfittedPart>& parts);
 
 /// @throws InvalidInput where there are such parts: a fit that ignored them would be wrong.
 void require_fittable(const MeasurementSet& set);

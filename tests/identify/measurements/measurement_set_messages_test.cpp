@@ -132,8 +132,8 @@ TEST_F(MeasurementSetFiles, FarOffTheSurfaceAreRefusedWithAHintAtTheUnit) {
 TEST_F(MeasurementSetFiles, MarkersMayLieInsideButNotFarOutside) {
     folder.write("markers.csv", markers + "8,50,10,10,,,\n");  // 10 mm below the surface
     EXPECT_NO_THROW(read());
-    EXPECT_TRUE(
-        says(refusal("markers.csv", markers + "8,50,10,30,,,\n"), {"marker 8", "10 mm off", "5 mm", "units.length"}));
+    EXPECT_TRUE(says(refusal("markers.csv", markers + "8,50,10,30,,,\n"),
+                     {"marker 8", "10 mm off", "5 mm", "units.length", "ax,ay,az"}));
     EXPECT_TRUE(says(refusal("markers.csv", markers + "8,50,10,30,50,10,30\n"), {"the anchor of marker 8", "10 mm"}));
 }
 

@@ -88,8 +88,10 @@ Description describe_set(const fs::path& path) {
     }
     description.lines.push_back(fmt::format("held by {} region{}; surface of {} vertices", set.supports.size(),
                                             set.supports.size() == 1 ? "" : "s", set.rest_surface.vertices.rows()));
-    description.lines.push_back(set.position_noise ? fmt::format("noise {:.3g} mm (1 sigma)", *set.position_noise)
-                                                   : "no noise is stated: it is estimated");
+    if (set.position_noise)
+        description.lines.push_back(fmt::format("noise {:.3g} mm (1 sigma)", *set.position_noise));
+    else if (readings > 0 || set.reaction_noise == std::nullopt)
+        description.lines.emplace_back("no noise is stated: it is estimated");
     if (set.gravity)
         description.lines.push_back(fmt::format("gravity ({:g}, {:g}, {:g}) mm/s^2 is known to act", set.gravity->x(),
                                                 set.gravity->y(), set.gravity->z()));

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "identify/loading/loads.h"
 #include "identify/measurements/rig/cavities.h"
 #include "identify/measurements/rig/fittable.h"
 
@@ -13,6 +14,9 @@ namespace palpate::pipeline {
 namespace {
 
 using nlohmann::json;
+
+/// "1 motion", "2 motions"
+std::string counted(int count, const char* what) { return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s"); }
 
 /// What a tool did in a set.
 struct ToolUse {
@@ -69,21 +73,19 @@ struct ShapeInWords {
         return fmt::format("a body of {} triangles about {}", body.surface.triangles.rows(), at());
     }
     std::string operator()(const mesh::GripShape& grip) const {
-        return fmt::format("a grip of {} region{} about {}", grip.regions.size(), grip.regions.size() == 1 ? "" : "s",
-                           at());
+        return fmt::format("a grip of {} about {}", counted(static_cast<int>(grip.regions.size()), "region"), at());
     }
 };
 
 std::string tool_in_words(const identify::MeasurementSet& set, int number) {
     const mesh::Tool& tool = set.tools[static_cast<std::size_t>(number)];
     const ToolUse use = use_of(set, number);
-    std::string text =
-        fmt::format("tool '{}': {}, {}; {} motions", tool.name, std::visit(ShapeInWords{tool}, tool.shape),
-                    tool.bonded ? "bonded" : "frictionless", use.states);
+    std::string text = fmt::format("tool '{}': {}, {}; {}", tool.name, std::visit(ShapeInWords{tool}, tool.shape),
+                                   tool.bonded ? "bonded" : "frictionless", counted(use.states, "motion"));
     if (!use.free.empty()) text += fmt::format(" (free in some: {})", fmt::join(use.free, ", "));
-    return text + (use.readings > 0
-                       ? fmt::format("; {} readings of its reaction, of {}", use.readings, fmt::join(use.reads, ", "))
-                       : "; its reaction is not read");
+    return text + (use.readings > 0 ? fmt::format("; {} of its reaction, of {}", counted(use.readings, "reading"),
+                                                  fmt::join(use.reads, ", "))
+                                    : "; its reaction is not read");
 }
 
 /// What an actuator was set to in a set.
@@ -134,9 +136,11 @@ const char* unit_of(const mesh::Actuator& actuator) {
 std::string actuator_in_words(const identify::MeasurementSet& set, int number) {
     const mesh::Actuator& actuator = set.actuators[static_cast<std::size_t>(number)];
     const ActuatorUse use = actuation_of(set, number);
-    std::string text = fmt::format("actuator '{}': {}; {} actuations", actuator.name,
-                                   std::visit(ActuatorInWords{set, actuator.name}, actuator.kind), use.states);
-    if (use.states > 0) text += fmt::format(" from {:.4g} to {:.4g} {}", use.least, use.most, unit_of(actuator));
+    std::string text =
+        fmt::format("actuator '{}': {}; {}", actuator.name,
+                    std::visit(ActuatorInWords{set, actuator.name}, actuator.kind), counted(use.states, "actuation"));
+    if (use.states == 1) text += fmt::format(", {:.4g} {}", use.most, unit_of(actuator));
+    if (use.states > 1) text += fmt::format(" from {:.4g} to {:.4g} {}", use.least, use.most, unit_of(actuator));
     return text;
 }
 
@@ -152,7 +156,7 @@ int count_of_displacements(const identify::MeasurementSet& set) {
 
 std::size_t loaded_states(const identify::MeasurementSet& set) {
     return static_cast<std::size_t>(std::ranges::count_if(set.states, [](const identify::LoadState& state) {
-        return !state.contacts.empty() || !state.motions.empty() ||
+        return !state.contacts.empty() || std::ranges::any_of(state.motions, identify::is_off_rest) ||
                std::ranges::any_of(state.actuations, [](const identify::Actuation& a) { return a.value != 0; });
     }));
 }
@@ -166,8 +170,10 @@ std::vector<std::string> rig_in_words(const identify::MeasurementSet& set) {
     if (!lines.empty() && !identify::tells_a_force(set))
         lines.emplace_back(
             "no force is measured: stiffness is identified up to a common factor, only its ratios are told");
-    for (const std::string& part : identify::parts_not_fitted_yet(set))
-        lines.push_back("cannot be fitted yet: " + part);
+    if (set.reaction_noise) lines.push_back(fmt::format("noise of reactions {:.3g} N (1 sigma)", *set.reaction_noise));
+    if (set.moment_noise) lines.push_back(fmt::format("noise of moments {:.3g} N*mm (1 sigma)", *set.moment_noise));
+    const std::vector<identify::UnfittedPart> parts = identify::parts_not_fitted_yet(set);
+    if (!parts.empty()) lines.push_back("cannot be fitted yet: " + identify::in_words(parts));
     return lines;
 }
 
@@ -196,11 +202,13 @@ json rig_json(const identify::MeasurementSet& set) {
                              {"most", use.most},
                              {"unit", unit_of(actuator)}});
     }
+    json not_fitted = json::array();
+    for (const identify::UnfittedPart& part : identify::parts_not_fitted_yet(set)) not_fitted.push_back(part.what);
     return {{"tools", tools},
             {"actuators", actuators},
             {"displacements", count_of_displacements(set)},
             {"tells_a_force", identify::tells_a_force(set)},
-            {"not_fitted_yet", identify::parts_not_fitted_yet(set)}};
+            {"not_fitted_yet", not_fitted}};
 }
 
 }  // namespace palpate::pipeline
