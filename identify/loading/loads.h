@@ -46,7 +46,10 @@ double known_pressure(const LoadState& state);
 /// Gravity known to act in a state: the state's own, else the set's, else none.
 std::optional<Vec3> known_gravity(const MeasurementSet& set, const LoadState& state);
 
-/// Does a force, gravity or pressure act in a state, as far as is known?
+/// Is a tool elsewhere than where it rests? What is left free does not count.
+bool is_off_rest(const mesh::ToolMotion& motion);
+
+/// Does a force, gravity, pressure, tool or actuator act in a state, as far as is known?
 bool is_known_to_act(const MeasurementSet& set, const LoadState& state);
 
 }  // namespace palpate::identify

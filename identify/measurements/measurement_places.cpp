@@ -4,32 +4,32 @@
 
 #include <string>
 
+#include "identify/measurements/rest_body.h"
 #include "mesh/errors.h"
-#include "mesh/geometry/surface_tree.h"
 
 namespace palpate::identify {
 
 namespace {
 
 [[noreturn]] void refuse(const std::string& what, const Vec3& place, double distance, double allowed,
-                         const mesh::Box& body) {
+                         const mesh::Box& body, const char* hint = "") {
     throw InvalidInput(fmt::format(
         "{} at [{:.4g}] mm lies {:.4g} mm off the rest surface, {:.4g} mm are allowed. The body reaches from [{:.4g}] "
         "to "
-        "[{:.4g}] mm: are the unit (units.length in set.yaml) and the frame the same?",
-        what, fmt::join(place, ", "), distance, allowed, fmt::join(body.min, ", "), fmt::join(body.max, ", ")));
+        "[{:.4g}] mm: are the unit (units.length in set.yaml) and the frame the same?{}",
+        what, fmt::join(place, ", "), distance, allowed, fmt::join(body.min, ", "), fmt::join(body.max, ", "), hint));
 }
 
 }  // namespace
 
 void check_places(const MeasurementSet& set) {
-    const mesh::SurfaceTree tree(set.rest_surface);
-    const mesh::Box body = mesh::bounding_box(set.rest_surface.vertices);
+    const RestBody rest(set.rest_surface);
+    const mesh::Box& body = rest.box;
     const double allowed = 0.05 * body.longest_side();
 
     const auto check_contacts = [&](const LoadState& state, const char* file) {
         for (const mesh::Contact& contact : state.contacts) {
-            const double distance = tree.closest(contact.point).distance;
+            const double distance = rest.tree.closest(contact.point).distance;
             if (distance > contact.radius + allowed)
                 refuse(fmt::format("{}: the contact of probe {} at time {}", file, state.probe, state.time),
                        contact.point, distance, contact.radius + allowed, body);
@@ -39,19 +39,13 @@ void check_places(const MeasurementSet& set) {
     for (const Recording& recording : set.recordings)
         for (const LoadState& load : recording.loads) check_contacts(load, "motion_probes.csv");
 
-    // The area vectors of a closed surface cancel. In an open one nobody knows what is inside: the box has to do.
-    const bool closed =
-        mesh::area_vectors(set.rest_surface).colwise().sum().norm() < 1e-6 * mesh::area(set.rest_surface);
-    const auto inside = [&](const Vec3& p) {
-        if (closed) return tree.inside(p);
-        return (p.array() >= body.min.array()).all() && (p.array() <= body.max.array()).all();
-    };
     for (const Marker& marker : set.markers) {
         const Vec3 place = marker.anchor.value_or(marker.rest);
-        const double distance = tree.closest(place).distance;
-        if (distance > allowed && (marker.anchor || !inside(place)))
+        const double distance = rest.tree.closest(place).distance;
+        if (distance > allowed && (marker.anchor || !rest.holds(place)))
             refuse(fmt::format("markers.csv: {} {}", marker.anchor ? "the anchor of marker" : "marker", marker.id),
-                   place, distance, allowed, body);
+                   place, distance, allowed, body,
+                   marker.anchor ? "" : " A marker that stands off the body is told with its anchor (ax,ay,az).");
         if (marker.anchor && (marker.rest - place).norm() > body.longest_side())
             throw InvalidInput(
                 fmt::format("markers.csv: marker {} at [{:.4g}] mm stands {:.4g} mm off its anchor at [{:.4g}] mm, "

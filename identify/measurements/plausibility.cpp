@@ -23,6 +23,9 @@ struct Extremes {
     double softest = std::numeric_limits<double>::infinity();
 };
 
+/// Components that are NaN count as 0.
+double norm_of_known(const Vec3& v) { return v.array().isNaN().select(0, v.array()).matrix().norm(); }
+
 Extremes extremes_of(const MeasurementSet& set) {
     Extremes extremes;
     for (const LoadState& state : set.states) {
@@ -30,8 +33,7 @@ Extremes extremes_of(const MeasurementSet& set) {
         for (const Reading& reading : state.readings) {
             if (reading.marker < 0) continue;
             const Marker& marker = set.markers[reading.marker];
-            const Eigen::Array3d off = (reading.position - marker.rest).array();
-            const double distance = std::sqrt(off.isNaN().select(0, off).square().sum());
+            const double distance = norm_of_known(reading.position - marker.rest);
             moved = std::max(moved, distance);
             if (distance > extremes.moved) {
                 extremes.moved = distance;
@@ -39,6 +41,8 @@ Extremes extremes_of(const MeasurementSet& set) {
             }
         }
         for (const mesh::Contact& contact : state.contacts) force += contact.force.norm();
+        for (const ReactionReading& reading : state.reactions) force += norm_of_known(reading.force);
+        for (const mesh::ToolMotion& motion : state.motions) moved = std::max(moved, norm_of_known(motion.translation));
         if (force > 0 && moved > 0) {
             extremes.stiffest = std::max(extremes.stiffest, force / moved);
             extremes.softest = std::min(extremes.softest, force / moved);

@@ -61,30 +61,6 @@ Region read_point_cloud(const YamlFields& yaml, double unit) {
     return region;
 }
 
-Region read_region(const YamlFields& yaml, double unit) {
-    constexpr std::array kinds{"box", "sphere", "plane", "points"};
-    std::string kind;
-    for (const char* candidate : kinds) {
-        if (!yaml.has(candidate)) continue;
-        if (!kind.empty()) {
-            throw InvalidInput(
-                fmt::format("{}: one region is named '{}' and '{}'; begin a new '- ' item for the second",
-                            yaml.where(candidate), kind, candidate));
-        }
-        kind = candidate;
-    }
-    if (kind.empty()) {
-        yaml.finish();
-        throw InvalidInput(fmt::format("{}: a region is a box, sphere, plane or points", yaml.where("")));
-    }
-    const YamlFields fields = yaml.mapping(kind);
-    yaml.finish();
-    if (kind == "box") return read_box(fields, unit);
-    if (kind == "sphere") return read_sphere(fields, unit);
-    if (kind == "plane") return read_plane(fields, unit);
-    return read_point_cloud(fields, unit);
-}
-
 std::string list(const Vec3& v) { return fmt::format("[{}, {}, {}]", v.x(), v.y(), v.z()); }
 
 std::string reach_of(const PointsRegion& r) {
@@ -110,6 +86,30 @@ struct ToYaml {
 
 }  // namespace
 
+Region read_region(const YamlFields& yaml, double unit) {
+    constexpr std::array kinds{"box", "sphere", "plane", "points"};
+    std::string kind;
+    for (const char* candidate : kinds) {
+        if (!yaml.has(candidate)) continue;
+        if (!kind.empty()) {
+            throw InvalidInput(
+                fmt::format("{}: one region is named '{}' and '{}'; begin a new '- ' item for the second",
+                            yaml.where(candidate), kind, candidate));
+        }
+        kind = candidate;
+    }
+    if (kind.empty()) {
+        yaml.finish();
+        throw InvalidInput(fmt::format("{}: a region is a box, sphere, plane or points", yaml.where("")));
+    }
+    const YamlFields fields = yaml.mapping(kind);
+    yaml.finish();
+    if (kind == "box") return read_box(fields, unit);
+    if (kind == "sphere") return read_sphere(fields, unit);
+    if (kind == "plane") return read_plane(fields, unit);
+    return read_point_cloud(fields, unit);
+}
+
 std::vector<Region> read_regions(const YamlFields& yaml, const std::string& key, double unit) {
     std::vector<Region> regions;
     for (const YamlFields& item : yaml.mappings(key)) regions.push_back(read_region(item, unit));
@@ -127,22 +127,23 @@ std::string regions_to_yaml(const std::vector<Region>& regions, const std::strin
     return text;
 }
 
-std::string regions_to_yaml_in(const std::filesystem::path& folder, const std::vector<Region>& regions) {
+std::string regions_to_yaml_in(const std::filesystem::path& folder, const std::vector<Region>& regions,
+                               const std::string& name, const std::string& indent) {
     constexpr Eigen::Index few = 20;
     std::string text;
     int files = 0;
     for (const Region& region : regions) {
         const auto* cloud = std::get_if<PointsRegion>(&region);
         if (!cloud || cloud->points.rows() <= few) {
-            text += regions_to_yaml({region});
+            text += regions_to_yaml({region}, indent);
             continue;
         }
         std::string table = "x,y,z\n";
         for (const auto& point : cloud->points.rowwise())
             table += fmt::format("{},{},{}\n", point[0], point[1], point[2]);
-        const std::string name = fmt::format("held_{}.csv", ++files);
-        write_text(folder / name, table);
-        text += fmt::format("  - points: {{file: {}, {}}}\n", name, reach_of(*cloud));
+        const std::string file = fmt::format("{}_{}.csv", name, ++files);
+        write_text(folder / file, table);
+        text += fmt::format("{}- points: {{file: {}, {}}}\n", indent, file, reach_of(*cloud));
     }
     return text;
 }

@@ -86,7 +86,8 @@ std::vector<Eigen::Index> narrow_points(const PointsRegion& region, const std::v
 
 }  // namespace
 
-PatchedSupports patched(const std::vector<Region>& supports, const Surface& surface, double edge_length) {
+PatchedSupports patched(const std::vector<Region>& supports, const Surface& surface, double edge_length,
+                        const std::string& name) {
     PatchedSupports result{supports, {}, {}};
     const bool any = std::ranges::any_of(supports, [](const Region& r) {
         const auto* cloud = std::get_if<PointsRegion>(&r);
@@ -104,10 +105,10 @@ PatchedSupports patched(const std::vector<Region>& supports, const Surface& surf
         if (cloud->within < covers * spacing && spacing <= edge_length) {
             cloud->joined = std::min(gap_factor * spacing, edge_length);
             result.notes.push_back(fmt::format(
-                "Support {}: its {} points are {:.3g} mm apart, further than 'within' ({:.3g} mm) covers, and are "
+                "{} {}: its {} points are {:.3g} mm apart, further than 'within' ({:.3g} mm) covers, and are "
                 "joined: what lies between points nearer than {:.3g} mm to each other is held too ('joined: 0' says "
                 "otherwise).",
-                s + 1, cloud->points.rows(), spacing, cloud->within, cloud->joined));
+                name, s + 1, cloud->points.rows(), spacing, cloud->within, cloud->joined));
         }
         const PointsRegion given = *cloud;
         std::vector<Eigen::Index> off;
@@ -115,19 +116,19 @@ PatchedSupports patched(const std::vector<Region>& supports, const Surface& surf
             if (off_the_body(given.points.row(i), given.within)) off.push_back(i);
         if (!off.empty())
             result.warnings.push_back(fmt::format(
-                "Support {}: {} of its {} points lie further than 'within' ({:.3g} mm) off the body and hold nothing "
+                "{} {}: {} of its {} points lie further than 'within' ({:.3g} mm) off the body and hold nothing "
                 "by themselves, the first at ({:.4g}, {:.4g}, {:.4g}) mm. Are their unit and frame those of the rest "
                 "surface?",
-                s + 1, off.size(), given.points.rows(), given.within, given.points(off[0], 0), given.points(off[0], 1),
-                given.points(off[0], 2)));
+                name, s + 1, off.size(), given.points.rows(), given.within, given.points(off[0], 0),
+                given.points(off[0], 1), given.points(off[0], 2)));
         const std::vector<Eigen::Index> narrow =
             narrow_points(given, held_pieces(given, surface, edge_length / 8), edge_length);
         if (narrow.empty() || given.within >= edge_length / 2) continue;
         result.notes.push_back(
-            fmt::format("Support {}: round {} of its {} points it is narrower than an element is long ({:.3g} mm): "
+            fmt::format("{} {}: round {} of its {} points it is narrower than an element is long ({:.3g} mm): "
                         "there all within "
                         "{:.3g} mm of them is held, or no node would be (shorter elements, --edge-length, hold less).",
-                        s + 1, narrow.size(), given.points.rows(), edge_length, edge_length / 2));
+                        name, s + 1, narrow.size(), given.points.rows(), edge_length, edge_length / 2));
         std::get<PointsRegion>(result.regions[s]).joined = std::max(0.0, given.joined);  // it is seen to
         result.regions.emplace_back(PointsRegion{given.points(narrow, Eigen::all), edge_length / 2, 0});
     }

@@ -22,6 +22,8 @@ struct PatchedSupports {
 /// there the region reaches half an element's length round the points, the distance between nodes of a quadratic one.
 /// Other regions, and points of which `joined` is told, stay as they are.
 /// @param edge_length of the elements that are to be held [mm]
-PatchedSupports patched(const std::vector<Region>& supports, const Surface& surface, double edge_length);
+/// @param name what the notes call a region, before its number
+PatchedSupports patched(const std::vector<Region>& supports, const Surface& surface, double edge_length,
+                        const std::string& name = "Support");
 
 }  // namespace palpate::mesh

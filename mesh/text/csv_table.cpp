@@ -67,13 +67,14 @@ void check_columns(const std::vector<std::string>& columns, const std::string& w
 }  // namespace
 
 CsvTable::CsvTable(const std::filesystem::path& file, const std::vector<std::string>& required,
-                   const std::vector<std::string>& optional)
+                   const std::vector<std::string>& optional, const std::vector<std::string>& names)
     : file_(file) {
     const std::string text = read_text(file);
     std::string_view rest = text;
     require_utf8(text, file.filename().string());
     if (rest.starts_with("\xEF\xBB\xBF")) rest.remove_prefix(3);
 
+    std::vector<char> is_name;  // of each column
     for (int line = 1; !rest.empty(); ++line) {
         const auto end = std::min(rest.find('\n'), rest.size());
         const auto cells = split(rest.substr(0, end));
@@ -84,6 +85,7 @@ CsvTable::CsvTable(const std::filesystem::path& file, const std::vector<std::str
         if (columns_.empty()) {
             columns_.assign(cells.begin(), cells.end());
             check_columns(columns_, here, required, optional);
+            for (const auto& column : columns_) is_name.push_back(std::ranges::count(names, column) > 0);
             continue;
         }
         if (cells.size() != columns_.size())
@@ -92,7 +94,13 @@ CsvTable::CsvTable(const std::filesystem::path& file, const std::vector<std::str
                             cells.size(), columns_.size(), fmt::join(columns_, ",")));
         std::vector<double> row;
         row.reserve(cells.size());
+        std::vector<std::string> text(names.empty() ? 0 : cells.size());
         for (std::size_t c = 0; c < cells.size(); ++c) {
+            if (is_name[c]) {
+                text[c] = cells[c];
+                row.push_back(std::numeric_limits<double>::quiet_NaN());
+                continue;
+            }
             const auto value = parse_number(cells[c]);
             if (!value && !cells[c].empty())
                 throw InvalidInput(
@@ -103,6 +111,7 @@ CsvTable::CsvTable(const std::filesystem::path& file, const std::vector<std::str
         }
         lines_.push_back(line);
         cells_.push_back(std::move(row));
+        text_.push_back(std::move(text));
     }
     if (columns_.empty())
         throw InvalidInput(fmt::format("{}: the file is empty. Its first line names the columns: {}.",
@@ -132,6 +141,15 @@ int CsvTable::integer(int row, const std::string& column) const {
         throw InvalidInput(fmt::format("{}, column {}: {} is no whole number between {:.0f} and {:.0f}.", where(row),
                                        column, value, -most, most));
     return static_cast<int>(value);
+}
+
+const std::string& CsvTable::name(int row, const std::string& column) const {
+    const auto found = std::ranges::find(columns_, column);
+    const std::string& text =
+        text_.at(static_cast<std::size_t>(row)).at(static_cast<std::size_t>(found - columns_.begin()));
+    if (text.empty())
+        throw InvalidInput(fmt::format("{}, column {}: the cell is empty. A name is needed here.", where(row), column));
+    return text;
 }
 
 std::string CsvTable::where(int row) const {

@@ -19,7 +19,7 @@ namespace fs = std::filesystem;
 using mesh::YamlFields;
 
 constexpr const char* case_format = "palpate-case/1";
-constexpr const char* set_format = "palpate-measurements/1";
+constexpr const char *set_format = "palpate-measurements/1", *second_set_format = "palpate-measurements/2";
 
 void read_expected_parameters(const YamlFields& yaml, Expectation& expect) {
     if (!yaml.has("parameters")) return;
@@ -82,7 +82,7 @@ Case case_of_input(const fs::path& input) {
         c.mesh = input;
     } else if (input.extension() == ".yaml" || input.extension() == ".yml") {
         const YamlFields yaml = YamlFields::from_file(input);
-        const std::string format = yaml.choice("format", {case_format, set_format});
+        const std::string format = yaml.choice("format", {case_format, set_format, second_set_format});
         if (format == case_format) return read_case_file(yaml);
         c.measurements = input.has_parent_path() ? input.parent_path() : fs::path(".");
     } else {

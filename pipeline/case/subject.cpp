@@ -8,6 +8,7 @@
 #include "identify/measurements/field.h"
 #include "identify/measurements/labels/label_readings.h"
 #include "identify/measurements/plausibility.h"
+#include "identify/measurements/rig/fittable.h"
 #include "mesh/errors.h"
 #include "mesh/formats/read_body.h"
 #include "mesh/supports/support_points.h"
@@ -55,10 +56,12 @@ void read_set(Subject& subject) {
     std::sort(subject.files.begin(), subject.files.end());
 }
 
-/// Supports given by points as the patches that these sample; what was made of them stands in `notes`.
+/// Supports, or what is gripped, given by points as the patches that these sample; what was made of them stands in
+/// `notes`.
 std::vector<mesh::Region> patched(const std::vector<mesh::Region>& supports, const mesh::Surface& surface,
-                                  double edge_length, std::vector<std::string>& notes) {
-    mesh::PatchedSupports result = mesh::patched(supports, surface, edge_length);
+                                  double edge_length, std::vector<std::string>& notes,
+                                  const std::string& name = "Support") {
+    mesh::PatchedSupports result = mesh::patched(supports, surface, edge_length, name);
     std::ranges::move(result.notes, std::back_inserter(notes));
     std::ranges::move(result.warnings, std::back_inserter(notes));
     return std::move(result.regions);
@@ -114,14 +117,20 @@ void choose_material(Subject& subject) {
 
 identify::MeasurementSet read_measurements(const std::filesystem::path& path, std::vector<std::string>& notes,
                                            double edge_length) {
-    identify::LabelledSet labelled =
-        identify::label_readings(identify::with_markers_of_fields(identify::read_measurement_set(path)));
+    identify::MeasurementSet read = identify::read_measurement_set(path);
+    identify::take_displacements_from_rest(read);
+    std::ranges::move(read.notes, std::back_inserter(notes));
+    read.notes.clear();
+    identify::LabelledSet labelled = identify::label_readings(identify::with_markers_of_fields(read));
     std::ranges::transform(identify::notes(labelled), std::back_inserter(notes),
                            [](const std::string& words) { return words + "."; });
     std::ranges::copy(identify::implausible(labelled.set), std::back_inserter(notes));
     const mesh::Surface& surface = labelled.set.rest_surface;
-    labelled.set.supports =
-        patched(labelled.set.supports, surface, edge_length > 0 ? edge_length : reference_edge_length(surface), notes);
+    const double edge = edge_length > 0 ? edge_length : reference_edge_length(surface);
+    labelled.set.supports = patched(labelled.set.supports, surface, edge, notes);
+    for (mesh::Tool& tool : labelled.set.tools)
+        if (auto* grip = std::get_if<mesh::GripShape>(&tool.shape))
+            grip->regions = patched(grip->regions, surface, edge, notes, fmt::format("Tool '{}', region", tool.name));
     for (identify::LoadState& state : labelled.set.states) {
         std::erase_if(state.readings, [](const identify::Reading& reading) { return reading.marker < 0; });
     }

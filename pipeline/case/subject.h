@@ -28,8 +28,9 @@ struct Subject {
 };
 
 /// A measurement set with readings: where it has full fields only, vertices of its surface are read from them; those
-/// without a marker's name are given one, or left out; supports that are given by points are the patches that these
-/// sample. `notes` says so, and what hints at a slip of units.
+/// without a marker's name are given one, or left out; supports and grips that are given by points are the patches that
+/// these sample; displacements since an unloaded state are positions from rest. `notes` says so, and what hints at a
+/// slip of units.
 /// @param edge_length of the elements that are to be held [mm]; 0: those of a reference body
 /// @throws IoError, InvalidInput.
 identify::MeasurementSet read_measurements(const std::filesystem::path& path, std::vector<std::string>& notes,

@@ -1,10 +1,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <map>
 
 #include "identify/diagnosis/statistics/independent_readings.h"
+#include "identify/measurements/rig/fittable.h"
 #include "mesh/formats/vtk/vtk_files.h"
 #include "mesh/supports/held_parts.h"
 #include "mesh/text/atomic_file.h"
@@ -14,20 +16,24 @@
 #include "pipeline/command_line/flags.h"
 #include "pipeline/command_line/subcommands.h"
 #include "pipeline/output/json/comparison.h"
+#include "pipeline/output/text/describe/describe_rig.h"
 
 namespace palpate::pipeline::commands {
 namespace {
 
 std::string describe_set(const identify::MeasurementSet& set) {
-    const auto loaded =
-        std::count_if(set.states.begin(), set.states.end(), [](auto& s) { return !s.contacts.empty(); });
     std::size_t readings = 0;
     for (const auto& state : set.states) readings += state.readings.size();
-    std::string text = fmt::format("{} states ({} loaded), {} markers, {} readings", set.states.size(), loaded,
-                                   set.markers.size(), readings);
+    std::string text = fmt::format("{} states ({} loaded), {} markers, {} readings", set.states.size(),
+                                   loaded_states(set), set.markers.size(), readings);
     if (!set.recordings.empty()) text += fmt::format(", {} recordings of motion", set.recordings.size());
-    if (!set.position_noise) text += "; no noise is stated";
-    return text + ".\n";
+    if (!set.position_noise && readings > 0) text += "; no noise is stated";
+    text += ".\n";
+    for (std::string line : rig_in_words(set)) {
+        line.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(line.front())));
+        text += line + ".\n";
+    }
+    return text;
 }
 
 /// How the loads are numbered: within a probe one body goes through them in time, between probes it is as new.
@@ -137,6 +143,34 @@ void add_supports(const Subject& subject, Outcome& outcome) {
     outcome.json["warnings"] = warnings;
 }
 
+/// What each grip holds of the surface, and of a ready-made mesh.
+void add_grips(const Subject& subject, Outcome& outcome) {
+    constexpr double spacing = 0.005;  // as for supports
+    const double longest = mesh::bounding_box(subject.surface.vertices).longest_side();
+    for (std::size_t t = 0; t < subject.set->tools.size(); ++t) {
+        const mesh::Tool& tool = subject.set->tools[t];
+        const auto* grip = std::get_if<mesh::GripShape>(&tool.shape);
+        if (!grip) continue;
+        const auto parts = subject.volume ? mesh::held_parts(grip->regions, *subject.volume)
+                                          : mesh::held_parts(grip->regions, subject.surface, spacing * longest);
+        mesh::HeldPart whole;
+        for (const mesh::HeldPart& part : parts) {
+            whole.nodes += part.nodes;
+            whole.area += part.area;
+        }
+        outcome.text += fmt::format("Tool '{}' grips {} {} and {:.3g} mm^2 of the surface.\n", tool.name, whole.nodes,
+                                    subject.volume ? "nodes of the mesh" : "vertices", whole.area);
+        outcome.json["set"]["tools"][t]["grips"] = {{"nodes", whole.nodes}, {"area_mm2", whole.area}};
+        if (whole.nodes > 0 || whole.area > 0) continue;
+        const std::string warning = fmt::format(
+            "Tool '{}' grips nothing of the surface: it is for material inside the body alone, or its unit or frame is "
+            "not the body's.",
+            tool.name);
+        outcome.text += "  - warning: " + warning + "\n";
+        outcome.json["warnings"].push_back(warning);
+    }
+}
+
 }  // namespace
 
 Outcome check(const CheckOptions& options, const Common& common) {
@@ -168,9 +202,12 @@ Outcome check(const CheckOptions& options, const Common& common) {
     }
     if (subject.set) {
         outcome.json["set"] = {{"states", subject.set->states.size()}, {"markers", subject.set->markers.size()}};
+        outcome.json["set"].update(rig_json(*subject.set));
     }
     add_supports(subject, outcome);
-    if (subject.set) add_preflight(*subject.set, outcome);
+    if (subject.set) add_grips(subject, outcome);
+    const bool is_fittable = !subject.set || identify::parts_not_fitted_yet(*subject.set).empty();
+    if (subject.set && is_fittable) add_preflight(*subject.set, outcome);
     if (!options.output.empty()) {
         write_faults(options.output, subject.surface, places);
         mesh::write_text(options.output / "check.json", outcome.json.dump(2) + "\n");
@@ -178,8 +215,9 @@ Outcome check(const CheckOptions& options, const Common& common) {
             "Written to {}: check.json; surface.vtp and faults.vtp, coloured by 'fault', show where (ParaView).\n",
             options.output.string());
     }
-    outcome.text +=
-        "Next: palpate run " + options.input.string() + (faults.empty() ? "" : "    # repairs what it can") + "\n";
+    if (is_fittable)
+        outcome.text +=
+            "Next: palpate run " + options.input.string() + (faults.empty() ? "" : "    # repairs what it can") + "\n";
     return outcome;
 }
 

@@ -7,6 +7,7 @@
 
 #include "identify/effects/catalogue.h"
 #include "identify/loading/creep.h"
+#include "identify/measurements/rig/fittable.h"
 #include "mesh/errors.h"
 #include "mesh/text/atomic_file.h"
 #include "pipeline/case/read_case.h"
@@ -178,6 +179,7 @@ PlayData play_data(const fs::path& input, const fs::path& set_folder) {
     std::optional<identify::MeasurementSet> set;
     if (!set_folder.empty()) {
         set = read_measurements(set_folder, data.notes);
+        identify::require_fittable(*set);
     } else if (fs::is_directory(input)) {
         set = measurements_of(input, data.notes);
     }

@@ -6,6 +6,7 @@
 
 #include "identify/effects/catalogue.h"
 #include "identify/measurements/plausibility.h"
+#include "identify/measurements/rig/fittable.h"
 #include "identify/models/skeleton_body.h"
 #include "identify/motion/damping.h"
 #include "mesh/errors.h"
@@ -20,6 +21,7 @@ ModelAndSet read_model_and_set(const std::filesystem::path& model, const std::fi
     std::vector<std::string> notes;
     ModelAndSet read{skeleton::read_model(model), read_measurements(set, notes)};
     Console::notices(notes);
+    identify::require_fittable(read.set);
     if (mesh::regions_to_yaml(read.model.supports) != mesh::regions_to_yaml(read.set.supports)) {
         Console::notice("The model and the set give different supports: the set's are taken.");
         read.model.supports = read.set.supports;

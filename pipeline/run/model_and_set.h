@@ -18,6 +18,7 @@ struct ModelAndSet {
 };
 
 /// A model and measurements, read; where they give different supports the set's win, said aloud.
+/// @throws InvalidInput where the set has parts that cannot be fitted yet.
 ModelAndSet read_model_and_set(const std::filesystem::path& model, const std::filesystem::path& set);
 
 /// The set as a model understands it: without the faults of the measurement that the model records.

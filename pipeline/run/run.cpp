@@ -5,6 +5,7 @@
 #include "fem/elastic_body.h"
 #include "identify/comparison/compare.h"
 #include "identify/identify.h"
+#include "identify/measurements/rig/fittable.h"
 #include "mesh/errors.h"
 #include "mesh/formats/surface/read_surface.h"
 #include "mesh/formats/vtk/vtk_files.h"
@@ -39,13 +40,19 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
+/// @throws InvalidInput where its measurements have parts that cannot be fitted yet.
+Subject fittable(Subject subject) {
+    if (subject.set) identify::require_fittable(*subject.set);
+    return subject;
+}
+
 /// The stages of a run, one after the other. Each leaves its result as a file and a member; a stage that was finished
 /// before is read back instead.
 class Run {
 public:
     Run(const RunOptions& options, const Common& common)
         : common_(common),
-          subject_(read_subject(read_case(options.input, options.overrides))),
+          subject_(fittable(read_subject(read_case(options.input, options.overrides)))),
           folder_(options.output, common.force) {}
 
     Outcome execute() {

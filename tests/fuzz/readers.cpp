@@ -73,6 +73,38 @@ Reader set(const char* file) {
         [](const fs::path& folder) { identify::read_measurement_set(folder / "set"); }};
 }
 
+/// One file of a set of the second format.
+Reader rig(const char* name, const char* file) {
+    return {name,
+            [=](const fs::path& folder) {
+                identify::MeasurementSet set;
+                set.rest_surface = small_box();
+                set.supports = {mesh::BoxRegion{Vec3(-1, -1, -1), Vec3(1, 21, 21)}};
+                set.tools = {{.name = "ball", .shape = mesh::SphereShape{5}, .origin = Vec3(50, 10, 26)},
+                             {.name = "punch", .shape = mesh::FlatShape{5, -Vec3::UnitZ()}, .origin = Vec3(60, 10, 21)},
+                             {.name = "grip",
+                              .shape = mesh::GripShape{{mesh::BoxRegion{Vec3(99, -1, -1), Vec3(101, 21, 21)}}},
+                              .bonded = true}};
+                Points path(2, 3);
+                path << 1, 10, 10, 90, 10, 10;
+                set.actuators = {{.name = "cable", .kind = mesh::TendonActuator{path}}};
+                set.markers = {{0, Vec3(100, 10, 20), std::nullopt}};
+                set.states = {
+                    {.probe = 0},
+                    {.probe = 1,
+                     .motions = {{0, Vec3(0, 0, -2), Vec3::Zero()}, {2, Vec3(1, identify::missing, 0), Vec3::Zero()}},
+                     .actuations = {{0, 2, 0.1}},
+                     .readings = {{0, Vec3(101, 10, 20), 0.1, identify::StateName{0, 0}}},
+                     .reactions = {{0, Vec3(identify::missing, 0, -1), Vec3::Zero(), 0.1}}}};
+                identify::write_measurement_set(folder / "set", set);
+                mesh::write_surface(folder / "set/rest.stl", set.rest_surface);
+                std::string yaml = mesh::read_text(folder / "set/set.yaml");
+                mesh::write_text(folder / "set/set.yaml", yaml.replace(yaml.find("rest.vtp"), 8, "rest.stl"));
+                return folder / "set" / file;
+            },
+            [](const fs::path& folder) { identify::read_measurement_set(folder / "set"); }};
+}
+
 Reader model() {
     return {"model.json",
             [](const fs::path& folder) {
@@ -211,7 +243,12 @@ std::vector<Reader> all_readers() {
         set("positions.csv"),
         set("states.csv"),
         set("motion_probes.csv"),
-        set("motion_positions.csv")};
+        set("motion_positions.csv"),
+        rig("rig_set.yaml", "set.yaml"),
+        rig("motions.csv", "motions.csv"),
+        rig("reactions.csv", "reactions.csv"),
+        rig("actuations.csv", "actuations.csv"),
+        rig("displacements.csv", "displacements.csv")};
     for (const mesh::SurfaceFormat& format : mesh::surface_formats())
         if (format.write) readers.push_back(surface(format.extension));
     return readers;

@@ -2,9 +2,11 @@
 
 #include <algorithm>
 
+#include "identify/measurements/files/set_description.h"
 #include "identify/measurements/files/tables.h"
 #include "identify/measurements/measurement_places.h"
 #include "identify/measurements/measurement_set.h"
+#include "identify/measurements/rig/rig_places.h"
 #include "mesh/errors.h"
 
 namespace palpate::identify {
@@ -22,6 +24,22 @@ fs::path description_of(const fs::path& path) {
     return path / "set.yaml";
 }
 
+/// The tables whose rows make the states; probes.csv may be missing where another of them is there.
+void read_what_acted(TableReader& reader, const SetDescription& description, const MeasurementSet& set) {
+    const auto stands = [&](const char* table) { return fs::exists(set.folder / table); };
+    const bool acts_otherwise = stands("motions.csv") || stands("actuations.csv");
+    if (!acts_otherwise || stands("probes.csv")) reader.read_probes(set.folder / "probes.csv");
+    if (stands("states.csv")) reader.read_states(set.folder / "states.csv");
+    if (stands("motions.csv")) reader.read_motions(set.folder / "motions.csv");
+    if (stands("actuations.csv")) reader.read_actuations(set.folder / "actuations.csv");
+    if (set.states.empty())
+        throw InvalidInput(
+            fmt::format("{}: the table has no rows, so the set has no states. Add a row per contact and "
+                        "instant.",
+                        (set.folder / "probes.csv").string()));
+    if (!description.is_first_format) reader.order_states();
+}
+
 }  // namespace
 
 std::vector<LoadState> read_probes(const fs::path& file) {
@@ -34,24 +52,25 @@ std::vector<LoadState> read_probes(const fs::path& file) {
 
 MeasurementSet read_measurement_set(const fs::path& path) {
     MeasurementSet set;
-    const SetUnits units = read_set_description(description_of(path), set);
-
-    TableReader reader(set, units);
-    reader.read_probes(set.folder / "probes.csv");
-    if (fs::exists(set.folder / "states.csv")) reader.read_states(set.folder / "states.csv");
-    if (set.states.empty())
-        throw InvalidInput(
-            fmt::format("{}: the table has no rows, so the set has no states. Add a row per contact and "
-                        "instant.",
-                        (set.folder / "probes.csv").string()));
+    const SetDescription description = read_set_description(description_of(path), set);
+    TableReader reader(set, description.units);
+    read_what_acted(reader, description, set);
 
     // Where every state has its full field, markers may be missing.
     reader.find_fields(set.folder / "field");
     const bool has_all_fields = std::ranges::none_of(set.states, [](const LoadState& s) { return s.field.empty(); });
-    const auto wanted = [&](const char* table) { return !has_all_fields || fs::exists(set.folder / table); };
-    if (wanted("markers.csv")) reader.read_markers(set.folder / "markers.csv");
-    if (wanted("positions.csv")) reader.read_positions(set.folder / "positions.csv");
-    const bool has_readings = std::ranges::any_of(set.states, [](const LoadState& s) { return !s.readings.empty(); });
+    const auto stands = [&](const char* table) { return fs::exists(set.folder / table); };
+    const bool is_read_otherwise = stands("reactions.csv") || stands("displacements.csv");
+    const bool are_positions_wanted = !(has_all_fields || is_read_otherwise) || stands("positions.csv");
+    const bool are_displacements_wanted = description.displacements_since || stands("displacements.csv");
+    if (are_positions_wanted || are_displacements_wanted || stands("markers.csv"))
+        reader.read_markers(set.folder / "markers.csv");
+    if (are_positions_wanted) reader.read_positions(set.folder / "positions.csv");
+    if (are_displacements_wanted)
+        reader.read_displacements(set.folder / "displacements.csv", description.displacements_since);
+    if (stands("reactions.csv")) reader.read_reactions(set.folder / "reactions.csv");
+    const bool has_readings =
+        std::ranges::any_of(set.states, [](const LoadState& s) { return !s.readings.empty() || !s.reactions.empty(); });
     if (!has_readings && !has_all_fields)
         throw InvalidInput(
             fmt::format("{}: the set has no readings. Add measured marker positions, or a full field for "
@@ -60,6 +79,8 @@ MeasurementSet read_measurement_set(const fs::path& path) {
     const fs::path loads = set.folder / "motion_probes.csv", moved = set.folder / "motion_positions.csv";
     if (fs::exists(loads) || fs::exists(moved)) reader.read_recordings(loads, moved);
     check_places(set);
+    check_tools(set);
+    check_actuators(set);
     return set;
 }
 

@@ -1,16 +1,18 @@
 #pragma once
 
+#include "identify/measurements/files/set_units.h"
 #include "identify/measurements/measurement_set.h"
 
 namespace palpate::identify {
 
-/// What one unit of the files is in ours.
-struct SetUnits {
-    double length = 1;  // [mm]
-    double force = 1;   // [N]
+/// What set.yaml tells the tables' reader.
+struct SetDescription {
+    SetUnits units;
+    bool is_first_format = true;
+    std::optional<StateName> displacements_since;  // the state that displacements.csv counts from; absent: rest
 };
 
-/// Reads set.yaml, and the surface and support points that it names, into `set`: all but markers and states.
-SetUnits read_set_description(const std::filesystem::path& file, MeasurementSet& set);
+/// Reads set.yaml, and the surfaces and points that it names, into `set`: all but markers and states.
+SetDescription read_set_description(const std::filesystem::path& file, MeasurementSet& set);
 
 }  // namespace palpate::identify

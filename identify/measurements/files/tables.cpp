@@ -17,20 +17,35 @@ using mesh::CsvTable;
 
 namespace {
 
-StateKey state_key(const CsvTable& table, int row) { return {table.integer(row, "probe"), table.number(row, "time")}; }
-
 Vec3 vector(const CsvTable& table, int row, const std::array<std::string, 3>& columns) {
     return {table.number(row, columns[0]), table.number(row, columns[1]), table.number(row, columns[2])};
+}
+
+}  // namespace
+
+StateName state_name(const CsvTable& table, int row) {
+    return {table.integer(row, "probe"), table.number(row, "time")};
 }
 
 Vec3 vector_if_given(const CsvTable& table, int row, const std::array<std::string, 3>& columns) {
     return {table.at(row, columns[0]), table.at(row, columns[1]), table.at(row, columns[2])};
 }
 
-}  // namespace
+LoadState& TableReader::state(const StateName& name, const CsvTable& table, int row) {
+    const auto [entry, is_new] = index_of_.try_emplace(name, set_.states.size());
+    if (is_new) {
+        LoadState& added = set_.states.emplace_back();
+        added.probe = name.probe;
+        added.time = name.time;
+        const std::string where = table.where(row), file = where.substr(0, where.find(','));
+        if (first_table_.empty()) first_table_ = file;
+        if (file != first_table_ && beyond_.empty()) beyond_ = where;
+    }
+    return set_.states[entry->second];
+}
 
-void TableReader::check_time(const StateKey& key, const std::string& where) {
-    const auto [probe, time] = key;
+void TableReader::check_time(const StateName& name, const std::string& where) {
+    const auto [probe, time] = name;
     if (time < 0)
         throw InvalidInput(fmt::format(
             "{}, column time: {} is negative. Count time from the beginning of the probe, which is 0.", where, time));
@@ -46,9 +61,9 @@ void TableReader::check_time(const StateKey& key, const std::string& where) {
 void TableReader::read_probes(const fs::path& file) {
     const CsvTable table(file, {"probe", "time", "x", "y", "z", "fx", "fy", "fz", "radius"});
     for (int row = 0; row < table.rows(); ++row) {
-        const StateKey key = state_key(table, row);
-        check_time(key, table.where(row));
-        LoadState& loaded = state(key);
+        const StateName name = state_name(table, row);
+        check_time(name, table.where(row));
+        LoadState& loaded = state(name, table, row);
         const Vec3 force = units_.force * vector(table, row, {"fx", "fy", "fz"});
         if (force.isZero(0)) continue;  // unloaded, or one contact less
         const double radius = units_.length * table.number(row, "radius");
@@ -63,14 +78,14 @@ void TableReader::read_probes(const fs::path& file) {
 
 void TableReader::read_states(const fs::path& file) {
     const CsvTable table(file, {"probe", "time"}, {"gx", "gy", "gz", "pressure"});
-    std::set<StateKey> seen;
+    std::set<StateName> seen;
     for (int row = 0; row < table.rows(); ++row) {
-        const StateKey key = state_key(table, row);
-        if (!seen.insert(key).second)
+        const StateName name = state_name(table, row);
+        if (!seen.insert(name).second)
             throw InvalidInput(fmt::format("{}: probe {} at time {} has a row already. Keep one.", table.where(row),
-                                           key.first, key.second));
-        LoadState& known = state(key);
-        known.pressure = table.at(row, "pressure");
+                                           name.probe, name.time));
+        LoadState& known = state(name, table, row);
+        known.pressure = units_.pressure * table.at(row, "pressure");
         known.gravity = units_.length * vector_if_given(table, row, {"gx", "gy", "gz"});
         if (known.gravity.array().isNaN().any() && !known.gravity.array().isNaN().all())
             throw InvalidInput(fmt::format(
@@ -120,15 +135,19 @@ void TableReader::read_markers(const fs::path& file) {
     }
 }
 
-Reading TableReader::read_position(const CsvTable& table, int row) const {
-    Reading reading{.position = units_.length * vector_if_given(table, row, {"x", "y", "z"}),
-                    .sigma = units_.length * table.at(row, "sigma")};
-    if (reading.sigma < least_position_noise)
+std::size_t TableReader::known_state(const CsvTable& table, int row) const {
+    const StateName name = state_name(table, row);
+    const auto found = index_of_.find(name);
+    if (found == index_of_.end())
         throw InvalidInput(
-            fmt::format("{}, column sigma: {} is below {:g}, less than any instrument's noise. Leave it empty where it "
-                        "is unknown.",
-                        table.where(row), table.at(row, "sigma"), least_position_noise / units_.length));
-    if (std::isnan(table.at(row, "marker"))) return reading;
+            fmt::format("{}: there is no state of probe {} at time {}. Add its row to probes.csv (with "
+                        "zero force when nothing pressed), or correct the numbers.",
+                        table.where(row), name.probe, name.time));
+    return found->second;
+}
+
+int TableReader::marker_of_row(const CsvTable& table, int row) const {
+    if (std::isnan(table.at(row, "marker"))) return -1;
     const int id = table.integer(row, "marker");
     const auto found = marker_of_.find(id);
     if (found == marker_of_.end())
@@ -136,34 +155,48 @@ Reading TableReader::read_position(const CsvTable& table, int row) const {
             fmt::format("{}: marker {} is not in markers.csv. Add its rest position there, or leave the cell "
                         "empty for an unlabelled reading.",
                         table.where(row), id));
-    reading.marker = found->second;
-    return reading;
+    return found->second;
+}
+
+double TableReader::position_sigma(const CsvTable& table, int row) const {
+    const double sigma = units_.length * table.at(row, "sigma");
+    if (sigma < least_position_noise)
+        throw InvalidInput(
+            fmt::format("{}, column sigma: {} is below {:g}, less than any instrument's noise. Leave it empty where it "
+                        "is unknown.",
+                        table.where(row), table.at(row, "sigma"), least_position_noise / units_.length));
+    return sigma;
+}
+
+Reading TableReader::read_position(const CsvTable& table, int row) const {
+    const double sigma = position_sigma(table, row);
+    return {.marker = marker_of_row(table, row),
+            .position = units_.length * vector_if_given(table, row, {"x", "y", "z"}),
+            .sigma = sigma};
+}
+
+void TableReader::check_single(std::size_t state, int marker, const std::string& where) {
+    if (!seen_.emplace(state, marker).second)
+        throw InvalidInput(
+            fmt::format("{}: marker {} was read already for probe {} at time {}. Keep one reading, or "
+                        "give repeated measurements probes of their own.",
+                        where, set_.markers[static_cast<std::size_t>(marker)].id, set_.states[state].probe,
+                        set_.states[state].time));
 }
 
 void TableReader::read_positions(const fs::path& file) {
     const CsvTable table(file, {"probe", "time", "marker", "x", "y", "z"}, {"sigma"});
-    std::set<std::pair<std::size_t, int>> seen;  // state, marker
     for (int row = 0; row < table.rows(); ++row) {
-        const StateKey key = state_key(table, row);
-        const auto found = index_of_.find(key);
-        if (found == index_of_.end())
-            throw InvalidInput(
-                fmt::format("{}: there is no state of probe {} at time {}. Add its row to probes.csv (with "
-                            "zero force when nothing pressed), or correct the numbers.",
-                            table.where(row), key.first, key.second));
+        const std::size_t state = known_state(table, row);
         const Reading reading = read_position(table, row);
-        if (reading.marker >= 0 && !seen.emplace(found->second, reading.marker).second)
-            throw InvalidInput(fmt::format(
-                "{}: marker {} was read already for probe {} at time {}. Keep one reading, or "
-                "give repeated measurements probes of their own.",
-                table.where(row), set_.markers[static_cast<std::size_t>(reading.marker)].id, key.first, key.second));
+        if (reading.marker >= 0) check_single(state, reading.marker, table.where(row));
         const bool nothing_seen = reading.position.array().isNaN().all();
-        if (!nothing_seen) set_.states[found->second].readings.push_back(reading);
+        if (!nothing_seen) set_.states[state].readings.push_back(reading);
     }
 }
 
 void TableReader::add_to_recording(const CsvTable& table, int row, const std::map<int, std::size_t>& recording_of) {
-    const auto [probe, time] = state_key(table, row);
+    const auto [probe, time] = state_name(table, row);
     const auto found = recording_of.find(probe);
     if (found == recording_of.end())
         throw InvalidInput(

@@ -4,6 +4,9 @@
 #include <string>
 
 #include "identify/measurements/files/probes_table.h"
+#include "identify/measurements/files/rig_yaml.h"
+#include "identify/measurements/files/second_format.h"
+#include "identify/measurements/files/write_rig_tables.h"
 #include "identify/measurements/measurement_set.h"
 #include "mesh/errors.h"
 #include "mesh/formats/vtk/vtk_files.h"
@@ -18,24 +21,6 @@ namespace fs = std::filesystem;
 
 namespace {
 
-std::string cell(double value) { return std::isnan(value) ? "" : fmt::format("{}", value); }
-
-std::string cells(const Vec3& v) { return fmt::format("{},{},{}", cell(v.x()), cell(v.y()), cell(v.z())); }
-
-/// A text in double quotes, as YAML reads it back whatever it holds.
-std::string yaml_text(const std::string& text) {
-    std::string result = "\"";
-    for (const char c : text) {
-        if (c == '"' || c == '\\')
-            result += fmt::format("\\{}", c);
-        else if (static_cast<unsigned char>(c) < 0x20)
-            result += fmt::format("\\x{:02x}", c);
-        else
-            result += c;
-    }
-    return result + "\"";
-}
-
 /// The shortest number of kg/m^3 that is read back as this density.
 std::string density_text(double density) {
     double shown = density * 1e12;
@@ -48,23 +33,39 @@ std::string density_text(double density) {
 
 const char* rest_file(const MeasurementSet& set) { return set.rest_volume ? "rest.vtu" : "rest.vtp"; }
 
+std::string noise_to_yaml(const MeasurementSet& set) {
+    std::string text;
+    const auto add = [&](const char* of, const std::optional<double>& sigma) {
+        if (sigma) text += fmt::format("  {}: {}\n", of, *sigma);
+    };
+    add("position", set.position_noise);
+    add("force", set.force_noise);
+    add("reaction", set.reaction_noise);
+    add("moment", set.moment_noise);
+    if (!text.empty()) text = "noise:  # 1 sigma\n" + text;
+    if (set.position_correlation) text += fmt::format("correlated: {{position: {}}}\n", *set.position_correlation);
+    return text;
+}
+
 /// Of a set that is written into `folder`.
 std::string description(const MeasurementSet& set, const fs::path& folder) {
+    const bool is_second = needs_second_format(set);
     std::string text = fmt::format(
-        "format: palpate-measurements/1\n"
+        "format: {}\n"
         "name: {}\n"
-        "units: {{length: mm, force: N, time: s}}\n"
+        "units: {{length: mm, force: N, time: s{}}}\n"
         "rest_surface: {}\n"
         "supports:\n{}",
-        yaml_text(set.name), rest_file(set), mesh::regions_to_yaml_in(folder, set.supports));
+        is_second ? second_format_name : first_format_name, yaml_text(set.name),
+        is_second ? ", angle: rad, pressure: MPa, moment: N*mm" : "", rest_file(set),
+        mesh::regions_to_yaml_in(folder, set.supports));
+    text += tools_to_yaml(folder, set.tools) + actuators_to_yaml(folder, set.actuators);
+    if (const auto since = displacements_since(set))
+        text += fmt::format("displacements: {{since: {{probe: {}, time: {}}}}}\n", since->probe, since->time);
     if (set.density) text += fmt::format("density: {}  # kg/m^3\n", density_text(*set.density));
     text += fmt::format("history: {}\n", set.continuous ? "continuous" : "fresh");
     if (set.gravity) text += fmt::format("gravity: [{}]  # mm/s^2\n", fmt::join(*set.gravity, ", "));
-    if (set.position_noise || set.force_noise) {
-        text += "noise:  # 1 sigma\n";
-        if (set.position_noise) text += fmt::format("  position: {}\n", *set.position_noise);
-        if (set.force_noise) text += fmt::format("  force: {}\n", *set.force_noise);
-    }
+    text += noise_to_yaml(set);
     if (set.material && !(std::isnan(set.material->young) && std::isnan(set.material->poisson))) {
         text += "material:  # first guess\n";
         if (!std::isnan(set.material->young)) text += fmt::format("  young: {}  # MPa\n", set.material->young);
@@ -76,8 +77,8 @@ std::string description(const MeasurementSet& set, const fs::path& folder) {
 std::string markers_table(const MeasurementSet& set) {
     std::string text = "marker,x,y,z,ax,ay,az\n";
     for (const Marker& marker : set.markers)
-        text += fmt::format("{},{},{}\n", marker.id, cells(marker.rest),
-                            cells(marker.anchor.value_or(Vec3::Constant(missing))));
+        text += fmt::format("{},{},{}\n", marker.id, table_cells(marker.rest),
+                            table_cells(marker.anchor.value_or(Vec3::Constant(missing))));
     return text;
 }
 
@@ -86,10 +87,11 @@ constexpr const char* positions_header = "probe,time,marker,x,y,z,sigma\n";
 std::string position_rows(const MeasurementSet& set, int probe, double time, const std::vector<Reading>& readings) {
     std::string text;
     for (const Reading& reading : readings) {
+        if (reading.since) continue;  // of displacements.csv
         const auto marker = static_cast<std::size_t>(reading.marker);
         text += fmt::format("{},{},{},{},{}\n", probe, time,
                             reading.marker < 0 ? "" : fmt::format("{}", set.markers.at(marker).id),
-                            cells(reading.position), cell(reading.sigma));
+                            table_cells(reading.position), table_cell(reading.sigma));
     }
     return text;
 }
@@ -119,7 +121,8 @@ std::string states_table(const MeasurementSet& set) {
     std::string text;
     for (const LoadState& state : set.states)
         if (!state.gravity.array().isNaN().all() || !std::isnan(state.pressure))
-            text += fmt::format("{},{},{},{}\n", state.probe, state.time, cells(state.gravity), cell(state.pressure));
+            text += fmt::format("{},{},{},{}\n", state.probe, state.time, table_cells(state.gravity),
+                                table_cell(state.pressure));
     return text.empty() ? text : "probe,time,gx,gy,gz,pressure\n" + text;
 }
 
@@ -147,8 +150,8 @@ std::string probes_table(const std::vector<LoadState>& states) {
     std::string text = "probe,time,x,y,z,fx,fy,fz,radius\n";
     for (const LoadState& state : states) {
         for (const mesh::Contact& contact : state.contacts)
-            text += fmt::format("{},{},{},{},{}\n", state.probe, state.time, cells(contact.point), cells(contact.force),
-                                contact.radius);
+            text += fmt::format("{},{},{},{},{}\n", state.probe, state.time, table_cells(contact.point),
+                                table_cells(contact.force), contact.radius);
         if (state.contacts.empty()) text += fmt::format("{},{},0,0,0,0,0,0,0\n", state.probe, state.time);
     }
     return text;
@@ -175,6 +178,7 @@ void write_measurement_set(const fs::path& folder, const MeasurementSet& set,
         mesh::write_text(temporary / "positions.csv", positions_table(set));
         if (const std::string states = states_table(set); !states.empty())
             mesh::write_text(temporary / "states.csv", states);
+        write_rig_tables(temporary, set);
         write_recordings(temporary, set);
         if (extra) extra(temporary);
         move_into_place(temporary, target);

@@ -74,6 +74,7 @@ void label(const Markers& markers, LoadState& state) {
     std::vector<char> is_taken(markers.rest.rows(), 0);
     for (int r = 0; r < static_cast<int>(state.readings.size()); ++r) {
         const Reading& reading = state.readings[r];
+        if (reading.since) continue;  // a difference is no place
         if (reading.marker >= 0) is_taken[reading.marker] = 1;
         if (reading.position.array().isNaN().any()) continue;
         rows.push_back(r);

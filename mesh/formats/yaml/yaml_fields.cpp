@@ -171,6 +171,11 @@ std::vector<YamlFields> YamlFields::mappings(const std::string& key) const {
     return inner;
 }
 
+std::vector<YamlFields> YamlFields::mapping_or_mappings(const std::string& key) const {
+    if (impl_->get(key).kind == Kind::mapping) return {mapping(key)};
+    return mappings(key);
+}
+
 void YamlFields::finish() const {
     const std::vector<std::string> known(impl_->asked.begin(), impl_->asked.end());
     for (std::size_t i = 0; i < impl_->node.keys.size(); ++i) {

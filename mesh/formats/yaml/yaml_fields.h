@@ -36,6 +36,8 @@ public:
     YamlFields mapping(const std::string& key) const;
     /// A list of mappings.
     std::vector<YamlFields> mappings(const std::string& key) const;
+    /// The same, or one mapping alone.
+    std::vector<YamlFields> mapping_or_mappings(const std::string& key) const;
 
     /// @throws InvalidInput when a field of this mapping was never asked for; mappings inside it finish on their own.
     void finish() const;

@@ -5,6 +5,7 @@
 #include "mesh/formats/surface/surface_formats.h"
 #include "mesh/text/atomic_file.h"
 #include "pipeline/case/settings.h"
+#include "pipeline/cli/shell/new_rig.h"
 #include "pipeline/cli/shell/templates.h"
 #include "pipeline/command_line/commands.h"
 #include "pipeline/command_line/subcommands.h"
@@ -48,6 +49,7 @@ Outcome new_case(const NewOptions& options, const Common&) {
     if (fs::exists(folder) && !(fs::is_directory(folder) && fs::is_empty(folder))) {
         throw InvalidInput(fmt::format("{}: exists already; choose another name", folder.string()));
     }
+    if (!options.rig.empty()) return new_rig(options);
     mesh::write_text(folder / "case.yaml", commented_case());
     mesh::write_surface(folder / "body.stl", example_body());
     const std::string file = (folder / "case.yaml").string();
@@ -62,10 +64,13 @@ Outcome new_case(const NewOptions& options, const Common&) {
 namespace palpate::pipeline {
 
 void Subcommands::add_new(CLI::App& app) {
-    auto* sub = subcommand(app, "new", "A commented case to start from.",
-                           "  palpate new my-body && palpate run my-body/case.yaml\n",
+    auto* sub = subcommand(app, "new", "A commented case, or measurement set, to start from.",
+                           "  palpate new my-body && palpate run my-body/case.yaml\n"
+                           "  palpate new --rig indenter my-set && palpate check my-set\n",
                            [this] { return commands::new_case(new_case, common); });
     sub->add_option("NAME", new_case.folder, "The folder to make")->required();
+    sub->add_option("--rig", new_case.rig, "A measurement set, as such a rig writes it, in place of a case")
+        ->check(CLI::IsMember(commands::rig_names()));
 }
 
 }  // namespace palpate::pipeline

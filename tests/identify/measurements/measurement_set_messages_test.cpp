@@ -13,8 +13,8 @@ namespace fs = std::filesystem;
 // What a user can get wrong in set.yaml.
 
 TEST_F(MeasurementSetFiles, OfAnotherFormatAreRefused) {
-    EXPECT_TRUE(says(refusal_of_yaml("measurements/1", "measurements/2"),
-                     {"set.yaml, line 1", "palpate-measurements/2", "/1"}));
+    EXPECT_TRUE(says(refusal_of_yaml("measurements/1", "measurements/3"),
+                     {"set.yaml, line 1", "palpate-measurements/3", "/1", "/2"}));
     EXPECT_TRUE(says(refusal_of_yaml("format: palpate-measurements/1\n", ""), {"set.yaml", "'format' is missing"}));
     EXPECT_TRUE(says(refusal_of_yaml("name:", "nam:"), {"line 2", "unknown field 'nam'", "did you mean 'name'"}));
 }
@@ -132,8 +132,8 @@ TEST_F(MeasurementSetFiles, FarOffTheSurfaceAreRefusedWithAHintAtTheUnit) {
 TEST_F(MeasurementSetFiles, MarkersMayLieInsideButNotFarOutside) {
     folder.write("markers.csv", markers + "8,50,10,10,,,\n");  // 10 mm below the surface
     EXPECT_NO_THROW(read());
-    EXPECT_TRUE(
-        says(refusal("markers.csv", markers + "8,50,10,30,,,\n"), {"marker 8", "10 mm off", "5 mm", "units.length"}));
+    EXPECT_TRUE(says(refusal("markers.csv", markers + "8,50,10,30,,,\n"),
+                     {"marker 8", "10 mm off", "5 mm", "units.length", "ax,ay,az"}));
     EXPECT_TRUE(says(refusal("markers.csv", markers + "8,50,10,30,50,10,30\n"), {"the anchor of marker 8", "10 mm"}));
 }
 

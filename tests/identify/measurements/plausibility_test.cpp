@@ -35,6 +35,19 @@ TEST(Plausibility, ASlipOfUnitsShows) {
     EXPECT_THAT(implausible(pressed_cube(1, 1e-13, 1)), ElementsAre(HasSubstr("less than any solid")));
 }
 
+TEST(Plausibility, ASlipOfUnitsShowsInReactions) {
+    MeasurementSet set = pressed_cube(1, 1, 1);
+    set.tools.push_back({.name = "ball", .shape = mesh::SphereShape{5}});
+    LoadState& pressed = set.states.front();
+    pressed.contacts.clear();
+    pressed.readings.clear();
+    pressed.motions.push_back({0, Vec3(-0.2, missing, 0), Vec3::Zero()});
+    pressed.reactions.push_back({0, Vec3(-2, missing, missing)});
+    EXPECT_THAT(implausible(set), IsEmpty());
+    pressed.reactions.front().force.x() = -2e9;
+    EXPECT_THAT(implausible(set), ElementsAre(HasSubstr("block of steel")));
+}
+
 TEST(Plausibility, AnAbsurdModulusNamesTheLikelyCause) {
     MeasurementSet set = pressed_cube(1, 1, 1);
     EXPECT_EQ(implausible_modulus(0.1, set), "");

@@ -12,9 +12,11 @@ namespace palpate::mesh {
 namespace {
 
 using ::testing::AllOf;
+using ::testing::Each;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
+using ::testing::Not;
 
 /// Points on the end x = 0 of a bar of 100 x 20 x 20: a grid over y from 0 to `width`, z from 0 to 20.
 Points on_the_end(double spacing, double width = 20, double x = 0) {
@@ -74,6 +76,8 @@ TEST(SupportPoints, FurtherApartThanAnElementAreNotJoined) {
 
 TEST(SupportPoints, WhatIsNarrowerThanAnElementReachesHalfOfOne) {
     const PatchedSupports made = patched({PointsRegion{on_the_end(0.5, 0.5), 0.2}}, bar(), 7);  // a strip, 0.5 mm wide
+    EXPECT_THAT(patched({PointsRegion{on_the_end(0.5, 0.5), 0.2}}, bar(), 7, "Tool 'pad', region").notes,
+                AllOf(Not(IsEmpty()), Each(HasSubstr("Tool 'pad', region 1: "))));
     ASSERT_EQ(made.regions.size(), 2u);
     EXPECT_TRUE(contains(made.regions, Vec3(0, 3.9, 10)));
     EXPECT_FALSE(contains(made.regions, Vec3(0, 4.1, 10)));

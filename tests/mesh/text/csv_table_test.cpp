@@ -46,6 +46,18 @@ TEST_F(Csv, AnOptionalColumnMayBeAbsent) {
     EXPECT_TRUE(std::isnan(read.at(0, "c")));
 }
 
+TEST_F(Csv, ReadsNamesWhereTheyStand) {
+    const CsvTable read(folder.write("named.csv", "who,a\n left chamber ,1\n\"b, c\",2\n7,\n,3\n"), {"who", "a"}, {},
+                        {"who"});
+    EXPECT_EQ(read.name(0, "who"), "left chamber");
+    EXPECT_EQ(read.name(1, "who"), "b, c");
+    EXPECT_EQ(read.name(2, "who"), "7");
+    EXPECT_EQ(read.number(1, "a"), 2);
+    EXPECT_TRUE(std::isnan(read.at(2, "a")));
+    EXPECT_TRUE(says(message_of<InvalidInput>([&] { read.name(3, "who"); }),
+                     {"named.csv, line 5", "column who", "A name is needed"}));
+}
+
 TEST_F(Csv, ReadsTheSameInEveryLocale) {
     // Where the machine has no German locale the C locale stays, and the test is an easy one.
     const std::string before = std::setlocale(LC_ALL, nullptr);

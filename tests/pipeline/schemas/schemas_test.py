@@ -57,6 +57,10 @@ with tempfile.TemporaryDirectory() as scratch:
     palpate("new", at / "case")
     check("case", at / "case/case.yaml")
 
+    for rig in ("indenter", "tensile", "pneumatic", "tendon"):
+        palpate("new", "--rig", rig, at / rig)
+        check("set", at / rig / "set.yaml")
+
     palpate("run", at / "case/case.yaml", "-o", at / "run", "--probes", 6, "--spheres", 8, "--parameters", "uniform",
             "--particles", 40, "--edge-length", 8)
     for name, file in {"case": "case.yaml", "run": "run.json", "compare": "compare/compare.json",

@@ -5,12 +5,14 @@
 #include <algorithm>
 #include <iterator>
 
+#include "identify/measurements/rig/fittable.h"
 #include "mesh/errors.h"
 #include "mesh/formats/read_body.h"
 #include "mesh/formats/surface/surface_formats.h"
 #include "mesh/formats/yaml/yaml_fields.h"
 #include "pipeline/case/read_case.h"
 #include "pipeline/case/subject.h"
+#include "pipeline/output/text/describe/describe_rig.h"
 #include "pipeline/output/text/words.h"
 
 namespace palpate::pipeline {
@@ -74,27 +76,28 @@ Description describe(const fs::path& file) {
 Description describe_set(const fs::path& path) {
     std::vector<std::string> notes;
     const identify::MeasurementSet set = read_measurements(path, notes);
-    std::size_t readings = 0, loaded = 0;
-    for (const auto& state : set.states) {
-        readings += state.readings.size();
-        loaded += state.contacts.empty() ? 0U : 1U;
-    }
+    std::size_t readings = 0;
+    for (const auto& state : set.states) readings += state.readings.size();
     Description description{.kind = "a measurement set, '" + set.name + "'", .lines = {}, .next = {}};
     description.lines.push_back(fmt::format("{} states, {} of them loaded; {} markers, {} readings", set.states.size(),
-                                            loaded, set.markers.size(), readings));
+                                            loaded_states(set), set.markers.size(), readings));
+    std::ranges::move(rig_in_words(set), std::back_inserter(description.lines));
     for (const identify::Recording& recording : set.recordings) {
         description.lines.push_back(fmt::format("probe {} in motion: {} instants, to {:g} s", recording.probe,
                                                 recording.instants.size(), recording.instants.back().time));
     }
     description.lines.push_back(fmt::format("held by {} region{}; surface of {} vertices", set.supports.size(),
                                             set.supports.size() == 1 ? "" : "s", set.rest_surface.vertices.rows()));
-    description.lines.push_back(set.position_noise ? fmt::format("noise {:.3g} mm (1 sigma)", *set.position_noise)
-                                                   : "no noise is stated: it is estimated");
+    if (set.position_noise)
+        description.lines.push_back(fmt::format("noise {:.3g} mm (1 sigma)", *set.position_noise));
+    else if (readings > 0 || set.reaction_noise == std::nullopt)
+        description.lines.emplace_back("no noise is stated: it is estimated");
     if (set.gravity)
         description.lines.push_back(fmt::format("gravity ({:g}, {:g}, {:g}) mm/s^2 is known to act", set.gravity->x(),
                                                 set.gravity->y(), set.gravity->z()));
     std::ranges::copy(notes, std::back_inserter(description.lines));
-    description.next = "palpate run " + path.string();
+    const bool is_fittable = identify::parts_not_fitted_yet(set).empty();
+    description.next = (is_fittable ? "palpate run " : "palpate check ") + path.string();
     return description;
 }
 

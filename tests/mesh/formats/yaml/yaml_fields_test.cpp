@@ -50,6 +50,8 @@ TEST(YamlFields, ReadsEveryKind) {
     const auto supports = f.mappings("supports");
     ASSERT_EQ(supports.size(), 2u);
     EXPECT_TRUE(supports[1].has("sphere"));
+    EXPECT_EQ(f.mapping_or_mappings("supports").size(), 2u);
+    EXPECT_EQ(f.mapping_or_mappings("noise").at(0).number("position"), 0.1);
     EXPECT_FALSE(f.has("nothing"));
     EXPECT_EQ(f.where("g"), "case.yaml, line 6, g");
     EXPECT_EQ(f.where("supports"), "case.yaml, line 11, supports");

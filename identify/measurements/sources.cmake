@@ -1,0 +1,25 @@
+set(measurements_sources
+  measurements/field.cpp
+  measurements/measurement_places.cpp
+  measurements/measurement_set.cpp
+  measurements/plausibility.cpp
+  measurements/rest_body.cpp
+  measurements/twin.cpp
+  measurements/files/actuators_yaml.cpp
+  measurements/files/path_inside.cpp
+  measurements/files/read_measurement_set.cpp
+  measurements/files/rig_tables.cpp
+  measurements/files/rig_yaml.cpp
+  measurements/files/second_format.cpp
+  measurements/files/set_description.cpp
+  measurements/files/set_units.cpp
+  measurements/files/tables.cpp
+  measurements/files/tools_yaml.cpp
+  measurements/files/write_measurement_set.cpp
+  measurements/files/write_rig_tables.cpp
+  measurements/labels/coherent_drift.cpp
+  measurements/labels/label_readings.cpp
+  measurements/rig/actuator_places.cpp
+  measurements/rig/cavities.cpp
+  measurements/rig/fittable.cpp
+  measurements/rig/tool_places.cpp)

@@ -1,0 +1,342 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include "identify/measurements/rig/fittable.h"
+#include "tests/identify/rig_files.h"
+
+namespace palpate::identify {
+namespace {
+
+// What a set of the second format says, and that it says the same once it is written and read.
+
+TEST_F(RigFiles, AreReadAsTheContractSays) {
+    const MeasurementSet set = read();
+    ASSERT_EQ(set.tools.size(), 2U);
+    EXPECT_EQ(set.tools[0].name, "ball");
+    EXPECT_EQ(std::get<mesh::SphereShape>(set.tools[0].shape).radius, 5);
+    EXPECT_EQ(set.tools[0].origin, Vec3(60, 10, 26));
+    EXPECT_FALSE(set.tools[0].bonded);
+    EXPECT_TRUE(set.tools[1].bonded);
+    EXPECT_EQ(set.tools[1].origin, Vec3(95, 10, 10));  // the centre of its box
+    EXPECT_EQ(std::get<mesh::GripShape>(set.tools[1].shape).regions.size(), 1U);
+
+    ASSERT_EQ(set.actuators.size(), 2U);
+    EXPECT_EQ(std::get<Vec3>(std::get<mesh::PressureActuator>(set.actuators[0].kind).cavity), Vec3(30, 10, 6));
+    const auto& cable = std::get<mesh::TendonActuator>(set.actuators[1].kind);
+    EXPECT_EQ(cable.path.row(2).transpose(), Vec3(80, 10, 12));
+    EXPECT_FALSE(cable.by_length);
+    EXPECT_EQ(set.reaction_noise, 0.02);
+    EXPECT_EQ(set.moment_noise, 1);  // N*mm
+
+    // probe 2 at time 0 stands in actuations.csv alone, and comes before the grip's motion
+    ASSERT_EQ(set.states.size(), 4U);
+    const LoadState &pressed = set.states[0], &bent = set.states[1], &pulled = set.states[2], &drained = set.states[3];
+    EXPECT_EQ(std::pair(bent.probe, bent.time), std::pair(2, 0.0));
+    EXPECT_EQ(std::pair(pulled.probe, pulled.time), std::pair(2, 1.0));
+
+    ASSERT_EQ(pressed.motions.size(), 1U);
+    EXPECT_EQ(pressed.motions[0].tool, 0);
+    EXPECT_EQ(pressed.motions[0].translation, Vec3(0, 0, -2));
+    ASSERT_EQ(pressed.reactions.size(), 1U);
+    EXPECT_TRUE(std::isnan(pressed.reactions[0].force.x()));
+    EXPECT_EQ(pressed.reactions[0].force.z(), -0.5);
+    EXPECT_EQ(pressed.reactions[0].sigma, 0.1);
+
+    EXPECT_TRUE(std::isnan(pulled.motions[0].translation.y()));  // free
+    EXPECT_EQ(pulled.motions[0].translation.z(), 0);             // held
+    EXPECT_TRUE(std::isnan(pulled.motions[0].rotation.x()));
+    EXPECT_DOUBLE_EQ(pulled.motions[0].rotation.z(), std::numbers::pi / 2);
+    EXPECT_EQ(pulled.reactions[0].moment.y(), 250);
+    EXPECT_TRUE(std::isnan(pulled.reactions[0].sigma));
+
+    EXPECT_EQ(bent.actuations[0].actuator, 1);
+    EXPECT_EQ(bent.actuations[0].value, 4);
+    EXPECT_EQ(bent.actuations[0].sigma, 0.5);
+    EXPECT_DOUBLE_EQ(drained.actuations[0].value, -0.005);  // a vacuum of 5 kPa
+
+    ASSERT_EQ(pressed.readings.size(), 1U);  // from rest: positions
+    EXPECT_FALSE(pressed.readings[0].since);
+    EXPECT_EQ(pressed.readings[0].position.z(), 19.5);
+    EXPECT_TRUE(std::isnan(pressed.readings[0].position.y()));
+    EXPECT_EQ(pressed.readings[0].sigma, 0.125);
+    EXPECT_TRUE(set.notes.empty());
+}
+
+TEST_F(RigFiles, MeanTheSameInEveryUnit) {
+    mesh::Surface rest = with_hollow(bar(), chamber());
+    rest.vertices /= 1000;
+    mesh::write_surface(folder / "rest.vtp", rest);
+    folder.write("set.yaml",
+                 "format: palpate-measurements/2\n"
+                 "units: {length: m, force: mN, angle: rad, pressure: mbar}\n"
+                 "rest_surface: rest.vtp\n"
+                 "supports: [{box: {min: [0, -1, -1], max: [0.0001, 1, 1]}}]\n"
+                 "tools:\n"
+                 "  - {name: ball, shape: {sphere: {radius: 0.005}}, at: [0.06, 0.01, 0.026], contact: frictionless}\n"
+                 "  - {name: grip, region: {box: {min: [0.089, -1, -1], max: [0.101, 1, 1]}}}\n"
+                 "actuators:\n"
+                 "  - {name: chamber, kind: pressure, cavity: {near: [0.03, 0.01, 0.006]}}\n"
+                 "  - {name: cable, kind: tendon, path: [[0, 0.01, 0.015], [0.08, 0.01, 0.012]], by: length}\n"
+                 "noise: {position: 1e-5, reaction: 20, moment: 1}\n"
+                 "correlated: {position: 0.002}\n");
+    folder.write("markers.csv", "marker,x,y,z\n7,0.08,0.01,0.02\n3,0.05,0.01,0\n");
+    folder.write("displacements.csv", "probe,time,marker,ux,uy,uz\n1,0,7,0.001,0,0\n");
+    folder.write("motions.csv", "probe,time,tool,x,y,z,rz\n1,0,ball,0,0,-0.002,\n2,1,grip,0.001,0,0,0.5\n");
+    folder.write("reactions.csv", "probe,time,tool,fx,fy,fz,mz,sigma\n2,1,grip,2,0,0,3,1\n");
+    folder.write("actuations.csv", "probe,time,actuator,value\n2,0,cable,0.004\n3,0,chamber,50\n");
+    const MeasurementSet set = read();
+    EXPECT_DOUBLE_EQ(std::get<mesh::SphereShape>(set.tools[0].shape).radius, 5);
+    EXPECT_DOUBLE_EQ(set.tools[0].origin.z(), 26);
+    EXPECT_DOUBLE_EQ(std::get<mesh::TendonActuator>(set.actuators[1].kind).path(1, 0), 80);
+    EXPECT_DOUBLE_EQ(*set.reaction_noise, 0.02);
+    EXPECT_DOUBLE_EQ(*set.moment_noise, 1);  // mN*m, as nothing else is said
+    EXPECT_DOUBLE_EQ(*set.position_correlation, 2);
+    EXPECT_DOUBLE_EQ(set.states[0].motions[0].translation.z(), -2);
+    EXPECT_TRUE(std::isnan(set.states[0].motions[0].rotation.z()));
+    EXPECT_EQ(set.states[0].motions[0].rotation.x(), 0);  // no such column: held
+    EXPECT_EQ(set.states[2].motions[0].rotation.z(), 0.5);
+    EXPECT_DOUBLE_EQ(set.states[2].reactions[0].force.x(), 0.002);
+    EXPECT_DOUBLE_EQ(set.states[2].reactions[0].moment.z(), 3);
+    EXPECT_DOUBLE_EQ(set.states[2].reactions[0].sigma, 0.001);
+    EXPECT_DOUBLE_EQ(set.states[1].actuations[0].value, 4);        // mm
+    EXPECT_DOUBLE_EQ(set.states[3].actuations[0].value, 0.005);    // MPa
+    EXPECT_DOUBLE_EQ(set.states[0].readings[0].position.x(), 81);  // mm
+}
+
+bool same_number(double a, double b) { return a == b || (std::isnan(a) && std::isnan(b)); }
+bool same_vector(const Vec3& a, const Vec3& b) {
+    return same_number(a[0], b[0]) && same_number(a[1], b[1]) && same_number(a[2], b[2]);
+}
+
+void expect_same_rig(const LoadState& a, const LoadState& b) {
+    ASSERT_EQ(a.motions.size(), b.motions.size());
+    for (std::size_t i = 0; i < a.motions.size(); ++i) {
+        EXPECT_EQ(a.motions[i].tool, b.motions[i].tool);
+        EXPECT_TRUE(same_vector(a.motions[i].translation, b.motions[i].translation));
+        EXPECT_TRUE(same_vector(a.motions[i].rotation, b.motions[i].rotation));
+    }
+    ASSERT_EQ(a.reactions.size(), b.reactions.size());
+    for (std::size_t i = 0; i < a.reactions.size(); ++i) {
+        EXPECT_EQ(a.reactions[i].tool, b.reactions[i].tool);
+        EXPECT_TRUE(same_vector(a.reactions[i].force, b.reactions[i].force));
+        EXPECT_TRUE(same_vector(a.reactions[i].moment, b.reactions[i].moment));
+        EXPECT_TRUE(same_number(a.reactions[i].sigma, b.reactions[i].sigma));
+    }
+    ASSERT_EQ(a.actuations.size(), b.actuations.size());
+    for (std::size_t i = 0; i < a.actuations.size(); ++i) {
+        EXPECT_EQ(a.actuations[i].actuator, b.actuations[i].actuator);
+        EXPECT_EQ(a.actuations[i].value, b.actuations[i].value);
+        EXPECT_TRUE(same_number(a.actuations[i].sigma, b.actuations[i].sigma));
+    }
+    ASSERT_EQ(a.readings.size(), b.readings.size());
+    for (std::size_t i = 0; i < a.readings.size(); ++i) {
+        EXPECT_EQ(a.readings[i].since, b.readings[i].since);
+        EXPECT_TRUE(same_vector(a.readings[i].position, b.readings[i].position));
+    }
+}
+
+TEST_F(RigFiles, AreReadBackEqual) {
+    mesh::write_surface(folder / "punch.stl", mesh::make_box({58, 8, -9}, {66, 12, -1}, {1, 1, 1}));
+    mesh::write_surface(folder / "chamber.stl", mesh::make_box({50, 6, 12}, {70, 14, 18}, {2, 2, 2}));
+    std::string many = "x,y,z\n";
+    for (int i = 0; i < 30; ++i) many += "95," + std::to_string(i % 20) + ",20\n";
+    folder.write("glued.csv", many);
+    std::string text = with("actuators:\n",
+                            "  - {name: punch, shape: {flat: {radius: 3}}, at: [70, 10, 20], contact: bonded}\n"
+                            "  - {name: die, shape: {mesh: punch.stl}, origin: [60, 10, -3], contact: frictionless}\n"
+                            "  - name: pads\n"
+                            "    region:\n"
+                            "      - points: {file: glued.csv, within: 0.5}\n"
+                            "      - sphere: {center: [85, 10, 0], radius: 2.5}\n"
+                            "actuators:\n"
+                            "  - {name: \"a tube\", kind: pressure, cavity: {surface: chamber.stl}}\n"
+                            "  - {name: 2, kind: tendon, path: [[0, 10, 5], [80, 10, 5.1]], by: length}\n");
+    folder.write("set.yaml", text + "correlated: {position: 3}\ndisplacements: {since: {probe: 2, time: 0}}\n");
+    folder.write("motions.csv", motions + "4,0,punch,0,0,-0.3,0,0,0\n4,0,die,0.1,0,,0,,0\n4,0,pads,0,0,0.7,0,0,0\n");
+    folder.write("reactions.csv", reactions + "4,0,die,,,1,,,,\n4,0,pads,0.1,0.2,0.3,1,2,3,0.7\n");
+    folder.write("actuations.csv", actuations + "4,0,a tube,7,0.1\n4,0,2,-0.3,\n");
+    const MeasurementSet set = read();
+    ASSERT_EQ(set.tools.size(), 5U);
+    write_measurement_set(folder / "copy", set);
+    const MeasurementSet copy = read_measurement_set(folder / "copy");
+
+    EXPECT_EQ(copy.reaction_noise, set.reaction_noise);
+    EXPECT_EQ(copy.moment_noise, set.moment_noise);
+    EXPECT_EQ(copy.position_correlation, set.position_correlation);
+    ASSERT_EQ(copy.tools.size(), set.tools.size());
+    for (std::size_t t = 0; t < set.tools.size(); ++t) {
+        EXPECT_EQ(copy.tools[t].name, set.tools[t].name);
+        EXPECT_EQ(copy.tools[t].bonded, set.tools[t].bonded);
+        EXPECT_EQ(copy.tools[t].origin, set.tools[t].origin);
+        EXPECT_EQ(copy.tools[t].shape.index(), set.tools[t].shape.index());
+    }
+    EXPECT_EQ(std::get<mesh::FlatShape>(copy.tools[2].shape).axis, std::get<mesh::FlatShape>(set.tools[2].shape).axis);
+    EXPECT_EQ(std::get<mesh::SurfaceShape>(copy.tools[3].shape).surface.vertices,
+              std::get<mesh::SurfaceShape>(set.tools[3].shape).surface.vertices);
+    const auto& pads = std::get<mesh::GripShape>(copy.tools[4].shape).regions;
+    ASSERT_EQ(pads.size(), 2U);
+    EXPECT_EQ(std::get<mesh::PointsRegion>(pads[0]).points.rows(), 30);
+
+    ASSERT_EQ(copy.actuators.size(), 4U);
+    EXPECT_EQ(std::get<mesh::Surface>(std::get<mesh::PressureActuator>(copy.actuators[0].kind).cavity).vertices,
+              std::get<mesh::Surface>(std::get<mesh::PressureActuator>(set.actuators[0].kind).cavity).vertices);
+    EXPECT_EQ(copy.actuators[1].name, "2");
+    EXPECT_TRUE(std::get<mesh::TendonActuator>(copy.actuators[1].kind).by_length);
+    EXPECT_EQ(std::get<mesh::TendonActuator>(copy.actuators[3].kind).path,
+              std::get<mesh::TendonActuator>(set.actuators[3].kind).path);
+
+    ASSERT_EQ(copy.states.size(), set.states.size());
+    for (std::size_t s = 0; s < set.states.size(); ++s) {
+        EXPECT_EQ(copy.states[s].probe, set.states[s].probe);
+        EXPECT_EQ(copy.states[s].time, set.states[s].time);
+        expect_same_rig(copy.states[s], set.states[s]);
+    }
+    EXPECT_EQ(copy.states[0].readings[0].since, (StateName{2, 0}));
+}
+
+TEST_F(RigFiles, WithoutNewPartsAreWrittenInTheFirstFormat) {
+    MeasurementSet set = read();
+    set.tools.clear();
+    set.actuators.clear();
+    set.reaction_noise.reset();
+    set.moment_noise.reset();
+    for (LoadState& state : set.states) {
+        state.motions.clear();
+        state.actuations.clear();
+        state.reactions.clear();
+    }
+    write_measurement_set(folder / "copy", set);
+    EXPECT_NE(text_of("copy/set.yaml").find("palpate-measurements/1"), std::string::npos);
+    EXPECT_EQ(read_measurement_set(folder / "copy").states.size(), 4U);
+}
+
+TEST_F(RigFiles, OfOneBodyMustTellTheOrderOfItsStates) {
+    const std::string continuous = yaml + "history: continuous\n";
+    EXPECT_TRUE(says(refusal("set.yaml", continuous),
+                     {"actuations.csv, line 2", "motions.csv has no row", "history: continuous", "probes.csv"}));
+    folder.write("set.yaml", continuous);
+    folder.write("probes.csv",
+                 "probe,time,x,y,z,fx,fy,fz,radius\n3,0,0,0,0,0,0,0,0\n1,0,0,0,0,0,0,0,0\n2,0,0,0,0,0,0,0,0\n"
+                 "2,1,0,0,0,0,0,0,0\n");
+    const MeasurementSet set = read();
+    ASSERT_EQ(set.states.size(), 4U);
+    EXPECT_EQ(set.states[0].probe, 3);
+    EXPECT_EQ(set.states[0].actuations.size(), 1U);
+    EXPECT_EQ(set.states[3].motions.size(), 1U);
+}
+
+TEST_F(RigFiles, OfOneBodyTellTimeInItsOrder) {
+    folder.write("set.yaml", yaml + "history: continuous\n");
+    folder.write("actuations.csv", "probe,time,actuator,value\n1,0,cable,4\n");
+    folder.write("displacements.csv", "probe,time,marker,ux,uy,uz\n1,0,7,0,0,1\n");
+    EXPECT_NO_THROW(read());
+    EXPECT_TRUE(says(refusal("motions.csv", motions + "2,0.5,grip,1,0,0,0,0,0\n"),
+                     {"motions.csv", "probe 2 at time 0.5", "comes after 1"}));
+}
+
+TEST_F(RigFiles, WithoutAPlaceRestAtTheOriginWhichIsSaid) {
+    folder.write("set.yaml", with(", at: [60, 10, 26]", ""));
+    folder.write("motions.csv", "probe,time,tool,x,y,z\n1,0,ball,60,10,24\n2,1,grip,1,0,0\n");
+    const MeasurementSet set = read();
+    EXPECT_EQ(set.tools[0].origin, Vec3(0, 0, 0));
+    ASSERT_EQ(set.notes.size(), 1U);
+    EXPECT_TRUE(says(set.notes[0], {"'ball' has no 'at'", "origin", "motions.csv"}));
+    write_measurement_set(folder / "copy", set);
+    EXPECT_EQ(read_measurement_set(folder / "copy").tools[0].origin, Vec3(0, 0, 0));
+}
+
+TEST_F(RigFiles, APunchPressesSquareToTheSurfaceBeforeIt) {
+    // off the middle of the top: the direction to the body's centre would be slanted by 66 degrees
+    folder.write("set.yaml", with("shape: {sphere: {radius: 5}}, at: [60, 10, 26]",
+                                  "shape: {flat: {radius: 4}}, at: [75, 10, 20]"));
+    const MeasurementSet set = read();
+    // rounding of unit vectors alone
+    EXPECT_LT((std::get<mesh::FlatShape>(set.tools[0].shape).axis - Vec3(0, 0, -1)).norm(), 1e-12);
+    ASSERT_EQ(set.notes.size(), 1U);
+    EXPECT_TRUE(says(set.notes[0], {"'ball' has no 'axis'", "(0, 0, -1)", "square to the surface"}));
+}
+
+TEST_F(RigFiles, SayWhatMeansNothing) {
+    folder.write("motions.csv", "probe,time,tool,x,y,z,rz\n1,0,ball,0,0,-2,30\n2,1,grip,1,0,0,0\n");
+    std::vector<std::string> notes = read().notes;
+    ASSERT_EQ(notes.size(), 1U);
+    EXPECT_TRUE(says(notes[0], {"'ball'", "without friction", "turns in 1 state mean nothing"}));
+
+    folder.write("motions.csv", "probe,time,tool,x,y,z\n2,1,grip,1,0,0\n1,0,grip,0,0,1\n");
+    folder.write("reactions.csv", "probe,time,tool,fx,fy,fz\n2,1,grip,1,0,0\n");
+    folder.write("actuations.csv", "probe,time,actuator,value\n3,0,cable,4\n");
+    notes = read().notes;
+    ASSERT_EQ(notes.size(), 2U);
+    EXPECT_TRUE(says(notes[0], {"'ball' is away in all states"}));
+    EXPECT_TRUE(says(notes[1], {"'chamber' is at 0 in all states"}));
+}
+
+// Displacements since a state are positions only where nothing acts in it.
+
+TEST_F(RigFiles, DisplacementsSinceAnUnloadedStateArePositions) {
+    folder.write("probes.csv", "probe,time,x,y,z,fx,fy,fz,radius\n9,0,0,0,0,0,0,0,0\n");
+    folder.write("displacements.csv", displacements + "9,0,7,0,0,0,\n");
+    const std::string since = yaml + "displacements: {since: {probe: 9, time: 0}}\n";
+    folder.write("set.yaml", since);
+    MeasurementSet set = read();
+    ASSERT_EQ(set.notes.size(), 1U);
+    EXPECT_TRUE(says(set.notes[0], {"1 displacements of the state", "left out"}));
+    const LoadState* pressed = find_state(set, {1, 0});
+    ASSERT_NE(pressed, nullptr);
+    EXPECT_EQ(pressed->readings[0].since, (StateName{9, 0}));
+    take_displacements_from_rest(set);
+    EXPECT_FALSE(pressed->readings[0].since);
+    EXPECT_EQ(pressed->readings[0].position.z(), 19.5);
+    EXPECT_TRUE(says(set.notes.back(), {"2 displacements", "positions, from rest"}));
+
+    folder.write("set.yaml", since + "gravity: [0, 0, -9810]\n");
+    set = read();
+    take_displacements_from_rest(set);
+    EXPECT_TRUE(find_state(set, {1, 0})->readings[0].since);
+    EXPECT_TRUE(
+        says(in_words(parts_not_fitted_yet(set)), {"2 displacements", "unloaded state", "displacements.since"}));
+
+    folder.write("set.yaml", yaml + "displacements: {since: {probe: 2, time: 0}}\n");  // the cable pulls there
+    set = read();
+    take_displacements_from_rest(set);
+    EXPECT_TRUE(find_state(set, {1, 0})->readings[0].since);
+}
+
+TEST_F(RigFiles, PartsThatCannotBeFittedYetAreNamed) {
+    MeasurementSet set = read();
+    set.position_correlation = 2;
+    std::vector<std::string> names;
+    for (const UnfittedPart& part : parts_not_fitted_yet(set)) names.push_back(part.what);
+    EXPECT_EQ(names, (std::vector<std::string>{"tool 'ball'", "tool 'grip'", "actuator 'chamber'", "actuator 'cable'",
+                                               "'correlated.position' (2 mm)"}));
+    EXPECT_TRUE(says(message_of<InvalidInput>([&] { require_fittable(set); }),
+                     {"set 'rig'", "cannot be fitted yet", "tool 'ball', tool 'grip', actuator 'chamber'",
+                      "this version fits forces", "palpate check", "none counts twice"}));
+    for (LoadState& state : set.states) {
+        state.motions.clear();
+        state.actuations.clear();
+    }
+    set.position_correlation.reset();
+    EXPECT_NO_THROW(require_fittable(set));
+}
+
+TEST_F(RigFiles, TellWhetherAnyForceIsMeasured) {
+    MeasurementSet set = read();
+    EXPECT_TRUE(tells_a_force(set));  // the cable's tension, the reactions
+    for (LoadState& state : set.states) {
+        state.actuations.clear();
+        state.reactions.clear();
+    }
+    EXPECT_FALSE(tells_a_force(set));
+    set.gravity = Vec3(0, 0, -9810);
+    EXPECT_FALSE(tells_a_force(set));  // of what weight?
+    set.density = 1e-9;
+    EXPECT_TRUE(tells_a_force(set));
+}
+
+}  // namespace
+}  // namespace palpate::identify

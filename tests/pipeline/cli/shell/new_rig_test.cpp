@@ -1,0 +1,124 @@
+// Sets of rigs: what there is to start from, what `check` and `info` tell of it, and what is not fitted yet.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "identify/measurements/measurement_set.h"
+#include "mesh/errors.h"
+#include "mesh/text/atomic_file.h"
+#include "pipeline/cli/shell/new_rig.h"
+#include "pipeline/command_line/commands.h"
+#include "pipeline/output/text/describe/describe.h"
+#include "samples/lattice.h"
+#include "skeleton/model/io/model_io.h"
+#include "tests/messages.h"
+#include "tests/temporary_folder.h"
+
+namespace palpate::pipeline {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+struct RigSets : ::testing::Test {
+    std::filesystem::path made(const std::string& rig) {
+        commands::new_case({.folder = scratch / rig, .rig = rig}, {});
+        return scratch / rig;
+    }
+    static commands::Outcome checked(const std::filesystem::path& set) {
+        return commands::check({.input = set, .overrides = {}}, {});
+    }
+    TemporaryFolder scratch;
+};
+
+TEST_F(RigSets, OfEveryKindAreAccepted) {
+    ASSERT_EQ(commands::rig_names().size(), 4U);
+    for (const std::string& rig : commands::rig_names()) {
+        const commands::Outcome outcome = checked(made(rig));
+        EXPECT_EQ(outcome.code, commands::done) << rig;
+        EXPECT_THAT(outcome.text, AllOf(HasSubstr("The surface is sound"), Not(HasSubstr("warning")))) << rig;
+        EXPECT_TRUE(outcome.json["faults"].empty()) << rig;
+        // what is read back says the same
+        const identify::MeasurementSet set = identify::read_measurement_set(scratch / rig);
+        identify::write_measurement_set(scratch / "copy", set);
+        EXPECT_EQ(checked(scratch / "copy").json["set"], outcome.json["set"]) << rig;
+    }
+}
+
+TEST_F(RigSets, AreToldByCheckAndInfo) {
+    const commands::Outcome pressed = checked(made("indenter"));
+    EXPECT_THAT(pressed.text,
+                AllOf(HasSubstr("4 states (4 loaded)"), HasSubstr("Tool 'indenter': a sphere of radius 5 mm"),
+                      HasSubstr("frictionless; 4 motions; 4 readings of its reaction, of fz"),
+                      HasSubstr("Cannot be fitted yet: tool 'indenter'"), Not(HasSubstr("palpate run"))));
+    EXPECT_EQ(pressed.json["set"]["tools"][0]["reads"], nlohmann::json({"fz"}));
+    EXPECT_TRUE(pressed.json["set"]["tells_a_force"]);
+
+    const commands::Outcome pulled = checked(made("tensile"));
+    EXPECT_THAT(pulled.text, AllOf(HasSubstr("a grip of 1 region"), HasSubstr("Tool 'clamp' grips"),
+                                   HasSubstr("taken as positions, from rest")));
+
+    const Description blown = describe(made("pneumatic"));
+    EXPECT_THAT(blown.lines,
+                ::testing::Contains(AllOf(HasSubstr("actuator 'chamber': pressure in a cavity of 2640 mm^3"),
+                                          HasSubstr("4 actuations from 0 to 0.02 MPa"))));
+    const Description bent = describe(made("tendon"));
+    EXPECT_THAT(bent.lines, ::testing::Contains(AllOf(HasSubstr("'upper': a tendon through 3 points, 95 mm long"),
+                                                      HasSubstr("from 0 to 0.5 N"))));
+    for (const auto& [table, kind] : {std::pair("indenter/motions.csv", "motions of tools"),
+                                      std::pair("indenter/reactions.csv", "measured reactions of tools"),
+                                      std::pair("tendon/actuations.csv", "what actuators were set to"),
+                                      std::pair("tensile/displacements.csv", "measured displacements of markers")})
+        EXPECT_EQ(describe(scratch / table).kind, kind);
+}
+
+TEST_F(RigSets, WithoutAForceTellRatiosOnly) {
+    const auto set = made("tensile");
+    std::filesystem::remove(set / "reactions.csv");
+    EXPECT_THAT(checked(set).text, HasSubstr("No force is measured: stiffness is identified up to a common factor"));
+}
+
+TEST_F(RigSets, GripsThatHoldNothingAreWarnedOf) {
+    const auto set = made("tensile");
+    std::string yaml = mesh::read_text(set / "set.yaml");
+    const std::string box = "{min: [50, -1, -1], max: [61, 11, 5]}";
+    yaml.replace(yaml.find(box), box.size(), "{min: [50.5, 3, 1], max: [55, 4, 3]}");
+    mesh::write_text(set / "set.yaml", yaml);
+    EXPECT_THAT(checked(set).text, HasSubstr("Tool 'clamp' grips nothing of the surface"));
+}
+
+TEST_F(RigSets, AreNotFittedWithoutTheirTools) {
+    const auto set = made("indenter");
+    const auto refusal = AllOf(HasSubstr("set 'indenter'"), HasSubstr("cannot be fitted yet"),
+                               HasSubstr("tool 'indenter'"), HasSubstr("palpate check"));
+    EXPECT_THAT(message_of<InvalidInput>(
+                    [&] { commands::run({.input = set, .output = scratch / "run", .overrides = {}}, {}); }),
+                refusal);
+    EXPECT_FALSE(std::filesystem::exists(scratch / "run/mesh"));
+
+    const auto model = scratch / "model.json";
+    skeleton::write_model(model, samples::make_lattice("bar", {3, 2, 1}, 1));
+    const auto out = scratch / "out";
+    EXPECT_THAT(message_of<InvalidInput>([&] { commands::identify({model, set, out, {}}, {}); }), refusal);
+    EXPECT_THAT(message_of<InvalidInput>(
+                    [&] { commands::compare({.model = model, .set = set, .output = out, .tolerance = {}}, {}); }),
+                refusal);
+    EXPECT_THAT(message_of<InvalidInput>([&] { commands::diagnose({.model = model, .set = set, .output = out}, {}); }),
+                refusal);
+    EXPECT_THAT(message_of<InvalidInput>(
+                    [&] { commands::improve({.model = model, .set = set, .output = out, .add = {"gravity"}}, {}); }),
+                refusal);
+    EXPECT_THAT(message_of<InvalidInput>(
+                    [&] { commands::play({.model = model, .output = scratch / "page.html", .set = set}, {}); }),
+                refusal);
+    EXPECT_FALSE(std::filesystem::exists(out));
+}
+
+TEST_F(RigSets, DoNotReplaceAFolder) {
+    made("tendon");
+    EXPECT_TRUE(says(message_of<InvalidInput>([&] { made("tendon"); }), {"exists already"}));
+}
+
+}  // namespace
+}  // namespace palpate::pipeline
