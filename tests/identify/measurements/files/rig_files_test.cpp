@@ -265,6 +265,14 @@ TEST_F(RigFiles, SayWhatMeansNothing) {
     ASSERT_EQ(notes.size(), 1U);
     EXPECT_TRUE(says(notes[0], {"'ball'", "without friction", "turns in 1 state mean nothing"}));
 
+    // 20 mm up, less the radius and the 1 mm that it rests off the surface by; 5 mm are allowed
+    folder.write("motions.csv", "probe,time,tool,x,y,z\n1,0,ball,0,0,20\n2,1,grip,1,0,0\n");
+    notes = read().notes;
+    ASSERT_EQ(notes.size(), 1U);
+    EXPECT_TRUE(says(notes[0], {"'ball' comes no nearer than 21 mm", "one unit and one frame"}));
+    folder.write("motions.csv", "probe,time,tool,x,y,z\n1,0,ball,0,0,3.9\n2,1,grip,1,0,0\n");
+    EXPECT_TRUE(read().notes.empty());
+
     folder.write("motions.csv", "probe,time,tool,x,y,z\n2,1,grip,1,0,0\n1,0,grip,0,0,1\n");
     folder.write("reactions.csv", "probe,time,tool,fx,fy,fz\n2,1,grip,1,0,0\n");
     folder.write("actuations.csv", "probe,time,actuator,value\n3,0,cable,4\n");
