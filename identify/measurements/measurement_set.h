@@ -46,7 +46,7 @@ struct Reading {
     std::optional<StateName> since = {};
 };
 
-/// The measured force of a tool on the body, and its moment about the tool's origin. What no sensor reads is NaN.
+/// The measured force of a tool on the body, its moment about the tool's moved origin. What no sensor reads is NaN.
 struct ReactionReading {
     int tool = 0;                           // index in MeasurementSet::tools
     Vec3 force = Vec3::Constant(missing);   // [N]

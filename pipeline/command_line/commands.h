@@ -141,7 +141,8 @@ struct NewOptions {
     std::filesystem::path folder;
     std::string rig = {};  // indenter, tensile, pneumatic, tendon: a measurement set; empty: a case
 };
-/// A commented case.yaml or measurement set, and a small body to try it on. @throws InvalidInput when the folder is there and not empty.
+/// A commented case.yaml or measurement set, and a small body to try it on. @throws InvalidInput when the folder is
+/// there and not empty.
 Outcome new_case(const NewOptions& options, const Common& common);
 
 struct InfoOptions {

@@ -69,7 +69,7 @@ std::string in_words(const std::vector<UnfittedPart>& parts) {
         names.push_back(part.what);
         if (std::ranges::find(remedies, part.remedy) == remedies.end()) remedies.push_back(part.remedy);
     }
-    return fmt::format("{}: {}", fmt::join(names, ", "), fmt::join(remedies, "; "));
+    return fmt::format("{}: {}", fmt::join(names, ", "), fmt::join(remedies, ". Also, "));
 }
 
 void require_fittable(const MeasurementSet& set) {

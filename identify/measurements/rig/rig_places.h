@@ -11,7 +11,8 @@ namespace palpate::identify {
 void check_starts_outside(const mesh::Tool& tool, const mesh::Surface& rest, const std::string& where);
 
 /// What contradicts itself, or comes to nothing: motion and force of one contact at once; material that is gripped and
-/// held; a tool that moves and no reading answers. Notes tell of tools that never move, and of turns that mean nothing.
+/// held; a tool that moves and no reading answers. Notes tell of tools that never move or never come near the body, and
+/// of turns that mean nothing.
 /// @throws InvalidInput.
 void check_tools(MeasurementSet& set);
 

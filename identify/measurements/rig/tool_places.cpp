@@ -3,8 +3,9 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <map>
+#include <limits>
 #include <numbers>
+#include <optional>
 #include <utility>
 
 #include "identify/measurements/rest_body.h"
@@ -53,6 +54,9 @@ struct SizeOfShape {
     double operator()(const mesh::GripShape&) const { return 0; }
 };
 
+/// Coordinates that are left free count as 0.
+Vec3 without_free(const Vec3& coordinates) { return coordinates.array().isNaN().select(0, coordinates); }
+
 /// Does a tool in its place reach over a point of the body at rest? Coordinates that are left free count as 0.
 class TouchedPlace {
 public:
@@ -61,8 +65,7 @@ public:
     }
 
     bool holds(const mesh::ToolMotion& motion, const Vec3& point) const {
-        const Vec3 moved = motion.translation.array().isNaN().select(0, motion.translation);
-        const Vec3 turn = motion.rotation.array().isNaN().select(0, motion.rotation);
+        const Vec3 moved = without_free(motion.translation), turn = without_free(motion.rotation);
         const double angle = turn.norm();
         const Mat3 R = angle > 0 ? Eigen::AngleAxisd(angle, turn / angle).toRotationMatrix() : Mat3::Identity();
         // the point as the tool sees it: at rest, about its origin
@@ -176,6 +179,43 @@ void note_turns(MeasurementSet& set) {
     }
 }
 
+/// How far a tool reaches from its origin [mm]; a grip has no body of its own.
+struct ReachOfShape {
+    const Vec3& origin;
+
+    double operator()(const mesh::SphereShape& sphere) const { return sphere.radius; }
+    double operator()(const mesh::FlatShape& flat) const { return flat.radius; }
+    double operator()(const mesh::SurfaceShape& shape) const {
+        return (shape.surface.vertices.rowwise() - origin.transpose()).rowwise().norm().maxCoeff();
+    }
+    double operator()(const mesh::GripShape&) const { return std::numeric_limits<double>::infinity(); }
+};
+
+/// A tool whose force was read has touched the body: where it is never near, unit or frame are not the body's.
+void note_far_tools(MeasurementSet& set) {
+    const RestBody body(set.rest_surface);
+    const double allowed = 0.05 * body.box.longest_side();  // as for contacts
+    for (std::size_t t = 0; t < set.tools.size(); ++t) {
+        const mesh::Tool& tool = set.tools[t];
+        const double reach = std::visit(ReachOfShape{tool.origin}, tool.shape);
+        double nearest = std::numeric_limits<double>::infinity();
+        bool is_read = false;
+        for (const LoadState& state : set.states) {
+            const auto motion = std::ranges::find(state.motions, static_cast<int>(t), &mesh::ToolMotion::tool);
+            if (motion == state.motions.end()) continue;
+            is_read = is_read || std::ranges::find(state.reactions, static_cast<int>(t), &ReactionReading::tool) !=
+                                     state.reactions.end();
+            const Vec3 place = tool.origin + without_free(motion->translation);
+            nearest = std::min(nearest, body.holds(place) ? 0 : body.tree.closest(place).distance - reach);
+        }
+        if (is_read && nearest > allowed)
+            set.notes.push_back(fmt::format(
+                "Tool '{}' comes no nearer than {:.4g} mm to the body at rest, and its force was read: are 'at' in "
+                "set.yaml, motions.csv and the body in one unit and one frame?",
+                tool.name, nearest));
+    }
+}
+
 }  // namespace
 
 void check_starts_outside(const mesh::Tool& tool, const mesh::Surface& rest, const std::string& where) {
@@ -196,6 +236,7 @@ void check_tools(MeasurementSet& set) {
     check_contacts(set);
     for (std::size_t t = 0; t < set.tools.size(); ++t) check_is_answered(set, t);
     note_turns(set);
+    if (!set.tools.empty()) note_far_tools(set);
 }
 
 }  // namespace palpate::identify

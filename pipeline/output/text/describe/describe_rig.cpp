@@ -163,6 +163,7 @@ std::size_t loaded_states(const identify::MeasurementSet& set) {
 
 std::vector<std::string> rig_in_words(const identify::MeasurementSet& set) {
     std::vector<std::string> lines;
+    lines.reserve(set.tools.size() + set.actuators.size());
     for (int t = 0; t < static_cast<int>(set.tools.size()); ++t) lines.push_back(tool_in_words(set, t));
     for (int a = 0; a < static_cast<int>(set.actuators.size()); ++a) lines.push_back(actuator_in_words(set, a));
     if (const int count = count_of_displacements(set); count > 0)

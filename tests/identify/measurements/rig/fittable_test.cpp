@@ -1,0 +1,77 @@
+#include "identify/measurements/rig/fittable.h"
+
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+#include "tests/identify/rig_files.h"
+
+namespace palpate::identify {
+namespace {
+
+// Displacements since a state are positions only where nothing acts in it.
+
+TEST_F(RigFiles, DisplacementsSinceAnUnloadedStateArePositions) {
+    folder.write("probes.csv", "probe,time,x,y,z,fx,fy,fz,radius\n9,0,0,0,0,0,0,0,0\n");
+    folder.write("displacements.csv", displacements + "9,0,7,0,0,0,\n");
+    const std::string since = yaml + "displacements: {since: {probe: 9, time: 0}}\n";
+    folder.write("set.yaml", since);
+    MeasurementSet set = read();
+    ASSERT_EQ(set.notes.size(), 1U);
+    EXPECT_TRUE(says(set.notes[0], {"1 displacements of the state", "left out"}));
+    const LoadState* pressed = find_state(set, {1, 0});
+    ASSERT_NE(pressed, nullptr);
+    EXPECT_EQ(pressed->readings[0].since, (StateName{9, 0}));
+    take_displacements_from_rest(set);
+    EXPECT_FALSE(pressed->readings[0].since);
+    EXPECT_EQ(pressed->readings[0].position.z(), 19.5);
+    EXPECT_TRUE(says(set.notes.back(), {"2 displacements", "positions, from rest"}));
+
+    folder.write("set.yaml", since + "gravity: [0, 0, -9810]\n");
+    set = read();
+    take_displacements_from_rest(set);
+    EXPECT_TRUE(find_state(set, {1, 0})->readings[0].since);
+    EXPECT_TRUE(
+        says(in_words(parts_not_fitted_yet(set)), {"2 displacements", "unloaded state", "displacements.since"}));
+
+    folder.write("set.yaml", yaml + "displacements: {since: {probe: 2, time: 0}}\n");  // the cable pulls there
+    set = read();
+    take_displacements_from_rest(set);
+    EXPECT_TRUE(find_state(set, {1, 0})->readings[0].since);
+}
+
+TEST_F(RigFiles, PartsThatCannotBeFittedYetAreNamed) {
+    MeasurementSet set = read();
+    set.position_correlation = 2;
+    std::vector<std::string> names;
+    for (const UnfittedPart& part : parts_not_fitted_yet(set)) names.push_back(part.what);
+    EXPECT_EQ(names, (std::vector<std::string>{"tool 'ball'", "tool 'grip'", "actuator 'chamber'", "actuator 'cable'",
+                                               "'correlated.position' (2 mm)"}));
+    EXPECT_TRUE(says(message_of<InvalidInput>([&] { require_fittable(set); }),
+                     {"set 'rig'", "cannot be fitted yet", "tool 'ball', tool 'grip', actuator 'chamber'",
+                      "this version fits forces", "palpate check", "none counts twice"}));
+    for (LoadState& state : set.states) {
+        state.motions.clear();
+        state.actuations.clear();
+    }
+    set.position_correlation.reset();
+    EXPECT_NO_THROW(require_fittable(set));
+}
+
+TEST_F(RigFiles, TellWhetherAnyForceIsMeasured) {
+    MeasurementSet set = read();
+    EXPECT_TRUE(tells_a_force(set));  // the cable's tension, the reactions
+    for (LoadState& state : set.states) {
+        state.actuations.clear();
+        state.reactions.clear();
+    }
+    EXPECT_FALSE(tells_a_force(set));
+    set.gravity = Vec3(0, 0, -9810);
+    EXPECT_FALSE(tells_a_force(set));  // of what weight?
+    set.density = 1e-9;
+    EXPECT_TRUE(tells_a_force(set));
+}
+
+}  // namespace
+}  // namespace palpate::identify
