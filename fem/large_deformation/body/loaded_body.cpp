@@ -99,6 +99,12 @@ Potential LoadedBody::potential(const Eigen::VectorXd& u, Eigen::VectorXd& net) 
     return sum;
 }
 
+double LoadedBody::rounding(const Eigen::VectorXd& u) const {
+    double sum = material_.rounding(u);
+    for (const PlacedTool& tool : tools_) sum = std::hypot(sum, tool.rounding());
+    return sum;
+}
+
 bool LoadedBody::admits(const Eigen::VectorXd& u) const {
     Eigen::VectorXd net;
     return std::isfinite(potential(u, net).value);

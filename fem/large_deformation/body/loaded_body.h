@@ -38,7 +38,7 @@ public:
     /// @throws SolverFailure where an element is inside out.
     Eigen::VectorXd net_force(const Eigen::VectorXd& u) const;
     /// About the norm of what rounding leaves of forces that balance in the displacement u [N].
-    double rounding(const Eigen::VectorXd& u) const { return material_.rounding(u); }
+    double rounding(const Eigen::VectorXd& u) const;
     /// Adds the potential's second derivative. @pre no element is inside out.
     void add_tangent(const Eigen::VectorXd& u, const Unknowns& unknowns, LowerMatrix& K) const;
 

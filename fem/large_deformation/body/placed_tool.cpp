@@ -1,5 +1,8 @@
 #include "fem/large_deformation/body/placed_tool.h"
 
+#include <cmath>
+#include <limits>
+
 namespace palpate::fem {
 
 PlacedTool::PlacedTool(const BodyShape& body, std::shared_ptr<const ToolPotential> potential)
@@ -53,6 +56,13 @@ void PlacedTool::add_hessian(const Eigen::VectorXd& u, const Unknowns& unknowns,
         add_outer(terms.hessian, at, tangent);
     });
     begin(-1);
+}
+
+double PlacedTool::rounding() const {
+    double squares = 0;
+    for (const double weight : weights_) squares += weight * weight;
+    const double farthest = points_.rest.cwiseAbs().maxCoeff() + potential_->origin().cwiseAbs().maxCoeff();
+    return std::numeric_limits<double>::epsilon() * farthest * std::sqrt(squares);
 }
 
 Wrench PlacedTool::wrench(const Eigen::VectorXd& u) const {

@@ -16,6 +16,9 @@ public:
     /// Adds d^2 Pi / du^2.
     void add_hessian(const Eigen::VectorXd& u, const Unknowns& unknowns, LowerMatrix& K) const;
 
+    /// About the norm of what rounding of positions leaves of its forces [N].
+    double rounding() const;
+
     Wrench wrench(const Eigen::VectorXd& u) const;
     /// d^2 Pi / du dz (3n x 6), z the pose's steps: what PointOnTool has at each point.
     Eigen::MatrixXd by_pose(const Eigen::VectorXd& u) const;
