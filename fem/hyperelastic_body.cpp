@@ -142,6 +142,22 @@ Eigen::MatrixXd HyperelasticBody::tendon_derivative(const Eigen::VectorXd& u, co
     return PlacedTendon((*shape.tendon_paths)(shape.mesh, pull.actuator), pull, small_strain).derivative(u);
 }
 
+Eigen::VectorXd HyperelasticBody::tendon_push(const Eigen::VectorXd& u, const TendonPull& pull,
+                                              bool small_strain) const {
+    // By tension -dL/du; by length -dL/du d(tension)/dL.
+    return pull.actuator->by_length ? Eigen::VectorXd(-tendon_derivative(u, pull, small_strain).col(1))
+                                    : Eigen::VectorXd(tendon_derivative(u, pull, small_strain).col(0));
+}
+
+Eigen::VectorXd HyperelasticBody::cavity_push(const Eigen::VectorXd& u, const mesh::PressureActuator& actuator,
+                                              bool small_strain) const {
+    const int cavity = find_cavity(actuator);
+    Eigen::VectorXd push = Eigen::VectorXd::Zero(u.size());
+    const Eigen::VectorXd one = Eigen::VectorXd::Unit(impl_->shape.cavities.count(), cavity);
+    impl_->shape.cavities.add_gradient(small_strain ? Eigen::VectorXd(Eigen::VectorXd::Zero(u.size())) : u, one, push);
+    return push;
+}
+
 double HyperelasticBody::potential(const Eigen::VectorXd& u, const BodySetting& setting, const Eigen::VectorXd& f,
                                    const PlasticState* before) const {
     setting.material.validate();

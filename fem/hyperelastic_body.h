@@ -88,6 +88,10 @@ public:
     TendonState tendon_state(const Eigen::VectorXd& u, const TendonPull& pull, bool small_strain) const;
     /// d(drawn in)/du and d(tension)/du (3n x 2).
     Eigen::MatrixXd tendon_derivative(const Eigen::VectorXd& u, const TendonPull& pull, bool small_strain) const;
+    /// By how much the forces on the nodes grow with a tendon's value (3n), or with the pressure in a cavity.
+    Eigen::VectorXd tendon_push(const Eigen::VectorXd& u, const TendonPull& pull, bool small_strain) const;
+    Eigen::VectorXd cavity_push(const Eigen::VectorXd& u, const mesh::PressureActuator& actuator,
+                                bool small_strain) const;
 
     /// Does the boundary close in cavities within the body, which can be under pressure?
     bool has_cavities() const;

@@ -22,17 +22,18 @@ struct RigidTool {
 /// of the contact's own in every body, and with no force but those of tools the shape that a body takes does not
 /// depend on its stiffness, as it should. What a shape is bonded to is what lies within a twentieth of its radius at
 /// rest; a grip holds what lies in its regions.
-class ToolPotential final : public PointPotential {
+class ToolPotential : public PointPotential {
 public:
     /// `motion`: no coordinate free. `young`: of the body [MPa].
     ToolPotential(std::shared_ptr<const RigidTool> tool, const mesh::ToolMotion& motion, double young);
 
     const mesh::Tool& tool() const { return tool_->tool; }
     const mesh::ToolMotion& motion() const { return motion_; }
+    double young() const { return young_; }         // of the body [MPa]
     const Vec3& origin() const { return origin_; }  // where it has moved to [mm]
     bool is_grip() const { return !tool_->shape; }
     /// On the way there from rest: with a share of the motion.
-    std::shared_ptr<const ToolPotential> part_way(double share) const;
+    virtual std::shared_ptr<const ToolPotential> part_way(double share) const;
     /// May it part from the body?
     bool parts() const { return !tool().bonded && !is_grip(); }
     /// Some times less stiff.
@@ -40,7 +41,7 @@ public:
     /// About how far it may move at once and still meet the side of the body that it is on [mm]; infinite when bonded.
     double reach() const;
     /// How far the motion takes its points from rest [mm].
-    double way() const;
+    virtual double way() const;
 
     ActsOn acts_on() const override { return is_grip() ? ActsOn::material : ActsOn::surface; }
     /// @throws InvalidInput when it is bonded to nothing.
