@@ -11,6 +11,7 @@ namespace {
 
 class SphereDistance final : public RigidShape {
 public:
+    using RigidShape::gap;
     SphereDistance(const Vec3& centre, double radius) : centre_(centre), radius_(radius) {}
     Gap gap(const Vec3& y) const override {
         const Vec3 arm = y - centre_;
@@ -26,7 +27,8 @@ private:
     double radius_;
 };
 
-/// A half-infinite cylinder behind its face: within, the nearer of face and side counts.
+/// A half-infinite cylinder behind its face: within, the nearer of face and side counts, but for points that it finds
+/// below its face: those stay there.
 class PunchDistance final : public RigidShape {
 public:
     PunchDistance(const Vec3& centre, const mesh::FlatShape& punch)
@@ -44,6 +46,12 @@ public:
         const double distance = std::hypot(ahead, beside);
         const Vec3 n = (ahead * axis_ + beside * out) / distance, along = (beside * axis_ - ahead * out) / distance;
         return {distance, n, (along * along.transpose() + beside * turning) / distance};
+    }
+    Gap gap(const Vec3& y, const Vec3& rest) const override {
+        const Vec3 arm = y - centre_, from = rest - centre_;
+        const auto beside = [&](const Vec3& r) { return (r - axis_.dot(r) * axis_).norm() - radius_; };
+        if (beside(arm) <= 0 && beside(from) <= 0) return {axis_.dot(arm), axis_, Mat3::Zero()};
+        return gap(y);
     }
     double radius() const override { return radius_; }
 

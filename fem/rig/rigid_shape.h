@@ -19,6 +19,9 @@ public:
     virtual ~RigidShape() = default;
     /// `y`: where the point is when the tool is at rest [mm].
     virtual Gap gap(const Vec3& y) const = 0;
+    /// The same for a point of a body that, if it had not moved, would be at `rest`: this tells where a point that is
+    /// deep within, as on the way to an equilibrium, came in.
+    virtual Gap gap(const Vec3& y, const Vec3& /*rest*/) const { return gap(y); }
     /// About the radius of what it presses with [mm].
     virtual double radius() const = 0;
 };

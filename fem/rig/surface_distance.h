@@ -15,6 +15,7 @@ class SurfaceDistance final : public RigidShape {
 public:
     /// `name`: for messages. @throws InvalidInput where the surface is empty or not closed.
     SurfaceDistance(const std::string& name, const mesh::Surface& surface);
+    using RigidShape::gap;
     Gap gap(const Vec3& y) const override;
     double radius() const override { return radius_; }
 

@@ -94,7 +94,8 @@ PointTerms ToolPotential::terms(const Vec3& X, const Vec3& x) const {
         const Vec3 away = x - origin_ - R_ * (X - tool().origin);
         return {.energy = away.squaredNorm() / 2, .gradient = away, .hessian = Mat3::Identity()};
     }
-    const Gap gap = tool_->shape->gap(R_.transpose() * (x - origin_) + tool().origin);
+    const auto at_tool = [&](const Vec3& place) -> Vec3 { return R_.transpose() * (place - origin_) + tool().origin; };
+    const Gap gap = tool_->shape->gap(at_tool(x), at_tool(X));
     if (gap.value >= 0) return {};
     const Vec3 n = R_ * gap.normal;
     // Far within, on the way to an equilibrium, the shape's curvature would only lead astray.
