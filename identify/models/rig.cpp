@@ -20,8 +20,8 @@ PreparedRig::PreparedRig(const Rig& rig) {
 fem::Effects PreparedRig::effects(const Action& action, double young) const {
     fem::Effects result;
     for (const mesh::ToolMotion& motion : action.motions) result.tools.push_back(tool(motion, young));
-    std::vector<mesh::ActuatorSetting> all;
-    for (int k = 0; k < static_cast<int>(tendons_.size()); ++k) all.push_back({k, 0});
+    std::vector<mesh::ActuatorSetting> all(tendons_.size());
+    for (std::size_t k = 0; k < all.size(); ++k) all[k].actuator = static_cast<int>(k);
     for (const mesh::ActuatorSetting& setting : action.settings) all[setting.actuator].value = setting.value;
     for (const mesh::ActuatorSetting& setting : all) {
         if (tendons_[setting.actuator]) {

@@ -196,6 +196,7 @@ mesh::VolumeMesh layer(double h, double a, double outer, int rings, int layers) 
     const auto node = [&](std::size_t ring, int s) {
         return 1 + static_cast<int>(ring) * sectors + (s + sectors) % sectors;
     };
+    triangles.reserve(2 * radii.size() * sectors);
     for (int s = 0; s < sectors; ++s) triangles.push_back({0, node(0, s), node(0, s + 1)});
     for (std::size_t k = 0; k + 1 < radii.size(); ++k) {
         for (int s = 0; s < sectors; ++s) {

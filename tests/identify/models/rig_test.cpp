@@ -124,7 +124,9 @@ protected:
 };
 
 TEST_P(RigLaws, NetForcesVanishInEquilibrium) {
-    for (const auto& [name, action] : actions()) {
+    for (const NamedAction& named : actions()) {
+        const std::string& name = named.name;
+        const Action& action = named.action;
         const Eigen::VectorXd q = model_->equilibrium(setting_, action);
         // Solvers stop at 1e-7 of forces or better, free coordinates at 1e-6.
         EXPECT_LT(at_free(model_->residual(q, setting_, action)).norm(), 1e-5 * force_at_support(q, action)) << name;
@@ -133,7 +135,9 @@ TEST_P(RigLaws, NetForcesVanishInEquilibrium) {
 }
 
 TEST_P(RigLaws, TangentIsMinusTheDerivativeOfTheResidual) {
-    for (const auto& [name, action] : actions()) {
+    for (const NamedAction& named : actions()) {
+        const std::string& name = named.name;
+        const Action& action = named.action;
         const Eigen::VectorXd q = model_->equilibrium(setting_, action);
         const auto tangent = model_->tangent(q, setting_, action);
         const auto residual = [&](const Eigen::VectorXd& at) {
@@ -151,7 +155,9 @@ TEST_P(RigLaws, TangentIsMinusTheDerivativeOfTheResidual) {
 }
 
 TEST_P(RigLaws, ReactionSlopesAreDerivatives) {
-    for (const auto& [name, action] : actions()) {
+    for (const NamedAction& named : actions()) {
+        const std::string& name = named.name;
+        const Action& action = named.action;
         if (action.motions.empty()) continue;
         const Eigen::VectorXd q = model_->equilibrium(setting_, action);
         const ReactionSlopes slopes = model_->reaction_slopes(q, setting_, action);
@@ -187,7 +193,9 @@ TEST_P(RigLaws, ReactionSlopesAreDerivatives) {
 }
 
 TEST_P(RigLaws, SignaturesAreDerivativesOfTheResidual) {
-    for (const auto& [name, action] : actions()) {
+    for (const NamedAction& named : actions()) {
+        const std::string& name = named.name;
+        const Action& action = named.action;
         const Eigen::VectorXd q = model_->equilibrium(setting_, action);
         const Eigen::MatrixXd G = model_->parameter_force(q, setting_, action);
         const double scale = G.norm() + force_at_support(q, action);
@@ -215,7 +223,9 @@ TEST_P(RigLaws, SignaturesAreDerivativesOfTheResidual) {
 }
 
 TEST_P(RigLaws, MotionsAloneTellNothingOfStiffnessAndReactionsAllOfIt) {
-    for (const auto& [name, action] : of({"ball", "grip", "grip that turns"})) {
+    for (const NamedAction& named : of({"ball", "grip", "grip that turns"})) {
+        const std::string& name = named.name;
+        const Action& action = named.action;
         const Eigen::VectorXd q = model_->equilibrium(setting_, action);
         const Eigen::VectorXd W = model_->reactions(q, setting_, action);
         // All of the body is twice as stiff.
@@ -236,7 +246,9 @@ TEST_P(RigLaws, MotionsAloneTellNothingOfStiffnessAndReactionsAllOfIt) {
 }
 
 TEST_P(RigLaws, NothingPushesAlongFreeCoordinates) {
-    for (const auto& [name, action] : of({"grip that turns", "punch that shifts"})) {
+    for (const NamedAction& named : of({"grip that turns", "punch that shifts"})) {
+        const std::string& name = named.name;
+        const Action& action = named.action;
         const Eigen::VectorXd q = model_->equilibrium(setting_, action);
         const std::vector<mesh::ToolMotion> found = model_->motions(q, setting_, action);
         const Eigen::VectorXd W = model_->reactions(q, setting_, action);
@@ -261,7 +273,9 @@ TEST_P(RigLaws, SupportsBearWhatToolsExert) {
     Rig rig = rig_of_bar();
     rig.actuators.clear();
     model_ = model(rig);
-    for (const auto& [name, action] : of({"ball", "grip", "punch that shifts"})) {
+    for (const NamedAction& named : of({"ball", "grip", "punch that shifts"})) {
+        const std::string& name = named.name;
+        const Action& action = named.action;
         const Eigen::VectorXd q = model_->equilibrium(setting_, action);
         const Eigen::VectorXd W = model_->reactions(q, setting_, action);
         const Eigen::MatrixXd S = model_->support_motion(Vec3::Zero());
