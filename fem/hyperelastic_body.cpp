@@ -1,6 +1,8 @@
 #include "fem/hyperelastic_body.h"
 
+#include <algorithm>
 #include <cassert>
+#include <map>
 #include <numeric>
 
 #include "fem/elements/restraint.h"
@@ -26,22 +28,71 @@ BodyShape shape_of(mesh::VolumeMesh mesh, std::vector<char> held, Dilatation dil
 
 struct HyperelasticBody::Impl {
     BodyShape shape;
-    Lazy<EliminationOrder> held_order, released_order;
-    Lazy<Unknowns> all_nodes;  // in the mesh's order
-
     explicit Impl(BodyShape body) : shape(std::move(body)) {}
 
+    /// Which unknowns there are, and what couples them beyond elements.
+    struct Kind {
+        bool released;
+        std::vector<std::shared_ptr<const mesh::TendonActuator>> tendons;
+        auto operator<=>(const Kind&) const = default;
+    };
+    static Kind kind(const Effects& effects);
+    JoinedNodes joined(const Kind& kind) const;
+
+    // Each is made once.
+    mutable std::mutex mutex;
+    mutable std::map<Kind, Lazy<EliminationOrder>> orders;
+    mutable std::map<Kind, Lazy<Unknowns>> all_nodes;  // in the mesh's order
+
     /// The unknowns that these effects leave.
-    const EliminationOrder& order(const Effects& effects) const {
-        if (!release_supports(effects))
-            return held_order.get([&] { return elimination_order(shape.mesh, shape.held); });
-        return released_order.get(
-            [&] { return elimination_order(shape.mesh, std::vector<char>(shape.held.size(), 0)); });
-    }
+    const EliminationOrder& order(const Effects& effects) const;
+    /// All nodes, held ones too.
+    const Unknowns& all(const Effects& effects) const;
     /// The tangent over some unknowns. @throws SolverFailure where an element is inside out.
     LowerMatrix tangent(const Eigen::VectorXd& u, const BodySetting& setting, const PlasticState* before,
                         const Unknowns& unknowns) const;
 };
+
+HyperelasticBody::Impl::Kind HyperelasticBody::Impl::kind(const Effects& effects) {
+    Kind result{release_supports(effects), {}};
+    for (const TendonPull& pull : effects.tendons) result.tendons.push_back(pull.actuator);
+    std::ranges::sort(result.tendons);
+    return result;
+}
+
+JoinedNodes HyperelasticBody::Impl::joined(const Kind& kind) const {
+    JoinedNodes result;
+    for (const auto& tendon : kind.tendons) result.push_back((*shape.tendon_paths)(shape.mesh, tendon).nodes);
+    return result;
+}
+
+const EliminationOrder& HyperelasticBody::Impl::order(const Effects& effects) const {
+    const Kind own = kind(effects);
+    const Lazy<EliminationOrder>& order = [&]() -> auto& {
+        const std::scoped_lock lock(mutex);
+        return orders[own];
+    }
+    ();
+    return order.get([&] {
+        return elimination_order(shape.mesh, own.released ? std::vector<char>(shape.held.size(), 0) : shape.held,
+                                 joined(own));
+    });
+}
+
+const Unknowns& HyperelasticBody::Impl::all(const Effects& effects) const {
+    Kind own = kind(effects);
+    own.released = true;
+    const Lazy<Unknowns>& unknowns = [&]() -> auto& {
+        const std::scoped_lock lock(mutex);
+        return all_nodes[own];
+    }
+    ();
+    return unknowns.get([&] {
+        std::vector<int> number(shape.held.size());
+        std::iota(number.begin(), number.end(), 0);
+        return Unknowns(shape.mesh, std::move(number), joined(own));
+    });
+}
 
 HyperelasticBody::HyperelasticBody(mesh::VolumeMesh mesh, std::vector<char> held, Dilatation dilatation)
     : impl_(std::make_unique<Impl>(shape_of(std::move(mesh), std::move(held), dilatation))) {}
@@ -53,7 +104,59 @@ const mesh::VolumeMesh& HyperelasticBody::mesh() const { return impl_->shape.mes
 const std::vector<char>& HyperelasticBody::held() const { return impl_->shape.held; }
 NodeWeights HyperelasticBody::points(ActsOn what, double density) const { return impl_->shape.points(what, density); }
 bool HyperelasticBody::has_cavities() const { return !impl_->shape.cavities.empty(); }
-double HyperelasticBody::cavity_volume(const Eigen::VectorXd& u) const { return impl_->shape.cavities.volume(u); }
+double HyperelasticBody::cavity_volume(const Eigen::VectorXd& u) const { return cavity_volumes(u).sum(); }
+Eigen::VectorXd HyperelasticBody::cavity_volumes(const Eigen::VectorXd& u) const {
+    return impl_->shape.cavities.volumes(u);
+}
+int HyperelasticBody::find_cavity(const mesh::PressureActuator& actuator) const {
+    return impl_->shape.cavities.find(actuator);
+}
+
+Wrench HyperelasticBody::wrench(const Eigen::VectorXd& u, const std::shared_ptr<const ToolPotential>& tool) const {
+    return PlacedTool(impl_->shape, tool).wrench(u);
+}
+
+Eigen::MatrixXd HyperelasticBody::wrench_derivative(const Eigen::VectorXd& u,
+                                                    const std::shared_ptr<const ToolPotential>& tool) const {
+    return PlacedTool(impl_->shape, tool).by_pose(u);
+}
+
+Eigen::Matrix<double, 6, 6> HyperelasticBody::wrench_by_pose(const Eigen::VectorXd& u,
+                                                             const std::shared_ptr<const ToolPotential>& tool) const {
+    return PlacedTool(impl_->shape, tool).wrench_by_pose(u);
+}
+
+Eigen::VectorXd HyperelasticBody::grip_forces(const Eigen::VectorXd& u, const BodySetting& setting) const {
+    const Eigen::VectorXd none = Eigen::VectorXd::Zero(u.size());
+    return LoadedBody(impl_->shape, setting, none).grip(u);
+}
+
+TendonState HyperelasticBody::tendon_state(const Eigen::VectorXd& u, const TendonPull& pull, bool small_strain) const {
+    const BodyShape& shape = impl_->shape;
+    return PlacedTendon((*shape.tendon_paths)(shape.mesh, pull.actuator), pull, small_strain).terms(u).state;
+}
+
+Eigen::MatrixXd HyperelasticBody::tendon_derivative(const Eigen::VectorXd& u, const TendonPull& pull,
+                                                    bool small_strain) const {
+    const BodyShape& shape = impl_->shape;
+    return PlacedTendon((*shape.tendon_paths)(shape.mesh, pull.actuator), pull, small_strain).derivative(u);
+}
+
+Eigen::VectorXd HyperelasticBody::tendon_push(const Eigen::VectorXd& u, const TendonPull& pull,
+                                              bool small_strain) const {
+    // By tension -dL/du; by length -dL/du d(tension)/dL.
+    return pull.actuator->by_length ? Eigen::VectorXd(-tendon_derivative(u, pull, small_strain).col(1))
+                                    : Eigen::VectorXd(tendon_derivative(u, pull, small_strain).col(0));
+}
+
+Eigen::VectorXd HyperelasticBody::cavity_push(const Eigen::VectorXd& u, const mesh::PressureActuator& actuator,
+                                              bool small_strain) const {
+    const int cavity = find_cavity(actuator);
+    Eigen::VectorXd push = Eigen::VectorXd::Zero(u.size());
+    const Eigen::VectorXd one = Eigen::VectorXd::Unit(impl_->shape.cavities.count(), cavity);
+    impl_->shape.cavities.add_gradient(small_strain ? Eigen::VectorXd(Eigen::VectorXd::Zero(u.size())) : u, one, push);
+    return push;
+}
 
 double HyperelasticBody::potential(const Eigen::VectorXd& u, const BodySetting& setting, const Eigen::VectorXd& f,
                                    const PlasticState* before) const {
@@ -81,12 +184,7 @@ LowerMatrix HyperelasticBody::Impl::tangent(const Eigen::VectorXd& u, const Body
 
 Eigen::SparseMatrix<double> HyperelasticBody::tangent(const Eigen::VectorXd& u, const BodySetting& setting,
                                                       const PlasticState* before) const {
-    const Unknowns& unknowns = impl_->all_nodes.get([&] {
-        std::vector<int> number(impl_->shape.held.size());
-        std::iota(number.begin(), number.end(), 0);
-        return Unknowns(impl_->shape.mesh, std::move(number));
-    });
-    const LowerMatrix K = impl_->tangent(u, setting, before, unknowns);
+    const LowerMatrix K = impl_->tangent(u, setting, before, impl_->all(setting.effects));
     return LowerMatrix(K.selfadjointView<Eigen::Lower>());
 }
 

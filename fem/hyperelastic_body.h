@@ -9,6 +9,7 @@
 #include "fem/large_deformation/body_equilibrium.h"
 #include "fem/large_deformation/body_setting.h"
 #include "fem/large_deformation/body_tangent.h"
+#include "fem/rig/tool_potential.h"
 #include "mesh/core/volume_mesh.h"
 
 namespace palpate::fem {
@@ -71,8 +72,33 @@ public:
                                 const Eigen::VectorXd* start = nullptr, const PlasticState* before = nullptr,
                                 const BodyTangent* guide = nullptr) const;
 
+    // Tools and tendons in a displacement u.
+
+    /// Force of a tool on the body and moment about the tool's moved origin, by virtual work [N, N mm].
+    Wrench wrench(const Eigen::VectorXd& u, const std::shared_ptr<const ToolPotential>& tool) const;
+    /// How it changes with u, and by how much the forces on the nodes fall with a step of the pose, three translations
+    /// and turns about the moved origin: d wrench/du = M^T, d residual/d pose = -M (3n x 6).
+    Eigen::MatrixXd wrench_derivative(const Eigen::VectorXd& u, const std::shared_ptr<const ToolPotential>& tool) const;
+    /// How it changes with the pose where the nodes stay (6 x 6).
+    Eigen::Matrix<double, 6, 6> wrench_by_pose(const Eigen::VectorXd& u,
+                                               const std::shared_ptr<const ToolPotential>& tool) const;
+    /// Forces on the nodes (3n) that are, by tools and tendons of a given length, proportional to the Young's modulus
+    /// that these know [N].
+    Eigen::VectorXd grip_forces(const Eigen::VectorXd& u, const BodySetting& setting) const;
+    TendonState tendon_state(const Eigen::VectorXd& u, const TendonPull& pull, bool small_strain) const;
+    /// d(drawn in)/du and d(tension)/du (3n x 2).
+    Eigen::MatrixXd tendon_derivative(const Eigen::VectorXd& u, const TendonPull& pull, bool small_strain) const;
+    /// By how much the forces on the nodes grow with a tendon's value (3n), or with the pressure in a cavity.
+    Eigen::VectorXd tendon_push(const Eigen::VectorXd& u, const TendonPull& pull, bool small_strain) const;
+    Eigen::VectorXd cavity_push(const Eigen::VectorXd& u, const mesh::PressureActuator& actuator,
+                                bool small_strain) const;
+
     /// Does the boundary close in cavities within the body, which can be under pressure?
     bool has_cavities() const;
+    /// Of each cavity [mm^3].
+    Eigen::VectorXd cavity_volumes(const Eigen::VectorXd& u) const;
+    /// The one that an actuator means, by its place in cavity_volumes. @throws InvalidInput where there are none.
+    int find_cavity(const mesh::PressureActuator& actuator) const;
     /// Volume of all cavities together in the displacement u [mm^3]; 0 where there are none.
     double cavity_volume(const Eigen::VectorXd& u) const;
 

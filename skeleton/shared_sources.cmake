@@ -6,7 +6,9 @@ set(shared_skeleton_sources
   effects/link_effects.cpp
   effects/placed_effects.cpp
   effects/placed_skin.cpp
+  effects/placed_tendon.cpp
   effects/point_sets.cpp
+  effects/tool_points.cpp
   links/branches.cpp
   links/full_link.cpp
   links/link_energy.cpp

@@ -8,6 +8,7 @@
 #include "fem/effects/material/material_effect.h"
 #include "fem/effects/point/point_potential.h"
 #include "fem/effects/surface/surface_energy.h"
+#include "fem/rig/actuation.h"
 
 namespace palpate::fem {
 
@@ -33,6 +34,8 @@ public:
     virtual bool is_nothing() const = 0;  // all its numbers are 0
 };
 
+class ToolPotential;
+
 /// What is in force on a body beyond its law and the forces of contacts.
 struct Effects {
     std::vector<std::shared_ptr<const PointPotential>> points{};
@@ -42,10 +45,14 @@ struct Effects {
     std::optional<Plasticity> plasticity{};
     std::optional<CreepLaw> creep{};  // used where loads are applied in time; ignored by an equilibrium
     std::vector<std::shared_ptr<const ModelSpecificEffect>> of_model{};
+    std::vector<std::shared_ptr<const ToolPotential>> tools{};  // where they are
+    std::vector<CavityPressure> cavities{};                     // besides `pressure`
+    std::vector<TendonPull> tendons{};
 
     bool empty() const {
         const auto is_nothing = [](const auto& effect) { return effect->is_nothing(); };
         return points.empty() && material.empty() && surface.empty() && pressure == 0 && !plasticity && !creep &&
+               tools.empty() && cavities.empty() && tendons.empty() &&
                std::all_of(of_model.begin(), of_model.end(), is_nothing);
     }
     /// Puts others in force besides; numbers add up.
@@ -57,6 +64,9 @@ struct Effects {
         if (more.plasticity) plasticity = more.plasticity;
         if (more.creep) creep = more.creep;
         of_model.insert(of_model.end(), more.of_model.begin(), more.of_model.end());
+        tools.insert(tools.end(), more.tools.begin(), more.tools.end());
+        cavities.insert(cavities.end(), more.cavities.begin(), more.cavities.end());
+        tendons.insert(tendons.end(), more.tendons.begin(), more.tendons.end());
     }
 };
 

@@ -8,5 +8,6 @@ set(effect_sources
   material/stiffening.cpp
   point/compliant_support.cpp
   point/contact.cpp
-  point/gravity.cpp)
+  point/gravity.cpp
+  ../rig/tendon_terms.cpp)
 list(TRANSFORM effect_sources PREPEND "${CMAKE_CURRENT_LIST_DIR}/")

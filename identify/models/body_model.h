@@ -7,7 +7,9 @@
 #include <vector>
 
 #include "fem/effects/effects.h"
+#include "mesh/core/actuator.h"
 #include "mesh/core/contact.h"
+#include "mesh/core/tool.h"
 #include "mesh/types.h"
 
 namespace palpate::identify {
@@ -40,6 +42,22 @@ struct Action {
     Vec3 gravity = Vec3::Zero();                     // [mm/s^2]
     double pressure = 0;                             // in closed cavities [MPa]
     std::shared_ptr<const Memory> memory = nullptr;  // of what the body went through before; none: it is virgin
+    // Of the model's tools and actuators. A tool without a motion is away, a coordinate that is NaN is free: the tool
+    // is where no force acts along it. An actuator without a setting is at 0: a tendon by length keeps its length.
+    std::vector<mesh::ToolMotion> motions = {};
+    std::vector<mesh::ActuatorSetting> settings = {};
+};
+
+/// Derivatives of the reactions of t tools.
+///
+/// A pose's steps are three translations and a turn, a rotation vector in space, about the moved origin. As forces of
+/// tools are a gradient, minus the transpose of `by_step` is d residual / d pose: what an error of an imposed motion
+/// does.
+struct ReactionSlopes {
+    Eigen::MatrixXd by_step;       // d reactions / d step (6t x dofs)
+    Eigen::MatrixXd by_parameter;  // d reactions / d theta where q stays (6t x P): what tools press through is a layer
+                                   // whose stiffness is a share of the body's
+    Eigen::MatrixXd by_pose;       // d reactions / d pose where q stays (6t x 6t), a block for each tool
 };
 
 /// J = -d residual / d step in some configuration, factored.
@@ -139,6 +157,21 @@ public:
     /// How what is held moves with a rigid motion of the supports about `centre`: translations, then rotation vectors
     /// (dofs x 6); zero at what is free.
     virtual Eigen::MatrixXd support_motion(const Vec3& centre) const = 0;
+    // Tools and actuators, in the order of an action's motions (t) and settings (a).
+
+    /// The motions, free coordinates found.
+    virtual std::vector<mesh::ToolMotion> motions(const Eigen::VectorXd& q, const ModelSetting& setting,
+                                                  const Action& action) const = 0;
+    /// Force of each tool on the body, and moment about the tool's moved origin, by virtual work (6t) [N, N mm].
+    virtual Eigen::VectorXd reactions(const Eigen::VectorXd& q, const ModelSetting& setting,
+                                      const Action& action) const = 0;
+    /// How they change, on their own where nothing is said.
+    virtual ReactionSlopes reaction_slopes(const Eigen::VectorXd& q, const ModelSetting& setting,
+                                           const Action& action) const = 0;
+    /// d residual / d value of each setting (dofs x a).
+    virtual Eigen::MatrixXd actuation_force(const Eigen::VectorXd& q, const ModelSetting& setting,
+                                            const Action& action) const = 0;
+
     /// J * step, at what is held too (dofs x p).
     virtual Eigen::MatrixXd tangent_times(const Eigen::VectorXd& q, const ModelSetting& setting, const Action& action,
                                           const Eigen::MatrixXd& steps) const = 0;

@@ -13,6 +13,7 @@
 #include "fem/interpolation/refine.h"
 #include "fem/large_deformation/lazy.h"
 #include "fem/large_deformation/refined_equilibrium.h"
+#include "identify/models/free_tools.h"
 #include "identify/models/marker_frames.h"
 #include "mesh/errors.h"
 #include "skeleton/model/state.h"
@@ -30,6 +31,13 @@ void require_material(const fem::Material& material) {
         fmt::format("the fit asks for a Poisson's ratio of {:.3g} and a Young's modulus of {:.3g} MPa; "
                     "allowed are ratios from {} to {}",
                     material.poisson, material.young, least, most));
+}
+
+fem::Material material_of(const ModelSetting& setting, double density) {
+    // theta = (ln E, ln(1 - 2 nu))
+    return {.young = std::exp(setting.theta[ln_young]),
+            .poisson = 0.5 * (1 - std::exp(setting.theta[ln_compressibility])),
+            .density = density};
 }
 
 class FemTangent : public Tangent {
@@ -88,6 +96,7 @@ struct ReferenceBody::Impl {
           options(the_options),
           body(mesh, mesh::contains(supports, mesh.nodes), options.dilatation),
           frames(mesh, markers),
+          rig(options.rig),
           density(options.density),
           size((mesh.nodes.colwise().maxCoeff() - mesh.nodes.colwise().minCoeff()).maxCoeff()) {}
 
@@ -97,6 +106,7 @@ struct ReferenceBody::Impl {
 
     fem::HyperelasticBody body;
     MarkerFrames frames;
+    PreparedRig rig;
     double density, size;
     std::vector<std::string> laws{"linear", "svk", "neo-hooke"};
     std::vector<StiffnessParameter> parameters;
@@ -120,7 +130,11 @@ struct ReferenceBody::Impl {
     fem::BodySetting setting(const ModelSetting& s, const fem::Material& material, const Action& action) const {
         fem::BodySetting result{static_cast<fem::MaterialLaw>(s.law), material, s.effects};
         result.effects.pressure += action.pressure;
+        result.effects.add(rig.effects(action, material.young));
         return result;
+    }
+    fem::BodySetting setting(const ModelSetting& s, const Action& action) const {
+        return setting(s, material_of(s, density), action);
     }
     /// Nodal shares of a contact (n), which add up to 1.
     Eigen::VectorXd shares_of(const mesh::Contact& contact) const;
@@ -207,53 +221,54 @@ bool ReferenceBody::is_nonlinear(const ModelSetting& setting) const {
     const bool one_sided =
         std::ranges::any_of(setting.effects.points, [](const auto& potential) { return potential->is_one_sided(); });
     return static_cast<fem::MaterialLaw>(setting.law) != fem::MaterialLaw::linear || setting.effects.plasticity ||
-           one_sided;
+           one_sided || impl_->rig.is_nonlinear();
 }
 const fem::HyperelasticBody& ReferenceBody::body() const { return impl_->body; }
 
 fem::Material ReferenceBody::material(const ModelSetting& setting) const {
-    // theta = (ln E, ln(1 - 2 nu))
-    return {.young = std::exp(setting.theta[ln_young]),
-            .poisson = 0.5 * (1 - std::exp(setting.theta[ln_compressibility])),
-            .density = impl_->density};
+    return material_of(setting, impl_->density);
 }
 
 Eigen::VectorXd ReferenceBody::rest(const ModelSetting&) const { return Eigen::VectorXd::Zero(dofs()); }
 
 Eigen::VectorXd ReferenceBody::equilibrium(const ModelSetting& setting, const Action& action,
                                            const Eigen::VectorXd* start, const Tangent* guide) const {
+    if (has_free_coordinates(action)) return equilibrium_with_free_tools(*this, setting, action, start, guide);
     // What is not found soon next to a known state is no answer for a trial.
     require_material(material(setting));
     const fem::NewtonOptions options{.tolerance = 1e-7, .iterations = start ? 40 : 60, .load_steps = start ? 0 : 16};
     const auto* nearby = dynamic_cast<const FemTangent*>(guide);
     return impl_->body
-        .equilibrium(impl_->setting(setting, material(setting), action), impl_->load(action), options, start,
-                     memory_of(action), nearby ? &nearby->factor() : nullptr)
+        .equilibrium(impl_->setting(setting, action), impl_->load(action), options, start, memory_of(action),
+                     nearby ? &nearby->factor() : nullptr)
         .u;
 }
 
 Eigen::VectorXd ReferenceBody::residual(const Eigen::VectorXd& q, const ModelSetting& setting,
                                         const Action& action) const {
-    return impl_->body.residual(q, impl_->setting(setting, material(setting), action), impl_->load(action),
-                                memory_of(action));
+    if (has_free_coordinates(action)) return residual(q, setting, posed(*this, q, setting, action));
+    return impl_->body.residual(q, impl_->setting(setting, action), impl_->load(action), memory_of(action));
 }
 
 std::shared_ptr<const Tangent> ReferenceBody::tangent(const Eigen::VectorXd& q, const ModelSetting& setting,
                                                       const Action& action) const {
     require_material(material(setting));
-    return std::make_shared<FemTangent>(
-        impl_->body.factor(q, impl_->setting(setting, material(setting), action), memory_of(action)));
+    if (has_free_coordinates(action)) return tangent_with_free_tools(*this, q, setting, action);
+    return std::make_shared<FemTangent>(impl_->body.factor(q, impl_->setting(setting, action), memory_of(action)));
 }
 
 Eigen::MatrixXd ReferenceBody::parameter_force(const Eigen::VectorXd& q, const ModelSetting& setting,
                                                const Action& action) const {
+    if (has_free_coordinates(action)) return parameter_force(q, setting, posed(*this, q, setting, action));
     // f = mu a + K b with mu = E / (2 (1 + nu)), K = E / (3 (1 - 2 nu)); t = ln(1 - 2 nu): d nu/dt = -(1 - 2 nu)/2,
     // so d mu/dt = mu (1 - 2 nu) / (2 (1 + nu)) and dK/dt = -K. The residual is minus f.
     const fem::Material m = material(setting);
     const double mu = m.shear_modulus(), K = m.young / (3 * (1 - 2 * m.poisson));
     const auto unit = impl_->body.modulus_forces(q, impl_->setting(setting, m, action), memory_of(action));
     Eigen::MatrixXd G(q.size(), 2);
-    G.col(ln_young) = -(mu * unit.col(0) + K * unit.col(1));
+    // What tools press through is as many times as stiff.
+    G.col(ln_young) =
+        impl_->body.grip_forces(q, impl_->setting(setting, m, action)) - (mu * unit.col(0) + K * unit.col(1));
     G.col(ln_compressibility) = -(mu * (1 - 2 * m.poisson) / (2 * (1 + m.poisson)) * unit.col(0) - K * unit.col(1));
     return G;
 }
@@ -268,7 +283,7 @@ Eigen::SparseMatrix<double> ReferenceBody::observation(const Eigen::VectorXd& q,
 
 std::optional<Points> ReferenceBody::discretisation_error(const Eigen::VectorXd& q, const ModelSetting& setting,
                                                           const Action& action, const Tangent& J) const {
-    if (impl_->options.measured_on_mesh || action.memory) return std::nullopt;
+    if (impl_->options.measured_on_mesh || action.memory || !action.motions.empty()) return std::nullopt;
     const Impl::Finer& finer = impl_->finer.get([&] {
         const mesh::VolumeMesh& coarse = impl_->body.mesh();
         const std::optional<mesh::VolumeMesh>& given = impl_->options.finer;
@@ -276,9 +291,8 @@ std::optional<Points> ReferenceBody::discretisation_error(const Eigen::VectorXd&
         return Impl::Finer(*impl_, {*given, fem::interpolation(coarse, given->nodes)});
     });
     const auto& factor = dynamic_cast<const FemTangent&>(J).factor();
-    const std::optional<Eigen::VectorXd> u =
-        fem::refined_equilibrium({finer.own->body, finer.interpolation}, q, factor,
-                                 impl_->setting(setting, material(setting), action), finer.own->load(action));
+    const std::optional<Eigen::VectorXd> u = fem::refined_equilibrium(
+        {finer.own->body, finer.interpolation}, q, factor, impl_->setting(setting, action), finer.own->load(action));
     if (!u) return std::nullopt;
     const bool small_strain = in_small_strain(setting);
     return finer.own->frames.positions(*u, small_strain) - impl_->frames.positions(q, small_strain);
@@ -292,8 +306,9 @@ Eigen::VectorXd ReferenceBody::advance(const Eigen::VectorXd& q, const Eigen::Ve
 std::shared_ptr<const Memory> ReferenceBody::remember(const Eigen::VectorXd& q, const ModelSetting& setting,
                                                       const Action& action) const {
     if (!setting.effects.plasticity) return nullptr;
+    if (has_free_coordinates(action)) return remember(q, setting, posed(*this, q, setting, action));
     return std::make_shared<FemMemory>(
-        impl_->body.plastic_state(q, impl_->setting(setting, material(setting), action), memory_of(action)));
+        impl_->body.plastic_state(q, impl_->setting(setting, action), memory_of(action)));
 }
 
 Eigen::VectorXd ReferenceBody::contact_force(const Eigen::VectorXd&, const ModelSetting&,
@@ -310,7 +325,8 @@ const std::vector<char>& ReferenceBody::pieces_at_support() const { return impl_
 
 Eigen::MatrixXd ReferenceBody::piece_force(const Eigen::VectorXd& q, const ModelSetting& setting, const Action& action,
                                            const Eigen::MatrixXd& W) const {
-    return -impl_->body.element_forces(q, impl_->setting(setting, material(setting), action), W, memory_of(action));
+    if (has_free_coordinates(action)) return piece_force(q, setting, posed(*this, q, setting, action), W);
+    return -impl_->body.element_forces(q, impl_->setting(setting, action), W, memory_of(action));
 }
 
 const Points& ReferenceBody::skin() const { return impl_->skin; }
@@ -351,7 +367,55 @@ Eigen::MatrixXd ReferenceBody::support_motion(const Vec3& centre) const {
 
 Eigen::MatrixXd ReferenceBody::tangent_times(const Eigen::VectorXd& q, const ModelSetting& setting,
                                              const Action& action, const Eigen::MatrixXd& steps) const {
-    return impl_->body.tangent(q, impl_->setting(setting, material(setting), action), memory_of(action)) * steps;
+    if (has_free_coordinates(action)) return tangent_times_with_free_tools(*this, q, setting, action, steps);
+    return impl_->body.tangent(q, impl_->setting(setting, action), memory_of(action)) * steps;
+}
+
+std::vector<mesh::ToolMotion> ReferenceBody::motions(const Eigen::VectorXd& q, const ModelSetting& setting,
+                                                     const Action& action) const {
+    return posed(*this, q, setting, action).motions;
+}
+
+Eigen::VectorXd ReferenceBody::reactions(const Eigen::VectorXd& q, const ModelSetting& setting,
+                                         const Action& action) const {
+    if (has_free_coordinates(action)) return reactions(q, setting, posed(*this, q, setting, action));
+    Eigen::VectorXd result(6 * std::ssize(action.motions));
+    for (std::size_t t = 0; t < action.motions.size(); ++t)
+        result.segment<6>(static_cast<Eigen::Index>(6 * t)) =
+            impl_->body.wrench(q, impl_->rig.tool(action.motions[t], young(setting)));
+    return result;
+}
+
+ReactionSlopes ReferenceBody::reaction_slopes(const Eigen::VectorXd& q, const ModelSetting& setting,
+                                              const Action& action) const {
+    if (has_free_coordinates(action)) return reaction_slopes_with_free_tools(*this, q, setting, action);
+    const Eigen::Index rows = 6 * std::ssize(action.motions);
+    ReactionSlopes slopes{Eigen::MatrixXd(rows, dofs()), Eigen::MatrixXd::Zero(rows, std::ssize(parameters())),
+                          Eigen::MatrixXd::Zero(rows, rows)};
+    for (std::size_t t = 0; t < action.motions.size(); ++t) {
+        const auto tool = impl_->rig.tool(action.motions[t], young(setting));
+        const auto row = static_cast<Eigen::Index>(6 * t);
+        slopes.by_step.middleRows<6>(row) = impl_->body.wrench_derivative(q, tool).transpose();
+        slopes.by_pose.block<6, 6>(row, row) = impl_->body.wrench_by_pose(q, tool);
+    }
+    slopes.by_parameter.col(ln_young) = reactions(q, setting, action);
+    return slopes;
+}
+
+Eigen::MatrixXd ReferenceBody::actuation_force(const Eigen::VectorXd& q, const ModelSetting& setting,
+                                               const Action& action) const {
+    const bool small_strain = in_small_strain(setting);
+    Eigen::MatrixXd result(dofs(), std::ssize(action.settings));
+    for (std::size_t a = 0; a < action.settings.size(); ++a) {
+        const mesh::ActuatorSetting& own = action.settings[a];
+        auto column = result.col(static_cast<Eigen::Index>(a));
+        if (const auto& cavity = impl_->rig.cavity(own.actuator)) {
+            column = impl_->body.cavity_push(q, *cavity, small_strain);
+        } else {
+            column = impl_->body.tendon_push(q, impl_->rig.tendon(own, young(setting)), small_strain);
+        }
+    }
+    return result;
 }
 
 }  // namespace palpate::identify

@@ -3,6 +3,7 @@
 #include "fem/hyperelastic_body.h"
 #include "identify/measurements/measurement_set.h"
 #include "identify/models/body_model.h"
+#include "identify/models/rig.h"
 
 namespace palpate::identify {
 
@@ -14,6 +15,7 @@ struct ReferenceBodyOptions {
     bool measured_on_mesh = false;  // what is measured was computed on this very mesh, and has its errors
     /// Quadratic tetrahedra of the same body that tell the error of the others; absent: those with halved edges.
     std::optional<mesh::VolumeMesh> finer = {};
+    Rig rig = {};  // what may touch the body, and act within it
 };
 
 /// The body of finite elements as a model: laws linear, svk, neo-hooke; parameters ln E and ln(1 - 2 nu).
@@ -65,6 +67,14 @@ public:
     const Points& support_points() const override;
     const Eigen::VectorXd& support_shares() const override;
     Eigen::MatrixXd support_motion(const Vec3& centre) const override;
+    std::vector<mesh::ToolMotion> motions(const Eigen::VectorXd& q, const ModelSetting& setting,
+                                          const Action& action) const override;
+    Eigen::VectorXd reactions(const Eigen::VectorXd& q, const ModelSetting& setting,
+                              const Action& action) const override;
+    ReactionSlopes reaction_slopes(const Eigen::VectorXd& q, const ModelSetting& setting,
+                                   const Action& action) const override;
+    Eigen::MatrixXd actuation_force(const Eigen::VectorXd& q, const ModelSetting& setting,
+                                    const Action& action) const override;
     Eigen::MatrixXd tangent_times(const Eigen::VectorXd& q, const ModelSetting& setting, const Action& action,
                                   const Eigen::MatrixXd& steps) const override;
 

@@ -8,6 +8,7 @@
 #include <tuple>
 
 #include "identify/loading/loads.h"
+#include "identify/models/free_tools.h"
 #include "skeleton/effects/placed_effects.h"
 #include "skeleton/model/attach.h"
 #include "skeleton/model/stiffness_order.h"
@@ -39,6 +40,10 @@ State unpack(const Eigen::VectorXd& q) {
         state.R[i] = q.segment<9>(3 * N + 9 * i).reshaped(3, 3);
     }
     return state;
+}
+
+bool in_large_rotation(const ModelSetting& setting) {
+    return static_cast<EquilibriumLaw>(setting.law) != EquilibriumLaw::linear;
 }
 
 class SolverTangent : public Tangent {
@@ -73,6 +78,8 @@ const skeleton::FibreStates& fibres_before(const Action& action) {
 }  // namespace
 
 struct SkeletonBody::Impl {
+    explicit Impl(const Rig& the_rig) : rig(the_rig) {}
+    PreparedRig rig;
     std::array<skeleton::Model, 2> by_law;  // the same but for the law
     std::vector<skeleton::Attachment> markers;
     std::vector<std::string> laws;
@@ -101,8 +108,10 @@ struct SkeletonBody::Impl {
     fem::Effects effects(const ModelSetting& setting, const Action& action) const {
         fem::Effects result = setting.effects;
         if (has_cavities) result.pressure += action.pressure;
+        result.add(rig.effects(action, young_of(setting)));
         return result;
     }
+    double young_of(const ModelSetting& setting) const { return young * std::exp(setting.theta.mean()); }
     /// A configuration as the statics know it.
     Equilibrium equilibrium_of(const Eigen::VectorXd& q, const ModelSetting& setting, const Action& action = {}) const {
         Equilibrium at;
@@ -115,14 +124,21 @@ struct SkeletonBody::Impl {
         }
         return at;
     }
+    /// Forces of tools and of tendons of a given length, on all spheres (6N).
+    Eigen::VectorXd grip_force(const Eigen::VectorXd& q, const ModelSetting& setting, const Action& action) const;
+    /// Calls visit(point, where it is, the potential's terms times its weight) for the points that feel a tool.
+    template <class Visit>
+    void for_each_point_of(const mesh::ToolMotion& motion, const Eigen::VectorXd& q, const ModelSetting& setting,
+                           const Visit& visit) const;
     State tangent_state(const Eigen::VectorXd& q, const ModelSetting& setting) const {
         return static_cast<EquilibriumLaw>(setting.law) == EquilibriumLaw::linear ? skeleton::rest_state(by_law[0])
                                                                                   : unpack(q);
     }
 };
 
-SkeletonBody::SkeletonBody(const skeleton::Model& model, const std::vector<Marker>& markers, double young)
-    : impl_(std::make_unique<Impl>()) {
+SkeletonBody::SkeletonBody(const skeleton::Model& model, const std::vector<Marker>& markers, double young,
+                           const Rig& rig)
+    : impl_(std::make_unique<Impl>(rig)) {
     Impl& i = *impl_;
     for (int law = 0; law < 2; ++law) {
         i.by_law[law] = model;
@@ -206,9 +222,9 @@ int SkeletonBody::dofs() const { return impl_->by_law[0].dofs(); }
 const std::vector<std::string>& SkeletonBody::laws() const { return impl_->laws; }
 const std::vector<StiffnessParameter>& SkeletonBody::parameters() const { return impl_->parameters; }
 double SkeletonBody::size() const { return impl_->size; }
-double SkeletonBody::young(const ModelSetting& setting) const { return impl_->young * std::exp(setting.theta.mean()); }
+double SkeletonBody::young(const ModelSetting& setting) const { return impl_->young_of(setting); }
 bool SkeletonBody::is_nonlinear(const ModelSetting& setting) const {
-    return static_cast<EquilibriumLaw>(setting.law) != EquilibriumLaw::linear;
+    return in_large_rotation(setting) || impl_->rig.is_nonlinear();
 }
 
 Eigen::VectorXd SkeletonBody::stiffness(const ModelSetting& setting) const {
@@ -221,16 +237,17 @@ Eigen::VectorXd SkeletonBody::stiffness(const ModelSetting& setting) const {
 }
 
 Eigen::VectorXd SkeletonBody::rest(const ModelSetting& setting) const {
-    if (!is_nonlinear(setting)) return Eigen::VectorXd::Zero(dofs());
+    if (!in_large_rotation(setting)) return Eigen::VectorXd::Zero(dofs());
     return pack(skeleton::rest_state(impl_->by_law[0]));
 }
 
 Eigen::VectorXd SkeletonBody::equilibrium(const ModelSetting& setting, const Action& action,
                                           const Eigen::VectorXd* start, const Tangent*) const {
+    if (has_free_coordinates(action)) return equilibrium_with_free_tools(*this, setting, action, start, nullptr);
     skeleton::StaticsSolver solver(impl_->model(setting), impl_->effects(setting, action));
     const skeleton::Load load = impl_->load(action);
     const skeleton::FibreStates& before = fibres_before(action);
-    if (!is_nonlinear(setting)) return solver.solve(stiffness(setting), load, {}, nullptr, before).step;
+    if (!in_large_rotation(setting)) return solver.solve(stiffness(setting), load, {}, nullptr, before).step;
     std::optional<State> from;
     if (start) from = unpack(*start);
     return pack(solver.solve(stiffness(setting), load, {}, from ? &*from : nullptr, before).state);
@@ -238,11 +255,12 @@ Eigen::VectorXd SkeletonBody::equilibrium(const ModelSetting& setting, const Act
 
 Eigen::VectorXd SkeletonBody::residual(const Eigen::VectorXd& q, const ModelSetting& setting,
                                        const Action& action) const {
+    if (has_free_coordinates(action)) return residual(q, setting, posed(*this, q, setting, action));
     const skeleton::Model& model = impl_->model(setting);
     const Equilibrium at = impl_->equilibrium_of(q, setting, action);
     const fem::Effects in_force = impl_->effects(setting, action);
     const skeleton::PlacedEffects effects(model, in_force);
-    const bool linear = !is_nonlinear(setting);
+    const bool linear = !in_large_rotation(setting);
     Eigen::VectorXd net = skeleton::external_force(model, impl_->tangent_state(q, setting), impl_->load(action)) +
                           skeleton::link_forces(model, at, in_force) * stiffness(setting);
     if (!effects.empty()) net += linear ? effects.linear_force(q) : effects.force(at.state);
@@ -251,12 +269,14 @@ Eigen::VectorXd SkeletonBody::residual(const Eigen::VectorXd& q, const ModelSett
 
 std::shared_ptr<const Tangent> SkeletonBody::tangent(const Eigen::VectorXd& q, const ModelSetting& setting,
                                                      const Action& action) const {
+    if (has_free_coordinates(action)) return tangent_with_free_tools(*this, q, setting, action);
     return std::make_shared<SolverTangent>(impl_->model(setting), impl_->effects(setting, action), stiffness(setting),
                                            impl_->load(action), impl_->equilibrium_of(q, setting, action));
 }
 
 Eigen::MatrixXd SkeletonBody::parameter_force(const Eigen::VectorXd& q, const ModelSetting& setting,
                                               const Action& action) const {
+    if (has_free_coordinates(action)) return parameter_force(q, setting, posed(*this, q, setting, action));
     // by the logarithm of a multiplier: the force of that kind of stiffness itself
     const Eigen::SparseMatrix<double> G =
         skeleton::link_forces(impl_->model(setting), impl_->equilibrium_of(q, setting, action), setting.effects);
@@ -266,7 +286,9 @@ Eigen::MatrixXd SkeletonBody::parameter_force(const Eigen::VectorXd& q, const Mo
         const int kind = impl_->parameter_of[place];
         if (kind >= 0) own(place, kind) = k[place];
     }
-    return G * own;
+    // What tools press through is a share of Young's modulus, which goes with the mean of all logarithms.
+    const Eigen::VectorXd grip = impl_->grip_force(q, setting, action) / static_cast<double>(own.cols());
+    return (G * own).colwise() + grip;
 }
 
 Points SkeletonBody::observe(const Eigen::VectorXd& q, const ModelSetting& setting) const {
@@ -279,12 +301,13 @@ Eigen::SparseMatrix<double> SkeletonBody::observation(const Eigen::VectorXd& q, 
 
 Eigen::VectorXd SkeletonBody::advance(const Eigen::VectorXd& q, const Eigen::VectorXd& step,
                                       const ModelSetting& setting) const {
-    return is_nonlinear(setting) ? pack(skeleton::advance(unpack(q), step)) : Eigen::VectorXd(q + step);
+    return in_large_rotation(setting) ? pack(skeleton::advance(unpack(q), step)) : Eigen::VectorXd(q + step);
 }
 
 std::shared_ptr<const Memory> SkeletonBody::remember(const Eigen::VectorXd& q, const ModelSetting& setting,
                                                      const Action& action) const {
     if (!setting.effects.plasticity) return nullptr;
+    if (has_free_coordinates(action)) return remember(q, setting, posed(*this, q, setting, action));
     return std::make_shared<FibreMemory>(
         skeleton::flowed(impl_->model(setting), impl_->equilibrium_of(q, setting, action), setting.effects));
 }
@@ -361,12 +384,106 @@ Eigen::MatrixXd SkeletonBody::support_motion(const Vec3& centre) const {
 
 Eigen::MatrixXd SkeletonBody::tangent_times(const Eigen::VectorXd& q, const ModelSetting& setting, const Action& action,
                                             const Eigen::MatrixXd& steps) const {
+    if (has_free_coordinates(action)) return tangent_times_with_free_tools(*this, q, setting, action, steps);
     skeleton::Model model = impl_->model(setting);
     skeleton::set_stiffness(model, stiffness(setting));
-    const skeleton::Load load = is_nonlinear(setting) ? impl_->load(action) : skeleton::Load{};
+    const skeleton::Load load = in_large_rotation(setting) ? impl_->load(action) : skeleton::Load{};
     return skeleton::tangent(model, impl_->tangent_state(q, setting), load, impl_->effects(setting, action),
                              fibres_before(action)) *
            steps;
+}
+
+Eigen::VectorXd SkeletonBody::Impl::grip_force(const Eigen::VectorXd& q, const ModelSetting& setting,
+                                               const Action& action) const {
+    fem::Effects holding = rig.effects(action, young_of(setting));
+    holding.cavities.clear();
+    std::erase_if(holding.tendons, [](const fem::TendonPull& pull) { return !pull.actuator->by_length; });
+    if (holding.empty()) return Eigen::VectorXd::Zero(by_law[0].dofs());
+    const skeleton::PlacedEffects placed(model(setting), holding);
+    return in_large_rotation(setting) ? placed.force(unpack(q)) : placed.linear_force(q);
+}
+
+template <class Visit>
+void SkeletonBody::Impl::for_each_point_of(const mesh::ToolMotion& motion, const Eigen::VectorXd& q,
+                                           const ModelSetting& setting, const Visit& visit) const {
+    const skeleton::PlacedEffects placed(model(setting), {.tools = {rig.tool(motion, young_of(setting))}});
+    placed.for_each_point_of_tool(0, tangent_state(q, setting),
+                                  [&](const skeleton::CarriedPoint& at, fem::PointTerms terms) {
+                                      Vec3 x = at.x();
+                                      if (!in_large_rotation(setting)) {
+                                          // As at rest, to first order.
+                                          Vec3 moved = Vec3::Zero();
+                                          for (int i = 0; i < at.shares(); ++i)
+                                              moved += at.jacobian(i) * q.segment<6>(Eigen::Index{6} * at.sphere(i));
+                                          x += moved;
+                                          terms.gradient += terms.hessian * moved;
+                                      }
+                                      visit(at, x, terms);
+                                  });
+}
+
+std::vector<mesh::ToolMotion> SkeletonBody::motions(const Eigen::VectorXd& q, const ModelSetting& setting,
+                                                    const Action& action) const {
+    return posed(*this, q, setting, action).motions;
+}
+
+Eigen::VectorXd SkeletonBody::reactions(const Eigen::VectorXd& q, const ModelSetting& setting,
+                                        const Action& action) const {
+    if (has_free_coordinates(action)) return reactions(q, setting, posed(*this, q, setting, action));
+    Eigen::VectorXd result = Eigen::VectorXd::Zero(6 * std::ssize(action.motions));
+    for (std::size_t t = 0; t < action.motions.size(); ++t) {
+        const Vec3 origin = impl_->rig.tool(action.motions[t], 1)->origin();
+        impl_->for_each_point_of(action.motions[t], q, setting,
+                                 [&](const skeleton::CarriedPoint&, const Vec3& x, const fem::PointTerms& terms) {
+                                     result.segment<6>(static_cast<Eigen::Index>(6 * t)) +=
+                                         fem::PointOnTool(terms, x - origin).wrench;
+                                 });
+    }
+    return result;
+}
+
+ReactionSlopes SkeletonBody::reaction_slopes(const Eigen::VectorXd& q, const ModelSetting& setting,
+                                             const Action& action) const {
+    if (has_free_coordinates(action)) return reaction_slopes_with_free_tools(*this, q, setting, action);
+    const Eigen::Index rows = 6 * std::ssize(action.motions), parameters = std::ssize(impl_->parameters);
+    ReactionSlopes slopes{Eigen::MatrixXd::Zero(rows, dofs()), {}, Eigen::MatrixXd::Zero(rows, rows)};
+    for (std::size_t t = 0; t < action.motions.size(); ++t) {
+        const Vec3 origin = impl_->rig.tool(action.motions[t], 1)->origin();
+        const auto row = static_cast<Eigen::Index>(6 * t);
+        impl_->for_each_point_of(action.motions[t], q, setting,
+                                 [&](const skeleton::CarriedPoint& at, const Vec3& x, const fem::PointTerms& terms) {
+                                     const fem::PointOnTool part(terms, x - origin);
+                                     slopes.by_pose.block<6, 6>(row, row) += part.wrench_by_pose;
+                                     for (int i = 0; i < at.shares(); ++i)
+                                         slopes.by_step.block<6, 6>(row, Eigen::Index{6} * at.sphere(i)) +=
+                                             part.by_pose.transpose() * at.jacobian(i);
+                                 });
+    }
+    // Young's modulus goes with the mean of all logarithms.
+    slopes.by_parameter =
+        reactions(q, setting, action) * Eigen::RowVectorXd::Constant(parameters, 1 / static_cast<double>(parameters));
+    return slopes;
+}
+
+Eigen::MatrixXd SkeletonBody::actuation_force(const Eigen::VectorXd& q, const ModelSetting& setting,
+                                              const Action& action) const {
+    const skeleton::Model& model = impl_->model(setting);
+    const State state = impl_->tangent_state(q, setting);
+    Eigen::MatrixXd result = Eigen::MatrixXd::Zero(dofs(), std::ssize(action.settings));
+    for (std::size_t a = 0; a < action.settings.size(); ++a) {
+        const mesh::ActuatorSetting& own = action.settings[a];
+        Eigen::VectorXd column = Eigen::VectorXd::Zero(dofs());
+        if (const auto& cavity = impl_->rig.cavity(own.actuator)) {
+            skeleton::Cavities(model, *cavity).add_gradient(state, 1, column);
+        } else {
+            const fem::TendonPull pull = impl_->rig.tendon(own, young(setting));
+            const skeleton::PlacedTendon tendon(model, pull);
+            const fem::TendonTerms terms = tendon.terms(state);
+            tendon.add(state, terms.lengthening, pull.actuator->by_length ? -terms.stiffness : -1, column);
+        }
+        result.col(static_cast<Eigen::Index>(a)) = column;
+    }
+    return result;
 }
 
 }  // namespace palpate::identify

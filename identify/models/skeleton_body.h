@@ -2,6 +2,7 @@
 
 #include "identify/measurements/measurement_set.h"
 #include "identify/models/body_model.h"
+#include "identify/models/rig.h"
 #include "skeleton/model/model.h"
 
 namespace palpate::identify {
@@ -14,7 +15,8 @@ namespace palpate::identify {
 class SkeletonBody : public BodyModel {
 public:
     /// `young`: of the body that the skeleton stands for, as it comes [MPa]; for how deep a contact may dent.
-    SkeletonBody(const skeleton::Model& model, const std::vector<Marker>& markers, double young);
+    /// `rig`: what may touch it, and act within it.
+    SkeletonBody(const skeleton::Model& model, const std::vector<Marker>& markers, double young, const Rig& rig = {});
     ~SkeletonBody() override;
 
     int dofs() const override;
@@ -53,6 +55,14 @@ public:
     const Points& support_points() const override;
     const Eigen::VectorXd& support_shares() const override;
     Eigen::MatrixXd support_motion(const Vec3& centre) const override;
+    std::vector<mesh::ToolMotion> motions(const Eigen::VectorXd& q, const ModelSetting& setting,
+                                          const Action& action) const override;
+    Eigen::VectorXd reactions(const Eigen::VectorXd& q, const ModelSetting& setting,
+                              const Action& action) const override;
+    ReactionSlopes reaction_slopes(const Eigen::VectorXd& q, const ModelSetting& setting,
+                                   const Action& action) const override;
+    Eigen::MatrixXd actuation_force(const Eigen::VectorXd& q, const ModelSetting& setting,
+                                    const Action& action) const override;
     Eigen::MatrixXd tangent_times(const Eigen::VectorXd& q, const ModelSetting& setting, const Action& action,
                                   const Eigen::MatrixXd& steps) const override;
 

@@ -24,4 +24,10 @@ struct Actuator {
     std::variant<PressureActuator, TendonActuator> kind;
 };
 
+/// What an actuator is set to.
+struct ActuatorSetting {
+    int actuator = 0;  // index among the actuators
+    double value = 0;  // pressure over that outside [MPa], tension [N], or length drawn in [mm]
+};
+
 }  // namespace palpate::mesh

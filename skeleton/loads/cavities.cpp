@@ -1,6 +1,8 @@
 #include "skeleton/loads/cavities.h"
 
 #include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
 #include <set>
 
 #include "mesh/topology/shells.h"
@@ -31,11 +33,12 @@ double enclosed(const mesh::Surface& surface, const std::vector<int>& triangles)
     return sum;
 }
 
-}  // namespace
+using Corners = std::array<int, 3>;
 
-std::vector<std::array<int, 3>> cavity_walls(const Model& model) {
-    std::vector<std::array<int, 3>> walls;
-    if (model.skin.empty()) return walls;
+// The walls of each cavity.
+std::vector<std::vector<Corners>> walls_by_cavity(const Model& model) {
+    std::vector<std::vector<Corners>> cavities;
+    if (model.skin.empty()) return cavities;
     const std::vector<int> number = mesh::connected_parts(model.surface);
     std::vector<std::vector<int>> parts;
     for (int t = 0; t < static_cast<int>(number.size()); ++t) {
@@ -44,16 +47,57 @@ std::vector<std::array<int, 3>> cavity_walls(const Model& model) {
     }
     for (const std::vector<int>& part : parts) {
         if (!is_closed(model.surface, part) || !(enclosed(model.surface, part) < 0)) continue;
+        std::vector<Corners>& walls = cavities.emplace_back();
         for (const int t : part) {
             const auto corners = model.surface.triangles.row(t);
             walls.push_back({corners[0], corners[1], corners[2]});
         }
     }
-    return walls;
+    return cavities;
 }
 
-Cavities::Cavities(const Model& model) : rest_(rest_state(model)) {
-    for (const std::array<int, 3>& wall : cavity_walls(model)) {
+double distance(const mesh::Surface& surface, const std::vector<Corners>& walls, const Vec3& point) {
+    double least = INFINITY;
+    for (const Corners& wall : walls)
+        for (const int vertex : wall)
+            least = std::min(least, (surface.vertices.row(vertex).transpose() - point).norm());
+    return least;
+}
+
+std::vector<Corners> walls_of(const Model& model, const mesh::PressureActuator& actuator) {
+    constexpr Eigen::Index most = 50;  // vertices of a surface that are asked
+    std::vector<Corners> best;
+    double nearest = INFINITY;
+    for (const std::vector<Corners>& walls : walls_by_cavity(model)) {
+        double sum = 0;
+        if (const auto* point = std::get_if<Vec3>(&actuator.cavity)) {
+            sum = distance(model.surface, walls, *point);
+        } else {
+            const Points& vertices = std::get<mesh::Surface>(actuator.cavity).vertices;
+            const Eigen::Index stride = std::max<Eigen::Index>(1, vertices.rows() / most);
+            for (Eigen::Index v = 0; v < vertices.rows(); v += stride)
+                sum += distance(model.surface, walls, vertices.row(v));
+        }
+        if (sum < nearest) best = walls;
+        nearest = std::min(nearest, sum);
+    }
+    return best;
+}
+
+}  // namespace
+
+std::vector<std::array<int, 3>> cavity_walls(const Model& model) {
+    std::vector<Corners> all;
+    for (const std::vector<Corners>& walls : walls_by_cavity(model)) all.insert(all.end(), walls.begin(), walls.end());
+    return all;
+}
+
+Cavities::Cavities(const Model& model) : Cavities(model, cavity_walls(model)) {}
+Cavities::Cavities(const Model& model, const mesh::PressureActuator& actuator)
+    : Cavities(model, walls_of(model, actuator)) {}
+
+Cavities::Cavities(const Model& model, const std::vector<Corners>& walls) : rest_(rest_state(model)) {
+    for (const Corners& wall : walls) {
         walls_.push_back({model.skin[wall[0]], model.skin[wall[1]], model.skin[wall[2]]});
         origin_ += model.surface.vertices.row(wall[0]).transpose();
     }

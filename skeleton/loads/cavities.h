@@ -3,6 +3,7 @@
 #include <array>
 #include <vector>
 
+#include "mesh/core/actuator.h"
 #include "skeleton/model/carried_point.h"
 
 namespace palpate::skeleton {
@@ -20,6 +21,9 @@ public:
 
     Cavities() = default;
     explicit Cavities(const Model& model);
+    /// The one that an actuator means: that with a wall nearest to the point, or nearest in the mean to the vertices of
+    /// the surface; none where there are none.
+    Cavities(const Model& model, const mesh::PressureActuator& actuator);
 
     bool empty() const { return walls_.empty(); }
     double volume(const State& state) const;             // [mm^3]
@@ -35,6 +39,7 @@ public:
 
 private:
     using Wall = std::array<CarriedPoint, 3>;
+    Cavities(const Model& model, const std::vector<std::array<int, 3>>& walls);
     Wall at(const std::array<Attachment, 3>& wall, const State& state) const;
 
     State rest_;

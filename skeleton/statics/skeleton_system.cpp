@@ -86,7 +86,7 @@ SkeletonSystem::SkeletonSystem(const Model& model, const fem::Effects& effects)
     for (const Sphere& sphere : body_.spheres) moves.push_back(sphere.held ? 0 : 1);
     branches_ = Branches(body_.links, moves);
 
-    effect_load_ = largest_force(effects_.force(effects_.rest()));
+    effect_load_ = std::max(largest_force(effects_.load_at_rest()), effects_.load_of_tools(length_));
     for (const BlockCholesky::Block& block : effects_.curvature(effects_.rest()))
         effect_stiffness_ = std::max(effect_stiffness_, block.diagonal().cwiseAbs().cwiseQuotient(metric_).maxCoeff());
 }

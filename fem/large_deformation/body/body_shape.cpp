@@ -8,6 +8,22 @@ const Skin& BodyShape::skin() const {
     return lazy_skin->get([&] { return Skin(mesh); });
 }
 
+const BodyPoints& BodyShape::boundary_points() const {
+    return lazy_boundary->get([&] { return fem::boundary_points(mesh); });
+}
+
+const BodyPoints& BodyShape::node_points() const {
+    return lazy_nodes->get([&] { return fem::node_points(mesh); });
+}
+
+Eigen::VectorXd BodyShape::pressures(const Effects& effects) const {
+    Eigen::VectorXd result = Eigen::VectorXd::Constant(cavities.count(), effects.pressure);
+    for (const CavityPressure& own : effects.cavities) {
+        result[cavities.find(*own.actuator)] += own.pressure;
+    }
+    return result;
+}
+
 NodeWeights BodyShape::points(ActsOn what, double density) const {
     const Eigen::VectorXd& all = what == ActsOn::material  ? integrals.volume
                                  : what == ActsOn::surface ? integrals.area

@@ -4,9 +4,11 @@
 
 #include "fem/effects/effects.h"
 #include "fem/elements/dilatation.h"
+#include "fem/large_deformation/body/body_points.h"
 #include "fem/large_deformation/body/cavities.h"
 #include "fem/large_deformation/body/node_integrals.h"
 #include "fem/large_deformation/body/node_weights.h"
+#include "fem/large_deformation/body/placed_tendon.h"
 #include "fem/large_deformation/body/skin.h"
 #include "fem/large_deformation/elements/element_kernel.h"
 #include "fem/large_deformation/lazy.h"
@@ -22,8 +24,15 @@ struct BodyShape {
     NodeIntegrals integrals;
     Cavities cavities{};
     std::shared_ptr<const Lazy<Skin>> lazy_skin = std::make_shared<Lazy<Skin>>();  // few bodies have effects in it
+    std::shared_ptr<const Lazy<BodyPoints>> lazy_boundary = std::make_shared<Lazy<BodyPoints>>();
+    std::shared_ptr<const Lazy<BodyPoints>> lazy_nodes = std::make_shared<Lazy<BodyPoints>>();
+    std::shared_ptr<const TendonPaths> tendon_paths = std::make_shared<TendonPaths>();
 
     const Skin& skin() const;
+    const BodyPoints& boundary_points() const;
+    const BodyPoints& node_points() const;
+    /// Pressure in each cavity (of their number) [MPa].
+    Eigen::VectorXd pressures(const Effects& effects) const;
     NodeWeights points(ActsOn what, double density) const;
     /// Where an element's quadrature points rest (points x 3) [mm].
     PointPositions quadrature_points(std::size_t element) const;

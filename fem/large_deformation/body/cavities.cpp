@@ -3,10 +3,12 @@
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <numeric>
 
 #include "fem/elements/shape.h"
+#include "mesh/errors.h"
 
 namespace palpate::fem {
 
@@ -85,26 +87,72 @@ Cavities::Cavities(const mesh::VolumeMesh& mesh) : nodes_(mesh.nodes) {
         const auto x = node_positions<6>(mesh.nodes, mesh.faces.row(f));
         enclosed[part[f]] += volume_of(x.transpose().colwise() - centre);
     }
-    std::vector<int> walls;
+    std::map<int, std::vector<int>> walls;
     Vec3 sum = Vec3::Zero();
+    int count = 0;
     for (int f = 0; f < mesh.faces.rows(); ++f) {
         if (enclosed[part[f]] >= 0) continue;
         sum += mesh.nodes.row(mesh.faces(f, 0)).transpose();
-        walls.push_back(f);
+        walls[part[f]].push_back(f);
+        ++count;
     }
     if (walls.empty()) return;
-    nodes_.rowwise() -= (sum / static_cast<double>(walls.size())).transpose();
-    faces_ = boundary_faces_with_elements(mesh, walls);
+    origin_ = sum / count;
+    nodes_.rowwise() -= origin_.transpose();
+    for (const auto& [first, faces] : walls) walls_.push_back(boundary_faces_with_elements(mesh, faces));
 }
 
-double Cavities::volume(const Eigen::VectorXd& u) const {
-    double sum = 0;
-    for (const BoundaryFace& face : faces_) sum -= volume_of(positions(face, nodes_, u));
-    return sum;
+double Cavities::distance(int cavity, const Vec3& point) const {
+    double least = INFINITY;
+    for (const BoundaryFace& face : walls_[cavity]) {
+        for (const int node : face.node)
+            least = std::min(least, (nodes_.row(node).transpose() + origin_ - point).norm());
+    }
+    return least;
 }
 
-void Cavities::add_gradient(const Eigen::VectorXd& u, double factor, Eigen::VectorXd& sum) const {
-    for (const BoundaryFace& face : faces_) {
+int Cavities::find(const mesh::PressureActuator& actuator) const {
+    if (empty())
+        throw InvalidInput(
+            "There is pressure in a cavity of a body that encloses none: its mesh must have a closed inner surface. "
+            "Close "
+            "the cavity, or take the pressure away.");
+    constexpr Eigen::Index most = 50;  // vertices of a surface that are asked
+    int best = 0;
+    double nearest = INFINITY;
+    for (int c = 0; c < count(); ++c) {
+        double sum = 0;
+        if (const auto* point = std::get_if<Vec3>(&actuator.cavity)) {
+            sum = distance(c, *point);
+        } else {
+            const Points& vertices = std::get<mesh::Surface>(actuator.cavity).vertices;
+            const Eigen::Index stride = std::max<Eigen::Index>(1, vertices.rows() / most);
+            for (Eigen::Index v = 0; v < vertices.rows(); v += stride) sum += distance(c, vertices.row(v));
+        }
+        if (sum < nearest) best = c;
+        nearest = std::min(nearest, sum);
+    }
+    return best;
+}
+
+Eigen::VectorXd Cavities::volumes(const Eigen::VectorXd& u) const {
+    Eigen::VectorXd sums = Eigen::VectorXd::Zero(count());
+    for (int c = 0; c < count(); ++c)
+        for (const BoundaryFace& face : walls_[c]) sums[c] -= volume_of(positions(face, nodes_, u));
+    return sums;
+}
+
+/// Calls visit(face, factor) for the walls of cavities whose factor is not zero.
+template <class Visit>
+void Cavities::for_each_wall(const Eigen::VectorXd& factors, const Visit& visit) const {
+    for (int c = 0; c < count(); ++c) {
+        if (factors[c] == 0) continue;
+        for (const BoundaryFace& face : walls_[c]) visit(face, factors[c]);
+    }
+}
+
+void Cavities::add_gradient(const Eigen::VectorXd& u, const Eigen::VectorXd& factors, Eigen::VectorXd& sum) const {
+    for_each_wall(factors, [&](const BoundaryFace& face, double factor) {
         const FaceNodes x = positions(face, nodes_, u);
         FaceNodes by_node = FaceNodes::Zero();
         for (const auto& [i, j, k, weight] : face_triples()) {
@@ -113,11 +161,12 @@ void Cavities::add_gradient(const Eigen::VectorXd& u, double factor, Eigen::Vect
             by_node.col(k) += weight * x.col(i).cross(x.col(j));
         }
         for (int i = 0; i < 6; ++i) sum.segment<3>(std::int64_t(3) * face.node[i]) -= factor * by_node.col(i);
-    }
+    });
 }
 
-void Cavities::add_hessian(const Eigen::VectorXd& u, double factor, const Unknowns& unknowns, LowerMatrix& K) const {
-    for (const BoundaryFace& face : faces_) {
+void Cavities::add_hessian(const Eigen::VectorXd& u, const Eigen::VectorXd& factors, const Unknowns& unknowns,
+                           LowerMatrix& K) const {
+    for_each_wall(factors, [&](const BoundaryFace& face, double factor) {
         const FaceNodes x = positions(face, nodes_, u);
         ElementTangent tangent;
         for (auto& block : tangent.blocks) block.setZero();
@@ -139,7 +188,7 @@ void Cavities::add_hessian(const Eigen::VectorXd& u, double factor, const Unknow
             add(k, i, weight * x.col(j));
         }
         unknowns.add(face.element, tangent, K);
-    }
+    });
 }
 
 }  // namespace palpate::fem

@@ -11,13 +11,27 @@ LoadedBody::LoadedBody(const BodyShape& body, const BodySetting& setting, const 
       surface_(setting.effects.surface),
       share_(share),
       f_(share * f),
-      pressure_(body.cavities.empty() ? 0 : share * setting.effects.pressure) {
+      pressures_(share * body.pressures(setting.effects)) {
     for (const auto& effect : setting.effects.points) {
         NodeWeights at = body.points(effect->acts_on(), setting.material.density);
         at.weights = effect->weights(body.mesh.nodes(at.nodes, Eigen::all), at.weights);
         if (effect->acts_on() != ActsOn::support) at.weights *= share;
         effects_.push_back({effect.get(), std::move(at)});
     }
+    for (const auto& tool : setting.effects.tools) tools_.emplace_back(body, share == 1 ? tool : tool->part_way(share));
+    for (const TendonPull& pull : setting.effects.tendons) {
+        tendons_.emplace_back(body.tendon_paths->operator()(body.mesh, pull.actuator),
+                              TendonPull{pull.actuator, share * pull.value, pull.young},
+                              material_.law() == MaterialLaw::linear);
+    }
+}
+
+Eigen::VectorXd LoadedBody::grip(const Eigen::VectorXd& u) const {
+    Eigen::VectorXd sum = Eigen::VectorXd::Zero(u.size());
+    for (const PlacedTool& tool : tools_) tool.add_gradient(u, -1, sum);
+    for (const PlacedTendon& tendon : tendons_)
+        if (tendon.pull().actuator->by_length) tendon.add_gradient(u, -1, sum);
+    return sum;
 }
 
 PointTerms LoadedBody::terms(const PlacedPotential& effect, std::size_t k, const Eigen::VectorXd& u) const {
@@ -53,27 +67,41 @@ Potential LoadedBody::potential(const Eigen::VectorXd& u, Eigen::VectorXd& net) 
             force.segment<3>(std::int64_t(3) * effect.at.nodes[k]) += weight * at.gradient;
         }
     }
-    if (pressure_ != 0) {
+    if (!pressures_.isZero(0)) {
         // -p (V - V0); in small strain a dead load, as on the body at rest.
-        const Eigen::VectorXd rest = Eigen::VectorXd::Zero(u.size());
+        const Eigen::VectorXd rest = Eigen::VectorXd::Zero(u.size()), V0 = body_.cavities.volumes(rest);
         Eigen::VectorXd push = rest;
         const bool dead = material_.law() == MaterialLaw::linear;
-        body_.cavities.add_gradient(dead ? rest : u, pressure_, push);
-        const double more = dead ? push.dot(u) : pressure_ * (body_.cavities.volume(u) - body_.cavities.volume(rest));
+        body_.cavities.add_gradient(dead ? rest : u, pressures_, push);
+        const double more = dead ? push.dot(u) : pressures_.dot(body_.cavities.volumes(u) - V0);
         sum.value -= more;
-        sum.scale += std::abs(more) + std::abs(pressure_) * body_.cavities.volume(rest);
+        sum.scale += std::abs(more) + pressures_.cwiseAbs().dot(V0);
         force -= push;
+    }
+    const auto add = [&](double energy) {
+        sum.value += energy;
+        sum.scale += std::abs(energy);
+    };
+    if (!tools_.empty() || !tendons_.empty()) {
+        Eigen::VectorXd holding = Eigen::VectorXd::Zero(u.size());
+        for (const PlacedTool& tool : tools_) add(tool.add_gradient(u, 1, holding));
+        for (const PlacedTendon& tendon : tendons_)
+            add(tendon.add_gradient(u, 1, tendon.pull().actuator->by_length ? holding : force));
+        sum.grip = holding.norm();
+        force += holding;
     }
     if (!surface_.empty()) {
         const bool linear = material_.law() == MaterialLaw::linear;
-        const double energy = share_ * body_.skin().add_gradient(surface_, linear, u, share_, force);
-        sum.value += energy;
-        sum.scale += std::abs(energy);
+        add(share_ * body_.skin().add_gradient(surface_, linear, u, share_, force));
     }
-    const double work = f_.dot(u);
-    sum.value -= work;
-    sum.scale += std::abs(work);
+    add(-f_.dot(u));
     net = f_ - force;
+    return sum;
+}
+
+double LoadedBody::rounding(const Eigen::VectorXd& u) const {
+    double sum = material_.rounding(u);
+    for (const PlacedTool& tool : tools_) sum = std::hypot(sum, tool.rounding());
     return sum;
 }
 
@@ -96,8 +124,8 @@ void LoadedBody::add_tangent(const Eigen::VectorXd& u, const Unknowns& unknowns,
         material_.tangent(u, e, tangent);
         unknowns.add(static_cast<int>(e), tangent, K);
     }
-    if (pressure_ != 0 && material_.law() != MaterialLaw::linear)
-        body_.cavities.add_hessian(u, -pressure_, unknowns, K);
+    if (!pressures_.isZero(0) && material_.law() != MaterialLaw::linear)
+        body_.cavities.add_hessian(u, -pressures_, unknowns, K);
     if (!surface_.empty())
         body_.skin().add_hessian(surface_, material_.law() == MaterialLaw::linear, u, share_, unknowns, K);
     for (const PlacedPotential& effect : effects_) {
@@ -106,6 +134,8 @@ void LoadedBody::add_tangent(const Eigen::VectorXd& u, const Unknowns& unknowns,
             unknowns.add(effect.at.nodes[k], weight * terms(effect, k, u).hessian, K);
         }
     }
+    for (const PlacedTool& tool : tools_) tool.add_hessian(u, unknowns, K);
+    for (const PlacedTendon& tendon : tendons_) tendon.add_hessian(u, unknowns, K);
 }
 
 }  // namespace palpate::fem

@@ -2,6 +2,8 @@
 
 #include "fem/large_deformation/body/body_material.h"
 #include "fem/large_deformation/body/node_weights.h"
+#include "fem/large_deformation/body/placed_tendon.h"
+#include "fem/large_deformation/body/placed_tool.h"
 #include "fem/large_deformation/body/unknowns.h"
 
 namespace palpate::fem {
@@ -10,11 +12,12 @@ namespace palpate::fem {
 struct Potential {
     double value = 0;  // [N mm]
     double scale = 0;  // sum of its parts' amounts, which rounding is relative to [N mm]
+    double grip = 0;   // norm of the forces by which tools and tendons of a given length hold the body [N]
 };
 
-/// A body of some material under effects and dead loads, a share of which is applied. Effects on the support hold the
-/// body and are always there in full. The linear law takes effects as they are at rest, to second order,
-/// but for those that act on one side only.
+/// A body of some material under effects and dead loads, a share of which is applied: a tool has made that share of its
+/// motion. Effects on the support hold the body and are always there in full. The linear law takes effects as they are
+/// at rest, to second order, but for those that act on one side only, and tools.
 class LoadedBody {
 public:
     /// `before`, `flows`: as BodyMaterial takes them. @pre body, setting and `before` outlive it.
@@ -27,12 +30,15 @@ public:
     /// `net`: force on every node, minus the potential's gradient (3n). The value is infinite, and `net` not set, where
     /// an element is inside out.
     Potential potential(const Eigen::VectorXd& u, Eigen::VectorXd& net) const;
+    /// Forces of tools on the nodes, and of tendons that are of a given length (3n) [N]: they are proportional to the
+    /// body's stiffness.
+    Eigen::VectorXd grip(const Eigen::VectorXd& u) const;
     /// Is no element inside out?
     bool admits(const Eigen::VectorXd& u) const;
     /// @throws SolverFailure where an element is inside out.
     Eigen::VectorXd net_force(const Eigen::VectorXd& u) const;
     /// About the norm of what rounding leaves of forces that balance in the displacement u [N].
-    double rounding(const Eigen::VectorXd& u) const { return material_.rounding(u); }
+    double rounding(const Eigen::VectorXd& u) const;
     /// Adds the potential's second derivative. @pre no element is inside out.
     void add_tangent(const Eigen::VectorXd& u, const Unknowns& unknowns, LowerMatrix& K) const;
 
@@ -49,7 +55,9 @@ private:
     const SurfaceEnergies& surface_;
     double share_;
     Eigen::VectorXd f_;
-    double pressure_;  // in cavities [MPa]
+    Eigen::VectorXd pressures_;  // in each cavity [MPa]
+    std::vector<PlacedTool> tools_;
+    std::vector<PlacedTendon> tendons_;
 };
 
 }  // namespace palpate::fem

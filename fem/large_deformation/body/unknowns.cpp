@@ -13,16 +13,29 @@ namespace {
 constexpr int pairs = element_nodes * (element_nodes + 1) / 2;
 
 /// A thread that waits for the others here takes up none of the caller's work, which may itself wait for this.
-std::vector<std::vector<int>> lower_neighbours(const mesh::VolumeMesh& mesh, const std::vector<int>& number) {
-    return tbb::this_task_arena::isolate([&] { return neighbours(mesh, number, Half::lower); });
+std::vector<std::vector<int>> lower_neighbours(const mesh::VolumeMesh& mesh, const std::vector<int>& number,
+                                               const JoinedNodes& joined) {
+    auto rows = tbb::this_task_arena::isolate([&] { return neighbours(mesh, number, Half::lower); });
+    for (const std::vector<int>& nodes : joined) {
+        for (const int a : nodes) {
+            if (number[a] < 0) continue;
+            std::vector<int>& own = rows[number[a]];
+            for (const int b : nodes)
+                if (number[b] >= number[a]) own.push_back(number[b]);
+            std::ranges::sort(own);
+            const auto repeated = std::ranges::unique(own);
+            own.erase(repeated.begin(), repeated.end());
+        }
+    }
+    return rows;
 }
 
 }  // namespace
 
-Unknowns::Unknowns(const mesh::VolumeMesh& mesh, std::vector<int> number)
+Unknowns::Unknowns(const mesh::VolumeMesh& mesh, std::vector<int> number, const JoinedNodes& joined)
     : tetrahedra_(mesh.tetrahedra), number_(std::move(number)) {
     // Pattern: the three columns of a node hold three rows for each neighbour.
-    const auto rows = lower_neighbours(mesh, number_);
+    const auto rows = lower_neighbours(mesh, number_, joined);
     const auto size = static_cast<Eigen::Index>(3 * rows.size());
     zero_.resize(size, size);
     std::int64_t* start = zero_.outerIndexPtr();
@@ -81,6 +94,20 @@ void Unknowns::add(int node, const Mat3& block, LowerMatrix& K) const {
     }
 }
 
+void Unknowns::add(int a, int b, const Mat3& block, LowerMatrix& K) const {
+    if (number_[a] < 0 || number_[b] < 0) return;
+    const bool ascending = number_[a] <= number_[b];
+    const int low = ascending ? number_[a] : number_[b], high = ascending ? number_[b] : number_[a];
+    const std::int64_t* start = K.outerIndexPtr() + std::int64_t(3) * low;
+    const auto at =
+        std::lower_bound(K.innerIndexPtr() + start[0], K.innerIndexPtr() + start[1], std::int64_t(3) * high) -
+        (K.innerIndexPtr() + start[0]);
+    for (int c = 0; c < 3; ++c) {
+        double* column = K.valuePtr() + start[c] + at;
+        for (int d = 0; d < 3; ++d) column[d] += ascending ? block(c, d) : block(d, c);
+    }
+}
+
 Eigen::VectorXd Unknowns::gather(const Eigen::VectorXd& u) const {
     Eigen::VectorXd x(size());
     for (std::size_t i = 0; i < number_.size(); ++i) {
@@ -97,15 +124,17 @@ Eigen::VectorXd Unknowns::scatter(const Eigen::VectorXd& x) const {
     return u;
 }
 
-EliminationOrder elimination_order(const mesh::VolumeMesh& mesh, const std::vector<char>& held) {
+EliminationOrder elimination_order(const mesh::VolumeMesh& mesh, const std::vector<char>& held,
+                                   const JoinedNodes& joined) {
     std::vector<int> number(held.size());
     int count = 0;
     for (std::size_t i = 0; i < held.size(); ++i) number[i] = held[i] ? -1 : count++;
-    Elimination elimination = analyse(lower_neighbours(mesh, number), 3);
+    Elimination elimination = analyse(lower_neighbours(mesh, number, joined), 3);
     for (int& k : number) {
         if (k >= 0) k = elimination.position[k];
     }
-    return {Unknowns(mesh, std::move(number)), std::make_shared<const Supernodes>(std::move(elimination.supernodes))};
+    return {Unknowns(mesh, std::move(number), joined),
+            std::make_shared<const Supernodes>(std::move(elimination.supernodes))};
 }
 
 }  // namespace palpate::fem

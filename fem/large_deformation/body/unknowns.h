@@ -10,12 +10,15 @@
 
 namespace palpate::fem {
 
+/// Sets of nodes of which each is coupled to all others of its set.
+using JoinedNodes = std::vector<std::vector<int>>;
+
 /// Nodes that may move, numbered; the lower half of the tangent's matrix over their degrees of freedom 3 number + c,
 /// and where the elements' tangents go in it.
 class Unknowns {
 public:
-    /// `number` (n): an index per node, -1: left out.
-    Unknowns(const mesh::VolumeMesh& mesh, std::vector<int> number);
+    /// `number` (n): an index per node, -1: left out. `joined`: sets of nodes that are coupled beyond elements.
+    Unknowns(const mesh::VolumeMesh& mesh, std::vector<int> number, const JoinedNodes& joined = {});
 
     int size() const { return static_cast<int>(zero_.rows()); }
     const std::vector<int>& number() const { return number_; }
@@ -25,6 +28,9 @@ public:
     void add(int element, const ElementTangent& tangent, LowerMatrix& K) const;
     /// Adds a symmetric block to the diagonal at a node, unless it is left out.
     void add(int node, const Mat3& block, LowerMatrix& K) const;
+    /// Adds the block at (a, b) of a symmetric matrix, whose transpose is that at (b, a), unless one is left out.
+    /// @pre an element or a joined set holds both; of two different nodes one order is added.
+    void add(int a, int b, const Mat3& block, LowerMatrix& K) const;
 
     Eigen::VectorXd gather(const Eigen::VectorXd& u) const;   // (3n) to (size)
     Eigen::VectorXd scatter(const Eigen::VectorXd& x) const;  // back, zero at nodes that are left out
@@ -43,6 +49,7 @@ struct EliminationOrder {
 };
 
 /// @throws SolverFailure when memory does not suffice.
-EliminationOrder elimination_order(const mesh::VolumeMesh& mesh, const std::vector<char>& held);
+EliminationOrder elimination_order(const mesh::VolumeMesh& mesh, const std::vector<char>& held,
+                                   const JoinedNodes& joined = {});
 
 }  // namespace palpate::fem

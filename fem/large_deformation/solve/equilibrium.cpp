@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cmath>
 
 #include "fem/large_deformation/solve/newton.h"
+#include "fem/rig/tool_potential.h"
 #include "mesh/errors.h"
 
 namespace palpate::fem {
@@ -21,11 +23,49 @@ double pressure_of(const BodyShape& body, const BodySetting& setting, const Eige
         force += own.norm();
         area += body.integrals.area[node];
     }
-    return std::max(area > 0 ? force / area : 0, std::abs(setting.effects.pressure));
+    const Eigen::VectorXd within = body.pressures(setting.effects);
+    return std::max(area > 0 ? force / area : 0, within.size() > 0 ? within.cwiseAbs().maxCoeff() : 0);
+}
+
+/// In how many parts tools move at least, so that none comes out at the other side of a thin body.
+int steps_of_tools(const Effects& effects) {
+    double most = 1;
+    for (const auto& tool : effects.tools) most = std::max(most, tool->way() / tool->reach());
+    constexpr double limit = 1000;  // one is long where a tool comes from afar, but most parts are away from the body
+    return static_cast<int>(std::ceil(std::min(most, limit)));
+}
+
+bool touches(const Effects& effects) {
+    return std::ranges::any_of(effects.tools, [](const auto& tool) { return tool->parts(); });
+}
+
+/// With what tools touch giving way more: where they do is found in few steps, and kept as the rest is added.
+BodySetting with_soft_contact(const BodySetting& setting) {
+    constexpr double softness = 10;
+    BodySetting soft = setting;
+    for (auto& tool : soft.effects.tools)
+        if (tool->parts()) tool = tool->softened(softness);
+    return soft;
+}
+
+/// Are tools where they were, or almost?
+bool is_near(const LoadedBody& body, const Unknowns& unknowns, const Eigen::VectorXd& u) {
+    Eigen::VectorXd net;
+    const Potential potential = body.potential(u, net);
+    return unknowns.gather(net).norm() < 0.1 * potential.grip;
+}
+
+std::string where_tools_are(const Effects& effects) {
+    std::string words;
+    for (const auto& tool : effects.tools)
+        words += fmt::format(", with the tool \"{}\" moved by {:.4g} mm", tool->tool().name,
+                             tool->motion().translation.norm());
+    return words;
 }
 
 /// What may keep a body from an equilibrium, and what to do.
-std::string advice(double pressure, double young) {
+std::string advice(const BodyShape& body, const BodySetting& setting, const Eigen::VectorXd& f) {
+    const double pressure = pressure_of(body, setting, f), young = setting.material.young;
     constexpr double much = 0.1;  // of Young's modulus: strains of a tenth, from where on soft bodies may give way
     if (pressure > much * young) {
         return fmt::format(
@@ -34,6 +74,11 @@ std::string advice(double pressure, double young) {
             "force "
             "and its unit, or leave this state out.",
             pressure, young);
+    }
+    if (!setting.effects.tools.empty()) {
+        return "A tool may be asked to go where the body cannot give way without elements turning inside out: check "
+               "its "
+               "motion and the unit, try shorter elements (--edge-length), or leave this state out.";
     }
     return fmt::format(
         "It is not that the load crushes the body: it presses with about {:.2g} of E = {:.4g} MPa. The body may "
@@ -54,50 +99,59 @@ BodyEquilibrium find_equilibrium(const BodyShape& body, const EliminationOrder& 
     result.u.setZero(f.size());
 
     const LoadedBody loaded(body, setting, f, before);
-    const double load = unknowns.gather(loaded.net_force(result.u)).norm();  // at rest nothing else pulls
-    if (load == 0) return result;
+    // At rest nothing else pulls; tools that are moved at once hold with forces far beyond those that they will have.
+    const Eigen::VectorXd grip = loaded.grip(result.u);
+    const double load = unknowns.gather(loaded.net_force(result.u) - grip).norm();
+    if (load == 0 && grip.isZero(0)) return result;
+    const int least_steps = steps_of_tools(setting.effects);
 
     Newton newton(order, options.iterations);
     Eigen::VectorXd& u = result.u;
     const double rough = std::max(options.tolerance, 1e-3);
     // A body that flows sets out from where it would stand if it did not, unless it is near its answer.
+    const auto within = [&](double share) { return NewtonTolerance{share * load, share}; };
     const auto elastically = [&](double share) {
         return loaded.conservative() ||
-               newton.minimise(LoadedBody(body, setting, f, before, share, false), rough * load, u);
+               newton.minimise(LoadedBody(body, setting, f, before, share, false), within(rough), u);
     };
+    const BodySetting softly = with_soft_contact(setting);
     const auto from_start = [&] {
         if (!start) return false;
         u = unknowns.scatter(unknowns.gather(*start));
         if (!loaded.admits(u)) return false;
         const bool near = loaded.conservative() || unknowns.gather(loaded.net_force(u)).norm() < 0.2 * load;
-        return (near || elastically(1)) && newton.minimise(loaded, options.tolerance * load, u, guide);
+        if (touches(setting.effects) && !is_near(loaded, unknowns, u)) {
+            const LoadedBody soft(body, softly, f, before);
+            newton.minimise(soft, within(rough), u);
+        }
+        return (near || elastically(1)) && newton.minimise(loaded, within(options.tolerance), u, guide);
     };
     // Each step starts where the last two point to; only the last has to be exact.
     const auto in_steps = [&](int steps) {
         Eigen::VectorXd last = Eigen::VectorXd::Zero(f.size());
         u = last;
         for (int k = 1; k <= steps; ++k) {
-            const LoadedBody part(body, setting, f, before, static_cast<double>(k) / steps);
+            const LoadedBody part(body, softly, f, before, static_cast<double>(k) / steps);
             const Eigen::VectorXd ahead = 2 * u - last;
             last = u;
             if (part.admits(ahead)) u = ahead;
-            const double share = k == steps ? options.tolerance : rough;
+            const double share = k == steps && !touches(setting.effects) ? options.tolerance : rough;
             if (k == 1 && !elastically(1.0 / steps)) return false;
-            if (!newton.minimise(part, share * load, u)) return false;
+            if (!newton.minimise(part, within(share), u)) return false;
         }
-        return true;
+        return !touches(setting.effects) || newton.minimise(loaded, within(options.tolerance), u);
     };
     bool found = from_start();
-    for (const int steps : {1, 4, 16}) found = found || (steps <= options.load_steps && in_steps(steps));
+    for (const int steps : {1, 4, 16}) found = found || (steps <= options.load_steps && in_steps(steps * least_steps));
     result.iterations = newton.iterations();
     result.factorisations = newton.factorisations();
     result.residual = newton.residual();
     if (!found) {
         throw SolverFailure(fmt::format(
-            "No equilibrium was found under a load of {:.4g} N (root of the sum of squares over nodes) in {} steps, "
+            "No equilibrium was found under a load of {:.4g} N (root of the sum of squares over nodes){} in {} steps, "
             "with the load in up to {} parts: {:.4g} N stay unbalanced. {}",
-            load, result.iterations, options.load_steps, result.residual,
-            advice(pressure_of(body, setting, f), setting.material.young)));
+            load, where_tools_are(setting.effects), result.iterations, options.load_steps * least_steps,
+            result.residual, advice(body, setting, f)));
     }
     return result;
 }

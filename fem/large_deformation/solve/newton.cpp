@@ -132,7 +132,8 @@ void Newton::remember(const State& from, const State& to) {
     if (secant.sy > 0) secants_.push_back(std::move(secant));
 }
 
-bool Newton::minimise(const LoadedBody& body, double tolerance, Eigen::VectorXd& u, const Cholesky* guide) {
+bool Newton::minimise(const LoadedBody& body, const NewtonTolerance& tolerance, Eigen::VectorXd& u,
+                      const Cholesky* guide) {
     State here(body, order_.unknowns, u), next = here;
     bool factored = guide != nullptr;
     int astray = 0;
@@ -142,7 +143,8 @@ bool Newton::minimise(const LoadedBody& body, double tolerance, Eigen::VectorXd&
     for (int k = 0;; ++k) {
         u = here.u;
         residual_ = here.r.norm();
-        if (residual_ <= tolerance || residual_ <= roundings * body.rounding(u)) return true;
+        const double enough = tolerance.absolute + tolerance.of_grip * here.potential.grip;
+        if (residual_ <= enough || residual_ <= roundings * body.rounding(u)) return true;
         if (k == allowed_) return false;
         ++iterations_;
 

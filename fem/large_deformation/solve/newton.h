@@ -6,6 +6,12 @@
 
 namespace palpate::fem {
 
+/// How much net force may stay [N].
+struct NewtonTolerance {
+    double absolute = 0;  // [N]
+    double of_grip = 0;   // besides, as a share of the forces by which tools hold the body: these show as it is found
+};
+
 /// Finds where a loaded body's potential is least, over some unknowns; of one that flows, where its forces balance.
 ///
 /// Newton's method with line search. A factor of the tangent serves for further steps, mended by BFGS updates with the
@@ -15,11 +21,12 @@ class Newton {
 public:
     Newton(const EliminationOrder& order, int iterations);
 
-    /// Moves u to where the norm of the net force on the unknowns is at most `tolerance` [N], or what rounding makes of
+    /// Moves u to where the norm of the net force on the unknowns is within `tolerance`, or what rounding makes of
     /// forces that balance; false when that takes more than the iterations allowed, goes no further, or leads from one
     /// unstable state to the next. `guide`: a factor over the same unknowns that the first steps are taken by, of the
     /// tangent in a state nearby. @pre no element is inside out at u.
-    bool minimise(const LoadedBody& body, double tolerance, Eigen::VectorXd& u, const Cholesky* guide = nullptr);
+    bool minimise(const LoadedBody& body, const NewtonTolerance& tolerance, Eigen::VectorXd& u,
+                  const Cholesky* guide = nullptr);
 
     int iterations() const { return iterations_; }          // in all
     int factorisations() const { return factorisations_; }  // in all

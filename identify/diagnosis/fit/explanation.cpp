@@ -11,7 +11,8 @@ namespace {
 
 /// Nothing that an unloaded state could show: no contact, no gravity, no effect that moves it.
 bool at_rest(const ModelSetting& setting, const Action& action) {
-    return action.contacts.empty() && action.gravity.isZero(0) && action.pressure == 0 && setting.effects.empty();
+    return action.contacts.empty() && action.gravity.isZero(0) && action.pressure == 0 && action.motions.empty() &&
+           action.settings.empty() && setting.effects.empty();
 }
 
 /// An explanation with one number of one effect moved to both sides.

@@ -169,6 +169,13 @@ const auto fibres = std::make_shared<Anisotropy>(std::vector<Fibre>{{3, {1, 1, 0
 const auto prestress = std::make_shared<Prestress>(Vec3(0.05, -0.1, 0.02).asDiagonal());
 const auto inclusion = std::make_shared<Inclusion>(Inclusion::sphere({15, 5, 5}, 8, 5));
 
+std::shared_ptr<const mesh::TendonActuator> tendon(bool by_length) {
+    Points path(3, 3);
+    path << -2, 3, 8, 10, 4, 9, 19, 5, 6;
+    return std::make_shared<mesh::TendonActuator>(mesh::TendonActuator{path, by_length});
+}
+const auto cavity = std::make_shared<mesh::PressureActuator>(mesh::PressureActuator{Vec3(15, 5, 5)});
+
 INSTANTIATE_TEST_SUITE_P(
     Effects, EachEffect,
     ::testing::Values(
@@ -179,6 +186,9 @@ INSTANTIATE_TEST_SUITE_P(
         InForce{"Plasticity", {}, {.plasticity = fem::Plasticity{0.02, 0.3}}},
         InForce{"TorsionAndShear", {}, {.of_model = {in_links({.torsion = 0.7, .shear = 0.4})}}},
         InForce{"Area", {}, {.surface = {tension, area_spring}}}, InForce{"Pressure", {}, {.pressure = 0.05}},
+        InForce{"CavityPressure", {}, {.cavities = {{cavity, 0.05}}}},
+        InForce{"Tendon", {}, {.tendons = {{tendon(false), 2, 0}}}},
+        InForce{"Cable", {}, {.tendons = {{tendon(true), 4, 1e-3}}}},
         InForce{"All",
                 {compliant_support(8), gravity({100, -2e5, 9e5}), {"outliers", {}}},
                 {.points = {slope},

@@ -47,6 +47,18 @@ TEST(Cavities, GradientIsTheVolumesDerivative) {
     }
 }
 
+TEST(PressureEffect, ActsInTheCavityThatItIsToldOf) {
+    // Two hollows in one skin: a point and a surface find each, and both together are the body's.
+    const Model one = hollow();
+    const Model two = testing::with_cavity(one, {5, 5, 5}, 2);
+    const mesh::PressureActuator left{Vec3(4, 5, 5)}, right{mesh::make_sphere({15, 5, 5}, 4, 1)};
+    const double whole = Cavities(two).rest_volume(), first = Cavities(two, left).rest_volume(),
+                 second = Cavities(two, right).rest_volume();
+    EXPECT_NEAR(second, Cavities(one).rest_volume(), 1e-12 * whole);  // rounding
+    EXPECT_NEAR(first + second, whole, 1e-12 * whole);
+    EXPECT_LT(first, 0.2 * second);  // an eighth, as of half the radius
+}
+
 TEST(PressureEffect, ExertsNoNetForceNorTorque) {
     const Model model = hollow();
     std::mt19937_64 engine(6);

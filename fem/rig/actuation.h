@@ -1,0 +1,30 @@
+#pragma once
+
+#include <memory>
+
+#include "mesh/core/actuator.h"
+
+namespace palpate::fem {
+
+/// Pressure in one of a body's cavities, above that outside.
+struct CavityPressure {
+    std::shared_ptr<const mesh::PressureActuator> actuator;
+    double pressure = 0;  // [MPa]
+};
+
+/// A tendon that pulls. It runs from a guide in space, its first point, to where it is fixed, its last; without
+/// friction. By length it does not stretch, but for the thousandth that a body of the side L, its length, would: so
+/// stiff a cable, 10^3 E L, is as good as rigid in any body.
+struct TendonPull {
+    std::shared_ptr<const mesh::TendonActuator> actuator;
+    double value = 0;  // tension [N], or the length drawn in [mm]
+    double young = 0;  // of the body [MPa], where it is by length
+};
+
+/// What a tendon does: it is under tension, and as much shorter between its points as was drawn in.
+struct TendonState {
+    double tension = 0;   // [N]
+    double drawn_in = 0;  // [mm]
+};
+
+}  // namespace palpate::fem

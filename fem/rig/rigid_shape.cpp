@@ -1,0 +1,88 @@
+#include "fem/rig/rigid_shape.h"
+
+#include <fmt/format.h>
+
+#include "fem/rig/surface_distance.h"
+#include "mesh/errors.h"
+
+namespace palpate::fem {
+
+namespace {
+
+class SphereDistance final : public RigidShape {
+public:
+    using RigidShape::gap;
+    SphereDistance(const Vec3& centre, double radius) : centre_(centre), radius_(radius) {}
+    Gap gap(const Vec3& y) const override {
+        const Vec3 arm = y - centre_;
+        const double r = arm.norm();
+        if (r == 0) return {-radius_, Vec3::UnitZ(), Mat3::Zero()};
+        const Vec3 n = arm / r;
+        return {r - radius_, n, (Mat3::Identity() - n * n.transpose()) / r};
+    }
+    double radius() const override { return radius_; }
+
+private:
+    Vec3 centre_;
+    double radius_;
+};
+
+/// A half-infinite cylinder behind its face: within, the nearer of face and side counts, but for points that it finds
+/// below its face: those stay there.
+class PunchDistance final : public RigidShape {
+public:
+    PunchDistance(const Vec3& centre, const mesh::FlatShape& punch)
+        : centre_(centre), axis_(punch.axis.normalized()), radius_(punch.radius) {}
+    Gap gap(const Vec3& y) const override {
+        const Vec3 arm = y - centre_;
+        const double ahead = axis_.dot(arm);
+        const Vec3 across = arm - ahead * axis_;
+        const double rho = across.norm(), beside = rho - radius_;
+        if (rho == 0 || (beside <= 0 && ahead >= beside)) return {ahead, axis_, Mat3::Zero()};
+        const Vec3 out = across / rho;
+        const Mat3 turning = (Mat3::Identity() - axis_ * axis_.transpose() - out * out.transpose()) / rho;
+        if (ahead <= 0) return {beside, out, turning};
+        // Before the face and beside it the rim is nearest.
+        const double distance = std::hypot(ahead, beside);
+        const Vec3 n = (ahead * axis_ + beside * out) / distance, along = (beside * axis_ - ahead * out) / distance;
+        return {distance, n, (along * along.transpose() + beside * turning) / distance};
+    }
+    Gap gap(const Vec3& y, const Vec3& rest) const override {
+        const Vec3 arm = y - centre_, from = rest - centre_;
+        const auto beside = [&](const Vec3& r) { return (r - axis_.dot(r) * axis_).norm() - radius_; };
+        if (beside(arm) <= 0 && beside(from) <= 0) return {axis_.dot(arm), axis_, Mat3::Zero()};
+        return gap(y);
+    }
+    double radius() const override { return radius_; }
+
+private:
+    Vec3 centre_, axis_;
+    double radius_;
+};
+
+double checked_radius(const mesh::Tool& tool, double radius) {
+    if (radius > 0 && std::isfinite(radius)) return radius;
+    throw InvalidInput(
+        fmt::format("The tool \"{}\" has a radius of {:g} mm; allowed: more than 0.", tool.name, radius));
+}
+
+}  // namespace
+
+std::shared_ptr<const RigidShape> rigid_shape(const mesh::Tool& tool) {
+    if (const auto* sphere = std::get_if<mesh::SphereShape>(&tool.shape))
+        return std::make_shared<SphereDistance>(tool.origin, checked_radius(tool, sphere->radius));
+    if (const auto* punch = std::get_if<mesh::FlatShape>(&tool.shape)) {
+        checked_radius(tool, punch->radius);
+        if (punch->axis.norm() == 0)
+            throw InvalidInput(
+                fmt::format("The axis of the flat punch \"{}\" is (0, 0, 0): give the direction that it "
+                            "presses along, of any length.",
+                            tool.name));
+        return std::make_shared<PunchDistance>(tool.origin, *punch);
+    }
+    if (const auto* solid = std::get_if<mesh::SurfaceShape>(&tool.shape))
+        return std::make_shared<SurfaceDistance>(tool.name, solid->surface);
+    return nullptr;
+}
+
+}  // namespace palpate::fem

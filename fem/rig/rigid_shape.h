@@ -1,0 +1,33 @@
+#pragma once
+
+#include <memory>
+
+#include "mesh/core/tool.h"
+
+namespace palpate::fem {
+
+/// How far a point is from a rigid shape, below 0 inside of it, and the derivatives by where the point is.
+struct Gap {
+    double value = 0;             // [mm]
+    Vec3 normal = Vec3::Zero();   // d value / d y: the way out, unit
+    Mat3 hessian = Mat3::Zero();  // d^2 value / d y^2 [1/mm]
+};
+
+/// A rigid body that others may touch, by its signed distance.
+class RigidShape {
+public:
+    virtual ~RigidShape() = default;
+    /// `y`: where the point is when the tool is at rest [mm].
+    virtual Gap gap(const Vec3& y) const = 0;
+    /// The same for a point of a body that, if it had not moved, would be at `rest`: this tells where a point that is
+    /// deep within, as on the way to an equilibrium, came in.
+    virtual Gap gap(const Vec3& y, const Vec3& /*rest*/) const { return gap(y); }
+    /// About the radius of what it presses with [mm].
+    virtual double radius() const = 0;
+};
+
+/// The shape of a tool; null for a grip, which has none.
+/// @throws InvalidInput for a radius that is not positive, or a surface that is not closed.
+std::shared_ptr<const RigidShape> rigid_shape(const mesh::Tool& tool);
+
+}  // namespace palpate::fem

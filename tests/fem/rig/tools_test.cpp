@@ -1,0 +1,319 @@
+// Rigid tools that touch, hold and move a body: what they weigh on it, and what it answers.
+
+#include "fem/elements/shape.h"
+#include "mesh/errors.h"
+#include "tests/fem/hollow.h"
+#include "tests/fem/rig/layer_contact.h"
+#include "tests/fem/rig/rigged_bar.h"
+#include "tests/messages.h"
+
+namespace palpate::fem {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+
+Eigen::VectorXd one(double value) { return Eigen::VectorXd::Constant(1, value); }
+
+TEST(RigidShape, GapsAreDerivativesOfOneAnother) {
+    const Vec3 centre(1, 2, 3);
+    for (const auto& tool : {sphere_tool(centre, 2), flat_tool(centre, 2), box_tool(centre, Vec3(2, 1.5, 2))}) {
+        const RigidShape& shape = *tool->shape;
+        for (unsigned seed = 0; seed < 40; ++seed) {
+            const Eigen::VectorXd y = centre + Vec3(scatter(3, 3.5, seed));
+            const Gap gap = shape.gap(y);
+            const auto value = [&](const Eigen::VectorXd& x) { return one(shape.gap(x).value); };
+            const auto normal = [&](const Eigen::VectorXd& x) { return Eigen::VectorXd(shape.gap(x).normal); };
+            // Central differences of step 1e-5: their own error is 1e-10 over the least radius squared, rounding 1e-11
+            // over it. The seeds keep away from where the nearest face, edge or corner changes.
+            EXPECT_LT((differences(value, y, 1e-5).transpose() - gap.normal).norm(), 1e-8) << tool->tool.name << seed;
+            EXPECT_LT((differences(normal, y, 1e-5) - gap.hessian).norm(), 1e-6) << tool->tool.name << seed;
+            EXPECT_NEAR(gap.normal.norm(), 1, 1e-12);
+        }
+    }
+}
+
+TEST(RigidShape, GapsAreDistances) {
+    const auto box = box_tool(Vec3::Zero(), Vec3(2, 1, 1))->shape, punch = flat_tool(Vec3::Zero(), 2)->shape;
+    EXPECT_NEAR(box->gap(Vec3(3, 0.3, 0.1)).value, 1, 1e-14);
+    EXPECT_NEAR(box->gap(Vec3(3, 2, 0)).value, std::sqrt(2), 1e-14);
+    EXPECT_NEAR(box->gap(Vec3(3, 2, 2)).value, std::sqrt(3), 1e-14);
+    EXPECT_NEAR(box->gap(Vec3(0.2, 0.9, 0.1)).value, -0.1, 1e-14);
+    EXPECT_NEAR(punch->gap(Vec3(1, 0, -0.5)).value, 0.5, 1e-14);  // it presses downwards, and stands above z = 0
+    EXPECT_NEAR(punch->gap(Vec3(1, 0, 0.5)).value, -0.5, 1e-14);
+    EXPECT_NEAR(punch->gap(Vec3(1.9, 0, 0.5)).value, -0.1, 1e-14);
+    EXPECT_NEAR(punch->gap(Vec3(2.3, 0, -0.4)).value, 0.5, 1e-14);
+}
+
+/// A bar with a tool of each kind at it.
+struct Rigged {
+    Beam beam{{6, 2, 2}, {4, 2, 2}};
+    HyperelasticBody body = beam.body();
+    double young = 0.3;
+    Vec3 shift{-0.03, 0.02, -0.25}, turn{0.02, -0.1, 0.05};
+
+    std::vector<std::shared_ptr<const ToolPotential>> tools() const {
+        return {moved(sphere_tool(Vec3(3, 1, 4), 2), shift, turn, young),
+                moved(flat_tool(Vec3(3, 1, 2), 0.8), shift, turn, young),
+                moved(box_tool(Vec3(3, 1, 3), Vec3(0.9, 0.8, 1)), shift, turn, young),
+                moved(grip_tool(5, Vec3(5.5, 1, 0)), shift, turn, young),
+                moved(flat_tool(Vec3(3, 1, 2), 0.8, true), shift, turn, young)};
+    }
+    BodySetting setting(const std::shared_ptr<const ToolPotential>& tool, MaterialLaw law) const {
+        return {law, {.young = young, .poisson = 0.4}, {.tools = {tool}}};
+    }
+    Eigen::VectorXd none() const { return Eigen::VectorXd::Zero(beam.mesh.nodes.size()); }
+    /// Near where the body stands: within a shape by little, as the laws of derivatives ask for.
+    Eigen::VectorXd near(const std::shared_ptr<const ToolPotential>& tool) const {
+        const Eigen::VectorXd u = body.equilibrium(setting(tool, MaterialLaw::neo_hookean), none()).u;
+        return u + scatter(u.size(), 1e-5);
+    }
+};
+
+TEST(Tool, WrenchIsTheGradientOfTheEnergyByThePose) {
+    const Rigged rig;
+    const Eigen::VectorXd none = rig.none();
+    for (const auto& tool : rig.tools()) {
+        const Eigen::VectorXd u = rig.near(tool);
+        const auto at = [&](const Eigen::VectorXd& step) {
+            return std::make_shared<ToolPotential>(std::make_shared<RigidTool>(tool->tool()),
+                                                   stepped(tool->motion(), step), rig.young);
+        };
+        const auto energy = [&](const Eigen::VectorXd& step) {
+            return one(rig.body.potential(u, rig.setting(at(step), MaterialLaw::neo_hookean), none));
+        };
+        const auto wrench = [&](const Eigen::VectorXd& step) { return Eigen::VectorXd(rig.body.wrench(u, at(step))); };
+        const auto force = [&](const Eigen::VectorXd& step) {
+            return rig.body.residual(u, rig.setting(at(step), MaterialLaw::neo_hookean), none);
+        };
+        const Eigen::VectorXd nowhere = Eigen::VectorXd::Zero(6), own = rig.body.wrench(u, tool);
+        EXPECT_GT(own.norm(), 0);
+        // Differences of step 1e-7 carry six digits or so, of energies that are small parts of the body's four.
+        EXPECT_LT((differences(energy, nowhere, 1e-7).transpose() - own).norm(), 1e-4 * own.norm())
+            << tool->tool().name;
+        const Eigen::MatrixXd slope = rig.body.wrench_by_pose(u, tool), M = rig.body.wrench_derivative(u, tool);
+        EXPECT_LT((differences(wrench, nowhere, 1e-7) - slope).norm(), 1e-5 * slope.norm()) << tool->tool().name;
+        EXPECT_LT((differences(force, nowhere, 1e-7) + M).norm(), 1e-5 * M.norm()) << tool->tool().name;
+    }
+}
+
+TEST(Tool, WrenchAndTangentAreDerivativesByTheNodes) {
+    const Rigged rig;
+    const Eigen::VectorXd none = rig.none();
+    for (const auto& tool : rig.tools()) {
+        const Eigen::VectorXd u = rig.near(tool);
+        for (const MaterialLaw law : laws) {
+            const BodySetting setting = rig.setting(tool, law);
+            const Eigen::VectorXd r = rig.body.residual(u, setting, none);
+            const Eigen::SparseMatrix<double> J = rig.body.tangent(u, setting);
+            const Eigen::MatrixXd M = rig.body.wrench_derivative(u, tool);
+            for (unsigned seed = 1; seed < 4; ++seed) {
+                const Eigen::VectorXd step = scatter(u.size(), 1, seed);
+                const double h = 1e-7;
+                const auto along = [&](const auto& value) {
+                    return Eigen::VectorXd((value(u + h * step) - value(u - h * step)) / (2 * h));
+                };
+                // Differences carry six digits of the largest terms, as no point enters or leaves on the way.
+                const auto energy = [&](const Eigen::VectorXd& at) {
+                    return one(rig.body.potential(at, setting, none));
+                };
+                EXPECT_NEAR(along(energy)(0), -r.dot(step), 1e-5 * r.norm() * step.norm());
+                const auto residual = [&](const Eigen::VectorXd& at) { return rig.body.residual(at, setting, none); };
+                EXPECT_LT((along(residual) + J * step).norm(), 1e-5 * (J * step).norm()) << tool->tool().name;
+                const auto wrench = [&](const Eigen::VectorXd& at) {
+                    return Eigen::VectorXd(rig.body.wrench(at, tool));
+                };
+                EXPECT_LT((along(wrench) - M.transpose() * step).norm(), 1e-5 * (M.transpose() * step).norm());
+            }
+        }
+    }
+}
+
+TEST(Tool, SupportsBearWhatToolsExert) {
+    const Rigged rig;
+    for (const auto& tool : rig.tools()) {
+        for (const MaterialLaw law : laws) {
+            const BodySetting setting = rig.setting(tool, law);
+            const Eigen::VectorXd u = rig.body.equilibrium(setting, rig.none()).u;
+            const Eigen::VectorXd r = rig.body.residual(u, setting, rig.none());
+            Wrench support = Wrench::Zero();  // on the body, about the tool's origin
+            for (Eigen::Index i = 0; i < rig.beam.mesh.nodes.rows(); ++i) {
+                if (!rig.beam.held[i]) continue;
+                const Vec3 force = -r.segment<3>(3 * i);
+                const Vec3 x = rig.beam.mesh.nodes.row(i).transpose() + u.segment<3>(3 * i);
+                support.head<3>() += force;
+                support.tail<3>() += (x - tool->origin()).cross(force);
+            }
+            const Wrench own = rig.body.wrench(u, tool);
+            // Newton's tolerance; in small strain moments are about where points rest, and off by as much as they move.
+            EXPECT_LT((own + support).head<3>().norm(), 1e-5 * own.head<3>().norm()) << tool->tool().name;
+            if (law != MaterialLaw::linear) {
+                EXPECT_LT((own + support).norm(), 1e-5 * own.norm()) << tool->tool().name;
+            }
+        }
+    }
+}
+
+TEST(Tool, ForcesOfToolsAloneLeaveTheShapeToTheirMotion) {
+    // A body ten times as stiff answers with ten times the force, in the same shape.
+    const Rigged rig;
+    for (const auto& tool : rig.tools()) {
+        const auto stiffer = moved(std::make_shared<RigidTool>(tool->tool()), rig.shift, rig.turn, 10 * rig.young);
+        BodySetting soft = rig.setting(tool, MaterialLaw::neo_hookean), stiff = rig.setting(stiffer, soft.law);
+        stiff.material.young *= 10;
+        const Eigen::VectorXd u = rig.body.equilibrium(soft, rig.none()).u,
+                              v = rig.body.equilibrium(stiff, rig.none()).u;
+        EXPECT_LT(relative(v, u), 1e-6) << tool->tool().name;  // Newton's tolerance
+        EXPECT_LT(relative(rig.body.wrench(v, stiffer), 10 * rig.body.wrench(u, tool)), 1e-5) << tool->tool().name;
+        const Eigen::VectorXd grip = rig.body.grip_forces(u, soft);
+        EXPECT_LT((grip.reshaped(3, grip.size() / 3).rowwise().sum() - rig.body.wrench(u, tool).head<3>()).norm(),
+                  1e-9 * grip.norm());  // rounding
+    }
+}
+
+TEST(Tool, WhatIsAwayDoesNothing) {
+    const Rigged rig;
+    const auto away = moved(sphere_tool(Vec3(3, 1, 4.1), 2), Vec3(5, 0, 0.1), Vec3::Zero(), rig.young);
+    const BodySetting setting = rig.setting(away, MaterialLaw::neo_hookean);
+    EXPECT_EQ(rig.body.equilibrium(setting, rig.none()).u, rig.none());
+    EXPECT_EQ(rig.body.wrench(rig.none(), away), Wrench::Zero());
+}
+
+/// A disc of the layer z in [-h, 0], bonded at its lower side: rings of 16 sectors, finer towards the radius a.
+mesh::VolumeMesh layer(double h, double a, double outer, int rings, int layers) {
+    constexpr int sectors = 16;
+    std::vector<double> radii;
+    for (int k = 1; k <= rings; ++k) radii.push_back(a * (1 - std::pow(1 - static_cast<double>(k) / rings, 1.8)));
+    for (int k = 1; k <= rings; ++k) radii.push_back(a + (outer - a) * std::pow(static_cast<double>(k) / rings, 2.2));
+    std::vector<Vec3> flat{Vec3::Zero()};
+    for (std::size_t k = 0; k < radii.size(); ++k) {
+        for (int s = 0; s < sectors; ++s) {
+            const double angle = 2 * std::numbers::pi * (s + 0.5 * static_cast<double>(k % 2)) / sectors;
+            flat.push_back(radii[k] * Vec3(std::cos(angle), std::sin(angle), 0));
+        }
+    }
+    std::vector<std::array<int, 3>> triangles;
+    const auto node = [&](std::size_t ring, int s) {
+        return 1 + static_cast<int>(ring) * sectors + (s + sectors) % sectors;
+    };
+    triangles.reserve(2 * radii.size() * sectors);
+    for (int s = 0; s < sectors; ++s) triangles.push_back({0, node(0, s), node(0, s + 1)});
+    for (std::size_t k = 0; k + 1 < radii.size(); ++k) {
+        for (int s = 0; s < sectors; ++s) {
+            const int shift = k % 2 == 0 ? 0 : 1;  // an odd ring is half a sector ahead
+            triangles.push_back({node(k, s), node(k, s + 1), node(k + 1, s + shift)});
+            triangles.push_back({node(k, s), node(k + 1, s + shift - 1), node(k + 1, s + shift)});
+        }
+    }
+    const int n = static_cast<int>(flat.size());
+    mesh::VolumeMesh body;
+    body.nodes.resize(Eigen::Index{n} * (layers + 1), 3);
+    for (int l = 0; l <= layers; ++l) {
+        for (int i = 0; i < n; ++i)
+            body.nodes.row(Eigen::Index{l} * n + i) =
+                flat[i] - Vec3(0, 0, h * std::pow(static_cast<double>(l) / layers, 1.8));
+    }
+    std::vector<std::array<int, 4>> tetrahedra;
+    for (int l = 0; l < layers; ++l) {
+        for (auto corners : triangles) {
+            std::ranges::sort(corners);
+            const auto& [i, j, k] = corners;
+            const int low = l * n, high = low + n;
+            tetrahedra.push_back({low + i, low + j, low + k, high + k});
+            tetrahedra.push_back({low + i, low + j, high + k, high + j});
+            tetrahedra.push_back({low + i, high + j, high + k, high + i});
+        }
+    }
+    body.tetrahedra.resize(std::ssize(tetrahedra), 4);
+    for (std::size_t e = 0; e < tetrahedra.size(); ++e)
+        for (int c = 0; c < 4; ++c) body.tetrahedra(static_cast<Eigen::Index>(e), c) = tetrahedra[e][c];
+    const Eigen::VectorXd volumes = mesh::element_volumes(body);
+    for (Eigen::Index e = 0; e < volumes.size(); ++e)
+        if (volumes(e) < 0) std::swap(body.tetrahedra(e, 0), body.tetrahedra(e, 1));
+    body.faces = mesh::boundary_faces(body.tetrahedra);
+    return mesh::to_quadratic(body);
+}
+
+/// Midsides of chords move out to the circle.
+void round_rings(mesh::VolumeMesh& body) {
+    for (Eigen::Index e = 0; e < body.tetrahedra.rows(); ++e) {
+        for (int m = 0; m < 6; ++m) {
+            const auto [a, b] = edge_corners[m];
+            const double r = body.nodes.row(body.tetrahedra(e, a)).head<2>().norm(),
+                         other = body.nodes.row(body.tetrahedra(e, b)).head<2>().norm();
+            auto middle = body.nodes.row(body.tetrahedra(e, 4 + m)).head<2>();
+            if (std::abs(r - other) < 1e-9 && middle.norm() > 0) middle *= r / middle.norm();
+        }
+    }
+}
+
+/// What an indenter at depth d bears on a layer, over the exact force in small strain.
+double over_exact(const std::shared_ptr<const RigidTool>& tool, double d, double exact, const mesh::VolumeMesh& mesh,
+                  double h, const Material& material) {
+    const HyperelasticBody body(mesh, nodes_where(mesh, [&](const Vec3& x) { return x.z() < -h + 1e-9; }));
+    const auto pressed = moved(tool, Vec3(0, 0, -d), Vec3::Zero(), material.young);
+    const Eigen::VectorXd none = Eigen::VectorXd::Zero(mesh.nodes.size());
+    const Eigen::VectorXd u = body.equilibrium({MaterialLaw::linear, material, {.tools = {pressed}}}, none).u;
+    return -body.wrench(u, pressed).z() / exact;
+}
+
+TEST(Tool, SphereAndFlatPunchPressAsHertzAndSneddonSay) {
+    // On a layer, whose thickness the exact answers know. [Hayes et al. 1972]
+    const Material material{.young = 0.1, .poisson = 0.3, .density = 0};
+    const double h = 6, a = 3;
+    const LayerContact exact{h, material.young, material.poisson};
+    mesh::VolumeMesh mesh = layer(h, a, 18, 4, 4);
+    round_rings(mesh);
+    const double sphere = over_exact(sphere_tool(Vec3(0, 0, 20), 20), 0.3, exact.sphere(20, 0.3), mesh, h, material);
+    const double punch = over_exact(flat_tool(Vec3::Zero(), a), 0.1, exact.flat_punch(a, 0.1), mesh, h, material);
+    // Elements are a fourth of the contact's radius, and finer at its border.
+    EXPECT_NEAR(sphere, 1, 0.02);
+    EXPECT_NEAR(punch, 1, 0.02);
+}
+
+TEST(LayerContact, KnowsHayesTable) {
+    // kappa(a/h) at nu = 0.5 [Hayes et al. 1972, table 2]; to the digits of the table.
+    const LayerContact layer{1, 1, 0.5};
+    const double hayes[] = {1.281, 1.683, 2.211, 2.855, 3.609};
+    for (int k = 0; k < 5; ++k) {
+        const double a = 0.2 * (k + 1);
+        EXPECT_NEAR(layer.flat_punch(a, 1) * (1 - 0.25) / (2 * a) / hayes[k], 1, 0.003);
+    }
+    const LayerContact thick{1e3, 1, 0.3};
+    EXPECT_NEAR(thick.sphere(1, 0.01), 4.0 / 3 / 0.91 * std::pow(0.01, 1.5), 1e-3 * 1.5e-3);  // Hertz
+}
+
+TEST(Tool, MessagesSayWhatToDo) {
+    const Rigged rig;
+    const auto equilibrium = [&](const std::shared_ptr<const RigidTool>& tool) {
+        return [&, tool] {
+            rig.body.equilibrium(rig.setting(moved(tool, rig.shift, rig.turn, 1), MaterialLaw::linear), rig.none());
+        };
+    };
+    EXPECT_THAT(
+        equilibrium(grip_tool(100, Vec3::Zero())),
+        testing::ThrowsMessage<InvalidInput>(AllOf(HasSubstr("\"grip\" hold no material"), HasSubstr("widen"))));
+    EXPECT_THAT(
+        equilibrium(sphere_tool(Vec3(3, 1, 9), 2, true)),
+        testing::ThrowsMessage<InvalidInput>(AllOf(HasSubstr("\"ball\" touches no surface"), HasSubstr("Move it"))));
+    EXPECT_THAT(
+        [] { sphere_tool(Vec3::Zero(), 0); },
+        testing::ThrowsMessage<InvalidInput>(AllOf(HasSubstr("\"ball\""), HasSubstr("0 mm"), HasSubstr("more than"))));
+    mesh::Tool flat{.name = "punch", .shape = mesh::FlatShape{1, Vec3::Zero()}};
+    EXPECT_THAT([&] { RigidTool{flat}; }, testing::ThrowsMessage<InvalidInput>(HasSubstr("direction that it presses")));
+    mesh::Surface box = mesh::make_box(Vec3::Zero(), Vec3::Ones(), Eigen::Vector3i::Ones());
+    mesh::Tool open{.name = "cup", .shape = mesh::SurfaceShape{box}};
+    std::get<mesh::SurfaceShape>(open.shape).surface.triangles.conservativeResize(11, 3);
+    EXPECT_THAT([&] { RigidTool{open}; },
+                testing::ThrowsMessage<InvalidInput>(AllOf(HasSubstr("\"cup\" is open"), HasSubstr("Close"))));
+    box.triangles.col(0).swap(box.triangles.col(1));
+    open.shape = mesh::SurfaceShape{box};
+    EXPECT_THAT([&] { RigidTool{open}; }, testing::ThrowsMessage<InvalidInput>(HasSubstr("Turn them round")));
+    EXPECT_THAT(equilibrium(grip_tool(5, Vec3(0, 0, 0))), testing::Not(testing::Throws<InvalidInput>()));
+    const auto crushed = moved(grip_tool(5, Vec3::Zero()), Vec3(-20, 0, 0), Vec3::Zero(), 1);
+    EXPECT_THAT([&] { rig.body.equilibrium(rig.setting(crushed, MaterialLaw::neo_hookean), rig.none()); },
+                testing::ThrowsMessage<SolverFailure>(AllOf(HasSubstr("\"grip\" moved by 20 mm"), HasSubstr("unit"))));
+}
+
+}  // namespace
+}  // namespace palpate::fem
