@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "identify/diagnosis/rigged_skeleton.h"
 #include "identify/inference/methods/methods.h"
 #include "identify/measurements/field.h"
 #include "identify/measurements/labels/label_readings.h"
@@ -36,7 +37,11 @@ IdentifyResult identify(const skeleton::Model& model, const MeasurementSet& set,
     const LabelledSet labelled = label_readings(with_markers_of_fields(set));
     const MeasurementSet& readable = labelled.set;
     IdentifyResult result;
-    if (options.method == Method::burion2008) {
+    if (is_rigged(readable)) {
+        constexpr int draws = 200;  // as of the tempered filter
+        result = identify_rigged(model, readable, options.particles > 0 ? options.particles : draws, options.seed,
+                                 options.threads, progress);
+    } else if (options.method == Method::burion2008) {
         result = identify_burion2008(model, readable, options, progress);
     } else if (options.domain == Domain::force) {
         result = identify_by_forces(model, readable, options, progress);

@@ -7,9 +7,8 @@ namespace palpate::fem {
 namespace {
 
 constexpr double left = 0.05;         // of the difference between the meshes, at the end
-constexpr double forcing = 0.03;      // of a step's error, below what Newton's linearisation leaves [Dembo et al. 1982]
-constexpr double serves = 0.3;        // share of the difference that a step leaves, for its tangent to serve the next
-constexpr int most_steps = 3;         // of Newton's method; two suffice
+constexpr double forcing = 0.02;      // of a step's error, below what Newton's linearisation leaves [Dembo et al. 1982]
+constexpr int most_steps = 3;         // of Newton's method; one or two suffice
 constexpr double shortest = 1.0 / 8;  // step
 
 void clear_held(const std::vector<char>& held, Eigen::VectorXd& x) {
@@ -42,10 +41,10 @@ std::optional<Eigen::VectorXd> refined_equilibrium(const RefinedBody& refined, c
     std::optional<Eigen::VectorXd> r = net_force(body, u, setting, f);
     if (!r) return std::nullopt;
     const Eigen::VectorXd start = u;
-    std::optional<TwoGrid> tangent;
     for (int step = 0; step < most_steps; ++step) {
+        std::optional<TwoGrid> tangent;
         try {
-            if (!tangent) tangent.emplace(body.tangent(u, setting), body.held(), refined.interpolation, J);
+            tangent.emplace(body.tangent(u, setting), body.held(), refined.interpolation, J);
         } catch (const SolverFailure&) {  // its diagonal is not positive definite
             return std::nullopt;
         }
@@ -64,9 +63,7 @@ std::optional<Eigen::VectorXd> refined_equilibrium(const RefinedBody& refined, c
             r = force;
         }
         if (!falls) return std::nullopt;
-        const double difference = (u - start).norm();
-        if (next.norm() <= left * difference) return u;
-        if (next.norm() > serves * difference) tangent.reset();
+        if (next.norm() <= left * (u - start).norm()) return u;
     }
     return std::nullopt;
 }

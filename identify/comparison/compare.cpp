@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "identify/comparison/load_exponent.h"
+#include "identify/diagnosis/rigged_skeleton.h"
 #include "identify/inference/domains/position/solver_pool.h"
 #include "identify/loading/load_history.h"
 #include "identify/loading/readings.h"
@@ -27,7 +28,6 @@ double square(double x) { return x * x; }
 std::vector<Points> predict(const skeleton::Model& model, const std::vector<StateReadings>& states, int threads,
                             std::vector<char>& bears_full_load) {
     std::vector<Points> predicted(states.size());
-    bears_full_load.assign(states.size(), 1);
     SolverPool solvers(model);
     const Eigen::VectorXd k = stiffness_vector(model);
     std::vector<skeleton::Equilibrium> equilibria(states.size());
@@ -101,8 +101,14 @@ Comparison compare(const skeleton::Model& model, const MeasurementSet& set, int 
                            "' has no labelled reading to compare with; positions.csv "
                            "needs rows that name a marker");
     }
-    std::vector<char> bears_full_load;
-    const std::vector<Points> predicted = predict(model, states, threads, bears_full_load);
+    std::vector<char> bears_full_load(states.size(), 1);
+    std::vector<Points> predicted;
+    if (is_rigged(set)) {
+        const std::vector<Points> of_all = predict_rigged(model, set, threads);
+        for (const StateReadings& state : states) predicted.push_back(of_all[state.state](state.rows, Eigen::all));
+    } else {
+        predicted = predict(model, states, threads, bears_full_load);
+    }
 
     Comparison result;
     for (std::size_t s = 0; s < states.size(); ++s) {

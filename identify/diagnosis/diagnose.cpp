@@ -7,6 +7,7 @@
 
 #include "identify/diagnosis/search/baselines.h"
 #include "identify/diagnosis/search/crushing.h"
+#include "identify/diagnosis/search/mesh_correction.h"
 #include "identify/diagnosis/search/search.h"
 #include "identify/diagnosis/statistics/discretisation.h"
 #include "identify/diagnosis/statistics/independent_readings.h"
@@ -17,13 +18,7 @@
 namespace palpate::identify {
 namespace {
 
-/// Change of the mesh's error after which it is computed anew, rms over sigma. The next change is a third of it or
-/// less, 0.1, which alters a whitened rms of 1 by half a per cent.
-constexpr double much_for_noise = 0.3;
 constexpr const char* noise_note = "The set does not tell its noise: ";
-
-/// [mm]
-double rms(const Eigen::VectorXd& v) { return std::sqrt(v.squaredNorm() / static_cast<double>(v.size())); }
 
 /// The diagnosis in progress.
 class DiagnosisInProgress {
@@ -33,7 +28,7 @@ public:
         : model_(model), set_(set), options_(options), progress_(progress), baselines_(model, options) {
         result_.noise_known = all_noise_known(set);
         result_.problem = make_problem(set, first_noise(set));
-        moved_ = rms(result_.problem.displacement());
+        moved_ = result_.problem.rms_mm(result_.problem.displacement());
         for (const auto& effect : catalogue()) {
             const bool known =
                 std::ranges::find(options.known, effect->name(), &skeleton::EffectRecord::name) != options.known.end();
@@ -50,7 +45,10 @@ public:
         }
         const bool is_corrected = take_correction_of_neighbour();
         baselines_.fit(result_.problem, result_.notes, progress_);
-        if (!is_corrected && options_.refit.correct_for_mesh) correct_for_mesh();
+        if (!is_corrected && options_.refit.correct_for_mesh) {
+            tell("error of the mesh", 0.35);
+            correct_baselines_for_mesh(model_, result_.problem, baselines_, options_.refit.threads);
+        }
         if (!result_.noise_known) estimate_noise();
         set_plain_outliers_aside();
         if (options_.screen) {
@@ -74,7 +72,8 @@ public:
         result_.large_deformation_failed = baselines_.large_deformation_failed();
         decide_verdict(model_, options_, result_);
         note_mesh_error();
-        note_correction();
+        if (std::string note = note_of_correction(result_.problem, moved_); !note.empty())
+            result_.notes.push_back(std::move(note));
         return std::move(result_);
     }
 
@@ -87,7 +86,8 @@ private:
 
     /// A hundredth of how far the markers move, to begin with where the noise is not specified [mm].
     static double first_noise(const MeasurementSet& set) {
-        return std::max(0.01 * rms(make_problem(set, 1).displacement()), 1e-12);
+        const Problem problem = make_problem(set, 1);
+        return std::max(0.01 * problem.rms_mm(problem.displacement()), 1e-12);
     }
 
     const Refit& baseline() const { return baselines_.best(); }
@@ -101,50 +101,16 @@ private:
         return result_.problem.discretisation.size() > 0;
     }
 
-    /// The error of the mesh in an explanation, taken off the readings; how much that changes, rms over sigma.
-    double correct_for_mesh(const Explanation& explanation, const ForwardSolution& forward) {
-        Problem& problem = result_.problem;
-        tell("error of the mesh", 0.35);
-        const Eigen::VectorXd before = problem.measured;
-        problem.correct_for(discretisation_error(model_, problem, explanation, forward, options_.refit.threads));
-        return rms((problem.measured - before).cwiseQuotient(problem.sigma));
-    }
-
-    /// A coarse mesh bends the numbers that are fitted with it: one that keeps its volume badly looks compressible, or
-    /// not at all. So the error is first computed with those that are believed before the measurements, and then where
-    /// the fit to what it leaves stands, until it hardly changes.
-    void correct_for_mesh() {
-        Explanation explanation = baseline().explanation;
-        for (Eigen::Index p = 0; p < explanation.theta.size(); ++p) {
-            const StiffnessParameter& parameter = model_.parameters()[p];
-            if (!parameter.stiffens) explanation.theta[p] = parameter.prior_mean;
-        }
-        ForwardSolution forward;
-        try {
-            forward =
-                solve_forward(model_, result_.problem, explanation, options_.refit.threads, &baseline().forward.q);
-        } catch (const SolverFailure&) {
-            explanation = baseline().explanation;
-            forward = baseline().forward;
-        }
-        constexpr int most_rounds = 4;  // each changes a third as much as the one before, or less
-        for (int round = 0; round < most_rounds; ++round) {
-            const double change = correct_for_mesh(explanation, forward);
-            if (change == 0) return;
-            baselines_.refit(result_.problem);
-            if (change < much_for_noise) return;
-            explanation = baseline().explanation;
-            forward = baseline().forward;
-        }
-    }
-
     /// Once more where an effect explains the readings: it may move the body far from where the baseline stood.
     void correct_for_mesh_with_effect() {
-        const Problem& problem = result_.problem;
-        if (!explained() || problem.discretisation.size() == 0) return;
-        if (rms(problem.discretisation.cwiseQuotient(problem.sigma)) < much_for_noise) return;
+        Problem& problem = result_.problem;
+        if (!explained() || !shows_next_to_noise(problem, problem.discretisation)) return;
         const Refit& fit = leader()->fit;
-        if (fit.explanation.has_memory() || correct_for_mesh(fit.explanation, fit.forward) < much_for_noise) return;
+        if (fit.explanation.has_memory()) return;
+        tell("error of the mesh", 0.9);
+        const Eigen::VectorXd before = problem.measured;
+        correct_for_mesh(model_, problem, fit.explanation, fit.forward, options_.refit.threads);
+        if (!shows_next_to_noise(problem, problem.measured - before)) return;
         baselines_.refit(problem);
         search_->refit_tried(problem);
         result_.ranking = search_->ranking();
@@ -155,31 +121,13 @@ private:
     void note_mesh_error() {
         if (result_.verdict != Verdict::unexplained) return;
         const Eigen::VectorXd left_mm = result_.best().residual.cwiseProduct(result_.problem.sigma);
-        const double left = rms(left_mm);
+        const double left = result_.problem.rms_mm(left_mm);
         constexpr double most = 0.015;  // of the displacement: what meshes and their contacts may be off by
         if (left > most * moved_) return;
         result_.notes.push_back(
             fmt::format("The residual, {:.3g} mm rms, is {:.2g} % of the displacement, which discretisation error may "
                         "explain. Shorter elements (--edge-length) reduce it; a noise of {:.3g} mm or more covers it.",
                         left, 100 * left / moved_, options_.resolution * moved_));
-    }
-
-    /// What was taken off for the mesh, where it would have shown.
-    void note_correction() {
-        const Problem& problem = result_.problem;
-        if (problem.discretisation.size() == 0) return;
-        const double error = rms(problem.discretisation), share = error / moved_;
-        if (error < problem.rms_sigma()) return;
-        result_.notes.push_back(fmt::format(
-            "The error of the body's mesh, {:.3g} mm rms or {:.2g} % of the displacement, was computed with "
-            "halved edges and taken off the readings.",
-            error, 100 * share));
-        constexpr double most = 0.2;  // halved edges leave up to a third of it, more than most effects are worth
-        if (share > most) {
-            result_.notes.back() += fmt::format(
-                " That is too much to correct reliably: shorter elements (--edge-length) reduce it to a quarter where "
-                "they are half as long.");
-        }
     }
 
     void estimate_noise() {

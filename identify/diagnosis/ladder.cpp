@@ -7,6 +7,7 @@
 
 #include "identify/comparison/compare.h"
 #include "identify/diagnosis/diagnose.h"
+#include "identify/diagnosis/rigged_skeleton.h"
 #include "identify/effects/catalogue.h"
 #include "identify/identify.h"
 #include "identify/inference/maximum/calibrate.h"
@@ -19,7 +20,8 @@ namespace palpate::identify {
 namespace {
 
 bool is_loaded(const LoadState& state) {
-    return std::ranges::any_of(state.contacts, [](const mesh::Contact& c) { return !c.force.isZero(0); });
+    return std::ranges::any_of(state.contacts, [](const mesh::Contact& c) { return !c.force.isZero(0); }) ||
+           !state.motions.empty() || !state.actuations.empty();
 }
 
 /// Which probes are held out, in turn.
@@ -30,7 +32,7 @@ std::vector<std::vector<int>> folds_of(const MeasurementSet& set) {
     std::set<int> loaded, all;
     for (const LoadState& state : set.states) {
         if (is_loaded(state)) loaded.insert(state.probe);
-        if (!state.readings.empty()) all.insert(state.probe);
+        if (!state.readings.empty() || !state.reactions.empty()) all.insert(state.probe);
     }
     if (loaded.size() < 3) return {};
     if (loaded.size() > 8) {
@@ -52,7 +54,9 @@ MeasurementSet part_of(const MeasurementSet& set, const std::vector<int>& probes
     MeasurementSet part = set;
     if (set.continuous) {  // the body went through all states, whoever reads them
         for (LoadState& state : part.states) {
-            if (is_other(state)) state.readings.clear();
+            if (!is_other(state)) continue;
+            state.readings.clear();
+            state.reactions.clear();
         }
     } else {
         std::erase_if(part.states, is_other);
@@ -209,15 +213,13 @@ private:
             if (own != ranking.end()) step.predicted_rms_mm = own->predicted_rms_mm;
         }
         StepError body{.rms_mm = fit.rms_mm, .whitened_rms = fit.whitened_rms};
-        body.relative = fit.rms_mm / rms_of(found.problem.displacement());
+        body.relative = fit.rms_mm / found.problem.rms_mm(found.problem.displacement());
         result_.verdict = found.verdict;
 
         // The skeleton with the same physics, fitted to what is left of the measurements.
         const MeasurementSet part = understood(fitted_, step.effects, found.outliers.readings);
         const skeleton::Model model = with_effects(step.effects);
-        const Calibration calibration = fit_skeleton(model, part);
-        near_ = calibration.coarse;
-        step.model = step.validation_model = calibrated(model, calibration);
+        step.model = step.validation_model = fitted_skeleton(model, part);
         const Comparison on_fitted = compare(step.model, part, options_.identify.threads);
         step.skeleton = {.rms_mm = on_fitted.rms, .relative = on_fitted.relative};
         hold_out(effects, found, step, body);
@@ -245,7 +247,7 @@ private:
             skeleton::Model model = step.model;
             if (!is_fitted) {
                 model = with_effects(said);
-                model = calibrated(model, fit_skeleton(model, part, &near_));
+                model = refitted_skeleton(model, part);
             }
             const double rms = compare(model, understood(unseen, said, {}), options_.identify.threads).rms;
             skeleton_squares += N * rms * rms;
@@ -296,10 +298,19 @@ private:
         return model;
     }
 
-    /// The most probable stiffnesses, without particles.
-    Calibration fit_skeleton(const skeleton::Model& model, const MeasurementSet& set,
-                             const UniformFit* near = nullptr) const {
-        return calibrate(model, collect_readings(model, set), options_.identify, {}, near);
+    /// The skeleton with the most probable stiffnesses, without particles; keeps its uniform fit for the next.
+    skeleton::Model fitted_skeleton(const skeleton::Model& model, const MeasurementSet& set) {
+        if (is_rigged(set)) return refitted_skeleton(model, set);
+        const Calibration calibration = calibrate(model, collect_readings(model, set), options_.identify, {});
+        near_ = calibration.coarse;
+        return calibrated(model, calibration);
+    }
+
+    /// The same from the last rung's, to other readings.
+    skeleton::Model refitted_skeleton(const skeleton::Model& model, const MeasurementSet& set) const {
+        const IdentifyOptions& how = options_.identify;
+        if (is_rigged(set)) return identify_rigged(model, set, 1, how.seed, how.threads).model;
+        return calibrated(model, calibrate(model, collect_readings(model, set), how, {}, &near_));
     }
 
     /// The last step once more, on all states and with particles: the model that is delivered.

@@ -23,15 +23,26 @@ bool same(const Action& a, const Action& b) {
     const auto same_contact = [](const mesh::Contact& x, const mesh::Contact& y) {
         return x.point == y.point && x.force == y.force && x.radius == y.radius;
     };
+    const auto same_or_free = [](const Vec3& x, const Vec3& y) {
+        return ((x.array() == y.array()) || (x.array().isNaN() && y.array().isNaN())).all();
+    };
+    const auto same_motion = [&](const mesh::ToolMotion& x, const mesh::ToolMotion& y) {
+        return x.tool == y.tool && same_or_free(x.translation, y.translation) && same_or_free(x.rotation, y.rotation);
+    };
+    const auto same_setting = [](const mesh::ActuatorSetting& x, const mesh::ActuatorSetting& y) {
+        return x.actuator == y.actuator && x.value == y.value;
+    };
     return a.gravity == b.gravity && a.pressure == b.pressure &&
-           std::ranges::equal(a.contacts, b.contacts, same_contact);
+           std::ranges::equal(a.contacts, b.contacts, same_contact) &&
+           std::ranges::equal(a.motions, b.motions, same_motion) &&
+           std::ranges::equal(a.settings, b.settings, same_setting);
 }
 
 bool counts(const Reading& reading) { return reading.marker >= 0 && !reading.position.array().isNaN().all(); }
 
 /// The action of a state: one that is there already, or a new one.
 int action_of(Problem& problem, const Stage& stage) {
-    const int probe = stage.action.contacts.empty() ? -1 : stage.probe;
+    const int probe = is_loaded(stage.action) ? stage.probe : -1;
     for (std::size_t k = 0; k < problem.actions.size(); ++k) {
         if (problem.probe[k] == probe && same(problem.actions[k], stage.action)) return static_cast<int>(k);
     }
@@ -40,53 +51,138 @@ int action_of(Problem& problem, const Stage& stage) {
     return static_cast<int>(problem.actions.size()) - 1;
 }
 
+std::vector<mesh::ActuatorSetting> settings_of(const LoadState& state) {
+    std::vector<mesh::ActuatorSetting> settings;
+    for (const Actuation& one : state.actuations) {
+        if (one.value != 0) settings.push_back({one.actuator, one.value});
+    }
+    return settings;
+}
+
+bool is_read(const LoadState& state) { return std::ranges::any_of(state.readings, counts) || !state.reactions.empty(); }
+
 Stage stage_of(const MeasurementSet& set, const LoadState& state) {
     return {state.probe,
             state.time,
             {.contacts = acting(state),
              .gravity = known_gravity(set, state).value_or(Vec3::Zero()),
-             .pressure = known_pressure(state)}};
+             .pressure = known_pressure(state),
+             .motions = state.motions,
+             .settings = settings_of(state)}};
+}
+
+void relieve(Action& action) {
+    action.contacts.clear();
+    action.motions.clear();
+    action.settings.clear();
+}
+
+/// Fills a problem row by row.
+class Rows {
+public:
+    explicit Rows(Problem& problem) : problem_(problem) {}
+
+    void add(int state, int action, int coordinate, double value, double sigma, bool is_guessed) {
+        measured_.push_back(value);
+        sigma_.push_back(sigma);
+        problem_.is_guessed.push_back(is_guessed);
+        problem_.state.push_back(state);
+        problem_.action.push_back(action);
+        problem_.coordinate.push_back(coordinate);
+        problem_.reading.push_back(reading_);
+    }
+    void next_reading() { ++reading_; }
+    bool empty() const { return measured_.empty(); }
+    void finish() {
+        problem_.set_reading = problem_.reading;
+        problem_.measured = Eigen::Map<Eigen::VectorXd>(measured_.data(), std::ssize(measured_));
+        problem_.sigma = Eigen::Map<Eigen::VectorXd>(sigma_.data(), std::ssize(sigma_));
+    }
+
+private:
+    Problem& problem_;
+    std::vector<double> measured_, sigma_;
+    int reading_ = 0;
+};
+
+void add_positions(const MeasurementSet& set, double noise, const std::vector<int>& action, Rows& rows) {
+    for (std::size_t s = 0; s < set.states.size(); ++s) {
+        for (const Reading& reading : set.states[s].readings) {
+            if (!counts(reading)) continue;
+            const bool is_told = !std::isnan(reading.sigma);
+            const double sigma = is_told ? reading.sigma : set.position_noise.value_or(noise);
+            for (int axis = 0; axis < 3; ++axis) {
+                if (std::isnan(reading.position[axis])) continue;
+                rows.add(static_cast<int>(s), action[s], 3 * reading.marker + axis, reading.position[axis], sigma,
+                         !is_told && !set.position_noise);
+            }
+            rows.next_reading();
+        }
+    }
+}
+
+/// The largest component of what a tool's sensor reads in any state.
+double largest_reaction(const MeasurementSet& set, int tool, Vec3 ReactionReading::*what) {
+    double most = 0;
+    for (const LoadState& state : set.states) {
+        for (const ReactionReading& reading : state.reactions) {
+            if (reading.tool != tool) continue;
+            for (const double x : reading.*what) most = std::isnan(x) ? most : std::max(most, std::abs(x));
+        }
+    }
+    return most;
+}
+
+/// The forces, then the moments; after all positions, so that these are numbered as the set numbers them.
+void add_reactions(const MeasurementSet& set, const std::vector<int>& action, Rows& rows) {
+    constexpr double guess = 0.01;  // of the largest reading: what a load cell of moderate class errs by
+    for (std::size_t s = 0; s < set.states.size(); ++s) {
+        for (const ReactionReading& reading : set.states[s].reactions) {
+            const int channel = static_cast<int>(set.markers.size()) + 2 * reading.tool;
+            const auto add = [&](int at, Vec3 ReactionReading::*what, double sigma) {
+                if ((reading.*what).array().isNaN().all()) return;
+                if (std::isnan(sigma)) sigma = std::max(guess * largest_reaction(set, reading.tool, what), 1e-12);
+                for (int axis = 0; axis < 3; ++axis) {
+                    if (std::isnan((reading.*what)[axis])) continue;
+                    rows.add(static_cast<int>(s), action[s], 3 * at + axis, (reading.*what)[axis], sigma, false);
+                }
+                rows.next_reading();
+            };
+            add(channel, &ReactionReading::force,
+                std::isnan(reading.sigma) ? set.reaction_noise.value_or(missing) : reading.sigma);
+            add(channel + 1, &ReactionReading::moment, set.moment_noise.value_or(missing));
+        }
+    }
 }
 
 }  // namespace
+
+bool is_loaded(const Action& action) {
+    return !action.contacts.empty() || !action.motions.empty() || !action.settings.empty();
+}
 
 Problem make_problem(const MeasurementSet& set, double noise) {
     Problem problem;
     problem.continuous = set.continuous;
     if (set.material) problem.declared_poisson = set.material->poisson;
     for (const LoadState& state : set.states) problem.stages.push_back(stage_of(set, state));
-    problem.rest.resize(static_cast<Eigen::Index>(set.markers.size()), 3);
-    for (std::size_t m = 0; m < set.markers.size(); ++m) {
-        problem.rest.row(static_cast<Eigen::Index>(m)) = set.markers[m].rest;
-    }
-    std::vector<double> measured, sigma;
-    int reading_number = 0;
+    problem.markers = static_cast<int>(set.markers.size());
+    for (const mesh::Tool& tool : set.tools) problem.tools.push_back(tool.name);
+    for (const mesh::Actuator& actuator : set.actuators) problem.actuators.push_back(actuator.name);
+    problem.rest = Points::Zero(problem.markers + 2 * std::ssize(set.tools), 3);
+    for (int m = 0; m < problem.markers; ++m) problem.rest.row(m) = set.markers[m].rest;
+    std::vector<int> action(set.states.size(), -1);
     for (std::size_t s = 0; s < set.states.size(); ++s) {
-        const LoadState& state = set.states[s];
-        if (std::ranges::none_of(state.readings, counts)) continue;
-        const int action = action_of(problem, problem.stages[s]);
-        for (const Reading& reading : state.readings) {
-            if (!counts(reading)) continue;
-            for (int axis = 0; axis < 3; ++axis) {
-                if (std::isnan(reading.position[axis])) continue;
-                measured.push_back(reading.position[axis]);
-                sigma.push_back(std::isnan(reading.sigma) ? set.position_noise.value_or(noise) : reading.sigma);
-                problem.is_guessed.push_back(std::isnan(reading.sigma) && !set.position_noise);
-                problem.state.push_back(static_cast<int>(s));
-                problem.action.push_back(action);
-                problem.coordinate.push_back(3 * reading.marker + axis);
-                problem.reading.push_back(reading_number);
-            }
-            ++reading_number;
-        }
+        if (is_read(set.states[s])) action[s] = action_of(problem, problem.stages[s]);
     }
-    if (measured.empty()) {
+    Rows rows(problem);
+    add_positions(set, noise, action, rows);
+    add_reactions(set, action, rows);
+    if (rows.empty()) {
         throw InvalidInput(fmt::format(
             "measurement set '{}' has no labelled reading; positions.csv needs rows that name a marker", set.name));
     }
-    problem.set_reading = problem.reading;
-    problem.measured = Eigen::Map<Eigen::VectorXd>(measured.data(), std::ssize(measured));
-    problem.sigma = Eigen::Map<Eigen::VectorXd>(sigma.data(), std::ssize(sigma));
+    rows.finish();
     return problem;
 }
 
@@ -101,18 +197,16 @@ MeasurementSet without_readings(const MeasurementSet& set, const std::vector<int
     return result;
 }
 
-Eigen::VectorXd Problem::pick(const std::vector<Points>& positions) const {
+Eigen::VectorXd Problem::pick(const std::vector<Points>& channels) const {
     Eigen::VectorXd result(rows());
-    for (Eigen::Index n = 0; n < rows(); ++n) {
-        result[n] = positions[action[n]](coordinate[n] / 3, coordinate[n] % 3);
-    }
+    for (Eigen::Index n = 0; n < rows(); ++n) result[n] = channels[action[n]](channel(n), coordinate[n] % 3);
     return result;
 }
 
 Eigen::VectorXd Problem::displacement() const {
     Eigen::VectorXd result = measured;
     if (discretisation.size() > 0) result += discretisation;
-    for (Eigen::Index n = 0; n < rows(); ++n) result[n] -= rest(coordinate[n] / 3, coordinate[n] % 3);
+    for (Eigen::Index n = 0; n < rows(); ++n) result[n] -= rest(channel(n), coordinate[n] % 3);
     return result;
 }
 
@@ -130,6 +224,9 @@ Problem Problem::with_rows(const std::vector<char>& keep) const {
     result.continuous = continuous;
     result.by_stage = by_stage;
     result.declared_poisson = declared_poisson;
+    result.markers = markers;
+    result.tools = tools;
+    result.actuators = actuators;
     result.rest = rest;
     std::vector<int> kept;
     int last = -1, number = -1;
@@ -156,11 +253,11 @@ Problem Problem::without_actions(const std::vector<char>& drop) const {
     for (Eigen::Index n = 0; n < rows(); ++n) keep[n] = !drop[action[n]];
     Problem result = with_rows(keep);
     for (Eigen::Index n = 0; n < rows(); ++n) {
-        if (!keep[n]) result.stages[state[n]].action.contacts.clear();
+        if (!keep[n]) relieve(result.stages[state[n]].action);
     }
     if (by_stage) {  // every stage stays
         for (std::size_t k = 0; k < actions.size(); ++k) {
-            if (drop[k]) result.actions[k].contacts.clear();
+            if (drop[k]) relieve(result.actions[k]);
         }
         return result;
     }
@@ -190,7 +287,7 @@ Problem Problem::stage_by_stage() const {
     result.probe.clear();
     std::set<int> loaded_probes;
     for (const Stage& stage : stages) {
-        if (!stage.action.contacts.empty()) loaded_probes.insert(stage.probe);
+        if (is_loaded(stage.action)) loaded_probes.insert(stage.probe);
     }
     for (const Stage& stage : stages) {
         result.actions.push_back(stage.action);
@@ -215,6 +312,15 @@ int Problem::action_in(const Problem& other, int k) const {
     return like;
 }
 
-double Problem::rms_sigma() const { return std::sqrt(sigma.squaredNorm() / static_cast<double>(sigma.size())); }
+double Problem::rms_mm(const Eigen::VectorXd& values) const {
+    double sum = 0;
+    int count = 0;
+    for (Eigen::Index n = 0; n < rows(); ++n) {
+        if (!is_position(n)) continue;
+        sum += values[n] * values[n];
+        ++count;
+    }
+    return count > 0 ? std::sqrt(sum / count) : 0;
+}
 
 }  // namespace palpate::identify

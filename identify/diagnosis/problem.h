@@ -14,29 +14,41 @@ struct Stage {
     Action action;
 };
 
-/// A set's readings as one long vector of coordinates, and what acted behind them. N rows: the coordinates that were
+/// Does anything press at the body, or move or pull at it: a contact, a tool, an actuator?
+bool is_loaded(const Action& action);
+
+/// A set's readings as one long vector of numbers, and what acted behind them. N rows: the numbers that were
 /// measured; K actions: those that differ. States without load share one action; others do within a probe, when
 /// nothing else acts on the body (creep, repeats). For a body with a memory `stage_by_stage` tells all states apart.
+///
+/// What can be read in a state are channels of three numbers each: the positions of the m markers, then the force on
+/// the body and the moment of each tool.
 struct Problem {
-    std::vector<Action> actions;      // (K)
-    std::vector<int> probe;           // of each action, as in the set; -1: one without load, which probes share
-    std::vector<Stage> stages;        // all states, in order
-    bool continuous = false;          // one body goes through all stages; else each probe finds it as new
-    bool by_stage = false;            // the actions are the stages
-    Points rest;                      // of the set's markers (m x 3) [mm]
-    std::vector<int> state;           // of each row, in the set (N)
-    std::vector<int> action;          // of each row (N)
-    std::vector<int> coordinate;      // 3 marker + axis, of each row (N)
-    std::vector<int> reading;         // rows of one reading share a number (N)
-    std::vector<int> set_reading;     // the same, as the whole set numbers its readings (N)
-    std::vector<char> is_guessed;     // rows whose sigma was not specified (N)
-    Eigen::VectorXd measured, sigma;  // [mm] (N); without the next
-    Eigen::VectorXd discretisation;   // how far the model would be off by its mesh [mm] (N); empty: not known
+    std::vector<Action> actions;         // (K)
+    std::vector<int> probe;              // of each action, as in the set; -1: one without load, which probes share
+    std::vector<Stage> stages;           // all states, in order
+    bool continuous = false;             // one body goes through all stages; else each probe finds it as new
+    bool by_stage = false;               // the actions are the stages
+    int markers = 0;                     // of the set (m)
+    std::vector<std::string> tools;      // of the set, their names (t)
+    std::vector<std::string> actuators;  // the same (a)
+    Points rest;                         // of the channels (m + 2t x 3): where the markers rest [mm], 0 of the tools
+    std::vector<int> state;              // of each row, in the set (N)
+    std::vector<int> action;             // of each row (N)
+    std::vector<int> coordinate;         // 3 channel + axis, of each row (N)
+    std::vector<int> reading;            // rows of one reading share a number (N)
+    std::vector<int> set_reading;        // the same, as the whole set numbers its readings (N)
+    std::vector<char> is_guessed;        // rows whose sigma was not specified (N)
+    Eigen::VectorXd measured, sigma;     // [mm], [N], [N mm] (N); without the next
+    Eigen::VectorXd discretisation;      // how far the model would be off by its mesh [mm] (N); empty: not known
     double declared_poisson = missing;
 
     Eigen::Index rows() const { return measured.size(); }
     int readings() const { return reading.empty() ? 0 : reading.back() + 1; }
-    bool loaded(int k) const { return !actions[k].contacts.empty(); }
+    bool loaded(int k) const { return is_loaded(actions[k]); }
+    int channel(Eigen::Index n) const { return coordinate[n] / 3; }
+    /// Is it a coordinate of a marker? Else it is a component of a tool's force or moment.
+    bool is_position(Eigen::Index n) const { return channel(n) < markers; }
     /// The stage before action k in the life of the body; -1: the body is new. @pre by_stage
     int before(int k) const;
     /// The same problem with an action for each stage: its rows are the same.
@@ -45,17 +57,19 @@ struct Problem {
     /// rather than of another, and of the same time where both tell; -1: there is none.
     int action_in(const Problem& other, int k) const;
 
-    /// Coordinates (N) out of each action's marker positions (K of m x 3).
-    Eigen::VectorXd pick(const std::vector<Points>& positions) const;
-    /// The same of displacements from rest, as they were measured [mm].
+    /// The rows (N) out of each action's channels (K of m + 2t x 3).
+    Eigen::VectorXd pick(const std::vector<Points>& channels) const;
+    /// The same of displacements from rest, as they were measured [mm], and of reactions.
     Eigen::VectorXd displacement() const;
+    /// rms over the positions of some values of the rows (N) [mm]; 0 where there are none.
+    double rms_mm(const Eigen::VectorXd& values) const;
     /// Takes another discretisation error off what was measured.
     void correct_for(Eigen::VectorXd error);
     /// The problem with only those rows that `keep` (N flags) holds for.
     Problem with_rows(const std::vector<char>& keep) const;
     /// The problem without some of the actions (K flags), renumbered, and without their rows; as if nothing had acted.
     Problem without_actions(const std::vector<char>& drop) const;
-    double rms_sigma() const;
+    double rms_sigma() const { return rms_mm(sigma); }  // of the positions [mm]
 };
 
 /// Labelled readings of the set; `noise` [mm] stands for a sigma that the set does not tell.

@@ -25,6 +25,8 @@ std::shared_ptr<const EffectHypothesis> viscosity_effect();
 std::shared_ptr<const EffectHypothesis> plasticity_effect();
 std::shared_ptr<const EffectHypothesis> misalignment_effect();
 std::shared_ptr<const EffectHypothesis> force_gain_effect();
+std::shared_ptr<const EffectHypothesis> slip_effect();
+std::shared_ptr<const EffectHypothesis> actuation_gain_effect();
 std::shared_ptr<const EffectHypothesis> outliers_effect();
 
 namespace {
@@ -47,10 +49,11 @@ std::size_t edits_between(const std::string& a, const std::string& b) {
 
 std::vector<std::shared_ptr<const EffectHypothesis>>& registry() {
     static std::vector<std::shared_ptr<const EffectHypothesis>> all{
-        gravity_effect(),    stiffening_effect(),   anisotropy_effect(), inclusion_effect(),
-        volume_effect(),     torsion_effect(),      shear_effect(),      compliant_support_effect(),
-        contact_effect(),    pressure_effect(),     prestress_effect(),  viscosity_effect(),
-        plasticity_effect(), misalignment_effect(), force_gain_effect(), outliers_effect()};
+        gravity_effect(),        stiffening_effect(),   anisotropy_effect(), inclusion_effect(),
+        volume_effect(),         torsion_effect(),      shear_effect(),      compliant_support_effect(),
+        contact_effect(),        pressure_effect(),     prestress_effect(),  viscosity_effect(),
+        plasticity_effect(),     misalignment_effect(), force_gain_effect(), slip_effect(),
+        actuation_gain_effect(), outliers_effect()};
     return all;
 }
 

@@ -22,9 +22,10 @@ struct Signatures {
     Eigen::Index width = 0;  // columns in all
     /// What it is in an action.
     struct InAction {
-        Eigen::MatrixXd forces = {};    // (dofs x c) [N]
-        Eigen::MatrixXd steps = {};     // that what is held makes besides (dofs x c), or empty
-        std::vector<int> columns = {};  // of the wide matrix (c, or those that `combine` makes)
+        Eigen::MatrixXd forces = {};     // (dofs x c) [N]
+        Eigen::MatrixXd steps = {};      // that what is held makes besides (dofs x c), or empty
+        Eigen::MatrixXd reactions = {};  // what tools feel of it at once, by their motions (6 motions x c), or empty
+        std::vector<int> columns = {};   // of the wide matrix (c, or those that `combine` makes)
         /// Makes other steps (dofs x ...) out of J^-1 forces; absent: they are what counts.
         std::function<Eigen::MatrixXd(const Eigen::MatrixXd& steps)> combine = {};
     };

@@ -93,7 +93,7 @@ struct SkeletonBody::Impl {
     bool has_cavities;
     std::unique_ptr<ContactLoads> loads;
 
-    void find_kinds();
+    void find_kinds(double prior_sd);
 
     using Place = std::tuple<double, double, double, double>;
     mutable std::mutex mutex;
@@ -137,7 +137,7 @@ struct SkeletonBody::Impl {
 };
 
 SkeletonBody::SkeletonBody(const skeleton::Model& model, const std::vector<Marker>& markers, double young,
-                           const Rig& rig)
+                           const Rig& rig, double prior_sd)
     : impl_(std::make_unique<Impl>(rig)) {
     Impl& i = *impl_;
     for (int law = 0; law < 2; ++law) {
@@ -151,7 +151,7 @@ SkeletonBody::SkeletonBody(const skeleton::Model& model, const std::vector<Marke
         i.markers.push_back(attach(marker.anchor.value_or(marker.rest), marker.rest));
     }
     i.k0 = skeleton::stiffness_vector(model);
-    i.find_kinds();
+    i.find_kinds(prior_sd);
     i.young = young;
     const Points& reach = model.surface.vertices;
     Points spheres(std::ssize(model.spheres), 3);
@@ -182,14 +182,14 @@ SkeletonBody::SkeletonBody(const skeleton::Model& model, const std::vector<Marke
 SkeletonBody::~SkeletonBody() = default;
 
 // A parameter for each kind of stiffness that the model has.
-void SkeletonBody::Impl::find_kinds() {
+void SkeletonBody::Impl::find_kinds(double prior_sd) {
     const skeleton::StiffnessOrder order(by_law[0]);
     std::vector<int> place(skeleton::stiffness_names.size(), -1);
     for (Eigen::Index k = 0; k < order.size(); ++k) {
         const auto kind = static_cast<int>(skeleton::as_identified(order.kind(k)));
         if (place[kind] < 0 && (kind < 3 || k0[k] > 0)) {
             place[kind] = static_cast<int>(parameters.size());
-            parameters.push_back({skeleton::stiffness_names[kind], 0, 0, 3});
+            parameters.push_back({skeleton::stiffness_names[kind], 0, 0, prior_sd});
         }
         parameter_of.push_back(place[kind]);
     }

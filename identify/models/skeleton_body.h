@@ -15,8 +15,9 @@ namespace palpate::identify {
 class SkeletonBody : public BodyModel {
 public:
     /// `young`: of the body that the skeleton stands for, as it comes [MPa]; for how deep a contact may dent.
-    /// `rig`: what may touch it, and act within it.
-    SkeletonBody(const skeleton::Model& model, const std::vector<Marker>& markers, double young, const Rig& rig = {});
+    /// `rig`: what may touch it, and act within it. `prior_sd`: of each parameter.
+    SkeletonBody(const skeleton::Model& model, const std::vector<Marker>& markers, double young, const Rig& rig = {},
+                 double prior_sd = 3);
     ~SkeletonBody() override;
 
     int dofs() const override;

@@ -36,6 +36,7 @@ std::unique_ptr<identify::ReferenceBody> fill(const identify::MeasurementSet& se
     identify::ReferenceBodyOptions options;
     options.measured_on_mesh = is_fitted;
     if (given && !is_fitted && given_nodes <= enough_nodes) options.finer = given->volume;
+    options.rig = {set.tools, set.actuators};
     options.density = set.density.value_or(default_density * fem::tonne_per_mm3);
     if (set.material && set.material->young > 0) options.young = set.material->young;
     if (set.material && !std::isnan(set.material->poisson)) {

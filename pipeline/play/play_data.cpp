@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <map>
 
+#include "identify/diagnosis/rigged_skeleton.h"
 #include "identify/effects/catalogue.h"
 #include "identify/loading/creep.h"
 #include "identify/measurements/rig/fittable.h"
@@ -182,6 +183,11 @@ PlayData play_data(const fs::path& input, const fs::path& set_folder) {
         identify::require_fittable(*set);
     } else if (fs::is_directory(input)) {
         set = measurements_of(input, data.notes);
+    }
+    if (set && identify::is_rigged(*set)) {
+        data.notes.emplace_back(
+            "The set's tools and actuators are not played: errors are those of the run, see its report.");
+        set.reset();
     }
 
     json sets = json::array();

@@ -65,7 +65,8 @@ std::unique_ptr<identify::BodyModel> body_to_diagnose(const std::string& kind, c
     constexpr double start_young = 0.1;  // [MPa], where the set has no guess
     const bool is_declared = given.set.material && given.set.material->young > 0;
     return std::make_unique<identify::SkeletonBody>(given.model, given.set.markers,
-                                                    is_declared ? given.set.material->young : start_young);
+                                                    is_declared ? given.set.material->young : start_young,
+                                                    identify::Rig{given.set.tools, given.set.actuators});
 }
 
 void warn_of_modulus(const nlohmann::json& compare, const identify::MeasurementSet& set) {

@@ -185,18 +185,24 @@ inline Eigen::VectorXd example(const EffectHypothesis& effect, const std::vector
     return values;
 }
 
-/// A twin: what a model shows in all states, read with noise [mm] that the set tells.
+/// A twin: what a model shows in all states, read with noise [mm] that the set tells; of reactions what is not NaN.
 inline MeasurementSet make_twin(const BodyModel& model, MeasurementSet set, const Explanation& truth, double noise,
                                 std::uint64_t seed = 1) {
     const Problem merged = make_problem(set, 1), problem = truth.has_memory() ? merged.stage_by_stage() : merged;
     const ForwardSolution forward = solve_forward(model, problem, truth, 1);
     RandomStream random(seed, 0, 0);
-    Eigen::Index n = 0;
-    for (LoadState& state : set.states) {
-        for (Reading& reading : state.readings) {
-            reading.position = forward.markers[problem.action[n]].row(reading.marker).transpose();
-            reading.position += noise * Vec3(random.normals(3));
-            n += 3;
+    std::map<int, int> action;  // of each state
+    for (Eigen::Index n = 0; n < problem.rows(); ++n) action[problem.state[n]] = problem.action[n];
+    for (std::size_t s = 0; s < set.states.size(); ++s) {
+        const Points& channels = forward.markers[action[static_cast<int>(s)]];
+        for (Reading& reading : set.states[s].readings) {
+            reading.position = channels.row(reading.marker).transpose() + noise * Vec3(random.normals(3));
+        }
+        for (ReactionReading& reading : set.states[s].reactions) {
+            const Eigen::Index force = problem.markers + 2 * Eigen::Index{reading.tool};
+            const double sd = set.reaction_noise.value_or(0);
+            reading.force += channels.row(force).transpose() + sd * Vec3(random.normals(3));
+            reading.moment += channels.row(force + 1).transpose();
         }
     }
     if (noise > 0) set.position_noise = noise;

@@ -11,8 +11,7 @@ namespace {
 
 /// Nothing that an unloaded state could show: no contact, no gravity, no effect that moves it.
 bool at_rest(const ModelSetting& setting, const Action& action) {
-    return action.contacts.empty() && action.gravity.isZero(0) && action.pressure == 0 && action.motions.empty() &&
-           action.settings.empty() && setting.effects.empty();
+    return !is_loaded(action) && action.gravity.isZero(0) && action.pressure == 0 && setting.effects.empty();
 }
 
 /// An explanation with one number of one effect moved to both sides.
@@ -29,28 +28,44 @@ Sides about(const Explanation& explanation, std::size_t effect, Eigen::Index num
     return sides;
 }
 
-bool same_forces(const Action& a, const Action& b) {
-    return std::ranges::equal(a.contacts, b.contacts,
-                              [](const mesh::Contact& x, const mesh::Contact& y) { return x.force == y.force; });
+/// Do actions press, move and pull alike?
+bool act_alike(const Action& a, const Action& b) {
+    const auto by_bits = [](const Vec3& x, const Vec3& y) {
+        return ((x.array() == y.array()) || (x.array().isNaN() && y.array().isNaN())).all();
+    };
+    return std::ranges::equal(a.contacts, b.contacts, {}, &mesh::Contact::force, &mesh::Contact::force) &&
+           std::ranges::equal(a.motions, b.motions,
+                              [&](const mesh::ToolMotion& x, const mesh::ToolMotion& y) {
+                                  return by_bits(x.translation, y.translation) && by_bits(x.rotation, y.rotation);
+                              }) &&
+           std::ranges::equal(a.settings, b.settings, {}, &mesh::ActuatorSetting::value, &mesh::ActuatorSetting::value);
 }
 
-/// d net force / d numbers of an effect (dofs x numbers), by central differences.
-Eigen::MatrixXd effect_forces(const BodyModel& model, const Problem& problem, const Explanation& explanation,
-                              std::size_t effect, const ForwardSolution& forward, int k, const Eigen::VectorXd& q) {
+/// What numbers do at fixed configuration.
+struct AtOnce {
+    Eigen::MatrixXd forces;     // d net force (dofs x numbers)
+    Eigen::MatrixXd reactions;  // d reactions of the action's tools (6 motions x numbers)
+};
+
+/// Of an effect, by central differences.
+AtOnce effect_at_once(const BodyModel& model, const Problem& problem, const Explanation& explanation,
+                      std::size_t effect, const ForwardSolution& forward, int k, const Eigen::VectorXd& q) {
     const Eigen::VectorXd& values = explanation.values[effect];
-    Eigen::MatrixXd forces = Eigen::MatrixXd::Zero(model.dofs(), values.size());
+    const auto tools = std::ssize(forward.actions[k].motions);
+    AtOnce result{Eigen::MatrixXd::Zero(model.dofs(), values.size()), Eigen::MatrixXd::Zero(6 * tools, values.size())};
     ModelSetting setting = explanation.setting();
     const bool enforced = explanation.effects[effect]->enforce(values, setting);
     for (Eigen::Index j = 0; j < values.size(); ++j) {
         const Sides sides = about(explanation, effect, j);
         Action ahead = sides.ahead.act(problem, k), behind = sides.behind.act(problem, k);
-        if (!enforced && same_forces(ahead, behind)) continue;
+        if (!enforced && act_alike(ahead, behind)) continue;
         ahead.memory = behind.memory = forward.actions[k].memory;
-        forces.col(j) =
-            (model.residual(q, sides.ahead.setting(), ahead) - model.residual(q, sides.behind.setting(), behind)) /
-            (2 * sides.h);
+        const ModelSetting more = sides.ahead.setting(), less = sides.behind.setting();
+        result.forces.col(j) = (model.residual(q, more, ahead) - model.residual(q, less, behind)) / (2 * sides.h);
+        if (tools == 0) continue;
+        result.reactions.col(j) = (model.reactions(q, more, ahead) - model.reactions(q, less, behind)) / (2 * sides.h);
     }
-    return forces;
+    return result;
 }
 
 std::shared_ptr<const Tangent> tangent_of(const BodyModel& model, const ModelSetting& setting,
@@ -60,13 +75,21 @@ std::shared_ptr<const Tangent> tangent_of(const BodyModel& model, const ModelSet
 }
 
 /// Without the columns that are zero.
-Signatures::InAction as_signatures(const Eigen::MatrixXd& forces) {
+Signatures::InAction as_signatures(const AtOnce& all) {
     Signatures::InAction result;
-    for (int c = 0; c < forces.cols(); ++c) {
-        if (!forces.col(c).isZero(0)) result.columns.push_back(c);
+    for (int c = 0; c < all.forces.cols(); ++c) {
+        if (!all.forces.col(c).isZero(0) || !all.reactions.col(c).isZero(0)) result.columns.push_back(c);
     }
-    result.forces = forces(Eigen::all, result.columns);
+    result.forces = all.forces(Eigen::all, result.columns);
+    result.reactions = all.reactions(Eigen::all, result.columns);
     return result;
+}
+
+/// What tools feel of the stiffness parameters at once (6 motions x P).
+Eigen::MatrixXd felt_of_stiffness(const BodyModel& model, const ModelSetting& setting, const Action& action,
+                                  const Eigen::VectorXd& q) {
+    if (action.motions.empty()) return Eigen::MatrixXd::Zero(0, setting.theta.size());
+    return model.reaction_slopes(q, setting, action).by_parameter;
 }
 
 /// d net force / d all numbers in every action of a body that yields (K of dofs x numbers). What it remembers depends
@@ -120,16 +143,38 @@ std::vector<Eigen::MatrixXd> yielding_forces(const BodyModel& model, const Probl
     return forces;
 }
 
-/// What is seen of marker displacements (3m x c) at some positions: differences of an affine map.
+/// Puts what concerns the reactions of an action's tools (6 motions x c) in its place among the channels.
+void add_reactions(const Problem& problem, const Action& action, const Eigen::MatrixXd& reactions,
+                   Eigen::MatrixXd& channels) {
+    for (std::size_t i = 0; i < action.motions.size(); ++i) {
+        channels.middleRows<6>(3 * (problem.markers + 2 * Eigen::Index{action.motions[i].tool})) +=
+            reactions.middleRows<6>(6 * static_cast<Eigen::Index>(i));
+    }
+}
+
+/// What steps of the configuration (dofs x c) alter in the channels (3 (m + 2t) x c). `at_once` (6 motions x c):
+/// what tools feel besides; or empty.
+Eigen::MatrixXd channels_of_steps(const BodyModel& model, const Problem& problem, const ModelSetting& setting,
+                                  const Action& action, const Eigen::VectorXd& q, const Eigen::MatrixXd& steps,
+                                  const Eigen::MatrixXd& at_once) {
+    Eigen::MatrixXd channels = Eigen::MatrixXd::Zero(problem.rest.size(), steps.cols());
+    channels.topRows(3 * Eigen::Index{problem.markers}) = model.observation(q, setting) * steps;
+    if (action.motions.empty()) return channels;
+    add_reactions(problem, action, model.reaction_slopes(q, setting, action).by_step * steps, channels);
+    if (at_once.size() > 0) add_reactions(problem, action, at_once, channels);
+    return channels;
+}
+
+/// What is read of changes of the channels (3 (m + 2t) x c): differences of an affine map.
 Eigen::MatrixXd seen_difference(const Problem& problem, const Explanation& explanation, const Points& markers,
                                 const Eigen::MatrixXd& moved) {
     if (explanation.effects.empty()) return moved;
-    const Points base = explanation.see(problem, markers);
+    const Points base = explanation.read(problem, markers);
     Eigen::MatrixXd result(moved.rows(), moved.cols());
     for (Eigen::Index c = 0; c < moved.cols(); ++c) {
         const Eigen::VectorXd column = moved.col(c);
         const Points there = markers + Eigen::Map<const Points>(column.data(), markers.rows(), 3);
-        const Points difference = explanation.see(problem, there) - base;
+        const Points difference = explanation.read(problem, there) - base;
         result.col(c) = Eigen::Map<const Eigen::VectorXd>(difference.data(), difference.size());
     }
     return result;
@@ -179,10 +224,30 @@ Action Explanation::act(const Problem& problem, int k) const {
     return action;
 }
 
-Points Explanation::see(const Problem& problem, const Points& markers) const {
-    Points seen = markers;
+Points Explanation::see(const Problem& problem, const Points& points) const {
+    Points seen = points;
     for (std::size_t e = 0; e < effects.size(); ++e) seen = effects[e]->see(problem, seen, values[e]);
     return seen;
+}
+
+Points Explanation::read(const Problem& problem, const Points& channels) const {
+    Points result = channels;
+    result.topRows(problem.markers) = see(problem, channels.topRows(problem.markers));
+    return result;
+}
+
+Points channels_of(const BodyModel& model, const Problem& problem, const ModelSetting& setting, const Action& action,
+                   const Eigen::VectorXd& q) {
+    Points channels = Points::Zero(problem.rest.rows(), 3);
+    channels.topRows(problem.markers) = model.observe(q, setting);
+    if (action.motions.empty()) return channels;
+    const Eigen::VectorXd reactions = model.reactions(q, setting, action);
+    for (std::size_t i = 0; i < action.motions.size(); ++i) {
+        const int force = problem.markers + 2 * action.motions[i].tool;
+        channels.row(force) = reactions.segment<3>(6 * static_cast<Eigen::Index>(i));
+        channels.row(force + 1) = reactions.segment<3>(6 * static_cast<Eigen::Index>(i) + 3);
+    }
+    return channels;
 }
 
 ForwardSolution solve_forward(const BodyModel& model, const Problem& problem, const Explanation& explanation,
@@ -211,8 +276,8 @@ ForwardSolution solve_forward(const BodyModel& model, const Problem& problem, co
                 model.equilibrium(setting, action, start ? &(*start)[k] : nullptr, guides ? guides->kept(k) : nullptr);
         }
         if (yields) after[k] = model.remember(result.q[k], setting, action);
-        result.stand[k] = model.observe(result.q[k], setting);
-        result.markers[k] = explanation.see(problem, result.stand[k]);
+        result.stand[k] = channels_of(model, problem, setting, action, result.q[k]);
+        result.markers[k] = explanation.read(problem, result.stand[k]);
     });
     return result;
 }
@@ -248,7 +313,6 @@ std::vector<Eigen::MatrixXd> sensitivities(const BodyModel& model, const Problem
         }
         const auto tangent = linear ? linear : tangent_of(model, setting, forward, k);
         const Eigen::MatrixXd X = tangent->solve(G);
-        const Eigen::SparseMatrix<double> P = model.observation(forward.q[k], setting);
         at = 0;
         for (std::size_t p = 0; p < parts.size(); ++p) {
             Eigen::MatrixXd steps = X.middleCols(at, parts[p].forces.cols());
@@ -259,7 +323,9 @@ std::vector<Eigen::MatrixXd> sensitivities(const BodyModel& model, const Problem
                 (*steps_of_first)[k] = Eigen::MatrixXd::Zero(model.dofs(), signatures.front().width);
                 (*steps_of_first)[k](Eigen::all, parts[p].columns) = steps;
             }
-            const Eigen::MatrixXd Y = seen_difference(problem, explanation, forward.stand[k], P * steps);
+            const Eigen::MatrixXd Y = seen_difference(problem, explanation, forward.stand[k],
+                                                      channels_of_steps(model, problem, setting, forward.actions[k],
+                                                                        forward.q[k], steps, parts[p].reactions));
             for (std::size_t c = 0; c < parts[p].columns.size(); ++c) {
                 for (const Eigen::Index n : rows[k]) {
                     result[p](n, parts[p].columns[c]) =
@@ -274,29 +340,38 @@ std::vector<Eigen::MatrixXd> sensitivities(const BodyModel& model, const Problem
 Signatures own_signatures(const BodyModel& model, const Problem& problem, const Explanation& explanation,
                           const ForwardSolution& forward) {
     const ModelSetting setting = explanation.setting();
-    std::vector<Eigen::MatrixXd> all;
-    if (setting.effects.plasticity) all = yielding_forces(model, problem, explanation, forward);
+    std::vector<Eigen::MatrixXd> yielding;
+    if (setting.effects.plasticity) yielding = yielding_forces(model, problem, explanation, forward);
     return {explanation.numbers(),
-            [&model, &problem, explanation, setting, &forward, all](int k, const Eigen::VectorXd& q) {
-                if (!all.empty()) return as_signatures(all[k]);
-                Eigen::MatrixXd forces(model.dofs(), explanation.numbers());
-                forces.leftCols(explanation.theta.size()) = model.parameter_force(q, setting, forward.actions[k]);
-                Eigen::Index at = explanation.theta.size();
+            [&model, &problem, explanation, setting, &forward, yielding](int k, const Eigen::VectorXd& q) {
+                const Action& action = forward.actions[k];
+                const Eigen::Index numbers = explanation.numbers(), P = explanation.theta.size();
+                AtOnce all{Eigen::MatrixXd(model.dofs(), numbers),
+                           Eigen::MatrixXd::Zero(6 * std::ssize(action.motions), numbers)};
+                all.reactions.leftCols(P) = felt_of_stiffness(model, setting, action, q);
+                if (!yielding.empty()) {
+                    all.forces = yielding[k];
+                    return as_signatures(all);
+                }
+                all.forces.leftCols(P) = model.parameter_force(q, setting, action);
+                Eigen::Index at = P;
                 for (std::size_t e = 0; e < explanation.effects.size(); ++e) {
                     const Eigen::Index count = explanation.values[e].size();
                     if (count > 0) {
-                        forces.middleCols(at, count) = effect_forces(model, problem, explanation, e, forward, k, q);
+                        const AtOnce own = effect_at_once(model, problem, explanation, e, forward, k, q);
+                        all.forces.middleCols(at, count) = own.forces;
+                        all.reactions.middleCols(at, count) = own.reactions;
                     }
                     at += count;
                 }
-                return as_signatures(forces);
+                return as_signatures(all);
             }};
 }
 
 Signatures::InAction signatures_of_last_effect(const BodyModel& model, const Problem& problem,
                                                const Explanation& explanation, const ForwardSolution& forward, int k,
                                                const Eigen::VectorXd& q) {
-    return as_signatures(effect_forces(model, problem, explanation, explanation.effects.size() - 1, forward, k, q));
+    return as_signatures(effect_at_once(model, problem, explanation, explanation.effects.size() - 1, forward, k, q));
 }
 
 Eigen::MatrixXd seen_directly(const Problem& problem, const Explanation& explanation, const ForwardSolution& forward) {
@@ -311,7 +386,7 @@ Eigen::MatrixXd seen_directly(const Problem& problem, const Explanation& explana
             behind.values[e][j] -= h;
             std::vector<Points> difference;
             for (const Points& stand : forward.stand) {
-                difference.emplace_back((ahead.see(problem, stand) - behind.see(problem, stand)) / (2 * h));
+                difference.emplace_back((ahead.read(problem, stand) - behind.read(problem, stand)) / (2 * h));
             }
             result.col(column) = problem.pick(difference).cwiseQuotient(problem.sigma);
         }

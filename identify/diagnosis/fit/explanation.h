@@ -26,17 +26,22 @@ struct Explanation {
     ModelSetting setting() const;
     /// Action k as modified by the effects.
     Action act(const Problem& problem, int k) const;
-    Points see(const Problem& problem, const Points& markers) const;
+    Points see(const Problem& problem, const Points& points) const;     // as they are measured (any x 3)
+    Points read(const Problem& problem, const Points& channels) const;  // the markers among them so (m + 2t x 3)
 };
 
 /// A model in all actions of a problem, as an explanation has it.
 struct ForwardSolution {
     std::vector<Action> actions;                       // as the effects make them, with what the body remembers (K)
     std::vector<Eigen::VectorXd> q;                    // configurations (K)
-    std::vector<Points> stand;                         // where the markers stand (K of m x 3) [mm]
-    std::vector<Points> markers;                       // as they are seen
+    std::vector<Points> stand;                         // the channels: markers as they stand (K of m + 2t x 3)
+    std::vector<Points> markers;                       // the same as they are read
     std::shared_ptr<TangentCache> tangents = nullptr;  // there; none: they are made anew each time
 };
+
+/// The channels in a configuration: where the markers stand, and the reactions of the tools that touch (m + 2t x 3).
+Points channels_of(const BodyModel& model, const Problem& problem, const ModelSetting& setting, const Action& action,
+                   const Eigen::VectorXd& q);
 
 /// @pre the problem is stage by stage where the explanation has a memory.
 /// @throws SolverFailure where an action has no equilibrium. `start`, `guides`: configurations and tangents of a

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "identify/diagnosis/fit/tool_nuisances.h"
 #include "mesh/geometry/sampling.h"
 
 namespace palpate::identify {
@@ -165,14 +166,14 @@ std::vector<std::vector<mesh::Contact>> contacts_that_dent(const Problem& proble
     return dents;
 }
 
-/// What was taken off for the mesh, more or less of it.
-void add_discretisation(const Problem& problem, double sd, Nuisances& nuisances) {
-    const Eigen::Index last = nuisances.columns.cols();
-    nuisances.columns.conservativeResize(Eigen::NoChange, last + 1);
-    nuisances.columns.col(last) = problem.discretisation.cwiseQuotient(problem.sigma);
-    nuisances.precisions.conservativeResize(last + 1);
-    nuisances.precisions[last] = 1 / (sd * sd);
-    nuisances.names.emplace_back("error of the mesh");
+/// Adds nuisances of one prior sd; columns over sigma (N x c).
+void add(const std::vector<std::string>& names, const Eigen::MatrixXd& columns, double sd, Nuisances& nuisances) {
+    const Eigen::Index more = columns.cols();
+    nuisances.columns.conservativeResize(Eigen::NoChange, nuisances.columns.cols() + more);
+    nuisances.columns.rightCols(more) = columns;
+    nuisances.precisions.conservativeResize(nuisances.precisions.size() + more);
+    nuisances.precisions.tail(more).setConstant(1 / (sd * sd));
+    nuisances.names.insert(nuisances.names.end(), names.begin(), names.end());
 }
 
 }  // namespace
@@ -216,9 +217,16 @@ Nuisances make_nuisances(const BodyModel& model, const Problem& problem, const E
                               }
                               return result;
                           }};
-    Nuisances result{sensitivities(model, problem, explanation, forward, {signatures}, threads).front(),
-                     Eigen::Map<Eigen::VectorXd>(all.precisions.data(), std::ssize(all.precisions)), all.names};
-    if (problem.discretisation.size() > 0) add_discretisation(problem, options.discretisation, result);
+    const ToolNuisances tools = tool_nuisances(model, problem, setting, forward);
+    const std::vector<Eigen::MatrixXd> columns =
+        sensitivities(model, problem, explanation, forward, {signatures, tools.signatures}, threads);
+    Nuisances result{columns.front(), Eigen::Map<Eigen::VectorXd>(all.precisions.data(), std::ssize(all.precisions)),
+                     all.names};
+    add(tools.names, columns.back(), options.play, result);
+    // What was taken off for the mesh, more or less of it.
+    if (problem.discretisation.size() > 0) {
+        add({"error of the mesh"}, problem.discretisation.cwiseQuotient(problem.sigma), options.discretisation, result);
+    }
     return result;
 }
 
@@ -228,14 +236,15 @@ Eigen::VectorXd reading_weights(const BodyModel& model, const Problem& problem, 
     const double E = model.young(setting);
     constexpr double nu = 0.45;
     const double flow = setting.effects.plasticity ? options.flow : 0;
-    const Border border(model, problem.rest);
+    const Border border(model, problem.rest.topRows(problem.markers));
     const std::vector<std::vector<mesh::Contact>> dents =
         contacts_that_dent(problem, forward, problem.by_stage && flow > 0);
     std::vector<Points> skin;  // what it moved by, in each action
     for (const Eigen::VectorXd& q : forward.q) skin.push_back(model.skin_positions(q, setting) - model.skin());
     Eigen::VectorXd variance = Eigen::VectorXd::Ones(problem.rows());  // in sigma^2
     for (Eigen::Index n = 0; n < problem.rows(); ++n) {
-        const int marker = problem.coordinate[n] / 3;
+        if (!problem.is_position(n)) continue;
+        const int marker = problem.channel(n);
         const Vec3 moved = forward.stand[problem.action[n]].row(marker) - problem.rest.row(marker);
         const Vec3 base = skin[problem.action[n]].row(border.skin_point(marker));
         variance[n] += std::pow(flow * moved.norm() / problem.sigma[n], 2);

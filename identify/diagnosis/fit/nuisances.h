@@ -12,8 +12,11 @@ struct NuisanceOptions {
     double clamp = 0.6;     // of ln stiffness in each sector of what a support's border cuts
     int clamp_sectors = 30;
     double gain_at_support = 0.3;  // of ln force of a probe that reaches a support
-    double dent = 0.1;             // of the local indentation, unknown for each reading
-    double ragged = 0.15;          // of what a marker at a support's border moves against it, unknown for each reading
+    /// Of a tool's largest motion: its play, and what machine and grip yield under its largest force. Strain by
+    /// the travel of a crosshead is off by some per cent, which is what extensometers are for.
+    double play = 0.02;
+    double dent = 0.1;     // of the local indentation, unknown for each reading
+    double ragged = 0.15;  // of what a marker at a support's border moves against it, unknown for each reading
     /// Of the mesh's error that was computed and taken off: halved edges leave a third of it where it falls with
     /// the square of the edge, and what another
     /// program computed on such a mesh has it, too.
@@ -29,8 +32,9 @@ struct Nuisances {
 };
 
 /// For each place that is touched, whatever probes, loads and times, two shifts of the contact along the surface, its
-/// radius and the softness of the body round it; the stiffness of sectors of pieces that a support's border cuts; a
-/// gain of its own for a place next to a support. Their signatures are taken at the played configurations.
+/// radius and the softness of the body round it; for each tool its play and the compliance of what moves it; the
+/// stiffness of sectors of pieces that a support's border cuts; a gain of its own for a place next to a support. Their
+/// signatures are taken at the played configurations.
 Nuisances make_nuisances(const BodyModel& model, const Problem& problem, const Explanation& explanation,
                          const ForwardSolution& forward, int threads, const NuisanceOptions& options = {});
 

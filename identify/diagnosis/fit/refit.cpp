@@ -267,7 +267,7 @@ void conclude(const Problem& problem, const Priors& priors, Refit& at) {
                       priors.sd.array().log().sum() + factor.matrixLLT().diagonal().array().log().sum();
     at.prior_mean = priors.mean;
     at.prior_sd = priors.sd;
-    at.rms_mm = std::sqrt(at.error.cwiseProduct(problem.sigma).squaredNorm() / N);
+    at.rms_mm = problem.rms_mm(at.error.cwiseProduct(problem.sigma));
     at.whitened_rms = std::sqrt(at.error.dot(at.V->apply(at.error).col(0)) / N);
     const Eigen::VectorXd nuisance_pulls = at.V->nuisances(at.error);
     if (nuisance_pulls.size() > 0) {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "identify/effects/catalogue.h"
 #include "mesh/errors.h"
@@ -105,6 +106,22 @@ const Refit& Baselines::best() const {
     return *fits_[best];
 }
 
+namespace {
+
+/// In small strain, which is quick; but a skeleton's linear law knows no tools that may part from it.
+ForwardSolution roughly_solved(const BodyModel& model, const Problem& problem, Explanation explanation, int threads) {
+    const int law = std::exchange(explanation.law, 0);
+    try {
+        return solve_forward(model, problem, explanation, threads);
+    } catch (const SolverFailure&) {
+        if (law == 0) throw;
+        explanation.law = law;
+        return solve_forward(model, problem, explanation, threads);
+    }
+}
+
+}  // namespace
+
 Explanation first_guess(const BodyModel& model, const Problem& problem, int law, int threads) {
     Explanation guess;
     guess.law = law;
@@ -113,32 +130,37 @@ Explanation first_guess(const BodyModel& model, const Problem& problem, int law,
 
     // Linear answers against measurements, both less the unloaded pose where there is one: what acts without load
     // (weight, a moved frame) drops out.
-    Explanation linear = guess;
-    linear.law = 0;
-    const ForwardSolution forward = solve_forward(model, problem, linear, threads);
+    const ForwardSolution forward = roughly_solved(model, problem, guess, threads);
     const Eigen::VectorXd measured = problem.displacement();
     Eigen::VectorXd modelled = problem.pick(forward.markers);
     std::vector<double> sum(problem.rest.size(), 0.0);
     std::vector<int> count(problem.rest.size(), 0);
     for (Eigen::Index n = 0; n < problem.rows(); ++n) {
-        modelled[n] -= problem.rest(problem.coordinate[n] / 3, problem.coordinate[n] % 3);
+        modelled[n] -= problem.rest(problem.channel(n), problem.coordinate[n] % 3);
         if (problem.loaded(problem.action[n])) continue;
         sum[problem.coordinate[n]] += measured[n];
         ++count[problem.coordinate[n]];
     }
-    double pm = 0, pp = 0;
+    // A force moves a stiffer body less; a tool that is moved feels more of it.
+    struct Sums {
+        double pm = 0, pp = 0;
+    } compliance, stiffness;
     for (Eigen::Index n = 0; n < problem.rows(); ++n) {
         const int c = problem.coordinate[n];
-        if (!problem.loaded(problem.action[n])) continue;
+        const Action& action = problem.actions[problem.action[n]];
+        if (!is_loaded(action) || (problem.is_position(n) && !action.motions.empty())) continue;
         const double unloaded = count[c] > 0 ? sum[c] / count[c] : 0;
         const double w = 1 / (problem.sigma[n] * problem.sigma[n]);
-        pm += w * modelled[n] * (measured[n] - unloaded);
-        pp += w * modelled[n] * modelled[n];
+        Sums& sums = problem.is_position(n) ? compliance : stiffness;
+        sums.pm += w * modelled[n] * (measured[n] - unloaded);
+        sums.pp += w * modelled[n] * modelled[n];
     }
-    if (pp > 0 && pm > 0.02 * pp) {
-        for (Eigen::Index p = 0; p < guess.theta.size(); ++p) {
-            if (model.parameters()[p].stiffens) guess.theta[p] -= std::log(pm / pp);
-        }
+    const auto ratio = [](const Sums& sums) {
+        return sums.pp > 0 && sums.pm > 0.02 * sums.pp ? sums.pm / sums.pp : 1.0;
+    };
+    const double stiffer = stiffness.pp > 0 ? ratio(stiffness) : 1 / ratio(compliance);
+    for (Eigen::Index p = 0; p < guess.theta.size(); ++p) {
+        if (model.parameters()[p].stiffens) guess.theta[p] += std::log(stiffer);
     }
     return guess;
 }

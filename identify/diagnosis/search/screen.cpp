@@ -143,7 +143,8 @@ Refit expand_to_stages(const BodyModel& model, const Refit& fit, const Problem& 
         const int own = stages.action_in(merged, static_cast<int>(k));
         if (own < 0) {  // it was not read
             result.forward.q[k] = model.rest(setting);
-            result.forward.stand[k] = result.forward.markers[k] = model.observe(result.forward.q[k], setting);
+            result.forward.stand[k] = result.forward.markers[k] =
+                channels_of(model, stages, setting, {}, result.forward.q[k]);
             continue;
         }
         result.forward.actions[k] = fit.forward.actions[own];

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "identify/diagnosis/statistics/independent_readings.h"
 #include "identify/diagnosis/verdict/verdict.h"
 #include "mesh/errors.h"
 
@@ -19,7 +20,8 @@ Search::Search(const BodyModel& model, const Problem& problem, const Baselines& 
       baselines_(baselines),
       effects_(effects),
       options_(options),
-      progress_(progress) {}
+      progress_(progress),
+      independent_(independent_readings(problem)) {}
 
 void Search::single_effects() {
     screen_all();
@@ -161,6 +163,11 @@ void Search::confirm_single_effects() {
         // A refit finds more than a linearisation promises, and not many times as much.
         if (enough) least = std::max(least, 0.3 * least_next_to_noise(*screened.effect, problem_, options_));
         candidate.objection = enough ? screened.effect->objection(problem_, screened.starts.front(), true) : "";
+        if (could_explain_anything(base, *screened.effect))
+            candidate.objection = fmt::format(
+                "with {} independent readings it would explain whatever was measured. Read more markers, or load other "
+                "places",
+                independent_);
         if (candidate.objection.empty() && refitted < options_.refits && screened.log_bayes_factor >= least &&
             screened.at_most() > claimed) {
             report(progress_, "refit with " + screened.effect->name(), 0.55 + 0.05 * refitted);
@@ -178,6 +185,7 @@ void Search::confirm_single_effects() {
     }
     for (const ScreenedEffect& screened : screened_[law]) {
         if (!screened.effect->evades_screen() || was_tried({screened.effect->name()})) continue;
+        if (could_explain_anything(base, *screened.effect)) continue;
         if (!residual_is_small() && !is_confused_with_leader(*screened.effect)) continue;
         report(progress_, "refit with " + screened.effect->name(), 0.75);
         if (auto found = refit_with(base, screened)) tried_.push_back(std::move(*found));
@@ -227,6 +235,7 @@ void Search::confirm_under(int law) {
         const bool may_lead = refitted < most_refits && screened.log_bayes_factor >= options_.least_screen &&
                               screened.at_most() - behind > leads;
         if (!may_lead && !screened.effect->evades_screen()) continue;
+        if (could_explain_anything(base, *screened.effect)) continue;
         report(progress_, fmt::format("refit with {}, law {}", screened.effect->name(), model_.laws()[law]), 0.77);
         ++refitted;
         std::optional<FittedExplanation> found = refit_with(base, screened);
@@ -322,6 +331,11 @@ bool Search::claims(const FittedExplanation& explained) const {
         if (!all.effects[e]->objection(problem_, all.values[e], false).empty()) return false;
     }
     return true;
+}
+
+/// Has it, with the stiffness, as many numbers as there are independent readings? No claim would come of its fit.
+bool Search::could_explain_anything(const Refit& base, const EffectHypothesis& effect) const {
+    return free_numbers(base) + std::ssize(effect.numbers(model_, problem_)) >= independent_;
 }
 
 bool Search::has_claim() const {

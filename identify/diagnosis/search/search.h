@@ -49,6 +49,7 @@ private:
     bool extend(std::size_t from, int most);
     bool claims(const FittedExplanation& explained) const;
     bool has_claim() const;
+    bool could_explain_anything(const Refit& base, const EffectHypothesis& effect) const;
     bool residual_is_small() const;
     bool is_confused_with_leader(const EffectHypothesis& other) const;
     void drop_and_swap();
@@ -67,6 +68,7 @@ private:
     std::vector<FittedExplanation> tried_;
     std::vector<std::vector<std::string>> rejected_;  // of several effects, refitted and not worth it
     int refits_together_ = 0;                         // of several effects
+    int independent_;                                 // readings
 };
 
 }  // namespace palpate::identify

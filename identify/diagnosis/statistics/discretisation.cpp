@@ -69,16 +69,26 @@ public:
             try {
                 const auto tangent = model_.tangent(forward_.q[k], setting, action);
                 const auto error = model_.discretisation_error(forward_.q[k], setting, action, *tangent);
-                if (error) seen_[k] = explanation_.see(problem_, forward_.stand[k] + *error) - forward_.markers[k];
+                if (error) seen_[k] = seen_with(k, *error);
             } catch (const SolverFailure&) {  // on the verge of buckling: not told
             }
         });
     }
 
+    /// What an error of the markers (m x 3) alters in the channels as they are read.
+    Points seen_with(int k, const Points& error) const {
+        Points channels = forward_.stand[k];
+        channels.topRows(problem_.markers) += error;
+        return explanation_.read(problem_, channels) - forward_.markers[k];
+    }
+
     /// In proportion to that of another action, by how far the markers move.
     void scale(int k, int from) {
         if (!seen_[from]) return;
-        const Points own = forward_.stand[k] - problem_.rest, other = forward_.stand[from] - problem_.rest;
+        const auto moved = [&](int of) -> Points {
+            return (forward_.stand[of] - problem_.rest).topRows(problem_.markers);
+        };
+        const Points own = moved(k), other = moved(from);
         seen_[k] = own.cwiseProduct(other).sum() / other.squaredNorm() * *seen_[from];
     }
 
@@ -92,7 +102,7 @@ public:
         if (problem_.discretisation.size() > 0) result = problem_.discretisation;
         for (Eigen::Index n = 0; n < problem_.rows(); ++n) {
             const auto& own = seen_[problem_.action[n]];
-            if (own) result[n] = (*own)(problem_.coordinate[n] / 3, problem_.coordinate[n] % 3);
+            if (own) result[n] = (*own)(problem_.channel(n), problem_.coordinate[n] % 3);
         }
         return result;
     }

@@ -24,10 +24,9 @@ struct WholeReading {
 std::map<int, std::vector<WholeReading>> whole_readings(const Problem& problem, const Eigen::VectorXd& residual) {
     std::map<int, std::vector<WholeReading>> states;
     for (Eigen::Index n = 0; n + 2 < problem.rows(); ++n) {
-        if (problem.reading[n] != problem.reading[n + 2]) continue;
-        states[problem.state[n]].push_back({problem.coordinate[n] / 3, problem.reading[n], n,
-                                            problem.measured.segment<3>(n), problem.sigma.segment<3>(n),
-                                            residual.segment<3>(n).norm()});
+        if (problem.reading[n] != problem.reading[n + 2] || !problem.is_position(n)) continue;
+        states[problem.state[n]].push_back({problem.channel(n), problem.reading[n], n, problem.measured.segment<3>(n),
+                                            problem.sigma.segment<3>(n), residual.segment<3>(n).norm()});
     }
     return states;
 }

@@ -9,16 +9,18 @@
 namespace palpate::identify {
 namespace {
 
-double mean_square(const Eigen::VectorXd& v) {
-    return v.size() > 0 ? v.squaredNorm() / static_cast<double>(v.size()) : 0;
+/// Of the positions [mm^2].
+double mean_square(const Problem& problem, const Eigen::VectorXd& v) {
+    const double rms = problem.rms_mm(v);
+    return rms * rms;
 }
 
-/// Values of the rows as marker coordinates of each state (m x 3); NaN: not measured.
+/// Values of the positions as marker coordinates of each state (m x 3); NaN: not measured.
 std::vector<Points> by_state(const Problem& problem, const Eigen::VectorXd& values) {
     const int states = problem.state.empty() ? 0 : *std::ranges::max_element(problem.state) + 1;
-    std::vector<Points> result(states, Points::Constant(problem.rest.rows(), 3, missing));
+    std::vector<Points> result(states, Points::Constant(problem.markers, 3, missing));
     for (Eigen::Index n = 0; n < problem.rows(); ++n) {
-        result[problem.state[n]](problem.coordinate[n] / 3, problem.coordinate[n] % 3) = values[n];
+        if (problem.is_position(n)) result[problem.state[n]](problem.channel(n), problem.coordinate[n] % 3) = values[n];
     }
     return result;
 }
@@ -26,7 +28,8 @@ std::vector<Points> by_state(const Problem& problem, const Eigen::VectorXd& valu
 /// Length of the longest error vector of a reading.
 double longest(const Problem& problem, const Eigen::VectorXd& error) {
     Eigen::VectorXd squares = Eigen::VectorXd::Zero(problem.readings());
-    for (Eigen::Index n = 0; n < problem.rows(); ++n) squares[problem.reading[n]] += error[n] * error[n];
+    for (Eigen::Index n = 0; n < problem.rows(); ++n)
+        if (problem.is_position(n)) squares[problem.reading[n]] += error[n] * error[n];
     return squares.size() > 0 ? std::sqrt(squares.maxCoeff()) : 0;
 }
 
@@ -38,6 +41,7 @@ std::vector<ErrorUnderLoad> under_load(const Problem& problem, const Eigen::Vect
     };
     std::map<int, Sums> states;
     for (Eigen::Index n = 0; n < problem.rows(); ++n) {
+        if (!problem.is_position(n)) continue;
         Sums& sums = states[problem.state[n]];
         sums.load += moved[n] * moved[n];
         sums.error += error[n] * error[n];
@@ -57,17 +61,19 @@ std::vector<ErrorUnderLoad> under_load(const Problem& problem, const Eigen::Vect
 FitErrors errors_of(const Problem& problem, const Refit& fit) {
     const Eigen::VectorXd error = fit.error.cwiseProduct(problem.sigma);
     const Eigen::VectorXd left = fit.residual.cwiseProduct(problem.sigma);
-    const double displacement = mean_square(problem.displacement());
+    const double displacement = mean_square(problem, problem.displacement());
 
     FitErrors result;
-    result.rms = std::sqrt(mean_square(error));
+    result.rms = problem.rms_mm(error);
     result.max = longest(problem, error);
     if (displacement > 0) result.relative = result.rms / std::sqrt(displacement);
     result.whitened_rms = fit.whitened_rms;
-    result.nuisance_sd = std::sqrt(mean_square(fit.V->nuisance_sd().cwiseProduct(problem.sigma)));
-    result.left = std::max(mean_square(left), mean_square(error) - result.nuisance_sd * result.nuisance_sd);
+    result.nuisance_sd = problem.rms_mm(fit.V->nuisance_sd().cwiseProduct(problem.sigma));
+    result.left =
+        std::max(mean_square(problem, left), mean_square(problem, error) - result.nuisance_sd * result.nuisance_sd);
     result.load_exponent = load_exponent(under_load(problem, error));
-    result.where = locate_misfit(problem.rest, by_state(problem, left), by_state(problem, fit.residual));
+    result.where =
+        locate_misfit(problem.rest.topRows(problem.markers), by_state(problem, left), by_state(problem, fit.residual));
     return result;
 }
 

@@ -31,7 +31,7 @@ HeldOut leave_probes_out(const Problem& problem, const Refit& fit) {
     const std::vector<int> group = held_out_groups(problem);
     const LeftOutErrors left = leave_out(Whitening(fit.V->weights(), A, precisions), d, group);
     const auto N = static_cast<double>(problem.rows());
-    return {std::sqrt(left.error.cwiseProduct(problem.sigma).squaredNorm() / N), std::sqrt(left.chi_square / N), {}};
+    return {problem.rms_mm(left.error.cwiseProduct(problem.sigma)), std::sqrt(left.chi_square / N), {}};
 }
 
 namespace {
@@ -86,6 +86,11 @@ Problem with_reduced_loads(const BodyModel& model, const Problem& problem, const
         constexpr double less = 0.8;
         for (int attempt = 0; attempt < 10 && !has_equilibrium(model, setting, explanation.act(eased, k)); ++attempt) {
             for (mesh::Contact& contact : eased.actions[k].contacts) contact.force *= less;
+            for (mesh::ToolMotion& motion : eased.actions[k].motions) {
+                motion.translation *= less;
+                motion.rotation *= less;
+            }
+            for (mesh::ActuatorSetting& setting_of_one : eased.actions[k].settings) setting_of_one.value *= less;
         }
     }
     return eased;
@@ -128,8 +133,8 @@ HeldOut predict(const BodyModel& model, const Problem& merged, const Refit& fit,
     precisions << Eigen::VectorXd::Ones(own.cols()), nuisances.precisions;
     const Whitening V(reading_weights(model, unseen, explanation, forward, options.nuisances), A, precisions);
     const auto N = static_cast<double>(unseen.rows());
-    return {std::sqrt(error.cwiseProduct(unseen.sigma).squaredNorm() / N),
-            std::sqrt(error.dot(V.apply(error).col(0)) / N), V.residual(error)};
+    return {unseen.rms_mm(error.cwiseProduct(unseen.sigma)), std::sqrt(error.dot(V.apply(error).col(0)) / N),
+            V.residual(error)};
 }
 
 }  // namespace palpate::identify

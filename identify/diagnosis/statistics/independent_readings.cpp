@@ -15,9 +15,19 @@ bool are_parallel(const Vec3& a, const Vec3& b) {
     return std::abs(a.dot(b)) >= parallel * a.norm() * b.norm() && a.isZero(0) == b.isZero(0);
 }
 
+/// Coordinates that are left free say nothing.
+Vec3 without_free(const Vec3& motion) { return motion.array().isNaN().select(Vec3::Zero(), motion); }
+
 /// The same load but for its size and sign?
 bool is_same_way(const Action& a, const Action& b) {
+    const auto same_motion = [](const mesh::ToolMotion& one, const mesh::ToolMotion& other) {
+        return one.tool == other.tool && are_parallel(without_free(one.translation), without_free(other.translation)) &&
+               are_parallel(without_free(one.rotation), without_free(other.rotation));
+    };
     return are_parallel(a.gravity, b.gravity) && (a.pressure == 0) == (b.pressure == 0) &&
+           std::ranges::equal(a.motions, b.motions, same_motion) &&
+           std::ranges::equal(a.settings, b.settings, {}, &mesh::ActuatorSetting::actuator,
+                              &mesh::ActuatorSetting::actuator) &&
            std::ranges::equal(a.contacts, b.contacts, [](const mesh::Contact& one, const mesh::Contact& other) {
                return one.point == other.point && are_parallel(one.force, other.force);
            });
@@ -26,6 +36,11 @@ bool is_same_way(const Action& a, const Action& b) {
 /// How large a load is, next to others of its way.
 double size_of(const Action& action) {
     if (!action.contacts.empty()) return action.contacts.front().force.sum();
+    if (!action.motions.empty()) {
+        const mesh::ToolMotion& motion = action.motions.front();
+        return without_free(motion.translation).sum() + without_free(motion.rotation).sum();
+    }
+    if (!action.settings.empty()) return action.settings.front().value;
     return action.pressure != 0 ? action.pressure : action.gravity.sum();
 }
 

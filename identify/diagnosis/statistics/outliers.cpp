@@ -22,8 +22,9 @@ struct ReadingError {
 std::vector<ReadingError> by_reading(const Problem& problem, const Eigen::VectorXd& residual) {
     std::vector<ReadingError> result(problem.readings());
     for (Eigen::Index n = 0; n < problem.rows(); ++n) {
+        if (!problem.is_position(n)) continue;
         ReadingError& reading = result[problem.reading[n]];
-        reading.marker = problem.coordinate[n] / 3;
+        reading.marker = problem.channel(n);
         reading.state = problem.state[n];
         reading.error[problem.coordinate[n] % 3] = residual[n];
         ++reading.coordinates;
@@ -69,11 +70,16 @@ double noise_roughness() { return std::sqrt(1 + M_PI / (2 * neighbours)); }
 Roughness roughness(const Problem& problem, const Eigen::VectorXd& residual) {
     const std::vector<ReadingError> all = by_reading(problem, residual);
     std::map<int, std::vector<int>> states;
-    for (std::size_t i = 0; i < all.size(); ++i) states[all[i].state].push_back(static_cast<int>(i));
+    for (std::size_t i = 0; i < all.size(); ++i)
+        if (all[i].coordinates > 0) states[all[i].state].push_back(static_cast<int>(i));
 
     Roughness result;
     std::vector<double> scaled;
     for (std::size_t i = 0; i < all.size(); ++i) {
+        if (all[i].coordinates == 0) {  // of a tool
+            result.size.push_back(0);
+            continue;
+        }
         const std::vector<int>& state = states[all[i].state];
         Vec3 error = all[i].error;
         if (std::ssize(state) >= least_readings && all[i].coordinates == 3) {
@@ -82,7 +88,7 @@ Roughness roughness(const Problem& problem, const Eigen::VectorXd& residual) {
         result.size.push_back(error.norm());
         scaled.push_back(error.norm() / chi_median[all[i].coordinates]);
     }
-    result.scale = median(scaled);
+    if (!scaled.empty()) result.scale = median(scaled);
     return result;
 }
 

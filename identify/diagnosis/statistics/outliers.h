@@ -8,8 +8,9 @@ namespace palpate::identify {
 /// Errors of readings against those of their neighbours: what a missing effect does to a whole region drops out, what
 /// befell one reading stays.
 struct Roughness {
-    std::vector<double> size;  // of each reading's difference from the median of its neighbours, a vector's length
-    double scale = 1;          // robust: 1 sd of a coordinate of it, in the unit of the errors
+    // Of each reading's difference from the median of its neighbours, a vector's length; of a tool 0.
+    std::vector<double> size;
+    double scale = 1;  // robust: 1 sd of a coordinate of it, in the unit of the errors
 };
 
 /// `residual` (N): errors in any unit. Neighbours: the six nearest markers of the same state; where a state has fewer

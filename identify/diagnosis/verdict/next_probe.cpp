@@ -104,7 +104,8 @@ private:
     /// What is read in a trial: all markers, in every state.
     Problem problem_of(const CandidateProbe& trial) const {
         MeasurementSet set;
-        for (const auto& rest : problem_.rest.rowwise()) {
+        const Points markers = problem_.rest.topRows(problem_.markers);
+        for (const auto& rest : markers.rowwise()) {
             set.markers.push_back({static_cast<int>(set.markers.size()), rest.transpose(), {}});
         }
         set.states = trial.states;

@@ -68,7 +68,7 @@ private:
             }
         }
         constexpr int places = 16;
-        for (const int marker : mesh::farthest_points(problem_.rest, places)) {
+        for (const int marker : mesh::farthest_points(problem_.rest.topRows(problem_.markers), places)) {
             const Vec3 at = problem_.rest.row(marker);
             const Vec3 push = -force / count * model_.normal_near(at, 0.05 * model_.size());
             for (const double sign : {1.0, -1.0}) {

@@ -80,10 +80,7 @@ std::string objection_of_effects(const Diagnosis& diagnosis, const FittedExplana
 
 /// As many numbers as readings that are independent of each other explain whatever was measured.
 std::string objection_of_few_readings(const Diagnosis& diagnosis, const FittedExplanation& explained) {
-    constexpr double fixed = 0.1;  // a prior of less, as that of a ratio that is told, leaves nothing to be fitted
-    Eigen::Index numbers = 0;
-    for (Eigen::Index p = 0; p < explained.fit.explanation.theta.size(); ++p)
-        numbers += explained.fit.prior_sd[p] > fixed;
+    Eigen::Index numbers = free_numbers(explained.fit);
     for (std::size_t e = 0; e < explained.fit.explanation.effects.size(); ++e)
         if (explained.has(explained.fit.explanation.effects[e]->name()))
             numbers += std::ssize(explained.fit.numbers[e]);
@@ -177,6 +174,11 @@ void name_effects(Diagnosis& diagnosis) {
 }
 
 }  // namespace
+
+Eigen::Index free_numbers(const Refit& fit) {
+    constexpr double fixed = 0.1;  // a prior of less, as that of a ratio that is told, leaves nothing to be fitted
+    return (fit.prior_sd.head(fit.explanation.theta.size()).array() > fixed).count();
+}
 
 bool is_claimable(const FittedExplanation& explained, const DiagnoseOptions& options) {
     return explained.log_bayes_factor >= options.least_evidence;

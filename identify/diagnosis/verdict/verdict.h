@@ -8,6 +8,9 @@ namespace palpate::identify {
 /// Does the evidence of an explanation allow a claim?
 bool is_claimable(const FittedExplanation& explained, const DiagnoseOptions& options);
 
+/// How many stiffness parameters a fit is free to choose.
+Eigen::Index free_numbers(const Refit& fit);
+
 /// Are the residuals of a fit noise, with no nuisance pulled beyond its prior?
 bool leaves_only_noise(const Refit& fit, const DiagnoseOptions& options);
 

@@ -114,8 +114,11 @@ private:
             forces += sum.squaredNorm();
             ++loaded;
         }
-        const Eigen::VectorXd u = problem.displacement();
-        const double moved = std::sqrt(u.squaredNorm() / static_cast<double>(u.size()));
+        for (Eigen::Index n = 0; n < problem.rows(); ++n) {
+            const bool is_force = !problem.is_position(n) && (problem.channel(n) - problem.markers) % 2 == 0;
+            if (is_force) forces += problem.measured[n] * problem.measured[n];
+        }
+        const double moved = problem.rms_mm(problem.displacement());
         return loaded > 0 && moved > 0 ? std::sqrt(forces / loaded) / moved : 0;
     }
 };

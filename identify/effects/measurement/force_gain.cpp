@@ -42,7 +42,7 @@ public:
     }
 
     Action act(const Problem& problem, int k, Action action, const Eigen::VectorXd& values) const override {
-        if (!problem.loaded(k)) return action;
+        if (action.contacts.empty()) return action;
         for (mesh::Contact& contact : action.contacts) contact.force *= std::exp(values[place_of(problem, k)]);
         return action;
     }
@@ -109,7 +109,7 @@ private:
     static std::map<int, int> gain_of_probes(const Problem& problem) {
         std::map<int, Loads> loads;
         for (int k = 0; k < static_cast<int>(problem.actions.size()); ++k) {
-            if (problem.loaded(k)) loads[problem.probe[k]].push_back(k);
+            if (!problem.actions[k].contacts.empty()) loads[problem.probe[k]].push_back(k);
         }
         std::map<int, int> gains;
         for (const auto& entry : loads) {
@@ -158,7 +158,7 @@ private:
     static Line line_over_load(const Problem& problem, const Eigen::VectorXd& values) {
         Eigen::VectorXd load = Eigen::VectorXd::Zero(values.size());
         for (std::size_t k = 0; k < problem.actions.size(); ++k) {
-            if (!problem.loaded(static_cast<int>(k))) continue;
+            if (problem.actions[k].contacts.empty()) continue;
             double& most = load[place_of(problem, static_cast<int>(k))];
             for (const mesh::Contact& c : problem.actions[k].contacts) most = std::max(most, c.force.norm());
         }

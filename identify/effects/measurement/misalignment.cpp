@@ -36,7 +36,7 @@ public:
     }
 
     Points see(const Problem& problem, const Points& markers, const Eigen::VectorXd& values) const override {
-        const Eigen::RowVector3d c = problem.rest.colwise().mean();
+        const Eigen::RowVector3d c = problem.rest.topRows(problem.markers).colwise().mean();
         const Mat3 R = skeleton::rotation(values.tail<3>());
         return ((markers.rowwise() - c) * R.transpose()).rowwise() + (c + values.head<3>().transpose());
     }

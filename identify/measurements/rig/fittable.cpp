@@ -11,29 +11,12 @@
 namespace palpate::identify {
 namespace {
 
-constexpr const char* what_rigs_need =
-    "this version fits forces (probes.csv), gravity and pressure (states.csv) to positions. Take tools and actuators "
-    "out of set.yaml and their tables away to fit the rest; 'palpate check' and 'palpate info' read the set as it is";
-
 int count_of_differences(const MeasurementSet& set) {
     int count = 0;
     for (const LoadState& state : set.states)
         count += static_cast<int>(
             std::ranges::count_if(state.readings, [](const Reading& reading) { return reading.since.has_value(); }));
     return count;
-}
-
-bool moves(const MeasurementSet& set, int tool) {
-    return std::ranges::any_of(set.states, [&](const LoadState& state) {
-        return std::ranges::find(state.motions, tool, &mesh::ToolMotion::tool) != state.motions.end();
-    });
-}
-
-bool acts(const MeasurementSet& set, int actuator) {
-    return std::ranges::any_of(set.states, [&](const LoadState& state) {
-        const auto found = std::ranges::find(state.actuations, actuator, &Actuation::actuator);
-        return found != state.actuations.end() && found->value != 0;
-    });
 }
 
 bool acts_with_force(const MeasurementSet& set, const Actuation& actuation) {
@@ -46,12 +29,6 @@ bool acts_with_force(const MeasurementSet& set, const Actuation& actuation) {
 
 std::vector<UnfittedPart> parts_not_fitted_yet(const MeasurementSet& set) {
     std::vector<UnfittedPart> parts;
-    for (std::size_t t = 0; t < set.tools.size(); ++t)
-        if (moves(set, static_cast<int>(t)))
-            parts.push_back({fmt::format("tool '{}'", set.tools[t].name), what_rigs_need});
-    for (std::size_t a = 0; a < set.actuators.size(); ++a)
-        if (acts(set, static_cast<int>(a)))
-            parts.push_back({fmt::format("actuator '{}'", set.actuators[a].name), what_rigs_need});
     if (const int differences = count_of_differences(set); differences > 0)
         parts.push_back({fmt::format("{} displacements since a state in which something acts", differences),
                          "displacements are fitted as positions. Let them count from an unloaded state "

@@ -21,8 +21,9 @@ using testing::HasSubstr;
 
 /// Names that users may rely on.
 const std::set<std::string> promised{
-    "gravity",  "stiffening", "anisotropy",        "inclusion", "volume",     "torsion",      "shear",      "contact",
-    "pressure", "prestress",  "compliant-support", "viscosity", "plasticity", "misalignment", "force-gain", "outliers"};
+    "gravity",    "stiffening", "anisotropy",     "inclusion",         "volume",    "torsion",    "shear",
+    "contact",    "pressure",   "prestress",      "compliant-support", "viscosity", "plasticity", "misalignment",
+    "force-gain", "slip",       "actuation-gain", "outliers"};
 const std::set<std::string> probe_kinds{"load", "orientation", "pressure", "dwell", "unload", "repeat", "fiducials"};
 
 class EveryEffect : public testing::TestWithParam<std::shared_ptr<const EffectHypothesis>> {
@@ -32,17 +33,37 @@ protected:
     /// A body and a set in which all effects of bodies and rigs can show.
     EveryEffect() {
         if (effect().name() == "pressure") body_ = SmallBody::hollow();
+        set_ = body_.set(SmallBody::dwells(0.01, 3));
         if (effect().is_of_links()) {
             model_ = body_.skeleton();
+        } else if (effect().name() == "slip" || effect().name() == "actuation-gain") {
+            put_in_a_rig();
         } else {
             model_ = body_.reference();
         }
-        MeasurementSet set = body_.set(SmallBody::dwells(0.01, 3));
-        set.material = MaterialGuess{.poisson = 0.45};
-        problem_ = make_problem(make_twin(*model_, set, bare_truth(*model_, 0), 0), 0.05);
+        set_.material = MaterialGuess{.poisson = 0.45};
+        problem_ = make_problem(make_twin(*model_, set_, bare_truth(*model_, 0), 0), 0.05);
+    }
+
+    /// A grip at the free end, and a tendon along the bar.
+    void put_in_a_rig() {
+        const mesh::GripShape end{{mesh::BoxRegion{Vec3(35, -1, -1), Vec3(41, 11, 11)}}};
+        Points path(3, 3);
+        path << 0, 5, 8, 18, 5, 8, 30, 5, 8;
+        set_.states.resize(3);
+        set_.states[1].motions = {{.tool = 0, .translation = Vec3(0, 2, 1)}};
+        set_.states[2].actuations = {{.actuator = 0, .value = 0.05}};
+        set_.tools = {{.name = "grip", .shape = end, .bonded = true, .origin = Vec3(37.5, 5, 5)}};
+        set_.actuators = {{.name = "cable", .kind = mesh::TendonActuator{path, false}}};
+        for (LoadState& state : set_.states) state.contacts.clear();
+        const Rig rig{set_.tools, set_.actuators};
+        model_ =
+            std::make_unique<ReferenceBody>(body_.mesh, body_.supports, body_.markers,
+                                            ReferenceBodyOptions{.young = 0.1, .measured_on_mesh = true, .rig = rig});
     }
 
     SmallBody body_;
+    MeasurementSet set_;
     std::unique_ptr<BodyModel> model_;
     Problem problem_;
 };
@@ -165,8 +186,8 @@ TEST_P(EveryEffect, OfTheMeasurementIsTakenOutOfASet) {
     Eigen::VectorXd values(std::ssize(numbers));
     for (Eigen::Index j = 0; j < values.size(); ++j) values[j] = 0.2 * static_cast<double>(j % 2 ? 1 : -1);
     const Explanation truth = bare_truth(*model_, 2), faulty = with(truth, GetParam(), values);
-    const MeasurementSet set = effect().corrected(make_twin(*model_, body_.set(SmallBody::dwells(0.01, 3)), faulty, 0),
-                                                  effect().record(numbers, values));
+    const MeasurementSet set =
+        effect().corrected(make_twin(*model_, set_, faulty, 0), effect().record(numbers, values));
     const Problem understood = make_problem(set, 0.05);
     const Eigen::VectorXd modelled = understood.pick(solve_forward(*model_, understood, truth, 1).markers);
     EXPECT_LT((understood.measured - modelled).cwiseAbs().maxCoeff(),

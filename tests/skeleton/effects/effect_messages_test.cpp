@@ -72,7 +72,8 @@ TEST(EffectMessages, NothingToActOn) {
 }
 
 TEST(EffectsOfAMeasurement, AreNotPlayed) {
-    for (const char* name : {"misalignment", "force-gain", "outliers"}) EXPECT_FALSE(is_body_effect(name));
+    for (const char* name : {"misalignment", "force-gain", "slip", "actuation-gain", "outliers"})
+        EXPECT_FALSE(is_body_effect(name));
     EXPECT_TRUE(is_body_effect("gravity"));
     const Model model = make_lattice({4, 2, 2});
     const Load load = force_at(model, 3, {1, 2, -3});

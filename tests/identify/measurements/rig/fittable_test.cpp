@@ -46,15 +46,9 @@ TEST_F(RigFiles, PartsThatCannotBeFittedYetAreNamed) {
     set.position_correlation = 2;
     std::vector<std::string> names;
     for (const UnfittedPart& part : parts_not_fitted_yet(set)) names.push_back(part.what);
-    EXPECT_EQ(names, (std::vector<std::string>{"tool 'ball'", "tool 'grip'", "actuator 'chamber'", "actuator 'cable'",
-                                               "'correlated.position' (2 mm)"}));
+    EXPECT_EQ(names, std::vector<std::string>{"'correlated.position' (2 mm)"});
     EXPECT_TRUE(says(message_of<InvalidInput>([&] { require_fittable(set); }),
-                     {"set 'rig'", "cannot be fitted yet", "tool 'ball', tool 'grip', actuator 'chamber'",
-                      "this version fits forces", "palpate check", "none counts twice"}));
-    for (LoadState& state : set.states) {
-        state.motions.clear();
-        state.actuations.clear();
-    }
+                     {"set 'rig'", "cannot be fitted yet", "none counts twice"}));
     set.position_correlation.reset();
     EXPECT_NO_THROW(require_fittable(set));
 }

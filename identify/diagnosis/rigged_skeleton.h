@@ -1,0 +1,22 @@
+#pragma once
+
+#include "identify/inference/identify_result.h"
+#include "identify/measurements/measurement_set.h"
+#include "mesh/progress.h"
+
+namespace palpate::identify {
+
+/// Does a state of the set move a tool, or set an actuator?
+bool is_rigged(const MeasurementSet& set);
+
+/// A multiplier for each kind of a skeleton's stiffness, fitted to positions and reactions together under the law that
+/// explains more; the model's own effects are fitted anew beside them. The posterior is Laplace's approximation, drawn
+/// from by `particles`. @throws InvalidInput, SolverFailure as diagnose.
+IdentifyResult identify_rigged(const skeleton::Model& model, const MeasurementSet& set, int particles,
+                               std::uint64_t seed, int threads, const Progress& progress = {});
+
+/// Where the markers of each state's readings stand at the model's equilibria (states of readings x 3) [mm]; NaN where
+/// a reading names none. @throws SolverFailure where a state has no equilibrium.
+std::vector<Points> predict_rigged(const skeleton::Model& model, const MeasurementSet& set, int threads);
+
+}  // namespace palpate::identify

@@ -1,0 +1,94 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "identify/effects/effect.h"
+
+namespace palpate::identify {
+namespace {
+
+/// A tool moves the body by less, or more, than its drive reports.
+class SlipEffect : public EffectHypothesis {
+public:
+    const EffectDescription& description() const override {
+        static const EffectDescription text{
+            .name = "slip",
+            .kind = EffectKind::measurement,
+            .meaning =
+                "The true motion of a tool is a share of the reported one: it slips in its grip, or what moves it "
+                "yields.",
+            .parameters = {"share of <tool> [-]: true over reported motion of that tool"},
+            .reveals = "markers near a tool that move less than it does, and reactions that are too small alike",
+            .confused_with = {"compliant-support", "stiffening"},
+            .separating_probe = "put a marker on the tool, or on the body right beside it",
+            .next_probe = "fiducials"};
+        return text;
+    }
+
+    std::vector<EffectNumber> numbers(const BodyModel&, const Problem& problem) const override {
+        std::vector<EffectNumber> result;
+        for (const int tool : moved_tools(problem)) {
+            // a third of the motion or so: a tool that slips by more is seen to
+            result.push_back(
+                {.name = "share of " + problem.tools[tool], .unit = "1", .prior_sd = 0.3, .logarithm = true});
+        }
+        return result;
+    }
+
+    Action act(const Problem& problem, int, Action action, const Eigen::VectorXd& values) const override {
+        const std::vector<int> tools = moved_tools(problem);
+        for (mesh::ToolMotion& motion : action.motions) {
+            const auto own = std::ranges::find(tools, motion.tool);
+            if (own != tools.end()) scale(motion, std::exp(values[own - tools.begin()]));
+        }
+        return action;
+    }
+
+    std::string sentence(const skeleton::EffectRecord& record) const override {
+        const auto least = std::ranges::min_element(record.parameters, {}, &skeleton::EffectParameter::value);
+        return fmt::format("A tool does not move as reported: the {} is {:.2f} of the motion.", least->name,
+                           least->value);
+    }
+
+    MeasurementSet corrected(const MeasurementSet& set, const skeleton::EffectRecord& record) const override {
+        MeasurementSet result = set;
+        for (LoadState& state : result.states) {
+            for (mesh::ToolMotion& motion : state.motions) {
+                const auto own = std::ranges::find(record.parameters, "share of " + set.tools[motion.tool].name,
+                                                   &skeleton::EffectParameter::name);
+                if (own != record.parameters.end()) scale(motion, own->value);
+            }
+        }
+        return result;
+    }
+
+private:
+    static void scale(mesh::ToolMotion& motion, double share) {
+        motion.translation *= share;
+        motion.rotation *= share;
+    }
+
+    /// In their order; at rest in all states a tool cannot slip.
+    static std::vector<int> moved_tools(const Problem& problem) {
+        std::vector<char> is_moved(problem.tools.size(), 0);
+        for (const Stage& stage : problem.stages) {
+            for (const mesh::ToolMotion& motion : stage.action.motions) {
+                const auto is_off_rest = [](double x) { return std::abs(x) > 0; };  // false for what is left free
+                if (std::ranges::any_of(motion.translation, is_off_rest) ||
+                    std::ranges::any_of(motion.rotation, is_off_rest))
+                    is_moved[motion.tool] = 1;
+            }
+        }
+        std::vector<int> tools;
+        for (std::size_t t = 0; t < is_moved.size(); ++t)
+            if (is_moved[t]) tools.push_back(static_cast<int>(t));
+        return tools;
+    }
+};
+
+}  // namespace
+
+std::shared_ptr<const EffectHypothesis> slip_effect() { return std::make_shared<SlipEffect>(); }
+
+}  // namespace palpate::identify

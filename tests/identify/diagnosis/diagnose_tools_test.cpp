@@ -1,0 +1,96 @@
+#include "tests/identify/diagnosed.h"
+
+namespace palpate::identify {
+namespace {
+
+/// The bar gripped at its free end and moved, as a robot or a tester does, by up to a fifth of its length.
+class MovedByAGrip : public Diagnosed {
+protected:
+    MovedByAGrip() {
+        rig_.tools.push_back({.name = "grip",
+                              .shape = mesh::GripShape{{mesh::BoxRegion{Vec3(35, -1, -1), Vec3(41, 11, 11)}}},
+                              .bonded = true,
+                              .origin = Vec3(37.5, 5, 5)});
+        model_ =
+            std::make_unique<ReferenceBody>(body_.mesh, body_.supports, body_.markers,
+                                            ReferenceBodyOptions{.young = 0.1, .measured_on_mesh = true, .rig = rig_});
+    }
+
+    /// `reads`: 0 where the load cell reads, NaN where it does not.
+    MeasurementSet moved(const Explanation& hidden, const Vec3& reads = Vec3::Zero()) const {
+        std::vector<LoadState> states{LoadState{.probe = 0}};
+        for (const Vec3& u : {Vec3(0, 4, 0), Vec3(0, 0, -5), Vec3(2, 0, 0), Vec3(-1, 3, 3), Vec3(0, -4, 2),
+                              Vec3(0, 8, 0), Vec3(3, 0, 6)}) {
+            LoadState state{.probe = static_cast<int>(states.size()), .time = 1};
+            state.motions = {{.tool = 0, .translation = u}};
+            state.reactions = {{.tool = 0, .force = reads}};
+            states.push_back(state);
+        }
+        MeasurementSet set = body_.set(std::move(states));
+        set.tools = rig_.tools;
+        set.reaction_noise = 1e-4;  // [N], next to some 20 mN
+        return make_twin(*model_, set, hidden, sigma);
+    }
+
+    static double young(const Diagnosis& found) { return std::exp(found.baseline.explanation.theta[0]); }
+    static double sd_of_ln_young(const Diagnosis& found) { return std::sqrt(found.baseline.covariance(0, 0)); }
+
+    Rig rig_;
+};
+
+TEST_F(MovedByAGrip, YoungsModulusComesFromTheReactions) {
+    const Diagnosis found = diagnose(moved(truth()));
+    EXPECT_EQ(found.verdict, Verdict::adequate);
+    EXPECT_LT(found.baseline.whitened_rms, 1.1);
+    EXPECT_NEAR(young(found), SmallBody::young, 4 * sd_of_ln_young(found) * SmallBody::young);
+    // Play and compliance of 2 % each blur it: at most 2 sqrt(2) %.
+    EXPECT_LT(sd_of_ln_young(found), 0.03);
+}
+
+TEST_F(MovedByAGrip, ALoadCellOfOneAxisIsEnough) {
+    const Diagnosis found = diagnose(moved(truth(), Vec3(missing, 0, missing)));
+    EXPECT_EQ(found.verdict, Verdict::adequate);
+    EXPECT_NEAR(young(found), SmallBody::young, 0.03 * SmallBody::young);
+}
+
+TEST_F(MovedByAGrip, WithoutAForceStiffnessIsARatio) {
+    const MeasurementSet told = moved(truth());
+    MeasurementSet set = told;
+    for (LoadState& state : set.states) state.reactions.clear();
+    const Diagnosis found = diagnose(set);
+    EXPECT_EQ(found.verdict, Verdict::adequate);
+    // What it is believed to be before the measurements is all that is known of E; of nu they tell.
+    EXPECT_NEAR(sd_of_ln_young(found), found.baseline.prior_sd[0], 0.05 * found.baseline.prior_sd[0]);
+    EXPECT_LT(std::sqrt(found.baseline.covariance(1, 1)), 0.5 * found.baseline.prior_sd[1]);
+}
+
+TEST_F(MovedByAGrip, AHiddenWeightIsNamed) {
+    const Diagnosis found = diagnose(moved(truth("gravity", half_g)));
+    EXPECT_EQ(found.verdict, Verdict::missing_effect);
+    ASSERT_EQ(found.explanation, std::vector<std::string>{"gravity"});
+    EXPECT_NEAR(estimate(candidate(found, "gravity"), "gz"), 9810 * half_g.z(), 0.1 * 9810 * 0.5);
+}
+
+TEST_F(MovedByAGrip, SensitivitiesAreDerivativesOfReactionsToo) {
+    const MeasurementSet set = moved(truth());
+    const Problem problem = make_problem(set, 1);
+    const Explanation at = truth();
+    const ForwardSolution forward = solve_forward(*model_, problem, at, 1);
+    const Eigen::MatrixXd columns =
+        sensitivities(*model_, problem, at, forward, {own_signatures(*model_, problem, at, forward)}, 1).front() +
+        seen_directly(problem, at, forward);
+    for (Eigen::Index p = 0; p < 2; ++p) {
+        constexpr double h = 2e-3;  // of a logarithm: the third derivative alters 1e-6 of it
+        Explanation ahead = at, behind = at;
+        ahead.theta[p] += h;
+        behind.theta[p] -= h;
+        const Eigen::VectorXd difference = (problem.pick(solve_forward(*model_, problem, ahead, 1).markers) -
+                                            problem.pick(solve_forward(*model_, problem, behind, 1).markers))
+                                               .cwiseQuotient(2 * h * problem.sigma);
+        // Newton ends with some 1e-8 N left of 20 mN, which differences over 4e-3 raise to 1e-4.
+        EXPECT_LT((columns.col(p) - difference).norm(), 2e-4 * difference.norm());
+    }
+}
+
+}  // namespace
+}  // namespace palpate::identify
