@@ -144,9 +144,10 @@ IdentifyResult identify_rigged(const skeleton::Model& model, const MeasurementSe
     return result;
 }
 
-std::vector<Points> predict_rigged(const skeleton::Model& model, const MeasurementSet& set, int threads) {
-    const SkeletonBody body = body_of(model, set);
-    const Problem problem = problem_of(set);
+namespace {
+
+/// The model with its own effects, none of them a fault of the measurement.
+Explanation as_it_is(const skeleton::Model& model, const SkeletonBody& body, const Problem& problem) {
     Explanation explanation{.law = static_cast<int>(model.law),
                             .theta = Eigen::VectorXd::Zero(std::ssize(body.parameters())),
                             .effects = {},
@@ -158,6 +159,26 @@ std::vector<Points> predict_rigged(const skeleton::Model& model, const Measureme
         explanation.effects.push_back(effect);
         explanation.values.push_back(effect->values(numbers, known));
     }
+    return explanation;
+}
+
+}  // namespace
+
+std::vector<skeleton::Equilibrium> play_rigged(const skeleton::Model& model, const MeasurementSet& set, int threads) {
+    const SkeletonBody body = body_of(model, set);
+    const Problem problem = problem_of(set).stage_by_stage();  // states that nobody reads, too
+    const Explanation explanation = as_it_is(model, body, problem);
+    const ForwardSolution forward = solve_forward(body, problem, explanation, threads);
+    std::vector<skeleton::Equilibrium> played;
+    played.reserve(forward.q.size());
+    for (const Eigen::VectorXd& q : forward.q) played.push_back(body.equilibrium_at(q, explanation.setting()));
+    return played;
+}
+
+std::vector<Points> predict_rigged(const skeleton::Model& model, const MeasurementSet& set, int threads) {
+    const SkeletonBody body = body_of(model, set);
+    const Problem problem = problem_of(set);
+    const Explanation explanation = as_it_is(model, body, problem);
     const Problem asked = explanation.has_memory() && !problem.by_stage ? problem.stage_by_stage() : problem;
     const ForwardSolution forward = solve_forward(body, asked, explanation, threads);
     std::vector<int> action(set.states.size(), -1);

@@ -3,6 +3,7 @@
 #include "identify/inference/identify_result.h"
 #include "identify/measurements/measurement_set.h"
 #include "mesh/progress.h"
+#include "skeleton/statics/equilibrium.h"
 
 namespace palpate::identify {
 
@@ -14,6 +15,9 @@ bool is_rigged(const MeasurementSet& set);
 /// from by `particles`. @throws InvalidInput, SolverFailure as diagnose.
 IdentifyResult identify_rigged(const skeleton::Model& model, const MeasurementSet& set, int particles,
                                std::uint64_t seed, int threads, const Progress& progress = {});
+
+/// How the model stands in each state of the set. @throws SolverFailure where one has no equilibrium.
+std::vector<skeleton::Equilibrium> play_rigged(const skeleton::Model& model, const MeasurementSet& set, int threads);
 
 /// Where the markers of each state's readings stand at the model's equilibria (states of readings x 3) [mm]; NaN where
 /// a reading names none. @throws SolverFailure where a state has no equilibrium.

@@ -227,6 +227,10 @@ bool SkeletonBody::is_nonlinear(const ModelSetting& setting) const {
     return in_large_rotation(setting) || impl_->rig.is_nonlinear();
 }
 
+skeleton::Equilibrium SkeletonBody::equilibrium_at(const Eigen::VectorXd& q, const ModelSetting& setting) const {
+    return impl_->equilibrium_of(q, setting);
+}
+
 Eigen::VectorXd SkeletonBody::stiffness(const ModelSetting& setting) const {
     Eigen::VectorXd k = impl_->k0;
     for (Eigen::Index place = 0; place < k.size(); ++place) {

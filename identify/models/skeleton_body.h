@@ -4,6 +4,7 @@
 #include "identify/models/body_model.h"
 #include "identify/models/rig.h"
 #include "skeleton/model/model.h"
+#include "skeleton/statics/equilibrium.h"
 
 namespace palpate::identify {
 
@@ -66,6 +67,9 @@ public:
                                     const Action& action) const override;
     Eigen::MatrixXd tangent_times(const Eigen::VectorXd& q, const ModelSetting& setting, const Action& action,
                                   const Eigen::MatrixXd& steps) const override;
+
+    /// A configuration as the statics know it.
+    skeleton::Equilibrium equilibrium_at(const Eigen::VectorXd& q, const ModelSetting& setting) const;
 
     /// Stiffnesses of a setting, as skeleton::StiffnessOrder says.
     Eigen::VectorXd stiffness(const ModelSetting& setting) const;

@@ -2,13 +2,30 @@
 
 #include <map>
 
+#include "identify/diagnosis/rigged_skeleton.h"
 #include "identify/loading/load_history.h"
 #include "identify/loading/loads.h"
 #include "identify/loading/readings.h"
 #include "identify/loading/reduced_load.h"
 
 namespace palpate::pipeline {
+namespace {
+
+std::vector<identify::ReducedLoadEquilibrium> play_rigged(const skeleton::Model& model,
+                                                          const identify::MeasurementSet& set) {
+    const identify::ContactLoads to_load(model);
+    const std::vector<skeleton::Equilibrium> equilibria = identify::play_rigged(model, set, 1);
+    std::vector<identify::ReducedLoadEquilibrium> played;
+    played.reserve(equilibria.size());
+    for (std::size_t s = 0; s < equilibria.size(); ++s)
+        played.push_back({.equilibrium = equilibria[s], .load = to_load(set, set.states[s])});
+    return played;
+}
+
+}  // namespace
+
 std::vector<identify::ReducedLoadEquilibrium> play(const skeleton::Model& model, const identify::MeasurementSet& set) {
+    if (identify::is_rigged(set)) return play_rigged(model, set);
     const std::vector<identify::StateReadings> read = identify::collect_readings(model, set);
     std::map<int, int> reading_of;  // of a state of the set, where it has one
     for (int r = 0; r < static_cast<int>(read.size()); ++r) reading_of[read[r].state] = r;

@@ -23,8 +23,7 @@ std::vector<std::vector<int>> lower_neighbours(const mesh::VolumeMesh& mesh, con
             for (const int b : nodes)
                 if (number[b] >= number[a]) own.push_back(number[b]);
             std::ranges::sort(own);
-            const auto repeated = std::ranges::unique(own);
-            own.erase(repeated.begin(), repeated.end());
+            own.erase(std::unique(own.begin(), own.end()), own.end());
         }
     }
     return rows;

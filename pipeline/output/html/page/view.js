@@ -39,7 +39,7 @@ function startView() {
   const ofLinks = (step, quantity) => run.steps[step].quantities.find((q) => q.name === quantity.name)?.values ?? [];
 
   const count = run.states.length;
-  const titles = run.states.map((s) => `${s.probe} at ${+s.time.toPrecision(4)} s${s.loads.length ? '' : ', unloaded'}${s.held_out ? ', held out' : ''}`);
+  const titles = run.states.map((s) => `${s.probe} at ${+s.time.toPrecision(4)} s${s.loads.length ? '' : ', no force'}${s.held_out ? ', held out' : ''}`);
   const fill = (select, texts) => select.replaceChildren(...texts.map((t, i) => new Option(t, i)));
   fill(at('state'), titles);
   fill(at('step'), run.steps.map((s) => s.name));
