@@ -20,9 +20,13 @@ double total(const Action& action) {
     return sum;
 }
 
-/// Do the same contacts press along the same lines, by more or less, on a body that remembers nothing?
+/// Do the same contacts press along the same lines, by more or less, on a body that remembers nothing and that neither
+/// tools nor actuators load?
 bool press_alike(const Action& a, const Action& b) {
-    return !a.memory && !b.memory && a.pressure == b.pressure && a.gravity == b.gravity &&
+    const auto is_pressed_alone = [](const Action& one) {
+        return !one.memory && one.motions.empty() && one.settings.empty();
+    };
+    return is_pressed_alone(a) && is_pressed_alone(b) && a.pressure == b.pressure && a.gravity == b.gravity &&
            std::ranges::equal(a.contacts, b.contacts, [](const mesh::Contact& x, const mesh::Contact& y) {
                constexpr double aligned = 0.999;
                return x.point == y.point && x.radius == y.radius &&
