@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "identify/effects/effect.h"
+#include "identify/loading/loads.h"
 
 namespace palpate::identify {
 namespace {
@@ -74,10 +75,7 @@ private:
         std::vector<char> is_moved(problem.tools.size(), 0);
         for (const Stage& stage : problem.stages) {
             for (const mesh::ToolMotion& motion : stage.action.motions) {
-                const auto is_off_rest = [](double x) { return std::abs(x) > 0; };  // false for what is left free
-                if (std::ranges::any_of(motion.translation, is_off_rest) ||
-                    std::ranges::any_of(motion.rotation, is_off_rest))
-                    is_moved[motion.tool] = 1;
+                if (is_off_rest(motion)) is_moved[motion.tool] = 1;
             }
         }
         std::vector<int> tools;
