@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "identify/effects/catalogue.h"
 #include "mesh/errors.h"
@@ -13,7 +14,14 @@ bool DiagnoseOptions::leaves_out(const EffectHypothesis& effect) const {
     return std::ranges::find(without, effect.name()) != without.end();
 }
 
+double DiagnoseOptions::least_evidence() const {
+    const auto effects = std::ranges::count_if(catalogue(), [&](const auto& effect) { return !leaves_out(*effect); });
+    return std::log(static_cast<double>(std::max<std::ptrdiff_t>(effects, 1)) / false_claims);
+}
+
 void DiagnoseOptions::validate() const {
+    if (!(false_claims > 0 && false_claims < 1))
+        throw InvalidInput(fmt::format("false_claims is {}; allowed: above 0 and below 1", false_claims));
     for (const std::string& name : without) find_effect(name);
     const auto above = [](const char* name, double value) {
         if (!(value > 0)) throw InvalidInput(fmt::format("{} is {}; it must be above 0", name, value));

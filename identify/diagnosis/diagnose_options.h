@@ -19,7 +19,7 @@ struct DiagnoseOptions {
     int together = 4;                           // effects in one explanation, at most; 1: single ones only
     int refits_together = 8;                    // of several effects, at most
     double least_screen = 3;                    // ln Bayes factor of the screen below which none is refitted
-    double least_evidence = 10;                 // ln Bayes factor of the refit, to claim an effect
+    double false_claims = 1e-3;                 // probability that an effect is claimed where none is missing, at most
     double least_lead = 5;                      // over the runner-up
     double most_left = 1.1;                     // whitened rms, for what is left to be noise
     double most_left_together = 1.06;           // the same for several effects: they overfit more easily
@@ -36,6 +36,10 @@ struct DiagnoseOptions {
     RefitOptions refit;
     /// Is an effect left out of the catalogue?
     bool leaves_out(const EffectHypothesis& effect) const;
+    /// Least ln Bayes factor of the refit, to claim an effect: ln(effects / false_claims). Where nothing is missing a
+    /// Bayes factor is 1 on average, so that it is K or more with a probability of 1/K at most [Markov], one of n
+    /// effects' with n/K.
+    double least_evidence() const;
     void validate() const;  // @throws InvalidInput naming option, value and bound
 };
 

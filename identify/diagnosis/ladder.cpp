@@ -52,15 +52,19 @@ MeasurementSet part_of(const MeasurementSet& set, const std::vector<int>& probes
         return (std::ranges::find(probes, state.probe) != probes.end()) != of_them;
     };
     MeasurementSet part = set;
-    if (set.continuous) {  // the body went through all states, whoever reads them
-        for (LoadState& state : part.states) {
-            if (!is_other(state)) continue;
-            state.readings.clear();
-            state.reactions.clear();
-        }
-    } else {
-        std::erase_if(part.states, is_other);
+    for (LoadState& state : part.states) {
+        if (!is_other(state)) continue;
+        state.readings.clear();
+        state.reactions.clear();
     }
+    if (set.continuous) return part;  // the body went through all states, whoever reads them
+    std::set<StateName> counted_from;
+    for (const LoadState& state : part.states)
+        for (const Reading& reading : state.readings)
+            if (reading.since) counted_from.insert(*reading.since);
+    std::erase_if(part.states, [&](const LoadState& state) {
+        return is_other(state) && !counted_from.contains({state.probe, state.time});
+    });
     return part;
 }
 

@@ -82,12 +82,15 @@ class Rows {
 public:
     explicit Rows(Problem& problem) : problem_(problem) {}
 
-    void add(int state, int action, int coordinate, double value, double sigma, bool is_guessed) {
+    void add(int state, int action, int coordinate, double value, double sigma, bool is_guessed, int since = -1,
+             int since_state = -1) {
         measured_.push_back(value);
         sigma_.push_back(sigma);
         problem_.is_guessed.push_back(is_guessed);
         problem_.state.push_back(state);
         problem_.action.push_back(action);
+        problem_.since.push_back(since);
+        problem_.since_state.push_back(since_state);
         problem_.coordinate.push_back(coordinate);
         problem_.reading.push_back(reading_);
     }
@@ -105,16 +108,27 @@ private:
     int reading_ = 0;
 };
 
+/// The state's index; -1: there is none of that name.
+int index_of(const MeasurementSet& set, const StateName& name) {
+    const LoadState* state = find_state(set, name);
+    return state ? static_cast<int>(state - set.states.data()) : -1;
+}
+
+/// `action`: of each state.
 void add_positions(const MeasurementSet& set, double noise, const std::vector<int>& action, Rows& rows) {
     for (std::size_t s = 0; s < set.states.size(); ++s) {
         for (const Reading& reading : set.states[s].readings) {
             if (!counts(reading)) continue;
             const bool is_told = !std::isnan(reading.sigma);
             const double sigma = is_told ? reading.sigma : set.position_noise.value_or(noise);
+            const int since_state = reading.since ? index_of(set, *reading.since) : -1;
+            const int since = reading.since ? action[since_state] : -1;
+            const Vec3 counted =
+                reading.since ? Vec3(reading.position - set.markers[reading.marker].rest) : reading.position;
             for (int axis = 0; axis < 3; ++axis) {
                 if (std::isnan(reading.position[axis])) continue;
-                rows.add(static_cast<int>(s), action[s], 3 * reading.marker + axis, reading.position[axis], sigma,
-                         !is_told && !set.position_noise);
+                rows.add(static_cast<int>(s), action[s], 3 * reading.marker + axis, counted[axis], sigma,
+                         !is_told && !set.position_noise, since, since_state);
             }
             rows.next_reading();
         }
@@ -172,8 +186,15 @@ Problem make_problem(const MeasurementSet& set, double noise) {
     problem.rest = Points::Zero(problem.markers + 2 * std::ssize(set.tools), 3);
     for (int m = 0; m < problem.markers; ++m) problem.rest.row(m) = set.markers[m].rest;
     std::vector<int> action(set.states.size(), -1);
+    std::vector<char> counts_here(set.states.size());
     for (std::size_t s = 0; s < set.states.size(); ++s) {
-        if (is_read(set.states[s])) action[s] = action_of(problem, problem.stages[s]);
+        if (!is_read(set.states[s])) continue;
+        counts_here[s] = 1;
+        for (const Reading& reading : set.states[s].readings)
+            if (reading.since) counts_here[index_of(set, *reading.since)] = 1;
+    }
+    for (std::size_t s = 0; s < set.states.size(); ++s) {
+        if (counts_here[s]) action[s] = action_of(problem, problem.stages[s]);
     }
     Rows rows(problem);
     add_positions(set, noise, action, rows);
@@ -199,14 +220,17 @@ MeasurementSet without_readings(const MeasurementSet& set, const std::vector<int
 
 Eigen::VectorXd Problem::pick(const std::vector<Points>& channels) const {
     Eigen::VectorXd result(rows());
-    for (Eigen::Index n = 0; n < rows(); ++n) result[n] = channels[action[n]](channel(n), coordinate[n] % 3);
+    for (Eigen::Index n = 0; n < rows(); ++n) {
+        result[n] = channels[action[n]](channel(n), coordinate[n] % 3);
+        if (is_difference(n)) result[n] -= channels[since[n]](channel(n), coordinate[n] % 3);
+    }
     return result;
 }
 
 Eigen::VectorXd Problem::displacement() const {
     Eigen::VectorXd result = measured;
     if (discretisation.size() > 0) result += discretisation;
-    for (Eigen::Index n = 0; n < rows(); ++n) result[n] -= rest(channel(n), coordinate[n] % 3);
+    for (Eigen::Index n = 0; n < rows(); ++n) result[n] -= origin(n);
     return result;
 }
 
@@ -237,6 +261,8 @@ Problem Problem::with_rows(const std::vector<char>& keep) const {
         kept.push_back(n);
         result.state.push_back(state[n]);
         result.action.push_back(action[n]);
+        result.since.push_back(since[n]);
+        result.since_state.push_back(since_state[n]);
         result.coordinate.push_back(coordinate[n]);
         result.reading.push_back(number);
         result.set_reading.push_back(set_reading[n]);
@@ -250,10 +276,10 @@ Problem Problem::with_rows(const std::vector<char>& keep) const {
 
 Problem Problem::without_actions(const std::vector<char>& drop) const {
     std::vector<char> keep(rows());
-    for (Eigen::Index n = 0; n < rows(); ++n) keep[n] = !drop[action[n]];
+    for (Eigen::Index n = 0; n < rows(); ++n) keep[n] = !drop[action[n]] && !(is_difference(n) && drop[since[n]]);
     Problem result = with_rows(keep);
     for (Eigen::Index n = 0; n < rows(); ++n) {
-        if (!keep[n]) relieve(result.stages[state[n]].action);
+        if (drop[action[n]]) relieve(result.stages[state[n]].action);
     }
     if (by_stage) {  // every stage stays
         for (std::size_t k = 0; k < actions.size(); ++k) {
@@ -271,6 +297,8 @@ Problem Problem::without_actions(const std::vector<char>& drop) const {
         result.probe.push_back(probe[k]);
     }
     for (int& k : result.action) k = number[k];
+    for (int& k : result.since)
+        if (k >= 0) k = number[k];
     return result;
 }
 
@@ -283,6 +311,7 @@ Problem Problem::stage_by_stage() const {
     Problem result = *this;
     result.by_stage = true;
     result.action = state;
+    result.since = since_state;
     result.actions.clear();
     result.probe.clear();
     std::set<int> loaded_probes;

@@ -24,23 +24,24 @@ bool is_loaded(const Action& action);
 /// What can be read in a state are channels of three numbers each: the positions of the m markers, then the force on
 /// the body and the moment of each tool.
 struct Problem {
-    std::vector<Action> actions;         // (K)
-    std::vector<int> probe;              // of each action, as in the set; -1: one without load, which probes share
-    std::vector<Stage> stages;           // all states, in order
-    bool continuous = false;             // one body goes through all stages; else each probe finds it as new
-    bool by_stage = false;               // the actions are the stages
-    int markers = 0;                     // of the set (m)
-    std::vector<std::string> tools;      // of the set, their names (t)
-    std::vector<std::string> actuators;  // the same (a)
-    Points rest;                         // of the channels (m + 2t x 3): where the markers rest [mm], 0 of the tools
-    std::vector<int> state;              // of each row, in the set (N)
-    std::vector<int> action;             // of each row (N)
-    std::vector<int> coordinate;         // 3 channel + axis, of each row (N)
-    std::vector<int> reading;            // rows of one reading share a number (N)
-    std::vector<int> set_reading;        // the same, as the whole set numbers its readings (N)
-    std::vector<char> is_guessed;        // rows whose sigma was not specified (N)
-    Eigen::VectorXd measured, sigma;     // [mm], [N], [N mm] (N); without the next
-    Eigen::VectorXd discretisation;      // how far the model would be off by its mesh [mm] (N); empty: not known
+    std::vector<Action> actions;          // (K)
+    std::vector<int> probe;               // of each action, as in the set; -1: one without load, which probes share
+    std::vector<Stage> stages;            // all states, in order
+    bool continuous = false;              // one body goes through all stages; else each probe finds it as new
+    bool by_stage = false;                // the actions are the stages
+    int markers = 0;                      // of the set (m)
+    std::vector<std::string> tools;       // of the set, their names (t)
+    std::vector<std::string> actuators;   // the same (a)
+    Points rest;                          // of the channels (m + 2t x 3): where the markers rest [mm], 0 of the tools
+    std::vector<int> state;               // of each row, in the set (N)
+    std::vector<int> action;              // of each row (N)
+    std::vector<int> since, since_state;  // what a row's displacement counts from; -1: it is no difference (N)
+    std::vector<int> coordinate;          // 3 channel + axis, of each row (N)
+    std::vector<int> reading;             // rows of one reading share a number (N)
+    std::vector<int> set_reading;         // the same, as the whole set numbers its readings (N)
+    std::vector<char> is_guessed;         // rows whose sigma was not specified (N)
+    Eigen::VectorXd measured, sigma;      // [mm], [N], [N mm] (N); without the next
+    Eigen::VectorXd discretisation;       // how far the model would be off by its mesh [mm] (N); empty: not known
     double declared_poisson = missing;
 
     Eigen::Index rows() const { return measured.size(); }
@@ -56,6 +57,10 @@ struct Problem {
     /// The action of another problem about the same body that is like action k: with the same loads, of the same probe
     /// rather than of another, and of the same time where both tell; -1: there is none.
     int action_in(const Problem& other, int k) const;
+
+    bool is_difference(Eigen::Index n) const { return since[n] >= 0; }
+    /// Where a row counts from: where its marker rests; 0 of a difference.
+    double origin(Eigen::Index n) const { return is_difference(n) ? 0 : rest(channel(n), coordinate[n] % 3); }
 
     /// The rows (N) out of each action's channels (K of m + 2t x 3).
     Eigen::VectorXd pick(const std::vector<Points>& channels) const;

@@ -104,8 +104,10 @@ TemperedResult draws_of(const Refit& fit, const std::vector<Eigen::Index>& place
 }  // namespace
 
 bool is_rigged(const MeasurementSet& set) {
-    return std::ranges::any_of(
-        set.states, [](const LoadState& state) { return !state.motions.empty() || !state.actuations.empty(); });
+    return std::ranges::any_of(set.states, [](const LoadState& state) {
+        return !state.motions.empty() || !state.actuations.empty() ||
+               std::ranges::any_of(state.readings, [](const Reading& reading) { return reading.since.has_value(); });
+    });
 }
 
 IdentifyResult identify_rigged(const skeleton::Model& model, const MeasurementSet& set, int particles,
@@ -140,7 +142,8 @@ IdentifyResult identify_rigged(const skeleton::Model& model, const MeasurementSe
     result.states = static_cast<int>(set.states.size());
     result.coordinates = static_cast<int>(problem.rows());
     result.notes.emplace_back(
-        "Tools and actuators act in this set: one multiplier was fitted for each kind of stiffness.");
+        "Sets with tools, actuators or displacements since a loaded state: one multiplier was fitted for each kind of "
+        "stiffness.");
     return result;
 }
 
@@ -181,8 +184,11 @@ std::vector<Points> predict_rigged(const skeleton::Model& model, const Measureme
     const Explanation explanation = as_it_is(model, body, problem);
     const Problem asked = explanation.has_memory() && !problem.by_stage ? problem.stage_by_stage() : problem;
     const ForwardSolution forward = solve_forward(body, asked, explanation, threads);
-    std::vector<int> action(set.states.size(), -1);
-    for (Eigen::Index n = 0; n < asked.rows(); ++n) action[asked.state[n]] = asked.action[n];
+    std::vector<int> action(set.states.size(), -1), since = action;
+    for (Eigen::Index n = 0; n < asked.rows(); ++n) {
+        action[asked.state[n]] = asked.action[n];
+        if (asked.is_difference(n)) since[asked.since_state[n]] = asked.since[n];
+    }
     std::vector<Points> predicted;
     for (std::size_t s = 0; s < set.states.size(); ++s) {
         const std::vector<Reading>& readings = set.states[s].readings;
@@ -190,6 +196,10 @@ std::vector<Points> predict_rigged(const skeleton::Model& model, const Measureme
         for (std::size_t r = 0; r < readings.size() && action[s] >= 0; ++r) {
             if (readings[r].marker < 0) continue;
             own.row(static_cast<Eigen::Index>(r)) = forward.markers[action[s]].row(readings[r].marker);
+            if (!readings[r].since) continue;
+            const auto from = find_state(set, *readings[r].since) - set.states.data();
+            own.row(static_cast<Eigen::Index>(r)) +=
+                set.markers[readings[r].marker].rest.transpose() - forward.markers[since[from]].row(readings[r].marker);
         }
         predicted.push_back(std::move(own));
     }

@@ -7,7 +7,7 @@
 
 namespace palpate::identify {
 
-/// Does a state of the set move a tool, or set an actuator?
+/// Does a state of the set move a tool or set an actuator, or is a reading the difference of two states?
 bool is_rigged(const MeasurementSet& set);
 
 /// A multiplier for each kind of a skeleton's stiffness, fitted to positions and reactions together under the law that

@@ -57,6 +57,12 @@ struct EffectNumber {
     bool prior_at_start = false;     // its prior is centred where the fit begins: a direction, which a scan has found
 };
 
+/// What is known of the length of the vector that an effect's numbers are, whatever its direction: a normal
+/// distribution of it. [numbers of the fit]
+struct MagnitudePrior {
+    double mean = 0, sd = 0;
+};
+
 /// First-order change of the readings by a weak effect, per alternative: groups of columns over sigma, as many numbers
 /// wide as `prior_sd` is long, each group an alternative (other places, other directions).
 struct ScreenColumns {
@@ -97,6 +103,9 @@ public:
 
     /// Its numbers in a problem. None: it cannot show there.
     virtual std::vector<EffectNumber> numbers(const BodyModel& model, const Problem& problem) const = 0;
+
+    /// What its numbers may be long, together; none: nothing is known of it.
+    virtual std::optional<MagnitudePrior> magnitude() const { return std::nullopt; }
 
     // How it is in force; what it does not override it leaves as it is.
 

@@ -8,6 +8,7 @@
 
 #include "identify/inference/problem/identify_options.h"
 #include "mesh/errors.h"
+#include "pipeline/run/run_diagnosis_options.h"
 #include "skeleton/construction/properties/link_kind.h"
 #include "skeleton/model/model.h"
 
@@ -29,6 +30,8 @@ inline constexpr Names<identify::LawChoice, 3> law_choices{{{"automatic", identi
                                                             {"large-rotation", identify::LawChoice::large_rotation}}};
 
 /// Those that are identified: flexion and shear stand for both planes, see skeleton::as_identified.
+inline constexpr Names<GravityKnown, 3> gravities{
+    {{"automatic", GravityKnown::automatic}, {"earth", GravityKnown::earth}, {"unknown", GravityKnown::unknown}}};
 inline constexpr Names<skeleton::Stiffness, 5> stiffnesses{{{"elongation", skeleton::Stiffness::elongation},
                                                             {"flexion", skeleton::Stiffness::flexion},
                                                             {"torsion", skeleton::Stiffness::torsion},

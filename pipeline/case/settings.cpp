@@ -287,6 +287,16 @@ void add_diagnosis(std::vector<CaseSetting>& all) {
     all.push_back(texts(
         "diagnose.without", "effects that are left out of the catalogue (`palpate effects` lists them)",
         [](auto& c) -> auto& { return c.diagnose.without; }));
+    all.push_back(with_flag(
+        "Diagnosis", choice(
+                         "diagnose.gravity",
+                         "what is known of gravity: earth, unknown, or automatic: the earth's is an alternative where "
+                         "the density is given",
+                         gravities, [](auto& c) -> auto& { return c.diagnose.gravity; })));
+    all.push_back(with_flag(
+        "Diagnosis", number(
+                         "diagnose.false_claims", "probability of naming an effect where none is missing, at most",
+                         {1e-12, 0.1}, [](auto& c) -> auto& { return c.diagnose.false_claims; })));
 }
 
 void add_expectations(std::vector<CaseSetting>& all) {

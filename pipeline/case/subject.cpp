@@ -119,6 +119,7 @@ identify::MeasurementSet read_measurements(const std::filesystem::path& path, st
                                            double edge_length) {
     identify::MeasurementSet read = identify::read_measurement_set(path);
     identify::take_displacements_from_rest(read);
+    identify::take_correlated_noise(read);
     std::ranges::move(read.notes, std::back_inserter(notes));
     read.notes.clear();
     identify::LabelledSet labelled = identify::label_readings(identify::with_markers_of_fields(read));

@@ -25,7 +25,7 @@ void compare_reference(nlohmann::json& result, const CompareOptions& options, co
     }
     try {
         const auto body = reference_of(given.set, options.overrides.on_defaults().edge_length);
-        identify::DiagnoseOptions how = diagnose_options(given.model, common);
+        identify::DiagnoseOptions how = diagnose_options({}, given.set.density.has_value(), given.model, common);
         how.screen = false;
         add_reference(result, *body, identify::diagnose(*body, given.set, how, Console::progress()), given.set,
                       comparison);

@@ -16,8 +16,9 @@ Outcome diagnose(const DiagnoseCommandOptions& options, const Common& common) {
     if (!options.output.empty()) refuse_to_overwrite(options.output, common.force);
     for (const std::string& name : options.without) identify::find_effect(name);
     const ModelAndSet given = read_model_and_set(options.model, options.set);
-    identify::DiagnoseOptions how = diagnose_options(given.model, common);
-    how.without = options.without;
+    RunDiagnosisOptions wanted = options.overrides.on_defaults().diagnose;
+    wanted.without = options.without;
+    const identify::DiagnoseOptions how = diagnose_options(wanted, given.set.density.has_value(), given.model, common);
     const auto body = body_to_diagnose(options.body, given, options.overrides.on_defaults().edge_length);
     const identify::Diagnosis found = identify::diagnose(*body, given.set, how, Console::progress());
 
@@ -56,6 +57,7 @@ void Subcommands::add_diagnose(CLI::App& app) {
         ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
     add_body(sub, diagnose.body, "by default");
     add_flag(sub, diagnose.overrides, "volume.edge_length");
+    for (const char* place : {"diagnose.gravity", "diagnose.false_claims"}) add_flag(sub, diagnose.overrides, place);
 }
 
 }  // namespace palpate::pipeline

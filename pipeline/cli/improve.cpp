@@ -51,7 +51,8 @@ Outcome improve(const ImproveCommandOptions& options, const Common& common) {
     const std::string kind = judged_on(options);
     const ModelAndSet given = read_model_and_set(options.model, options.set);
     const identify::LadderOptions how{.identify = identify_options(options.overrides, common),
-                                      .diagnose = diagnose_options(given.model, common),
+                                      .diagnose = diagnose_options(options.overrides.on_defaults().diagnose,
+                                                                   given.set.density.has_value(), given.model, common),
                                       .only_better = options.automatic};
     how.identify.validate();
     const auto body = body_to_diagnose(kind, given, options.overrides.on_defaults().edge_length);
@@ -99,6 +100,7 @@ void Subcommands::add_improve(CLI::App& app) {
     add_body(sub, improve.body, "by default, but for what links alone have");
     add_flags_of(sub, improve.overrides, "Identification");
     add_flag(sub, improve.overrides, "volume.edge_length");
+    for (const char* place : {"diagnose.gravity", "diagnose.false_claims"}) add_flag(sub, improve.overrides, place);
 }
 
 }  // namespace palpate::pipeline

@@ -186,7 +186,8 @@ PlayData play_data(const fs::path& input, const fs::path& set_folder) {
     }
     if (set && identify::is_rigged(*set)) {
         data.notes.emplace_back(
-            "The set's tools and actuators are not played: errors are those of the run, see its report.");
+            "The set's tools, actuators and displacements since a loaded state are not played: errors are those of the "
+            "run, see its report.");
         set.reset();
     }
 

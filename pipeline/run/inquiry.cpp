@@ -58,11 +58,14 @@ const identify::ReferenceBody& RunDiagnosis::reference() {
 
 const identify::Diagnosis& RunDiagnosis::diagnosed(const skeleton::Model& model) {
     if (!diagnosis_) {
-        identify::DiagnoseOptions how = diagnose_options(model, common_);
-        how.without = subject_.settings.diagnose.without;
-        diagnosis_ = identify::diagnose(reference(), set_, how, Console::progress());
+        diagnosis_ = identify::diagnose(reference(), set_, how(model), Console::progress());
     }
     return *diagnosis_;
+}
+
+identify::DiagnoseOptions RunDiagnosis::how(const skeleton::Model& model) const {
+    const bool has_density = !subject_.set || subject_.set->density || subject_.settings.density;
+    return diagnose_options(subject_.settings.diagnose, has_density, model, common_);
 }
 
 json RunDiagnosis::diagnose(const skeleton::Model& model) {
@@ -103,9 +106,8 @@ void RunDiagnosis::compare_reference(json& compare, const skeleton::Model& model
 json RunDiagnosis::improve(const skeleton::Model& model, const json& diagnosis) {
     if (diagnosis.is_null()) return nullptr;
     identify::LadderOptions how{
-        .identify = subject_.settings.identify, .diagnose = diagnose_options(model, common_), .only_better = true};
+        .identify = subject_.settings.identify, .diagnose = this->how(model), .only_better = true};
     how.identify.threads = common_.threads;
-    how.diagnose.without = subject_.settings.diagnose.without;
     const auto effects = diagnosis["explanation"].get<std::vector<std::string>>();
     json settings = this->settings();
     settings["identify"] = settings_of_stage(subject_.settings, "identify");

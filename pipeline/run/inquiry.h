@@ -31,6 +31,7 @@ public:
 
 private:
     const identify::ReferenceBody& reference();
+    identify::DiagnoseOptions how(const skeleton::Model& model) const;
     const identify::Diagnosis& diagnosed(const skeleton::Model& model);
 
     RunFolder& folder_;

@@ -90,8 +90,9 @@ std::optional<identify::DampingResult> damping_of(skeleton::Model& model, const 
     return std::nullopt;
 }
 
-identify::DiagnoseOptions diagnose_options(const skeleton::Model& model, const Common& common) {
-    identify::DiagnoseOptions options;
+identify::DiagnoseOptions diagnose_options(const RunDiagnosisOptions& wanted, bool has_density,
+                                           const skeleton::Model& model, const Common& common) {
+    identify::DiagnoseOptions options = wanted.in_set(has_density);
     options.known = model.effects;
     options.refit.threads = common.threads;
     return options;

@@ -8,6 +8,7 @@
 #include "identify/models/reference_body.h"
 #include "identify/motion/damping_result.h"
 #include "pipeline/command_line/commands.h"
+#include "pipeline/run/run_diagnosis_options.h"
 #include "skeleton/model/model.h"
 
 namespace palpate::pipeline::commands {
@@ -43,6 +44,7 @@ std::optional<identify::DampingResult> damping_of(skeleton::Model& model, const 
                                                   std::uint64_t seed, const Common& common);
 
 /// Options of a diagnosis of what a model lacks besides the effects that it has.
-identify::DiagnoseOptions diagnose_options(const skeleton::Model& model, const Common& common);
+identify::DiagnoseOptions diagnose_options(const RunDiagnosisOptions& wanted, bool has_density,
+                                           const skeleton::Model& model, const Common& common);
 
 }  // namespace palpate::pipeline::commands

@@ -82,7 +82,8 @@ bool PlacedEffects::release_supports() const {
     return std::ranges::any_of(supported_, [](char s) { return s != 0; });
 }
 
-// Calls visit(effect, point, where it is, its terms, weight), the weight scaled.
+// Calls visit(effect, point, where it is, its terms, weight), the weight scaled; not for points that a tool does not
+// touch.
 template <typename Visit>
 void PlacedEffects::for_each_point(const State& state, double share, const Visit& visit) const {
     for (const Placed& effect : effects_) {
@@ -90,8 +91,9 @@ void PlacedEffects::for_each_point(const State& state, double share, const Visit
         const double scale = whole ? 1 : share;
         const auto potential = effect.tool && share != 1 ? effect.tool->part_way(share) : effect.potential;
         for (const Point& point : effect.points) {
-            const CarriedPoint at(point.at, rest_, state);
-            visit(effect, point, at, potential->terms(point.at.rest, at.x()), scale * point.weight);
+            const fem::PointTerms terms = potential->terms(point.at.rest, carried_place(point.at, rest_, state));
+            if (effect.tool && terms.hessian.isZero(0)) continue;
+            visit(effect, point, CarriedPoint(point.at, rest_, state), terms, scale * point.weight);
         }
     }
 }

@@ -107,13 +107,12 @@ void PlacedEffects::for_each_point_of_tool(std::size_t tool, const State& state,
     for (const Placed& effect : effects_) {
         if (!effect.tool || place++ != tool) continue;
         for (const Point& point : effect.points) {
-            const CarriedPoint at(point.at, rest_, state);
-            fem::PointTerms terms = effect.potential->terms(point.at.rest, at.x());
+            fem::PointTerms terms = effect.potential->terms(point.at.rest, carried_place(point.at, rest_, state));
             if (terms.hessian.isZero(0)) continue;  // not in touch
             terms.energy *= point.weight;
             terms.gradient *= point.weight;
             terms.hessian *= point.weight;
-            visit(at, terms);
+            visit(CarriedPoint(point.at, rest_, state), terms);
         }
     }
 }

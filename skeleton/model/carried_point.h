@@ -6,6 +6,9 @@
 
 namespace palpate::skeleton {
 
+/// Where an attached point is in a state, alone: a tenth of the work of a CarriedPoint.
+Vec3 carried_place(const Attachment& point, const State& rest, const State& state);
+
 /// An attached point in a state: where it is, and how it moves with the spheres that carry it.
 ///
 /// With weights w_i the spheres' mean place is x = sum w_i x_i and their mean turn the unit quaternion q along

@@ -8,7 +8,7 @@ Points observe(const Model& model, const State& state, const std::vector<Attachm
     const State rest = rest_state(model);
     Points positions(static_cast<Eigen::Index>(points.size()), 3);
     for (size_t i = 0; i < points.size(); ++i)
-        positions.row(static_cast<Eigen::Index>(i)) = CarriedPoint(points[i], rest, state).x().transpose();
+        positions.row(static_cast<Eigen::Index>(i)) = carried_place(points[i], rest, state).transpose();
     return positions;
 }
 

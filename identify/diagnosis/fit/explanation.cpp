@@ -293,7 +293,17 @@ std::vector<Eigen::MatrixXd> sensitivities(const BodyModel& model, const Problem
     for (const Signatures& s : signatures) result.emplace_back(Eigen::MatrixXd::Zero(problem.rows(), s.width));
     if (steps_of_first) steps_of_first->assign(count, {});
     std::vector<std::vector<Eigen::Index>> rows(count);
-    for (Eigen::Index n = 0; n < problem.rows(); ++n) rows[problem.action[n]].push_back(n);
+    // Of actions that differences count from, for each signature: they come off when all threads are done.
+    struct Counted {
+        Eigen::MatrixXd seen;
+        std::vector<int> columns;
+    };
+    std::vector<std::vector<Counted>> counted(count);
+    std::vector<char> is_counted_from(count, 0);
+    for (Eigen::Index n = 0; n < problem.rows(); ++n) {
+        rows[problem.action[n]].push_back(n);
+        if (problem.is_difference(n)) is_counted_from[problem.since[n]] = 1;
+    }
 
     std::shared_ptr<const Tangent> linear;
     if (!model.is_nonlinear(setting)) linear = model.tangent(model.rest(setting), setting, {});
@@ -332,8 +342,17 @@ std::vector<Eigen::MatrixXd> sensitivities(const BodyModel& model, const Problem
                         Y(problem.coordinate[n], static_cast<Eigen::Index>(c)) / problem.sigma[n];
                 }
             }
+            if (is_counted_from[k]) counted[k].push_back({Y, parts[p].columns});
         }
     });
+    for (Eigen::Index n = 0; n < problem.rows(); ++n) {
+        if (!problem.is_difference(n)) continue;
+        const std::vector<Counted>& from = counted[problem.since[n]];
+        for (std::size_t p = 0; p < from.size(); ++p)
+            for (std::size_t c = 0; c < from[p].columns.size(); ++c)
+                result[p](n, from[p].columns[c]) -=
+                    from[p].seen(problem.coordinate[n], static_cast<Eigen::Index>(c)) / problem.sigma[n];
+    }
     return result;
 }
 

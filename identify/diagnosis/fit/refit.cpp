@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numbers>
 
+#include "identify/diagnosis/fit/fit_priors.h"
 #include "mesh/errors.h"
 
 namespace palpate::identify {
@@ -16,42 +18,6 @@ double settled(double objective, Eigen::Index readings, bool has_effects) {
     constexpr double share = 1e-3;
     const double most = has_effects ? 20 * share : share;
     return std::max(0.02, std::clamp(share * objective / noise, share, most) * (objective - noise));
-}
-
-struct Priors {
-    Eigen::VectorXd mean, sd, least, most;
-    // How far a number may go at once: its prior's width, a logarithm no more than a factor of two.
-    Eigen::VectorXd step;
-    std::vector<Eigen::Index> weakly_identified = {};  // numbers that do not hold up the others
-};
-
-Priors priors_of(const BodyModel& model, const Explanation& explanation,
-                 const std::vector<std::vector<EffectNumber>>& numbers) {
-    const Eigen::VectorXd start = explanation.all();
-    constexpr double factor_of_two = 0.7;
-    std::vector<double> mean, sd, least, most, step;
-    std::vector<Eigen::Index> weakly_identified;
-    for (const StiffnessParameter& p : model.parameters()) {
-        mean.push_back(p.prior_mean);
-        sd.push_back(p.prior_sd);
-        least.push_back(p.least);
-        most.push_back(p.most);
-        step.push_back(std::min(p.prior_sd, factor_of_two));
-    }
-    for (const auto& list : numbers) {
-        for (const EffectNumber& number : list) {
-            if (number.weakly_identified) weakly_identified.push_back(std::ssize(mean));
-            mean.push_back(number.prior_at_start ? start[std::ssize(mean)] : number.prior_mean);
-            sd.push_back(number.prior_sd);
-            least.push_back(number.least);
-            most.push_back(INFINITY);
-            step.push_back(number.logarithm ? std::min(number.prior_sd, factor_of_two) : number.prior_sd);
-        }
-    }
-    const auto vector = [](std::vector<double>& values) {
-        return Eigen::VectorXd(Eigen::Map<Eigen::VectorXd>(values.data(), std::ssize(values)));
-    };
-    return {vector(mean), vector(sd), vector(least), vector(most), vector(step), weakly_identified};
 }
 
 /// The move m that maximises g^T m - m^T H m / 2 where some numbers have theirs already.
@@ -67,7 +33,7 @@ Eigen::VectorXd best_move(Eigen::MatrixXd H, Eigen::VectorXd g, const std::map<E
 }
 
 /// Numbers that stand at a bound and would go beyond it.
-std::map<Eigen::Index, double> held_at_bounds(const Eigen::VectorXd& g, const Priors& priors,
+std::map<Eigen::Index, double> held_at_bounds(const Eigen::VectorXd& g, const FitPriors& priors,
                                               const Eigen::VectorXd& x) {
     std::map<Eigen::Index, double> fixed;
     for (Eigen::Index i = 0; i < x.size(); ++i) {
@@ -79,7 +45,7 @@ std::map<Eigen::Index, double> held_at_bounds(const Eigen::VectorXd& g, const Pr
 
 /// A move of which no number goes further than it may at once. Numbers that are slack go as far as they may, and the
 /// others take account of it; where one of these would go too far, all go less.
-Eigen::VectorXd limited_move(const Eigen::MatrixXd& H, const Eigen::VectorXd& g, const Priors& priors,
+Eigen::VectorXd limited_move(const Eigen::MatrixXd& H, const Eigen::VectorXd& g, const FitPriors& priors,
                              std::map<Eigen::Index, double> fixed, Eigen::VectorXd move) {
     for (const Eigen::Index i : priors.weakly_identified) {
         if (std::abs(move[i]) <= priors.step[i]) continue;
@@ -90,8 +56,8 @@ Eigen::VectorXd limited_move(const Eigen::MatrixXd& H, const Eigen::VectorXd& g,
 }
 
 /// Half of chi^2 and priors, to be lowered.
-double objective(const Whitening& V, const Eigen::VectorXd& d, const Priors& priors, const Eigen::VectorXd& x) {
-    return 0.5 * d.dot(V.apply(d).col(0)) + 0.5 * (x - priors.mean).cwiseQuotient(priors.sd).squaredNorm();
+double objective(const Whitening& V, const Eigen::VectorXd& d, const FitPriors& priors, const Eigen::VectorXd& x) {
+    return 0.5 * d.dot(V.apply(d).col(0)) + priors.objective(x);
 }
 
 Eigen::VectorXd error_of(const Problem& problem, const ForwardSolution& forward) {
@@ -101,7 +67,7 @@ Eigen::VectorXd error_of(const Problem& problem, const ForwardSolution& forward)
 /// A fit in progress, at fixed V.
 class Descent {
 public:
-    Descent(const BodyModel& model, const Problem& problem, const Priors& priors, const RefitOptions& options,
+    Descent(const BodyModel& model, const Problem& problem, const FitPriors& priors, const RefitOptions& options,
             Refit& at)
         : model_(model),
           problem_(problem),
@@ -122,11 +88,9 @@ public:
         bool falls = true;
         for (int step = 0; step < most_steps || (falls && step < at_most * most_steps); ++step) {
             const Eigen::MatrixXd VA = at_.V->apply(at_.columns);
-            Eigen::MatrixXd H = at_.columns.transpose() * VA;
-            H.diagonal() += priors_.sd.cwiseAbs2().cwiseInverse();
             const Eigen::VectorXd x = at_.explanation.all();
-            const Eigen::VectorXd g =
-                VA.transpose() * at_.error - (x - priors_.mean).cwiseQuotient(priors_.sd.cwiseAbs2());
+            const Eigen::MatrixXd H = at_.columns.transpose() * VA + priors_.precision(x);
+            const Eigen::VectorXd g = VA.transpose() * at_.error - priors_.slope(x);
             const std::map<Eigen::Index, double> held = held_at_bounds(g, priors_, x);
             const Eigen::VectorXd move = best_move(H, g, held);
             at_.covariance = H.llt().solve(Eigen::MatrixXd::Identity(x.size(), x.size()));
@@ -197,7 +161,7 @@ private:
 
     const BodyModel& model_;
     const Problem& problem_;
-    const Priors& priors_;
+    const FitPriors& priors_;
     int threads_;
     double rival_;  // whitened rms, at least that of noise
     Refit& at_;
@@ -258,13 +222,13 @@ Eigen::MatrixXd scatter_of_probes(const Problem& problem, const Refit& at) {
     return at.covariance * sum * at.covariance * (probes / std::max(probes - 1, 1.0));
 }
 
-void conclude(const Problem& problem, const Priors& priors, Refit& at) {
+void conclude(const Problem& problem, const FitPriors& priors, Refit& at) {
     const auto N = static_cast<double>(problem.rows());
     const Eigen::VectorXd x = at.explanation.all();
-    // ln Z = -(chi^2 + priors)/2 - ln |V| / 2 - sum ln sd + ln |covariance| / 2
+    // ln Z = -(chi^2 + priors)/2 - ln |V| / 2 - ln of the priors' scale + ln |covariance| / 2
     const Eigen::LLT<Eigen::MatrixXd> factor(at.covariance);
-    at.log_evidence = -objective(*at.V, at.error, priors, x) - 0.5 * at.V->log_determinant() -
-                      priors.sd.array().log().sum() + factor.matrixLLT().diagonal().array().log().sum();
+    at.log_evidence = -objective(*at.V, at.error, priors, x) - 0.5 * at.V->log_determinant() - priors.log_scale() +
+                      factor.matrixLLT().diagonal().array().log().sum();
     at.prior_mean = priors.mean;
     at.prior_sd = priors.sd;
     at.rms_mm = problem.rms_mm(at.error.cwiseProduct(problem.sigma));
@@ -279,6 +243,32 @@ void conclude(const Problem& problem, const Priors& priors, Refit& at) {
     at.scatter = scatter_of_probes(problem, at);
 }
 
+/// Goes on from a fit with what is known of a magnitude, and keeps what the evidence prefers. Two hypotheses, equally
+/// likely before, have the evidence ln((Z_1 + Z_2) / 2) together.
+void try_magnitude(const BodyModel& model, const Problem& problem, const FitPriors& known, const RefitOptions& options,
+                   Refit& at) {
+    // Farther off the evidence falls by 32; what is known can bring 5.
+    constexpr double far = 8;  // sd
+    if (options.magnitude == MagnitudeUse::alternative &&
+        known.magnitude_in_sd(at.explanation.all(), at.covariance) > far) {
+        at.log_evidence -= std::numbers::ln2;
+        return;
+    }
+    Refit with = at;
+    Descent(model, problem, known, options, with).run(options.steps, true);
+    conclude(problem, known, with);
+    with.has_known_magnitude = true;
+    if (options.magnitude == MagnitudeUse::certain) {
+        at = std::move(with);
+        return;
+    }
+    const double lead = with.log_evidence - at.log_evidence;
+    const double together =
+        std::max(with.log_evidence, at.log_evidence) + std::log1p(std::exp(-std::abs(lead))) - std::numbers::ln2;
+    if (lead > 0) at = std::move(with);
+    at.log_evidence = together;
+}
+
 /// The same effects under the same law, whatever their numbers.
 bool is_like(const Explanation& a, const Explanation& b) { return a.law == b.law && a.effects == b.effects; }
 
@@ -289,7 +279,7 @@ Refit refit(const BodyModel& model, const Problem& problem, const Explanation& e
     Refit at;
     at.explanation = explanation;
     for (const auto& effect : explanation.effects) at.numbers.push_back(effect->numbers(model, problem));
-    const Priors priors = priors_of(model, explanation, at.numbers);
+    const FitPriors priors(model, explanation, at.numbers);
     begin(model, problem, options.threads, start, at);
 
     // A first round with the nuisances of the start, or none where it may be far; a second with those of where it led,
@@ -313,6 +303,8 @@ Refit refit(const BodyModel& model, const Problem& problem, const Explanation& e
         at.nuisances = start->nuisances;
     }
     conclude(problem, priors, at);
+    if (options.magnitude != MagnitudeUse::none)
+        if (const auto known = priors.with_magnitude(explanation)) try_magnitude(model, problem, *known, options, at);
     at.forward.tangents.reset();  // many fits are kept
     return at;
 }
@@ -326,7 +318,10 @@ Whitening with_numbers_unknown(const Refit& fit) {
 }
 
 double objective(const Refit& fit) {
-    return objective(*fit.V, fit.error, {fit.prior_mean, fit.prior_sd, {}, {}, {}, {}}, fit.explanation.all());
+    const FitPriors priors(fit.prior_mean, fit.prior_sd);
+    return objective(*fit.V, fit.error,
+                     fit.has_known_magnitude ? priors.with_magnitude(fit.explanation).value() : priors,
+                     fit.explanation.all());
 }
 
 double objective_near(const BodyModel& model, const Problem& problem, const Explanation& explanation,
@@ -335,7 +330,7 @@ double objective_near(const BodyModel& model, const Problem& problem, const Expl
     for (const auto& effect : explanation.effects) numbers.push_back(effect->numbers(model, problem));
     try {
         const ForwardSolution forward = solve_forward(model, problem, explanation, options.threads, &near.forward.q);
-        return objective(*near.V, error_of(problem, forward), priors_of(model, explanation, numbers),
+        return objective(*near.V, error_of(problem, forward), FitPriors(model, explanation, numbers),
                          explanation.all());
     } catch (const SolverFailure&) {
         return INFINITY;
@@ -348,9 +343,8 @@ double promised_objective(const BodyModel& model, const Problem& problem, const 
         const ForwardSolution forward = solve_forward(model, problem, explanation, options.threads, &near.forward.q);
         const Eigen::VectorXd d = error_of(problem, forward);
         const Eigen::VectorXd x = explanation.all();
-        const Priors priors{near.prior_mean, near.prior_sd, {}, {}, {}, {}};
-        const Eigen::VectorXd g =
-            near.columns.transpose() * near.V->apply(d) - (x - priors.mean).cwiseQuotient(priors.sd.cwiseAbs2());
+        const FitPriors priors(near.prior_mean, near.prior_sd);
+        const Eigen::VectorXd g = near.columns.transpose() * near.V->apply(d) - priors.slope(x);
         return objective(*near.V, d, priors, x) - 0.5 * g.dot(near.covariance * g);
     } catch (const SolverFailure&) {
         return INFINITY;

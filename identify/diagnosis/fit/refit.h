@@ -19,6 +19,7 @@ struct Refit {
     Nuisances nuisances;
     std::optional<Whitening> V;            // of nuisances and weights
     Eigen::VectorXd prior_mean, prior_sd;  // of all numbers
+    bool has_known_magnitude = false;      // what is known of an effect's magnitude is in the priors
     Eigen::MatrixXd covariance;            // of all numbers, posterior
     Eigen::MatrixXd scatter;               // of the same, by how far the probes disagree about them
     double log_evidence = 0;               // less the constant that the readings share
@@ -32,8 +33,16 @@ struct Refit {
     Eigen::VectorXd residual;          // what the nuisances do not explain either, in sigmas (N)
 };
 
+/// How much an effect's known magnitude counts, as that of gravity on earth.
+enum class MagnitudeUse {
+    none,         // direction and magnitude are both free
+    alternative,  // known or free, equally likely before: the evidence decides
+    certain,
+};
+
 struct RefitOptions {
     int threads = 1;
+    MagnitudeUse magnitude = MagnitudeUse::none;
     bool correct_for_mesh = true;  // take the mesh's error, as halved edges tell it, off the readings
     int steps = 12;                // Gauss-Newton's in each of two rounds, at most
     /// Whitened rms that another fit has left. A fit is abandoned if it would leave 1.5 times as much even with three

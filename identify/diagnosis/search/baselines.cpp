@@ -136,7 +136,7 @@ Explanation first_guess(const BodyModel& model, const Problem& problem, int law,
     std::vector<double> sum(problem.rest.size(), 0.0);
     std::vector<int> count(problem.rest.size(), 0);
     for (Eigen::Index n = 0; n < problem.rows(); ++n) {
-        modelled[n] -= problem.rest(problem.channel(n), problem.coordinate[n] % 3);
+        modelled[n] -= problem.origin(n);
         if (problem.loaded(problem.action[n])) continue;
         sum[problem.coordinate[n]] += measured[n];
         ++count[problem.coordinate[n]];

@@ -68,11 +68,11 @@ bool Search::extend(std::size_t from, int most) {
     for (const ScreenedEffect& screened : screen_at(base.fit, there)) {
         if (refits_together_ >= options_.refits_together) break;
         if (base.log_bayes_factor + screened.at_most() < leads) continue;
-        const double least =
-            noise_is_left ? least_next_to_effect(*screened.effect, base, problem_, options_) : options_.least_evidence;
+        const double least = noise_is_left ? least_next_to_effect(*screened.effect, base, problem_, options_)
+                                           : options_.least_evidence();
         // A screen is a linearisation, and says somewhat too little at times; little of much explains nothing.
         constexpr double share = 0.05;
-        const double worth_a_fit = std::max({options_.least_evidence, 0.5 * least, share * excess(base)});
+        const double worth_a_fit = std::max({options_.least_evidence(), 0.5 * least, share * excess(base)});
         const bool said = refitted < most && screened.log_bayes_factor >= worth_a_fit;
         if (!said && !(screened.effect->evades_screen() && residual_is_small())) continue;
         std::vector<std::string> names = there;
@@ -124,7 +124,7 @@ void Search::drop_and_swap() {
     for (const auto& effect : best.effects) {
         std::vector<std::string> rest = names_of(best);
         std::erase(rest, effect->name());
-        const bool needed = evidence_for(best.fit, effect->name()) > 10 * options_.least_evidence;
+        const bool needed = evidence_for(best.fit, effect->name()) > 10 * options_.least_evidence();
         if (was_tried(rest) || (needed && leaves_only_noise(best.fit, options_))) continue;
         if (refits_together_ >= options_.refits_together) break;
         ++refits_together_;
@@ -149,7 +149,7 @@ void Search::drop_and_swap() {
         const bool part =
             fewer.effects.size() < tried_[leader].effects.size() &&
             std::ranges::all_of(fewer.effects, [&](const auto& e) { return tried_[leader].has(e->name()); });
-        if (part && tried_[leader].log_bayes_factor - fewer.log_bayes_factor < options_.least_evidence) {
+        if (part && tried_[leader].log_bayes_factor - fewer.log_bayes_factor < options_.least_evidence()) {
             tried_.erase(tried_.begin() + static_cast<std::ptrdiff_t>(leader));
             return;
         }

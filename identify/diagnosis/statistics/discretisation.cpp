@@ -1,6 +1,7 @@
 #include "identify/diagnosis/statistics/discretisation.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 
@@ -106,7 +107,10 @@ public:
         if (problem_.discretisation.size() > 0) result = problem_.discretisation;
         for (Eigen::Index n = 0; n < problem_.rows(); ++n) {
             const auto& own = seen_[problem_.action[n]];
-            if (own) result[n] = (*own)(problem_.channel(n), problem_.coordinate[n] % 3);
+            if (!own) continue;
+            result[n] = (*own)(problem_.channel(n), problem_.coordinate[n] % 3);
+            if (!problem_.is_difference(n) || !seen_[problem_.since[n]]) continue;
+            result[n] -= (*seen_[problem_.since[n]])(problem_.channel(n), problem_.coordinate[n] % 3);
         }
         return result;
     }
@@ -141,14 +145,15 @@ Eigen::VectorXd discretisation_error(const BodyModel& model, const Problem& prob
 
 Eigen::VectorXd discretisation_of(const Problem& known, const Problem& problem) {
     if (known.discretisation.size() == 0) return {};
-    std::map<std::pair<int, int>, double> errors;  // of actions and coordinates
+    std::map<std::array<int, 3>, double> errors;  // of actions, those that they count from, and coordinates
     for (Eigen::Index n = 0; n < known.rows(); ++n)
-        errors[{known.action[n], known.coordinate[n]}] = known.discretisation[n];
+        errors[{known.action[n], known.since[n], known.coordinate[n]}] = known.discretisation[n];
     std::vector<int> like(problem.actions.size());
     for (int k = 0; k < static_cast<int>(like.size()); ++k) like[k] = problem.action_in(known, k);
     Eigen::VectorXd result(problem.rows());
     for (Eigen::Index n = 0; n < problem.rows(); ++n) {
-        const auto found = errors.find({like[problem.action[n]], problem.coordinate[n]});
+        const int since = problem.is_difference(n) ? like[problem.since[n]] : -1;
+        const auto found = errors.find({like[problem.action[n]], since, problem.coordinate[n]});
         if (found == errors.end()) return {};
         result[n] = found->second;
     }

@@ -181,7 +181,7 @@ Eigen::Index free_numbers(const Refit& fit) {
 }
 
 bool is_claimable(const FittedExplanation& explained, const DiagnoseOptions& options) {
-    return explained.log_bayes_factor >= options.least_evidence;
+    return explained.log_bayes_factor >= options.least_evidence();
 }
 
 bool leaves_only_noise(const Refit& fit, const DiagnoseOptions& options) {
@@ -191,7 +191,7 @@ bool leaves_only_noise(const Refit& fit, const DiagnoseOptions& options) {
 }
 
 double least_next_to_noise(const EffectHypothesis& effect, const Problem& problem, const DiagnoseOptions& options) {
-    const double least = 2 * options.least_evidence;
+    const double least = 2 * options.least_evidence();
     if (!effect.is_like_mesh_error()) return least;
     const double in_sigmas = options.mesh_error * problem.displacement().cwiseQuotient(problem.sigma).norm();
     return std::max(least, 0.5 * in_sigmas * in_sigmas);

@@ -38,6 +38,9 @@ public:
         return result;
     }
 
+    /// The earth's: from 9764 on mountains at the equator to 9834 at the pole. [WGS 84]
+    std::optional<MagnitudePrior> magnitude() const override { return MagnitudePrior{9800 / g0, 20 / g0}; }
+
     bool enforce(const Eigen::VectorXd& values, ModelSetting& setting) const override {
         setting.effects.points.push_back(std::make_shared<fem::Gravity>(g0 * values.head<3>()));
         return true;

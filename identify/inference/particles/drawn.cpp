@@ -10,7 +10,7 @@ namespace palpate::identify {
 namespace {
 
 constexpr int least_independent = 24;
-constexpr double most_numbers = 2e5;  // of independent draws
+constexpr double most_drawn_numbers = 2e5;  // of independent draws
 
 /// Particles that are not weighed (N x P), each less likely than the mean by half a square (N).
 TemperedResult unweighed(Eigen::MatrixXd particles, const Eigen::ArrayXd& half_squares, double at_mean,
@@ -40,7 +40,8 @@ TemperedResult laplace_particles(const LogDensity& log_density, const GaussianPr
 }
 
 int independent_draws(int parameters, int particles) {
-    return std::clamp(static_cast<int>(most_numbers / parameters), std::min(least_independent, particles), particles);
+    return std::clamp(static_cast<int>(most_drawn_numbers / parameters), std::min(least_independent, particles),
+                      particles);
 }
 
 TemperedResult perturbed_particles(const LogDensity& log_density, const Eigen::VectorXd& mean,

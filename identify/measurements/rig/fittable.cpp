@@ -11,12 +11,16 @@
 namespace palpate::identify {
 namespace {
 
-int count_of_differences(const MeasurementSet& set) {
-    int count = 0;
-    for (const LoadState& state : set.states)
-        count += static_cast<int>(
-            std::ranges::count_if(state.readings, [](const Reading& reading) { return reading.since.has_value(); }));
-    return count;
+/// How many readings' noise each reading shares, itself among them: sum_j exp(-d_ij^2 / (2 length^2)) over those of its
+/// state, by where they rest.
+double sharing(const MeasurementSet& set, const LoadState& state, const Reading& one, double length) {
+    double sum = 0;
+    for (const Reading& other : state.readings) {
+        if (other.marker < 0 || other.position.array().isNaN().all()) continue;
+        const double d = (set.markers[other.marker].rest - set.markers[one.marker].rest).norm() / length;
+        sum += std::exp(-0.5 * d * d);
+    }
+    return sum;
 }
 
 bool acts_with_force(const MeasurementSet& set, const Actuation& actuation) {
@@ -29,14 +33,14 @@ bool acts_with_force(const MeasurementSet& set, const Actuation& actuation) {
 
 std::vector<UnfittedPart> parts_not_fitted_yet(const MeasurementSet& set) {
     std::vector<UnfittedPart> parts;
-    if (const int differences = count_of_differences(set); differences > 0)
-        parts.push_back({fmt::format("{} displacements since a state in which something acts", differences),
-                         "displacements are fitted as positions. Let them count from an unloaded state "
-                         "('displacements.since' in set.yaml), or from rest"});
-    if (set.position_correlation)
-        parts.push_back({fmt::format("'correlated.position' ({:.4g} mm)", *set.position_correlation),
-                         "each reading's noise is taken for its own. Take 'correlated' out, and keep one marker for "
-                         "each such length rather than all, so that none counts twice"});
+    const bool is_noise_told =
+        set.position_noise || std::ranges::all_of(set.states, [](const LoadState& state) {
+            return std::ranges::none_of(state.readings, [](const Reading& one) { return std::isnan(one.sigma); });
+        });
+    if (set.position_correlation && !is_noise_told)
+        parts.push_back({fmt::format("'correlated.position' ({:.4g} mm) and no noise", *set.position_correlation),
+                         "noise that neighbours share cannot be estimated from what a fit leaves. Give "
+                         "'noise.position' in set.yaml, or a sigma for each reading"});
     return parts;
 }
 
@@ -70,6 +74,25 @@ void take_displacements_from_rest(MeasurementSet& set) {
             fmt::format("{} displacements count from a state in which nothing is known to act: they are taken as "
                         "positions, from rest.",
                         taken));
+}
+
+void take_correlated_noise(MeasurementSet& set) {
+    if (!set.position_correlation || !parts_not_fitted_yet(set).empty()) return;
+    double most = 1;
+    for (LoadState& state : set.states) {
+        std::vector<double> shared;
+        for (const Reading& one : state.readings)
+            shared.push_back(one.marker < 0 ? 1 : sharing(set, state, one, *set.position_correlation));
+        for (std::size_t r = 0; r < shared.size(); ++r) {
+            Reading& one = state.readings[r];
+            one.sigma = std::sqrt(shared[r]) * (std::isnan(one.sigma) ? *set.position_noise : one.sigma);
+            most = std::max(most, shared[r]);
+        }
+    }
+    set.notes.push_back(
+        fmt::format("Neighbours within {:.3g} mm err alike: up to {:.0f} readings count as one, by a larger noise.",
+                    *set.position_correlation, most));
+    set.position_correlation.reset();
 }
 
 bool tells_a_force(const MeasurementSet& set) {

@@ -27,6 +27,11 @@ void require_fittable(const MeasurementSet& set);
 /// become positions from rest; others stay. The set's notes tell so.
 void take_displacements_from_rest(MeasurementSet& set);
 
+/// Noise that neighbours share becomes larger noise of each, so that their mean is known as well as it is: of n
+/// readings of which each shares its noise with k the mean has the variance sigma^2 k / n. The set's notes tell so.
+/// Nothing is done where the noise is not told.
+void take_correlated_noise(MeasurementSet& set);
+
 /// Does a set tell any force: of a contact, a tool, a pressure, a tension, or its weight? Without one, stiffness is
 /// known up to a common factor.
 bool tells_a_force(const MeasurementSet& set);

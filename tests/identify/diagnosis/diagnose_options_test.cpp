@@ -42,6 +42,17 @@ TEST_F(WithACrushingProbe, OutliersAreNumberedAsTheSetsReadings) {
     EXPECT_THAT(diagnose(set_).outliers.readings, ElementsAre(4 * 24 + 5));
 }
 
+TEST(DiagnoseOptions, TheLeastEvidenceFollowsFromTheRateOfFalseClaims) {
+    DiagnoseOptions options;
+    const auto effects = static_cast<double>(catalogue().size());
+    EXPECT_DOUBLE_EQ(options.least_evidence(), std::log(effects / 1e-3));
+    options.false_claims = 1e-6;
+    options.without = {"gravity"};
+    EXPECT_DOUBLE_EQ(options.least_evidence(), std::log((effects - 1) / 1e-6));
+    options.false_claims = 0;
+    EXPECT_THAT(message_of<InvalidInput>([&] { options.validate(); }), HasSubstr("false_claims is 0"));
+}
+
 TEST_F(Diagnosed, UnknownNoiseIsEstimated) {
     for (const std::uint64_t seed : {1, 2, 3, 4}) {
         MeasurementSet set = twin(truth(), sigma, seed);
@@ -106,7 +117,7 @@ TEST_F(Diagnosed, WhatErrorsOfTheMeshMayFeignIsNoClaim) {
     ASSERT_LT(claimed.baseline.whitened_rms, exact.most_left);
     EXPECT_THAT(claimed.explanation, ElementsAre("compliant-support"));
     EXPECT_EQ(not_claimed.verdict, Verdict::adequate);
-    EXPECT_GT(candidate(not_claimed, "compliant-support").log_bayes_factor, coarse.least_evidence);
+    EXPECT_GT(candidate(not_claimed, "compliant-support").log_bayes_factor, coarse.least_evidence());
     EXPECT_THAT(candidate(not_claimed, "compliant-support").objection, HasSubstr("errors of mesh and rig"));
 }
 

@@ -1,3 +1,4 @@
+#include "identify/diagnosis/rigged_skeleton.h"
 #include "tests/identify/diagnosed.h"
 
 namespace palpate::identify {
@@ -30,6 +31,19 @@ protected:
         set.tools = rig_.tools;
         set.reaction_noise = 1e-4;  // [N], next to some 20 mN
         return make_twin(*model_, set, hidden, sigma);
+    }
+
+    /// The same readings as displacements since a state, which keeps none.
+    static MeasurementSet since(MeasurementSet set, std::size_t from) {
+        const std::vector<Reading> counted = set.states[from].readings;
+        const StateName name{set.states[from].probe, set.states[from].time};
+        set.states[from].readings.clear();
+        for (LoadState& state : set.states)
+            for (std::size_t r = 0; r < state.readings.size(); ++r) {
+                state.readings[r].position += set.markers[state.readings[r].marker].rest - counted[r].position;
+                state.readings[r].since = name;
+            }
+        return set;
     }
 
     static double young(const Diagnosis& found) { return std::exp(found.baseline.explanation.theta[0]); }
@@ -71,24 +85,61 @@ TEST_F(MovedByAGrip, AHiddenWeightIsNamed) {
     EXPECT_NEAR(estimate(candidate(found, "gravity"), "gz"), 9810 * half_g.z(), 0.1 * 9810 * 0.5);
 }
 
+TEST_F(MovedByAGrip, DisplacementsSinceALoadedStateAreDifferences) {
+    const MeasurementSet positions = moved(truth());
+    const Problem whole = make_problem(positions, 1), problem = make_problem(since(positions, 3), 1);
+    const Eigen::VectorXd modelled = problem.pick(solve_forward(*model_, problem, truth(), 1).markers);
+    // The twin's noise is on both states.
+    EXPECT_LT(problem.rms_mm(problem.measured - modelled), 1.5 * std::sqrt(2) * sigma);
+    EXPECT_GT(problem.rms_mm(modelled), 20 * sigma);
+    EXPECT_EQ(problem.displacement(), problem.measured);  // nothing comes off a difference
+    EXPECT_EQ(problem.actions.size(), whole.actions.size());
+    EXPECT_LT(problem.rows(), whole.rows());
+    // Without the state that they count from there is nothing to read.
+    std::vector<char> drop(problem.actions.size(), 0);
+    drop[problem.since[0]] = 1;
+    const Problem left = problem.without_actions(drop);
+    for (Eigen::Index n = 0; n < left.rows(); ++n) EXPECT_FALSE(left.is_position(n));
+
+    const Diagnosis found = diagnose(since(positions, 3));
+    EXPECT_EQ(found.verdict, Verdict::adequate);
+    EXPECT_NEAR(young(found), SmallBody::young, 4 * sd_of_ln_young(found) * SmallBody::young);
+}
+
+TEST_F(MovedByAGrip, ASkeletonIsFittedToDifferencesAsToPositions) {
+    const MeasurementSet positions = moved(truth()), differences = since(positions, 3);
+    ASSERT_TRUE(is_rigged(differences));
+    const skeleton::Model fitted = identify_rigged(body_.chain(), differences, 10, 1, 1).model;
+    const std::vector<Points> at = predict_rigged(fitted, positions, 1), of = predict_rigged(fitted, differences, 1);
+    for (std::size_t s = 0; s < at.size(); ++s) {
+        if (s == 3) continue;
+        for (Eigen::Index r = 0; r < at[s].rows(); ++r) {
+            const Vec3 rest = positions.markers[positions.states[s].readings[r].marker].rest;
+            EXPECT_LT((at[s].row(r) - at[3].row(r) - (of[s].row(r) - rest.transpose())).norm(), 1e-6);
+        }
+    }
+}
+
 TEST_F(MovedByAGrip, SensitivitiesAreDerivativesOfReactionsToo) {
-    const MeasurementSet set = moved(truth());
-    const Problem problem = make_problem(set, 1);
-    const Explanation at = truth();
-    const ForwardSolution forward = solve_forward(*model_, problem, at, 1);
-    const Eigen::MatrixXd columns =
-        sensitivities(*model_, problem, at, forward, {own_signatures(*model_, problem, at, forward)}, 1).front() +
-        seen_directly(problem, at, forward);
-    for (Eigen::Index p = 0; p < 2; ++p) {
-        constexpr double h = 2e-3;  // of a logarithm: the third derivative alters 1e-6 of it
-        Explanation ahead = at, behind = at;
-        ahead.theta[p] += h;
-        behind.theta[p] -= h;
-        const Eigen::VectorXd difference = (problem.pick(solve_forward(*model_, problem, ahead, 1).markers) -
-                                            problem.pick(solve_forward(*model_, problem, behind, 1).markers))
-                                               .cwiseQuotient(2 * h * problem.sigma);
-        // Newton ends with some 1e-8 N left of 20 mN, which differences over 4e-3 raise to 1e-4.
-        EXPECT_LT((columns.col(p) - difference).norm(), 2e-4 * difference.norm());
+    for (const bool differences : {false, true}) {
+        const MeasurementSet set = differences ? since(moved(truth()), 3) : moved(truth());
+        const Problem problem = make_problem(set, 1);
+        const Explanation at = truth();
+        const ForwardSolution forward = solve_forward(*model_, problem, at, 1);
+        const Eigen::MatrixXd columns =
+            sensitivities(*model_, problem, at, forward, {own_signatures(*model_, problem, at, forward)}, 1).front() +
+            seen_directly(problem, at, forward);
+        for (Eigen::Index p = 0; p < 2; ++p) {
+            constexpr double h = 2e-3;  // of a logarithm: the third derivative alters 1e-6 of it
+            Explanation ahead = at, behind = at;
+            ahead.theta[p] += h;
+            behind.theta[p] -= h;
+            const Eigen::VectorXd difference = (problem.pick(solve_forward(*model_, problem, ahead, 1).markers) -
+                                                problem.pick(solve_forward(*model_, problem, behind, 1).markers))
+                                                   .cwiseQuotient(2 * h * problem.sigma);
+            // Newton ends with some 1e-8 N left of 20 mN, which differences over 4e-3 raise to 1e-4.
+            EXPECT_LT((columns.col(p) - difference).norm(), 2e-4 * difference.norm());
+        }
     }
 }
 

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -32,8 +33,7 @@ TEST_F(RigFiles, DisplacementsSinceAnUnloadedStateArePositions) {
     set = read();
     take_displacements_from_rest(set);
     EXPECT_TRUE(find_state(set, {1, 0})->readings[0].since);
-    EXPECT_TRUE(
-        says(in_words(parts_not_fitted_yet(set)), {"2 displacements", "unloaded state", "displacements.since"}));
+    EXPECT_NO_THROW(require_fittable(set));
 
     folder.write("set.yaml", yaml + "displacements: {since: {probe: 2, time: 0}}\n");  // the cable pulls there
     set = read();
@@ -41,16 +41,40 @@ TEST_F(RigFiles, DisplacementsSinceAnUnloadedStateArePositions) {
     EXPECT_TRUE(find_state(set, {1, 0})->readings[0].since);
 }
 
-TEST_F(RigFiles, PartsThatCannotBeFittedYetAreNamed) {
+TEST_F(RigFiles, SharedNoiseThatIsNotToldIsNamed) {
     MeasurementSet set = read();
     set.position_correlation = 2;
+    set.position_noise.reset();
+    set.states[0].readings.push_back({.marker = 0, .position = Vec3(1, 2, 3)});
     std::vector<std::string> names;
     for (const UnfittedPart& part : parts_not_fitted_yet(set)) names.push_back(part.what);
-    EXPECT_EQ(names, std::vector<std::string>{"'correlated.position' (2 mm)"});
+    EXPECT_EQ(names, std::vector<std::string>{"'correlated.position' (2 mm) and no noise"});
     EXPECT_TRUE(says(message_of<InvalidInput>([&] { require_fittable(set); }),
-                     {"set 'rig'", "cannot be fitted yet", "none counts twice"}));
-    set.position_correlation.reset();
+                     {"set 'rig'", "cannot be fitted yet", "noise.position"}));
+    take_correlated_noise(set);
+    EXPECT_TRUE(set.position_correlation);  // it stays to be told
+    set.position_noise = 0.1;
     EXPECT_NO_THROW(require_fittable(set));
+}
+
+TEST(CorrelatedNoise, MakesNeighboursCountOnce) {
+    // A row of 400 points, ten to a length: a mean over it has the variance of 400 / (10 sqrt(2 pi)) readings.
+    MeasurementSet set;
+    set.position_noise = 0.1;
+    set.position_correlation = 1;
+    LoadState state{.probe = 1};
+    for (int i = 0; i < 400; ++i) {
+        set.markers.push_back({.id = i, .rest = Vec3(0.1 * i, 0, 0), .anchor = {}});
+        state.readings.push_back({.marker = i, .position = Vec3(0.1 * i, 0, 1)});
+    }
+    set.states = {state, state};
+    set.states[1].readings.erase(set.states[1].readings.begin() + 1, set.states[1].readings.end());
+    take_correlated_noise(set);
+    EXPECT_FALSE(set.position_correlation);
+    EXPECT_NEAR(set.states[0].readings[200].sigma, 0.1 * std::sqrt(10 * std::sqrt(2 * M_PI)), 1e-6);
+    EXPECT_NEAR(set.states[0].readings[0].sigma, 0.1 * std::sqrt(5 * std::sqrt(2 * M_PI) + 0.5), 1e-4);  // half of it
+    EXPECT_EQ(set.states[1].readings[0].sigma, 0.1);  // alone in its state
+    EXPECT_TRUE(says(set.notes.at(0), {"1 mm", "25 readings count as one"}));
 }
 
 TEST_F(RigFiles, TellWhetherAnyForceIsMeasured) {
