@@ -94,23 +94,57 @@ void find_worst(const MeasurementSet& set, const std::vector<StateReadings>& sta
 
 }  // namespace
 
+namespace {
+
+/// `predicted`: as RiggedPrediction tells them.
+std::optional<ReactionError> error_of_reactions(const MeasurementSet& set, const std::vector<Points>& predicted) {
+    ReactionError result;
+    double error = 0, measured = 0;
+    int components = 0;
+    for (std::size_t s = 0; s < set.states.size(); ++s) {
+        for (std::size_t r = 0; r < set.states[s].reactions.size(); ++r) {
+            const Vec3& force = set.states[s].reactions[r].force;
+            for (int axis = 0; axis < 3; ++axis) {
+                if (std::isnan(force[axis])) continue;
+                const double off = force[axis] - predicted[s](2 * static_cast<Eigen::Index>(r), axis);
+                error += off * off;
+                measured += force[axis] * force[axis];
+                result.max = std::max(result.max, std::abs(off));
+                ++components;
+            }
+        }
+    }
+    if (components == 0) return std::nullopt;
+    result.rms = std::sqrt(error / components);
+    result.relative = measured > 0 ? std::sqrt(error / measured) : missing;
+    return result;
+}
+
+}  // namespace
+
 Comparison compare(const skeleton::Model& model, const MeasurementSet& set, int threads) {
     const std::vector<StateReadings> states = collect_readings(model, set);
-    if (states.empty()) {
+    const bool reads_forces =
+        std::ranges::any_of(set.states, [](const LoadState& state) { return !state.reactions.empty(); });
+    if (states.empty() && !reads_forces) {
         throw InvalidInput("measurement set '" + set.name +
                            "' has no labelled reading to compare with; positions.csv "
                            "needs rows that name a marker");
     }
     std::vector<char> bears_full_load(states.size(), 1);
     std::vector<Points> predicted;
+    std::optional<ReactionError> reactions;
     if (is_rigged(set)) {
-        const std::vector<Points> of_all = predict_rigged(model, set, threads);
-        for (const StateReadings& state : states) predicted.push_back(of_all[state.state](state.rows, Eigen::all));
+        const RiggedPrediction all = predict_rigged(model, set, threads);
+        for (const StateReadings& state : states)
+            predicted.push_back(all.positions[state.state](state.rows, Eigen::all));
+        reactions = error_of_reactions(set, all.reactions);
     } else {
         predicted = predict(model, states, threads, bears_full_load);
     }
 
     Comparison result;
+    result.reactions = reactions;
     for (std::size_t s = 0; s < states.size(); ++s) {
         const int probe = set.states[states[s].state].probe;
         const bool is_new = result.overloaded_probes.empty() || result.overloaded_probes.back() != probe;
@@ -131,6 +165,10 @@ Comparison compare(const skeleton::Model& model, const MeasurementSet& set, int 
         result.max = std::max(result.max, result.probes.back().max);
         under_load.push_back(
             {rms(predicted[s] - states[s].rest), result.probes.back().rms, noise_of(states[s]), states[s].coordinates});
+    }
+    if (totals.coordinates == 0) {
+        result.relative = reactions->relative;
+        return result;
     }
     result.rms = std::sqrt(totals.error / totals.coordinates);
     result.relative = totals.displacement > 0 ? std::sqrt(totals.error / totals.displacement) : missing;

@@ -23,14 +23,22 @@ struct WorstReading {
     Vec3 towards = Vec3::Zero();  // unit vector from model to measurement
 };
 
-/// A model against measurements.
+/// Forces of tools on the body, measured and modelled.
+struct ReactionError {
+    double rms = 0, max = 0;  // over all measured components [N]
+    double relative = 0;      // rms over rms of what was measured; NaN where that is 0
+};
+
+/// A model against measurements. Of a set in which forces alone are read there are no positions: `relative` is that of
+/// the forces then.
 struct Comparison {
-    double rms = 0;                             // over all measured coordinates [mm]
+    double rms = 0;                             // over all measured coordinates [mm]; 0 where none was measured
     double max = 0;                             // of the error vectors' lengths [mm]
     double relative = 0;                        // rms over rms displacement
     double noise = missing;                     // rms of the readings' sigma [mm]; NaN when unknown
     bool adequate = false;                      // what is left is noise
     double p_value = missing;                   // of chi^2 of the errors over the noise; NaN when the noise is unknown
+    std::optional<ReactionError> reactions;     // none: no force of a tool was measured
     std::optional<LoadExponent> load_exponent;  // none when the loads do not differ
     std::vector<ProbeError> probes;             // a row per state with readings
     std::vector<WorstReading> worst;            // the ten largest, largest first

@@ -178,7 +178,7 @@ std::vector<skeleton::Equilibrium> play_rigged(const skeleton::Model& model, con
     return played;
 }
 
-std::vector<Points> predict_rigged(const skeleton::Model& model, const MeasurementSet& set, int threads) {
+RiggedPrediction predict_rigged(const skeleton::Model& model, const MeasurementSet& set, int threads) {
     const SkeletonBody body = body_of(model, set);
     const Problem problem = problem_of(set);
     const Explanation explanation = as_it_is(model, body, problem);
@@ -189,7 +189,7 @@ std::vector<Points> predict_rigged(const skeleton::Model& model, const Measureme
         action[asked.state[n]] = asked.action[n];
         if (asked.is_difference(n)) since[asked.since_state[n]] = asked.since[n];
     }
-    std::vector<Points> predicted;
+    RiggedPrediction predicted;
     for (std::size_t s = 0; s < set.states.size(); ++s) {
         const std::vector<Reading>& readings = set.states[s].readings;
         Points own = Points::Constant(std::ssize(readings), 3, missing);
@@ -201,7 +201,13 @@ std::vector<Points> predict_rigged(const skeleton::Model& model, const Measureme
             own.row(static_cast<Eigen::Index>(r)) +=
                 set.markers[readings[r].marker].rest.transpose() - forward.markers[since[from]].row(readings[r].marker);
         }
-        predicted.push_back(std::move(own));
+        predicted.positions.push_back(std::move(own));
+        const std::vector<ReactionReading>& reactions = set.states[s].reactions;
+        Points felt = Points::Constant(2 * std::ssize(reactions), 3, missing);
+        for (std::size_t r = 0; r < reactions.size() && action[s] >= 0; ++r)
+            felt.middleRows<2>(2 * static_cast<Eigen::Index>(r)) =
+                forward.markers[action[s]].middleRows<2>(problem.markers + 2 * reactions[r].tool);
+        predicted.reactions.push_back(std::move(felt));
     }
     return predicted;
 }

@@ -19,8 +19,12 @@ IdentifyResult identify_rigged(const skeleton::Model& model, const MeasurementSe
 /// How the model stands in each state of the set. @throws SolverFailure where one has no equilibrium.
 std::vector<skeleton::Equilibrium> play_rigged(const skeleton::Model& model, const MeasurementSet& set, int threads);
 
-/// Where the markers of each state's readings stand at the model's equilibria (states of readings x 3) [mm]; NaN where
-/// a reading names none. @throws SolverFailure where a state has no equilibrium.
-std::vector<Points> predict_rigged(const skeleton::Model& model, const MeasurementSet& set, int threads);
+/// What is read of each state at the model's equilibria.
+struct RiggedPrediction {
+    std::vector<Points> positions;  // of the state's readings (readings x 3) [mm]; NaN where one names no marker
+    std::vector<Points> reactions;  // force, then moment of each of the state's reactions (2 reactions x 3) [N, N mm]
+};
+/// @throws SolverFailure where a state has no equilibrium.
+RiggedPrediction predict_rigged(const skeleton::Model& model, const MeasurementSet& set, int threads);
 
 }  // namespace palpate::identify

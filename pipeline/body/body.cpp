@@ -7,6 +7,8 @@
 #include <cmath>
 
 #include "mesh/errors.h"
+#include "mesh/geometry/surface_tree.h"
+#include "mesh/meshing/refine_surface.h"
 #include "mesh/meshing/remesh.h"
 #include "mesh/meshing/repair_surface.h"
 #include "mesh/meshing/tetrahedralise.h"
@@ -19,13 +21,28 @@ namespace {
 constexpr double default_edge_share = 0.06;  // of the longest side
 constexpr double default_nodes = 20'000;     // that a thin body may have: solved in two seconds
 
+/// The surface with shorter edges where they are wanted, its new vertices where the body is that it was made of.
+mesh::Surface refined(const mesh::Surface& surface, const std::vector<FineZone>& zones, double edge,
+                      const mesh::Surface& body) {
+    if (zones.empty()) return surface;
+    // Edges of a remeshed surface are up to 4/3 of what was wanted.
+    mesh::Surface result =
+        mesh::refine_surface(surface, [&](const Vec3& place) { return edge_at(place, zones, 2 * edge); });
+    const mesh::SurfaceTree tree(body);
+    for (Eigen::Index v = surface.vertices.rows(); v < result.vertices.rows(); ++v)
+        result.vertices.row(v) = tree.closest(result.vertices.row(v)).position;
+    return result;
+}
+
 /// A surface filled with tetrahedra: where that fails with these edges, with shorter ones.
-void fill(MeshedBody& body, double edge, double volume_change, const Progress& progress) {
+void fill(MeshedBody& body, double edge, const MeshingOptions& options, const Progress& progress) {
     constexpr std::array shares{1.0, 0.8, 0.64};
     for (const double share : shares) {
         try {
             report(progress, "remeshing the surface", 0.3);
-            body.surface = mesh::remesh(body.repaired, {.edge_length = share * edge, .volume_change = volume_change});
+            body.surface =
+                mesh::remesh(body.repaired, {.edge_length = share * edge, .volume_change = options.volume_change});
+            body.surface = refined(body.surface, options.fine, share * edge, body.repaired);
             report(progress, "filling with tetrahedra", 0.6);
             body.volume = mesh::tetrahedralise(body.surface, {.edge_length = share * edge});
             if (share < 1) body.notes.push_back(fmt::format("edges of {:.3g} mm: longer ones failed", share * edge));
@@ -56,7 +73,7 @@ MeshedBody make_body(const mesh::Surface& surface, const MeshingOptions& options
                         edge, longest));
     }
     try {
-        fill(body, edge, options.volume_change, progress);
+        fill(body, edge, options, progress);
     } catch (const LimitReached&) {
         throw;
     } catch (const SolverFailure& failure) {
@@ -66,7 +83,7 @@ MeshedBody make_body(const mesh::Surface& surface, const MeshingOptions& options
             const mesh::RepairResult wrapped = mesh::repair_surface(surface, {.wrap = true});
             body.repaired = wrapped.surface;
             body.notes = wrapped.steps;
-            fill(body, edge, options.volume_change, progress);
+            fill(body, edge, options, progress);
         } catch (const InvalidInput&) {
             throw failure;
         }

@@ -7,13 +7,15 @@
 #include "mesh/core/surface.h"
 #include "mesh/core/volume_mesh.h"
 #include "mesh/progress.h"
+#include "pipeline/body/contact_zones.h"
 
 namespace palpate::pipeline {
 
 struct MeshingOptions {
     double edge_length = 0;  // of the tetrahedra [mm]; 0: 6 % of the longest side, less in a thin body
     bool linear_elements = false;
-    double volume_change = 0.01;  // that remeshing may make, as a share: chords of a round body cut volume off
+    std::vector<FineZone> fine = {};  // where edges are shorter
+    double volume_change = 0.01;      // that remeshing may make, as a share: chords of a round body cut volume off
 };
 
 /// A body ready for finite elements.

@@ -31,7 +31,9 @@ std::unique_ptr<identify::ReferenceBody> fill(const identify::MeasurementSet& se
     const bool is_fitted = given && (given_nodes <= most_nodes || edge > thickness_of(set.rest_surface));
     // Curving the elements gives back what their chords cut off.
     const MeshedBody body =
-        is_fitted ? *given : make_body(set.rest_surface, {.edge_length = edge, .volume_change = 0.06}, progress);
+        is_fitted ? *given
+                  : make_body(set.rest_surface,
+                              {.edge_length = edge, .fine = contact_zones(set), .volume_change = 0.06}, progress);
     const mesh::VolumeMesh curved = is_fitted ? body.volume : mesh::curve_to(body.volume, body.repaired);
     identify::ReferenceBodyOptions options;
     options.measured_on_mesh = is_fitted;

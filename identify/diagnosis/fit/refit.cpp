@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "identify/diagnosis/fit/fit_priors.h"
+#include "identify/diagnosis/fit/known_magnitude.h"
 #include "mesh/errors.h"
 
 namespace palpate::identify {
@@ -89,7 +90,8 @@ public:
         for (int step = 0; step < most_steps || (falls && step < at_most * most_steps); ++step) {
             const Eigen::MatrixXd VA = at_.V->apply(at_.columns);
             const Eigen::VectorXd x = at_.explanation.all();
-            const Eigen::MatrixXd H = at_.columns.transpose() * VA + priors_.precision(x);
+            Eigen::MatrixXd H = at_.columns.transpose() * VA;
+            H.diagonal() += priors_.precisions();
             const Eigen::VectorXd g = VA.transpose() * at_.error - priors_.slope(x);
             const std::map<Eigen::Index, double> held = held_at_bounds(g, priors_, x);
             const Eigen::VectorXd move = best_move(H, g, held);
@@ -225,10 +227,10 @@ Eigen::MatrixXd scatter_of_probes(const Problem& problem, const Refit& at) {
 void conclude(const Problem& problem, const FitPriors& priors, Refit& at) {
     const auto N = static_cast<double>(problem.rows());
     const Eigen::VectorXd x = at.explanation.all();
-    // ln Z = -(chi^2 + priors)/2 - ln |V| / 2 - ln of the priors' scale + ln |covariance| / 2
+    // ln Z = -(chi^2 + priors)/2 - ln |V| / 2 - sum ln sd + ln |covariance| / 2
     const Eigen::LLT<Eigen::MatrixXd> factor(at.covariance);
-    at.log_evidence = -objective(*at.V, at.error, priors, x) - 0.5 * at.V->log_determinant() - priors.log_scale() +
-                      factor.matrixLLT().diagonal().array().log().sum();
+    at.log_evidence = -objective(*at.V, at.error, priors, x) - 0.5 * at.V->log_determinant() -
+                      priors.sd.array().log().sum() + factor.matrixLLT().diagonal().array().log().sum();
     at.prior_mean = priors.mean;
     at.prior_sd = priors.sd;
     at.rms_mm = problem.rms_mm(at.error.cwiseProduct(problem.sigma));
@@ -243,30 +245,50 @@ void conclude(const Problem& problem, const FitPriors& priors, Refit& at) {
     at.scatter = scatter_of_probes(problem, at);
 }
 
-/// Goes on from a fit with what is known of a magnitude, and keeps what the evidence prefers. Two hypotheses, equally
-/// likely before, have the evidence ln((Z_1 + Z_2) / 2) together.
-void try_magnitude(const BodyModel& model, const Problem& problem, const FitPriors& known, const RefitOptions& options,
+/// Where the numbers begin of an effect whose magnitude is known, and that; none: no effect has one.
+std::optional<std::pair<Eigen::Index, MagnitudePrior>> magnitude_in(const Explanation& explanation) {
+    Eigen::Index first = explanation.theta.size();
+    for (std::size_t e = 0; e < explanation.effects.size(); ++e) {
+        if (const auto known = explanation.effects[e]->magnitude()) return std::pair(first, *known);
+        first += explanation.values[e].size();
+    }
+    return std::nullopt;
+}
+
+/// Moves a fit to where it has a known magnitude, if the evidence prefers that. Two hypotheses, equally likely before,
+/// have the evidence ln((Z_1 + Z_2) / 2) together.
+void try_magnitude(const BodyModel& model, const Problem& problem, const FitPriors& priors, const RefitOptions& options,
                    Refit& at) {
-    // Farther off the evidence falls by 32; what is known can bring 5.
-    constexpr double far = 8;  // sd
-    if (options.magnitude == MagnitudeUse::alternative &&
-        known.magnitude_in_sd(at.explanation.all(), at.covariance) > far) {
-        at.log_evidence -= std::numbers::ln2;
-        return;
+    const auto known = magnitude_in(at.explanation);
+    if (!known) return;
+    const Eigen::Index first = known->first;
+    const Eigen::VectorXd x = at.explanation.all();
+    const Eigen::MatrixXd C = at.covariance;
+    const Mat3 own = C.block<3, 3>(first, first);
+    const KnownMagnitude found =
+        with_known_magnitude(x.segment<3>(first), own, priors.sd.segment<3>(first), known->second);
+    const bool is_certain = options.magnitude == MagnitudeUse::certain;
+    const double lead = found.log_bayes_factor;
+    const double evidence =
+        at.log_evidence +
+        (is_certain ? lead : std::max(lead, 0.0) + std::log1p(std::exp(-std::abs(lead))) - std::numbers::ln2);
+    if (is_certain || lead > 0) {
+        // The other numbers follow, as they go with these.
+        const Eigen::MatrixXd follow = C.middleCols<3>(first) * own.inverse();
+        Refit with = at;
+        with.explanation.set_all(
+            (x + follow * (found.value - x.segment<3>(first))).cwiseMax(priors.least).cwiseMin(priors.most));
+        try {
+            with.forward = solve_forward(model, problem, with.explanation, options.threads, &at.forward.q);
+            with.error = error_of(problem, with.forward);
+            with.covariance += follow * (found.covariance - own) * follow.transpose();
+            conclude(problem, priors, with);
+            with.has_known_magnitude = true;
+            at = std::move(with);
+        } catch (const SolverFailure&) {  // it stays where it is
+        }
     }
-    Refit with = at;
-    Descent(model, problem, known, options, with).run(options.steps, true);
-    conclude(problem, known, with);
-    with.has_known_magnitude = true;
-    if (options.magnitude == MagnitudeUse::certain) {
-        at = std::move(with);
-        return;
-    }
-    const double lead = with.log_evidence - at.log_evidence;
-    const double together =
-        std::max(with.log_evidence, at.log_evidence) + std::log1p(std::exp(-std::abs(lead))) - std::numbers::ln2;
-    if (lead > 0) at = std::move(with);
-    at.log_evidence = together;
+    at.log_evidence = evidence;
 }
 
 /// The same effects under the same law, whatever their numbers.
@@ -303,8 +325,7 @@ Refit refit(const BodyModel& model, const Problem& problem, const Explanation& e
         at.nuisances = start->nuisances;
     }
     conclude(problem, priors, at);
-    if (options.magnitude != MagnitudeUse::none)
-        if (const auto known = priors.with_magnitude(explanation)) try_magnitude(model, problem, *known, options, at);
+    if (options.magnitude != MagnitudeUse::none) try_magnitude(model, problem, priors, options, at);
     at.forward.tangents.reset();  // many fits are kept
     return at;
 }
@@ -318,10 +339,7 @@ Whitening with_numbers_unknown(const Refit& fit) {
 }
 
 double objective(const Refit& fit) {
-    const FitPriors priors(fit.prior_mean, fit.prior_sd);
-    return objective(*fit.V, fit.error,
-                     fit.has_known_magnitude ? priors.with_magnitude(fit.explanation).value() : priors,
-                     fit.explanation.all());
+    return objective(*fit.V, fit.error, FitPriors(fit.prior_mean, fit.prior_sd), fit.explanation.all());
 }
 
 double objective_near(const BodyModel& model, const Problem& problem, const Explanation& explanation,

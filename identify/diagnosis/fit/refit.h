@@ -19,7 +19,7 @@ struct Refit {
     Nuisances nuisances;
     std::optional<Whitening> V;            // of nuisances and weights
     Eigen::VectorXd prior_mean, prior_sd;  // of all numbers
-    bool has_known_magnitude = false;      // what is known of an effect's magnitude is in the priors
+    bool has_known_magnitude = false;      // an effect's numbers have the magnitude that is known
     Eigen::MatrixXd covariance;            // of all numbers, posterior
     Eigen::MatrixXd scatter;               // of the same, by how far the probes disagree about them
     double log_evidence = 0;               // less the constant that the readings share

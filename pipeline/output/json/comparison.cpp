@@ -47,6 +47,10 @@ json to_json(const identify::Comparison& c, const identify::MeasurementSet& set)
          {{"rms_mm", c.rms}, {"max_mm", c.max}, {"relative", known(c.relative)}, {"noise_mm", known(c.noise)}}},
         {"adequate", c.adequate},
         {"p_value", known(c.p_value)}};
+    if (c.reactions) {
+        result["error"]["reactions"] = {
+            {"rms_n", c.reactions->rms}, {"max_n", c.reactions->max}, {"relative", known(c.reactions->relative)}};
+    }
     if (c.load_exponent) {
         result["load_exponent"] = {
             {"value", c.load_exponent->value}, {"sd", c.load_exponent->sd}, {"words", c.load_exponent->words}};

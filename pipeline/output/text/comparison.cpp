@@ -103,12 +103,30 @@ std::string region_words(const json& compare) {
                        places);
 }
 
+/// How far the model is off, in positions and in the forces of tools, as far as these were measured.
+std::string error_words(const json& compare) {
+    const json& error = compare["error"];
+    std::string text;
+    if (!compare["probes"].empty())
+        text = fmt::format("The model is off by {:.3g} mm rms, {}, and by {:.3g} mm at most.",
+                           error["rms_mm"].get<double>(), share(error), error["max_mm"].get<double>());
+    if (error.contains("reactions")) {
+        const json& forces = error["reactions"];
+        const std::string part = forces["relative"].is_number()
+                                     ? mesh::share_of(forces["relative"].get<double>(), "the measured forces")
+                                     : "where none was measured";
+        text +=
+            fmt::format("{}The reactions of its tools are off by {:.3g} N rms, {}, and by {:.3g} N at most.",
+                        text.empty() ? "" : " ", forces["rms_n"].get<double>(), part, forces["max_n"].get<double>());
+    }
+    return text;
+}
+
 }  // namespace
 
 std::string compare_in_words(const json& compare) {
     const json& error = compare["error"];
-    std::string text = fmt::format("The model is off by {:.3g} mm rms, {}, and by {:.3g} mm at most.",
-                                   error["rms_mm"].get<double>(), share(error), error["max_mm"].get<double>());
+    std::string text = error_words(compare);
     text += if_it_explains_nothing(error["relative"]);
     if (compare.contains("held_out")) {
         text += fmt::format(" On the probes that were fitted it is off by {}, on those kept from the fit by {}.",

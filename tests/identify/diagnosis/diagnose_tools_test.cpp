@@ -110,7 +110,8 @@ TEST_F(MovedByAGrip, ASkeletonIsFittedToDifferencesAsToPositions) {
     const MeasurementSet positions = moved(truth()), differences = since(positions, 3);
     ASSERT_TRUE(is_rigged(differences));
     const skeleton::Model fitted = identify_rigged(body_.chain(), differences, 10, 1, 1).model;
-    const std::vector<Points> at = predict_rigged(fitted, positions, 1), of = predict_rigged(fitted, differences, 1);
+    const std::vector<Points> at = predict_rigged(fitted, positions, 1).positions,
+                              of = predict_rigged(fitted, differences, 1).positions;
     for (std::size_t s = 0; s < at.size(); ++s) {
         if (s == 3) continue;
         for (Eigen::Index r = 0; r < at[s].rows(); ++r) {

@@ -1,0 +1,69 @@
+#include "pipeline/body/contact_zones.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "mesh/topology/check_surface.h"
+#include "pipeline/body/body.h"
+
+namespace palpate::pipeline {
+namespace {
+
+/// A block of 60 x 60 x 30 mm with a ball of 5 mm on it, and a punch of 3 mm beside it.
+identify::MeasurementSet block() {
+    identify::MeasurementSet set;
+    set.rest_surface = mesh::make_box({0, 0, 0}, {60, 60, 30}, {1, 1, 1});
+    set.tools = {{.name = "ball", .shape = mesh::SphereShape{5}, .origin = Vec3(30, 30, 35)},
+                 {.name = "punch", .shape = mesh::FlatShape{3, Vec3(0, 0, -1)}, .origin = Vec3(15, 15, 30)},
+                 {.name = "grip", .shape = mesh::GripShape{}, .bonded = true}};
+    return set;
+}
+
+identify::LoadState moved(int probe, int tool, const Vec3& by) {
+    identify::LoadState state;
+    state.probe = probe;
+    state.motions = {{.tool = tool, .translation = by}};
+    return state;
+}
+
+TEST(ContactZones, AreWhereToolsTouchAndAsWideAsTheirContacts) {
+    identify::MeasurementSet set = block();
+    set.states = {moved(1, 0, Vec3(0, 0, -1.25)), moved(2, 1, Vec3(0, 0, -1)), moved(3, 0, Vec3(0, 0, 1)),
+                  moved(4, 2, Vec3(0, 0, 1)), moved(5, 0, Vec3(0, 0, -1.26))};
+    const std::vector<FineZone> zones = contact_zones(set);
+    ASSERT_EQ(zones.size(), 2U);  // the ball away from the body, the grip, and what is the same again make none
+    EXPECT_LT((zones[0].at - Vec3(30, 30, 30)).norm(), 1e-9);
+    EXPECT_NEAR(zones[0].edge, std::sqrt(5 * 1.25) / 2.5, 1e-9);  // Hertz
+    EXPECT_NEAR(zones[1].edge, 3 / 2.5, 1e-9);
+    EXPECT_EQ(edge_at(Vec3(30, 30, 30), zones, 4), zones[0].edge);
+    EXPECT_EQ(edge_at(Vec3(60, 60, 0), zones, 4), 4);
+}
+
+TEST(ContactZones, OfManyPlacesHaveLongerEdges) {
+    identify::MeasurementSet set = block();
+    for (int i = 0; i < 20; ++i) set.states.push_back(moved(i, 0, Vec3(i - 10, 0, -1.25)));
+    const std::vector<FineZone> zones = contact_zones(set);
+    ASSERT_EQ(zones.size(), 20U);
+    EXPECT_GT(zones[0].edge, 2 * std::sqrt(5 * 1.25) / 2.5);
+}
+
+TEST(ContactZones, MakeABodyWithShortEdgesThere) {
+    identify::MeasurementSet set = block();
+    set.states = {moved(1, 0, Vec3(0, 0, -1.25))};
+    const MeshedBody coarse = make_body(set.rest_surface, {.edge_length = 6});
+    const MeshedBody fine = make_body(set.rest_surface, {.edge_length = 6, .fine = contact_zones(set)});
+    EXPECT_TRUE(mesh::check_surface(fine.surface).sound());
+    const auto near = [](const MeshedBody& body) {
+        int count = 0;
+        for (const auto& x : body.surface.vertices.rowwise())
+            count += (x.transpose() - Vec3(30, 30, 30)).norm() < 2.5 ? 1 : 0;
+        return count;
+    };
+    EXPECT_LT(near(coarse), 5);
+    EXPECT_GT(near(fine), 20);
+    EXPECT_LT(fine.volume.nodes.rows(), coarse.volume.nodes.rows() + 4000);
+}
+
+}  // namespace
+}  // namespace palpate::pipeline
