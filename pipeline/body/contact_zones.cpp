@@ -69,7 +69,7 @@ FineZone touched(const mesh::Tool& tool, const mesh::ToolMotion& motion, const m
 std::vector<FineZone> contact_zones(const identify::MeasurementSet& set) {
     constexpr double edges_over = 2.5;  // a contact's radius
     constexpr double margin = 1.3;      // its border is singular
-    constexpr double most_nodes = 4000;
+    constexpr double most_nodes = 6000;
     std::vector<FineZone> zones;
     std::optional<mesh::SurfaceTree> body;
     for (const identify::LoadState& state : set.states) {
@@ -88,7 +88,7 @@ std::vector<FineZone> contact_zones(const identify::MeasurementSet& set) {
         }
     }
     // Tetrahedra grow from a zone by a fourth of the distance or so, whatever its surface asks for.
-    constexpr double nodes_of_zone = 100;  // (radius / edge)^3, counted on a block
+    constexpr double nodes_of_zone = 130;  // (radius / edge)^3, counted on a block
     double nodes = 0;
     for (const FineZone& zone : zones) nodes += nodes_of_zone * std::pow(zone.radius / zone.edge, 3);
     const double longer = std::cbrt(std::max(1.0, nodes / most_nodes));

@@ -14,7 +14,7 @@ struct FineZone {
 };
 
 /// Where a set's tools press: as far as each reaches, by Hertz where it is round, with edges of two fifths of that.
-/// Where there are so many that they would take more than 4,000 quadratic nodes, edges are longer.
+/// Where there are so many that they would take more than 6,000 quadratic nodes, edges are longer.
 std::vector<FineZone> contact_zones(const identify::MeasurementSet& set);
 
 /// The edge length wanted at a place: `edge` far away, growing by four fifths of the distance from the zones [mm].
