@@ -70,8 +70,13 @@ public:
         }
         result_.independent = independent_readings(result_.problem);
         result_.large_deformation_failed = baselines_.large_deformation_failed();
+        result_.false_claims = options_.false_claims;
         decide_verdict(model_, options_, result_);
         note_mesh_error();
+        if (options_.refit.magnitude == MagnitudeUse::alternative && result_.best().has_known_magnitude)
+            result_.notes.emplace_back(
+                "Gravity was taken to have the earth's magnitude, 9.8 m/s^2, which the evidence prefers; '--gravity "
+                "unknown' leaves it free.");
         if (std::string note = note_of_correction(result_.problem, moved_); !note.empty())
             result_.notes.push_back(std::move(note));
         return std::move(result_);

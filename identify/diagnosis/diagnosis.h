@@ -87,6 +87,7 @@ struct Diagnosis {
     Problem problem;                   // without the outliers
     std::optional<NextProbe> next_probe;
     int independent = 0;                    // readings, see independent_readings()
+    double false_claims = 0;                // probability that an effect is claimed where none is missing, at most
     bool large_deformation_failed = false;  // none of its laws found its equilibria
     bool noise_known = true;
     double noise = 0;                // 1 sigma, told or estimated, rms [mm]

@@ -70,6 +70,12 @@ public:
     virtual double gigabytes() const = 0;
 };
 
+/// What a finer mesh alters in what is read of an equilibrium.
+struct MeshError {
+    Points markers;             // (m x 3) [mm]
+    Eigen::VectorXd reactions;  // force and moment of each of the action's motions (6 motions) [N, N mm]
+};
+
 /// A model of a body, as identification, comparison and diagnosis see it: they do not know whether it is made of finite
 /// elements or of spheres and links. All members are const and safe from several threads.
 ///
@@ -114,10 +120,10 @@ public:
 
     // Further queries of the diagnosis.
 
-    /// How far the markers of an equilibrium with the tangent J would move on a finer mesh (m x 3) [mm];
-    /// nothing where the model has no such mesh, or cannot tell.
-    virtual std::optional<Points> discretisation_error(const Eigen::VectorXd& /*q*/, const ModelSetting& /*setting*/,
-                                                       const Action& /*action*/, const Tangent& /*J*/) const {
+    /// What a finer mesh would alter in an equilibrium with the tangent J; nothing where the model has no such mesh, or
+    /// cannot tell.
+    virtual std::optional<MeshError> discretisation_error(const Eigen::VectorXd& /*q*/, const ModelSetting& /*setting*/,
+                                                          const Action& /*action*/, const Tangent& /*J*/) const {
         return std::nullopt;
     }
 

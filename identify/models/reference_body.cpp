@@ -281,9 +281,13 @@ Eigen::SparseMatrix<double> ReferenceBody::observation(const Eigen::VectorXd& q,
     return impl_->frames.derivative(q, in_small_strain(setting));
 }
 
-std::optional<Points> ReferenceBody::discretisation_error(const Eigen::VectorXd& q, const ModelSetting& setting,
-                                                          const Action& action, const Tangent& J) const {
-    if (impl_->options.measured_on_mesh || action.memory || !action.motions.empty()) return std::nullopt;
+std::optional<MeshError> ReferenceBody::discretisation_error(const Eigen::VectorXd& q, const ModelSetting& setting,
+                                                             const Action& action, const Tangent& J) const {
+    // A finer mesh meets a tool that may part elsewhere, which its steps do not follow.
+    const bool holds = std::ranges::all_of(action.motions, [&](const mesh::ToolMotion& motion) {
+        return impl_->rig.tool(motion, young(setting))->is_grip();
+    });
+    if (impl_->options.measured_on_mesh || action.memory || !holds || has_free_coordinates(action)) return std::nullopt;
     const Impl::Finer& finer = impl_->finer.get([&] {
         const mesh::VolumeMesh& coarse = impl_->body.mesh();
         const std::optional<mesh::VolumeMesh>& given = impl_->options.finer;
@@ -295,7 +299,12 @@ std::optional<Points> ReferenceBody::discretisation_error(const Eigen::VectorXd&
         {finer.own->body, finer.interpolation}, q, factor, impl_->setting(setting, action), finer.own->load(action));
     if (!u) return std::nullopt;
     const bool small_strain = in_small_strain(setting);
-    return finer.own->frames.positions(*u, small_strain) - impl_->frames.positions(q, small_strain);
+    MeshError error{finer.own->frames.positions(*u, small_strain) - impl_->frames.positions(q, small_strain),
+                    -reactions(q, setting, action)};
+    for (std::size_t t = 0; t < action.motions.size(); ++t)
+        error.reactions.segment<6>(static_cast<Eigen::Index>(6 * t)) +=
+            finer.own->body.wrench(*u, impl_->rig.tool(action.motions[t], young(setting)));
+    return error;
 }
 
 Eigen::VectorXd ReferenceBody::advance(const Eigen::VectorXd& q, const Eigen::VectorXd& step,

@@ -46,8 +46,8 @@ public:
                                     const Action& action) const override;
     Points observe(const Eigen::VectorXd& q, const ModelSetting& setting) const override;
     Eigen::SparseMatrix<double> observation(const Eigen::VectorXd& q, const ModelSetting& setting) const override;
-    std::optional<Points> discretisation_error(const Eigen::VectorXd& q, const ModelSetting& setting,
-                                               const Action& action, const Tangent& J) const override;
+    std::optional<MeshError> discretisation_error(const Eigen::VectorXd& q, const ModelSetting& setting,
+                                                  const Action& action, const Tangent& J) const override;
     Eigen::VectorXd advance(const Eigen::VectorXd& q, const Eigen::VectorXd& step,
                             const ModelSetting& setting) const override;
     std::shared_ptr<const Memory> remember(const Eigen::VectorXd& q, const ModelSetting& setting,

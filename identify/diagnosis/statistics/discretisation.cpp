@@ -80,10 +80,16 @@ public:
         });
     }
 
-    /// What an error of the markers (m x 3) alters in the channels as they are read.
-    Points seen_with(int k, const Points& error) const {
+    /// What an error alters in the channels as they are read.
+    Points seen_with(int k, const MeshError& error) const {
         Points channels = forward_.stand[k];
-        channels.topRows(problem_.markers) += error;
+        channels.topRows(problem_.markers) += error.markers;
+        const std::vector<mesh::ToolMotion>& motions = forward_.actions[k].motions;
+        for (std::size_t t = 0; t < motions.size(); ++t) {
+            const Eigen::Index force = problem_.markers + 2 * motions[t].tool;
+            channels.row(force) += error.reactions.segment<3>(static_cast<Eigen::Index>(6 * t));
+            channels.row(force + 1) += error.reactions.segment<3>(static_cast<Eigen::Index>(6 * t) + 3);
+        }
         return explanation_.read(problem_, channels) - forward_.markers[k];
     }
 

@@ -106,6 +106,7 @@ json to_json(const identify::Diagnosis& diagnosis, const identify::BodyModel& mo
     for (const identify::Candidate& candidate : diagnosis.ranking) ranking.push_back(to_json(candidate, model));
     return {{"format", "palpate-diagnosis/1"},
             {"verdict", identify::verdict_names[static_cast<std::size_t>(diagnosis.verdict)]},
+            {"false_claim_rate", diagnosis.false_claims},
             {"explanation", diagnosis.explanation},
             {"ranking", ranking},
             {"next_probe", diagnosis.next_probe ? to_json(*diagnosis.next_probe) : json(nullptr)},

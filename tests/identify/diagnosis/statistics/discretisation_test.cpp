@@ -74,7 +74,30 @@ TEST_F(Discretisation, IsToldByAFinerMeshThatIsGiven) {
     const Points expected = truth.observe(truth.equilibrium(setting, action), setting) - model.observe(q, setting);
     // A refined equilibrium ends with a twentieth to go, by an estimate that is too small where meshes do not nest; a
     // fifth of the error is less than the half that its nuisance allows for.
-    EXPECT_LT((*error - expected).norm(), 0.2 * expected.norm());
+    EXPECT_LT((error->markers - expected).norm(), 0.2 * expected.norm());
+}
+
+TEST_F(Discretisation, OfWhatAGripFeelsIsToldToo) {
+    Rig rig;
+    rig.tools.push_back({.name = "grip",
+                         .shape = mesh::GripShape{{mesh::BoxRegion{Vec3(54, -1, -1), Vec3(61, 41, 5)}}},
+                         .bonded = true,
+                         .origin = Vec3(57, 20, 2)});
+    const mesh::VolumeMesh finer = plate({20, 12, 4});
+    const ReferenceBody model(plate({10, 6, 2}), body_.supports, body_.markers, {.rig = rig, .finer = finer});
+    const ReferenceBody truth(finer, body_.supports, body_.markers, {.rig = rig});
+    const ModelSetting setting = bare_truth(model, 2).setting();
+    Action action;
+    action.motions = {{.tool = 0, .translation = Vec3(1, 2, 5), .rotation = Vec3(0.05, 0.1, 0)}};
+    const Eigen::VectorXd q = model.equilibrium(setting, action), exact = truth.equilibrium(setting, action);
+    const auto error = model.discretisation_error(q, setting, action, *model.tangent(q, setting, action));
+    ASSERT_TRUE(error);
+    const Eigen::VectorXd expected = truth.reactions(exact, setting, action) - model.reactions(q, setting, action);
+    EXPECT_GT(expected.norm(), 0.01 * model.reactions(q, setting, action).norm());
+    // A refined equilibrium ends with a twentieth to go.
+    EXPECT_LT((error->reactions - expected).norm(), 0.1 * expected.norm());
+    const Points moved = truth.observe(exact, setting) - model.observe(q, setting);
+    EXPECT_LT((error->markers - moved).norm(), 0.1 * moved.norm());
 }
 
 TEST_F(Discretisation, OfSmallerLoadsIsScaledWhereNoiseHidesTheDifference) {
