@@ -8,6 +8,7 @@
 
 #include "identify/inference/problem/identify_options.h"
 #include "mesh/errors.h"
+#include "pipeline/case/body_verdict.h"
 #include "skeleton/construction/properties/link_kind.h"
 #include "skeleton/model/model.h"
 
@@ -36,6 +37,9 @@ inline constexpr Names<skeleton::Stiffness, 5> stiffnesses{{{"elongation", skele
                                                             {"volume", skeleton::Stiffness::volume}}};
 inline constexpr Names<skeleton::LinkKind, 2> link_kinds{
     {{"full", skeleton::LinkKind::full}, {"burion2008", skeleton::LinkKind::burion2008}}};
+
+inline constexpr Names<KeptPieces, 3> kept_pieces{
+    {{"automatic", KeptPieces::automatic}, {"largest", KeptPieces::largest}, {"all", KeptPieces::all}}};
 
 /// @throws InvalidInput naming where, what was written and what is allowed.
 template <typename Enum, std::size_t N>
