@@ -128,13 +128,11 @@ std::string with_sd(double value, double sd) {
     int place = static_cast<int>(std::floor(std::log10(sd)));
     const double leading = sd / std::pow(10.0, place);
     if (leading < 2.95) --place;
-    if (leading >= 9.5) ++place;
-    const double unit = std::pow(10.0, place);
-    const int decimals = std::max(0, -place);
-    const auto rounded = [&](double x) { return place > 0 ? std::round(x / unit) * unit : x; };
     constexpr int most_decimals = 9;
-    if (decimals > most_decimals) return fmt::format("{:.3g} ± {:.2g}", value, sd);
-    return fmt::format("{:.{}f} ± {:.{}f}", rounded(value) + 0.0, decimals, rounded(sd), decimals);
+    if (-place > most_decimals) return fmt::format("{:.3g} ± {:.2g}", value, sd);
+    const double unit = std::pow(10.0, place);
+    const auto rounded = [&](double x) { return std::round(x / unit) * unit + 0.0; };  // no "-0"
+    return fmt::format("{:.{}f} ± {:.{}f}", rounded(value), std::max(0, -place), rounded(sd), std::max(0, -place));
 }
 
 std::string count_of(long count, const std::string& one, const std::string& many) {

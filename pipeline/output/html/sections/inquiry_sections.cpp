@@ -57,7 +57,7 @@ std::string why_not_the_closer(const json& candidate, const json& claimed) {
 }
 
 /// What an effect would mean, and what became of it.
-std::string candidate_words(const json& candidate, bool claimed, double baseline_rms) {
+std::string candidate_words(const json& candidate, bool claimed, double baseline_rms, const std::string& why_not) {
     std::string words = candidate.value("sentence", "");
     if (claimed) words = "<b>Claimed.</b> " + escape(words);
     if (words.empty()) {
@@ -76,6 +76,7 @@ std::string candidate_words(const json& candidate, bool claimed, double baseline
                      ? fmt::format(" Screened only: it would leave {} mm rms.", number(candidate["predicted_rms_mm"]))
                      : " Screened only: it would explain nothing.";
     }
+    words += escape(why_not);
     const std::string numbers = parameters(candidate["parameters"]);
     if (!numbers.empty()) words += "<br><span class=\"soft\">" + escape(numbers) + "</span>";
     return words;
@@ -93,6 +94,8 @@ std::string ranking_table(const json& diagnosis) {
     std::string rows;
     for (const json& c : diagnosis["ranking"]) {
         const bool is_claimed = std::ranges::find(claimed, c["effect"].get<std::string>()) != claimed.end();
+        const std::string why_not =
+            is_claimed || claimed.size() != 1 ? "" : why_not_the_closer(c, diagnosis["ranking"][0]);
         rows += fmt::format("<tr{}><td>{}</td>", is_claimed ? " class=\"claimed\"" : "",
                             escape(c["effect"].get<std::string>())) +
                 named_cell("evidence", evidence(c["log_bayes_factor"])) +
@@ -103,9 +106,7 @@ std::string ranking_table(const json& diagnosis) {
                                            ? number(c["held_out_rms_mm"]) + " mm"
                                            : "") +
                 named_cell("over the noise", c["whitened_rms"].is_number() ? number(c["whitened_rms"]) + " ×" : "") +
-                "<td class=\"words\">" + candidate_words(c, is_claimed, baseline_rms) +
-                (is_claimed || claimed.size() != 1 ? "" : escape(why_not_the_closer(c, diagnosis["ranking"][0]))) +
-                "</td></tr>";
+                "<td class=\"words\">" + candidate_words(c, is_claimed, baseline_rms, why_not) + "</td></tr>";
     }
     return "<div class=\"wide\"><table class=\"cards\"><thead><tr><th>effect</th><th>evidence</th><th>probability</th>"
            "<th>error with it</th><th>held out</th><th>over the noise</th><th class=\"words\">in words</th>"
