@@ -223,7 +223,8 @@ private:
             result_.notes.push_back(fmt::format(
                 "In probe {} at {:g} s the markers {} and {} look exchanged: with their labels swapped both fit. Swap "
                 "them in positions.csv to use their readings.",
-                state.probe, state.time, set_.markers[one.markers.first].id, set_.markers[one.markers.second].id));
+                state.probe, state.time, label_of(set_.markers[one.markers.first]),
+                label_of(set_.markers[one.markers.second])));
         }
         return true;
     }

@@ -7,10 +7,10 @@
 namespace palpate::identify {
 namespace {
 
-/// Variances of what is told of fitted numbers v with a covariance C: the halves of what it differs by between v + c
-/// and v - c, squared, for each column c of C's square root.
-Eigen::VectorXd variances_of_told(const EffectHypothesis& effect, const std::vector<EffectNumber>& numbers,
-                                  const Eigen::VectorXd& v, const Eigen::MatrixXd& covariance) {
+/// Covariance of what is told of fitted numbers v with a covariance C: from the halves of what it differs by between
+/// v + c and v - c, for each column c of C's square root.
+Eigen::MatrixXd covariance_of_told(const EffectHypothesis& effect, const std::vector<EffectNumber>& numbers,
+                                   const Eigen::VectorXd& v, const Eigen::MatrixXd& covariance) {
     const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> axes(covariance);
     const auto estimate = [&](const Eigen::VectorXd& x) -> Eigen::VectorXd {
         const skeleton::EffectRecord at = effect.record(numbers, x);
@@ -18,12 +18,23 @@ Eigen::VectorXd variances_of_told(const EffectHypothesis& effect, const std::vec
         for (Eigen::Index p = 0; p < values.size(); ++p) values[p] = at.parameters[p].value;
         return values;
     };
-    Eigen::VectorXd variances = 0 * estimate(v);
+    Eigen::MatrixXd root(estimate(v).size(), v.size());
     for (Eigen::Index j = 0; j < v.size(); ++j) {
         const Eigen::VectorXd c = std::sqrt(std::max(axes.eigenvalues()[j], 0.0)) * axes.eigenvectors().col(j);
-        variances += (0.5 * (estimate(v + c) - estimate(v - c))).cwiseAbs2();
+        root.col(j) = 0.5 * (estimate(v + c) - estimate(v - c));
     }
-    return variances;
+    return root * root.transpose();
+}
+
+/// The correlations of the wider of two covariances, with the larger of both variances of each number.
+Eigen::MatrixXd wider(const Eigen::MatrixXd& one, const Eigen::MatrixXd& other) {
+    const Eigen::MatrixXd& base = one.trace() >= other.trace() ? one : other;
+    const Eigen::ArrayXd variance = one.diagonal().cwiseMax(other.diagonal()).array();
+    const Eigen::VectorXd stretch =
+        (base.diagonal().array() > 0).select((variance / base.diagonal().array()).sqrt(), 0.0);
+    Eigen::MatrixXd result = stretch.asDiagonal() * base * stretch.asDiagonal();
+    result.diagonal() = variance;
+    return result;
 }
 
 }  // namespace
@@ -41,12 +52,12 @@ EffectEstimate FittedExplanation::estimate(const std::string& name) const {
             at += v.size();
             continue;
         }
-        EffectEstimate result{all.effects[e]->record(fit.numbers[e], v), {}};
-        const auto variances = [&](const Eigen::MatrixXd& covariance) {
-            return variances_of_told(*all.effects[e], fit.numbers[e], v, covariance.block(at, at, v.size(), v.size()));
+        EffectEstimate result{.effect = all.effects[e]->record(fit.numbers[e], v)};
+        const auto told = [&](const Eigen::MatrixXd& covariance) {
+            return covariance_of_told(*all.effects[e], fit.numbers[e], v, covariance.block(at, at, v.size(), v.size()));
         };
-        const Eigen::VectorXd variance = variances(fit.covariance).cwiseMax(variances(fit.scatter));
-        for (const double one : variance) result.sd.push_back(std::sqrt(one));
+        result.covariance = wider(told(fit.covariance), told(fit.scatter));
+        for (const double variance : result.covariance.diagonal()) result.sd.push_back(std::sqrt(variance));
         return result;
     }
     return {};

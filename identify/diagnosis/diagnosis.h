@@ -21,10 +21,11 @@ enum class Verdict {
 };
 inline constexpr std::array<const char*, 4> verdict_names{"adequate", "missing-effect", "ambiguous", "unexplained"};
 
-/// An effect's numbers as they are told, each with its standard deviation.
+/// An effect's numbers as they are told, each with its standard deviation, and all with their covariance.
 struct EffectEstimate {
     skeleton::EffectRecord effect = {};
     std::vector<double> sd = {};
+    Eigen::MatrixXd covariance = {};  // (n x n); empty: unknown
 };
 
 /// Effects in force together, fitted: an explanation that was tried.

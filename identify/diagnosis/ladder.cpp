@@ -193,7 +193,7 @@ private:
         return diagnose(body_, set, options);
     }
 
-    static skeleton::EffectRecord start_of(const std::string& name, const Diagnosis* diagnosis) {
+    skeleton::EffectRecord start_of(const std::string& name, const Diagnosis* diagnosis) const {
         if (diagnosis) {
             for (const Candidate& candidate : diagnosis->ranking) {
                 if (candidate.effect->name() == name && !candidate.estimate.effect.name.empty()) {
@@ -201,7 +201,8 @@ private:
                 }
             }
         }
-        return {name, {}};
+        const auto told = std::ranges::find(options_.start, name, &skeleton::EffectRecord::name);
+        return told == options_.start.end() ? skeleton::EffectRecord{name, {}} : *told;
     }
 
     void add_step(const std::vector<std::string>& effects, const Diagnosis* diagnosis) {
@@ -209,6 +210,7 @@ private:
         const Diagnosis found = explain(fitted_, effects, diagnosis);
         const Refit& fit = found.best();
         step.effects = estimate(found);
+        step.material = material_of(body_, fit);
         step.log_evidence = fit.log_evidence;
         if (!effects.empty() && diagnosis) {
             const auto& ranking = diagnosis->ranking;
@@ -321,9 +323,10 @@ private:
     void finish(const std::vector<std::string>& effects, const Diagnosis* diagnosis) {
         report(progress_, "the model on all states", 0.9);
         const bool is_known = diagnosis && diagnosis->explanation == effects;
-        const Diagnosis whole = is_known ? *diagnosis : explain(set_, effects, diagnosis);
+        const Diagnosis& whole = result_.whole = is_known ? *diagnosis : explain(set_, effects, diagnosis);
         LadderStep& last = result_.steps.back();
         last.effects = estimate(whole);
+        last.material = material_of(body_, whole.best());
         last.set = understood(set_, last.effects, whole.outliers.readings);
         result_.identified = identify(with_effects(last.effects), last.set, options_.identify, progress_, &near_);
         last.model = result_.identified.model;

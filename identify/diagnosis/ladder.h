@@ -3,6 +3,7 @@
 #include "identify/comparison/comparison.h"
 #include "identify/diagnosis/diagnose_options.h"
 #include "identify/diagnosis/diagnosis.h"
+#include "identify/diagnosis/material_estimate.h"
 #include "identify/inference/identify_result.h"
 #include "identify/inference/problem/identify_options.h"
 #include "identify/measurements/measurement_set.h"
@@ -22,6 +23,7 @@ struct LadderStep {
     std::vector<skeleton::EffectRecord> effects;
     StepError skeleton;
     std::optional<StepError> reference;
+    MaterialEstimate material;          // of the same body, fitted as `model` is
     double log_evidence = missing;      // of the reference body's fit, less the constant that the readings share
     double predicted_rms_mm = missing;  // of the reference body, by the screen before it was fitted
     skeleton::Model model;              // with the effects in it; the last one is fitted to all states
@@ -33,6 +35,7 @@ struct LadderStep {
 struct Ladder {
     std::vector<LadderStep> steps;        // nothing added first
     IdentifyResult identified;            // of the last step, on all states
+    Diagnosis whole;                      // of the body with the last step's effects, on all states
     std::vector<int> held_out_probes;     // empty where there are too few to spare one
     Verdict verdict = Verdict::adequate;  // on the last step
     std::vector<std::string> notes;
@@ -44,6 +47,7 @@ struct LadderOptions {
     /// An effect that makes held-out probes worse, or leaves a state without equilibrium, is told in the notes and not
     /// added.
     bool only_better = false;
+    std::vector<skeleton::EffectRecord> start = {};  // numbers of effects to begin with, where no diagnosis has any
 };
 
 /// Adds effects to a model, fits anew, and tells the error before and after, on fitted and on held-out probes.

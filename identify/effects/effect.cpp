@@ -19,6 +19,10 @@ std::optional<ScreenPlan> EffectHypothesis::screen_plan(const BodyModel&, const 
     return std::nullopt;
 }
 
+std::string EffectHypothesis::sentence_with(const skeleton::EffectRecord& record, const Eigen::MatrixXd&) const {
+    return sentence(record);
+}
+
 std::string EffectHypothesis::objection(const Problem&, const Eigen::VectorXd&, bool) const { return {}; }
 
 skeleton::EffectRecord EffectHypothesis::record(const std::vector<EffectNumber>& numbers,

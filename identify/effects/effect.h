@@ -154,6 +154,8 @@ public:
                                    const skeleton::EffectRecord& record) const;
     /// A sentence on what it is here: "Gravity of 9.8 m/s^2 along (0, 0, -1) is missing."
     virtual std::string sentence(const skeleton::EffectRecord& record) const = 0;
+    /// The same with how well its numbers are known. @param covariance of the record's numbers (n x n)
+    virtual std::string sentence_with(const skeleton::EffectRecord& record, const Eigen::MatrixXd& covariance) const;
     /// The measurements as they would be without this fault, for models that do not know of it.
     virtual MeasurementSet corrected(const MeasurementSet& set, const skeleton::EffectRecord& record) const;
 

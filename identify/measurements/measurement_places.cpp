@@ -43,15 +43,16 @@ void check_places(const MeasurementSet& set) {
         const Vec3 place = marker.anchor.value_or(marker.rest);
         const double distance = rest.tree.closest(place).distance;
         if (distance > allowed && (marker.anchor || !rest.holds(place)))
-            refuse(fmt::format("markers.csv: {} {}", marker.anchor ? "the anchor of marker" : "marker", marker.id),
-                   place, distance, allowed, body,
-                   marker.anchor ? "" : " A marker that stands off the body is told with its anchor (ax,ay,az).");
+            refuse(
+                fmt::format("markers.csv: {} {}", marker.anchor ? "the anchor of marker" : "marker", label_of(marker)),
+                place, distance, allowed, body,
+                marker.anchor ? "" : " A marker that stands off the body is told with its anchor (ax,ay,az).");
         if (marker.anchor && (marker.rest - place).norm() > body.longest_side())
             throw InvalidInput(
                 fmt::format("markers.csv: marker {} at [{:.4g}] mm stands {:.4g} mm off its anchor at [{:.4g}] mm, "
                             "further than the "
                             "body is long ({:.4g} mm). Are both in the same unit and frame?",
-                            marker.id, fmt::join(marker.rest, ", "), (marker.rest - place).norm(),
+                            label_of(marker), fmt::join(marker.rest, ", "), (marker.rest - place).norm(),
                             fmt::join(place, ", "), body.longest_side()));
     }
 }

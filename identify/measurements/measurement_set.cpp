@@ -4,6 +4,8 @@
 
 namespace palpate::identify {
 
+std::string label_of(const Marker& marker) { return marker.name.empty() ? std::to_string(marker.id) : marker.name; }
+
 bool needs_second_format(const MeasurementSet& set) {
     const auto is_difference = [](const Reading& reading) { return reading.since.has_value(); };
     return !set.tools.empty() || !set.actuators.empty() || set.reaction_noise || set.moment_noise ||

@@ -24,10 +24,14 @@ inline constexpr double least_force_noise = 1e-13;    // [N]
 inline constexpr double least_moment_noise = 1e-13;   // [N mm]
 
 struct Marker {
-    int id = 0;                  // as in the files
+    int id = 0;                  // as in the files; where these name markers by words, the number of its row
     Vec3 rest = Vec3::Zero();    // [mm]
     std::optional<Vec3> anchor;  // the surface point that it is rigidly attached to, when it stands off
+    std::string name = {};       // the word that the files name it by; "": its number
 };
+
+/// A marker as the files name it.
+std::string label_of(const Marker& marker);
 
 /// What tells a state from the others of a set, in every table.
 struct StateName {

@@ -9,7 +9,7 @@
 namespace palpate::identify {
 namespace {
 
-constexpr double least_size = 0.1, largest_size = 1e5;        // [mm]
+constexpr double least_cloud = 0.002;                         // of the body's length, which all markers span
 constexpr double softest_solid = 1e-5, stiffest_solid = 2e6;  // [MPa]: gels of 10 Pa, diamond 1.2 TPa
 constexpr double stiffest_block = 2e5;                        // [MPa]: steel, pressed on its whole length
 constexpr double least_share = 1e-9;                          // of a slender body's modulus, as a block
@@ -26,6 +26,14 @@ struct Extremes {
 /// Components that are NaN count as 0.
 double norm_of_known(const Vec3& v) { return v.array().isNaN().select(0, v.array()).matrix().norm(); }
 
+/// The longest side of the box round the markers [mm].
+double extent_of_markers(const MeasurementSet& set) {
+    if (set.markers.empty()) return 0;
+    Points places(std::ssize(set.markers), 3);
+    for (Eigen::Index m = 0; m < places.rows(); ++m) places.row(m) = set.markers[static_cast<std::size_t>(m)].rest;
+    return mesh::bounding_box(places).longest_side();
+}
+
 Extremes extremes_of(const MeasurementSet& set) {
     Extremes extremes;
     for (const LoadState& state : set.states) {
@@ -37,7 +45,8 @@ Extremes extremes_of(const MeasurementSet& set) {
             moved = std::max(moved, distance);
             if (distance > extremes.moved) {
                 extremes.moved = distance;
-                extremes.where = fmt::format("marker {} in probe {} at time {}", marker.id, state.probe, state.time);
+                extremes.where =
+                    fmt::format("marker {} in probe {} at time {}", label_of(marker), state.probe, state.time);
             }
         }
         for (const mesh::Contact& contact : state.contacts) force += contact.force.norm();
@@ -53,13 +62,24 @@ Extremes extremes_of(const MeasurementSet& set) {
 
 }  // namespace
 
+std::string implausible_size(double longest) {
+    constexpr double least = 1, most = 1e4;  // [mm]: what is pressed with forces that are read
+    if (longest >= least && longest <= most) return {};
+    return fmt::format(
+        "The body is {:.4g} mm at its longest, {} than anything that is usually pressed and read: is its file in {}? "
+        "(--unit or --longest, or 'units' in set.yaml)",
+        longest, longest < least ? "smaller" : "larger", longest < least ? "m or cm" : "micrometres");
+}
+
 std::vector<std::string> implausible(const MeasurementSet& set) {
     std::vector<std::string> words;
     const double size = mesh::bounding_box(set.rest_surface.vertices).longest_side();
-    if (size < least_size || size > largest_size) {
-        words.push_back(
-            fmt::format("The body is {:.3g} mm long: is units.length in set.yaml {}?", size,
-                        size < least_size ? "'m' or 'cm' rather than what it says" : "'mm' rather than what it says"));
+    if (std::string strange = implausible_size(size); !strange.empty()) words.push_back(std::move(strange));
+    if (const double cloud = extent_of_markers(set); set.markers.size() > 2 && cloud < least_cloud * size) {
+        words.push_back(fmt::format(
+            "All {} markers lie within {:.3g} mm of each other, and the body is {:.3g} mm long: is markers.csv in "
+            "another unit than units.length of set.yaml says?",
+            set.markers.size(), cloud, size));
     }
     const Extremes extremes = extremes_of(set);
     if (extremes.moved > size) {

@@ -18,6 +18,7 @@
 #include "mesh/formats/volume/elements.h"
 #include "mesh/formats/vtk/vtk_polygons.h"
 #include "mesh/formats/well_formed.h"
+#include "mesh/text/words.h"
 
 namespace palpate::mesh {
 
@@ -29,7 +30,9 @@ BodyFile of_surface(const fs::path& file, const ReadBodyOptions&) {
     BodyFile body;
     int unused = 0;
     body.surface = well_formed(read_surface(file), file.string(), &unused);
-    if (unused > 0) body.notes.push_back(fmt::format("{} vertices that no triangle uses are left out", unused));
+    if (unused > 0)
+        body.notes.push_back(fmt::format("{} that no triangle uses {} left out", count_of(unused, "vertex", "vertices"),
+                                         unused == 1 ? "is" : "are"));
     return body;
 }
 

@@ -121,6 +121,24 @@ std::string share_of(double share, std::string_view whole) {
     return share < 1000 ? fmt::format("{:.3g} times {}", share, whole) : fmt::format("{:.0f} times {}", share, whole);
 }
 
+std::string with_sd(double value, double sd) {
+    constexpr double exact = 1e-6;  // of the value: what is told to be known better was not measured
+    if (!(sd > exact * std::abs(value))) return fmt::format("{:.3g}", value);
+    // Two digits of it where the first is 1 or 2, else one.
+    int place = static_cast<int>(std::floor(std::log10(sd)));
+    const double leading = sd / std::pow(10.0, place);
+    if (leading < 2.95) --place;
+    constexpr int most_decimals = 9;
+    if (-place > most_decimals) return fmt::format("{:.3g} ± {:.2g}", value, sd);
+    const double unit = std::pow(10.0, place);
+    const auto rounded = [&](double x) { return std::round(x / unit) * unit + 0.0; };  // no "-0"
+    return fmt::format("{:.{}f} ± {:.{}f}", rounded(value), std::max(0, -place), rounded(sd), std::max(0, -place));
+}
+
+std::string count_of(long count, const std::string& one, const std::string& many) {
+    return fmt::format("{} {}", count, count == 1 ? one : many.empty() ? one + "s" : many);
+}
+
 std::string listed(const std::vector<std::string>& words) {
     std::string text;
     for (const auto& word : words) text += (text.empty() ? "'" : ", '") + word + "'";

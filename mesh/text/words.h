@@ -33,6 +33,12 @@ std::string suggestion(std::string_view word, const std::vector<std::string>& kn
 /// "1.8 % of the displacement"; from twice the whole on "41.2 times the displacement".
 std::string share_of(double share, std::string_view whole);
 
+/// "9.2 ± 0.5", as many digits as the standard deviation bears; without one (0, unknown), "9.21".
+std::string with_sd(double value, double sd);
+
+/// "1 probe", "3 probes". `many`: where it is not one with an "s".
+std::string count_of(long count, const std::string& one, const std::string& many = {});
+
 /// "a, b, c", each in quotes.
 std::string listed(const std::vector<std::string>& words);
 

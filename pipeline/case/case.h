@@ -7,6 +7,7 @@
 
 #include "identify/inference/problem/identify_options.h"
 #include "mesh/core/region.h"
+#include "pipeline/case/body_verdict.h"
 #include "pipeline/run/run_diagnosis_options.h"
 #include "pipeline/synthesis/probing/probe_options.h"
 #include "skeleton/construction/build_options.h"
@@ -40,6 +41,7 @@ struct Case {
     std::optional<std::filesystem::path> model;     // a skeleton to start from, with measurements; else it is made
     double unit = 1;                                // [mm] per unit of the mesh
     double longest = 0;                             // the mesh is scaled to this longest side [mm]; 0: not
+    KeptPieces keep = KeptPieces::automatic;        // of a surface of several pieces
     std::optional<int> label;                       // of a label image: which of its labels is the body
     std::vector<mesh::Region> supports;             // empty: the set's, or the default clamp
     std::optional<double> young, poisson, density;  // [MPa], [-], [kg/m^3]; absent: the set's, or defaults

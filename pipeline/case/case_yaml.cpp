@@ -31,7 +31,7 @@ std::string input_yaml(const Case& c) {
     std::string text = fmt::format("name: {}\n", quoted(c.name));
     if (c.mesh) {
         text += path_yaml("mesh", *c.mesh);
-        for (const char* place : {"unit", "longest", "label"}) text += setting_yaml(c, setting_at(place));
+        for (const char* place : {"unit", "longest", "label", "keep"}) text += setting_yaml(c, setting_at(place));
     } else {
         text += path_yaml("measurements", *c.measurements);
         if (c.model) text += path_yaml("model", *c.model);

@@ -8,6 +8,7 @@
 
 #include "identify/inference/problem/identify_options.h"
 #include "mesh/errors.h"
+#include "pipeline/case/body_verdict.h"
 #include "pipeline/run/run_diagnosis_options.h"
 #include "skeleton/construction/properties/link_kind.h"
 #include "skeleton/model/model.h"
@@ -29,9 +30,10 @@ inline constexpr Names<identify::LawChoice, 3> law_choices{{{"automatic", identi
                                                             {"linear", identify::LawChoice::linear},
                                                             {"large-rotation", identify::LawChoice::large_rotation}}};
 
-/// Those that are identified: flexion and shear stand for both planes, see skeleton::as_identified.
 inline constexpr Names<GravityKnown, 3> gravities{
     {{"automatic", GravityKnown::automatic}, {"earth", GravityKnown::earth}, {"unknown", GravityKnown::unknown}}};
+
+/// Those that are identified: flexion and shear stand for both planes, see skeleton::as_identified.
 inline constexpr Names<skeleton::Stiffness, 5> stiffnesses{{{"elongation", skeleton::Stiffness::elongation},
                                                             {"flexion", skeleton::Stiffness::flexion},
                                                             {"torsion", skeleton::Stiffness::torsion},
@@ -39,6 +41,9 @@ inline constexpr Names<skeleton::Stiffness, 5> stiffnesses{{{"elongation", skele
                                                             {"volume", skeleton::Stiffness::volume}}};
 inline constexpr Names<skeleton::LinkKind, 2> link_kinds{
     {{"full", skeleton::LinkKind::full}, {"burion2008", skeleton::LinkKind::burion2008}}};
+
+inline constexpr Names<KeptPieces, 3> kept_pieces{
+    {{"automatic", KeptPieces::automatic}, {"largest", KeptPieces::largest}, {"all", KeptPieces::all}}};
 
 /// @throws InvalidInput naming where, what was written and what is allowed.
 template <typename Enum, std::size_t N>

@@ -171,6 +171,10 @@ void add_body(std::vector<CaseSetting>& all) {
     body("mesh",
          number(
              "label", "the body's label in a label image", {-1e9, 1e9}, [](auto& c) -> auto& { return c.label; }));
+    body("mesh",
+         choice(
+             "keep", "pieces of the surface that do not touch: the largest, all, or all but crumbs where one is left",
+             kept_pieces, [](auto& c) -> auto& { return c.keep; }));
     // What the set says counts beside these: stages depend on what comes of both.
     body("", number(
                  "material.young", "Young's modulus [MPa]", {1e-9, no_unit_is_so_large},

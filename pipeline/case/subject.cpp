@@ -14,10 +14,23 @@
 #include "mesh/supports/support_points.h"
 #include "pipeline/body/body.h"
 #include "pipeline/body/reference_body.h"
+#include "pipeline/case/body_verdict.h"
 #include "pipeline/case/weight.h"
 
 namespace palpate::pipeline {
 namespace {
+
+/// Leaves out what is not the body, and notes what it cannot be.
+void judge_body(Subject& subject, const std::string& name) {
+    if (!subject.volume) {
+        KeptSurface kept = keep_pieces(subject.surface, subject.settings.keep);
+        subject.surface = std::move(kept.surface);
+        std::ranges::move(kept.notes, std::back_inserter(subject.notes));
+        subject.refusal = refusal_of_flat(subject.surface);
+        if (subject.refusal.empty()) subject.refusal = std::move(kept.refusal);
+        if (!subject.refusal.empty()) subject.refusal = name + ": " + subject.refusal;
+    }
+}
 
 void read_mesh(Subject& subject) {
     const Case& c = subject.settings;
@@ -39,6 +52,9 @@ void read_mesh(Subject& subject) {
     const double scale = c.longest > 0 ? c.longest / longest : c.unit;
     subject.surface.vertices *= scale;
     if (subject.volume) subject.volume->nodes *= scale;
+    judge_body(subject, c.mesh->string());
+    std::string strange = identify::implausible_size(mesh::bounding_box(subject.surface.vertices).longest_side());
+    if (!strange.empty()) subject.notes.push_back(std::move(strange));
     if (c.longest == 0 && c.unit == 1 && !read.is_in_mm) {
         subject.assumptions.push_back(fmt::format(
             "The mesh is taken to be in mm: {:.4g} mm at its longest (--unit or --longest say otherwise).", longest));
@@ -50,6 +66,8 @@ void read_set(Subject& subject) {
     subject.set = read_measurements(*c.measurements, subject.notes, c.edge_length);
     subject.surface = subject.set->rest_surface;
     subject.volume = subject.set->rest_volume;
+    judge_body(subject, "the rest surface of " + subject.set->folder.string());
+    subject.set->rest_surface = subject.surface;
     for (const auto& entry : std::filesystem::recursive_directory_iterator(subject.set->folder)) {
         if (entry.is_regular_file() && entry.path().filename() != "truth.json") subject.files.push_back(entry.path());
     }
@@ -140,6 +158,12 @@ identify::MeasurementSet read_measurements(const std::filesystem::path& path, st
 }
 
 Subject read_subject(Case settings) {
+    Subject subject = read_subject_as_it_is(std::move(settings));
+    if (!subject.refusal.empty()) throw InvalidInput(subject.refusal);
+    return subject;
+}
+
+Subject read_subject_as_it_is(Case settings) {
     Subject subject;
     subject.settings = std::move(settings);
     if (subject.settings.mesh) {

@@ -25,6 +25,7 @@ struct Subject {
     std::vector<std::filesystem::path> files;  // that were read
     std::vector<std::string> notes;            // what was found and done in reading it, in words
     std::vector<std::string> assumptions;      // what was not specified and is assumed, in words
+    std::string refusal;                       // why its surface is of no body, in words; empty: it may be one
 };
 
 /// A measurement set with readings: where it has full fields only, vertices of its surface are read from them; those
@@ -36,7 +37,9 @@ struct Subject {
 identify::MeasurementSet read_measurements(const std::filesystem::path& path, std::vector<std::string>& notes,
                                            double edge_length = 0);
 
-/// @throws IoError, InvalidInput.
+/// @throws IoError, InvalidInput, also where its surface is of no body.
 Subject read_subject(Case settings);
+/// The same, where it is not refused yet: for those who tell what is wrong. @throws IoError, InvalidInput.
+Subject read_subject_as_it_is(Case settings);
 
 }  // namespace palpate::pipeline

@@ -175,7 +175,7 @@ void add_grips(const Subject& subject, Outcome& outcome) {
 
 Outcome check(const CheckOptions& options, const Common& common) {
     if (!options.output.empty()) refuse_to_overwrite(options.output, common.force);
-    const Subject subject = read_subject(read_case(options.input, options.overrides));
+    const Subject subject = read_subject_as_it_is(read_case(options.input, options.overrides));
     std::vector<mesh::FaultPlace> places;
     const mesh::SurfaceReport surface = mesh::check_surface(subject.surface, &places);
     const std::vector<std::string> faults = mesh::describe_faults(surface);
@@ -189,12 +189,20 @@ Outcome check(const CheckOptions& options, const Common& common) {
     if (subject.set) outcome.text += describe_set(*subject.set);
     for (const std::string& fault : faults) outcome.text += "  - " + fault + "\n";
     if (!places.empty()) outcome.text += "  Where:\n" + describe_places(places);
-    outcome.text += faults.empty() ? "The surface is sound.\n" : "";
+    outcome.text += faults.empty() && subject.refusal.empty() ? "The surface is sound.\n" : "";
+    if (!subject.refusal.empty()) {
+        outcome.text += "It cannot be run: " + subject.refusal + ".\n";
+        outcome.code = bad_input;
+    }
     for (const std::string& note : subject.notes) outcome.text += "  - " + note + "\n";
     for (const std::string& assumption : subject.assumptions) outcome.text += "  - assumed: " + assumption + "\n";
-    outcome.json = {
-        {"format", "palpate-check/1"},   {"surface", to_json(surface)}, {"faults", faults},
-        {"places", places_json(places)}, {"notes", subject.notes},      {"assumptions", subject.assumptions}};
+    outcome.json = {{"format", "palpate-check/1"},
+                    {"surface", to_json(surface)},
+                    {"faults", faults},
+                    {"places", places_json(places)},
+                    {"notes", subject.notes},
+                    {"assumptions", subject.assumptions},
+                    {"refusal", subject.refusal.empty() ? nlohmann::json(nullptr) : nlohmann::json(subject.refusal)}};
     if (subject.volume) {
         outcome.json["tetrahedra"] = subject.volume->tetrahedra.rows();
         outcome.text += fmt::format("A ready-made mesh of {} tetrahedra with {} nodes each, used as it is.\n",
@@ -215,7 +223,7 @@ Outcome check(const CheckOptions& options, const Common& common) {
             "Written to {}: check.json; surface.vtp and faults.vtp, coloured by 'fault', show where (ParaView).\n",
             options.output.string());
     }
-    if (is_fittable)
+    if (is_fittable && subject.refusal.empty())
         outcome.text +=
             "Next: palpate run " + options.input.string() + (faults.empty() ? "" : "    # repairs what it can") + "\n";
     return outcome;

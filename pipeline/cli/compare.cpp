@@ -10,6 +10,7 @@
 #include "pipeline/output/json/comparison.h"
 #include "pipeline/output/json/reference_comparison.h"
 #include "pipeline/output/text/comparison.h"
+#include "pipeline/output/text/worst.h"
 #include "pipeline/output/vtk/series.h"
 #include "pipeline/run/model_and_set.h"
 
@@ -27,8 +28,8 @@ void compare_reference(nlohmann::json& result, const CompareOptions& options, co
         const auto body = reference_of(given.set, options.overrides.on_defaults().edge_length);
         identify::DiagnoseOptions how = diagnose_options({}, given.set.density.has_value(), given.model, common);
         how.screen = false;
-        add_reference(result, *body, identify::diagnose(*body, given.set, how, Console::progress()), given.set,
-                      comparison);
+        const identify::Diagnosis found = identify::diagnose(*body, given.set, how, Console::progress());
+        add_reference(result, *body, found.problem, found.baseline, given.set, comparison);
         warn_of_modulus(result, given.set);
     } catch (const InvalidInput& e) {
         Console::warning(e.what());
@@ -50,7 +51,7 @@ Outcome compare(const CompareOptions& options, const Common& common) {
     Outcome outcome;
     outcome.json = to_json(comparison, set);
     compare_reference(outcome.json, options, common, given, comparison);
-    outcome.text = compare_in_words(outcome.json) + "\n";
+    outcome.text = compare_in_words(outcome.json) + "\n" + worst_table(outcome.json);
     if (!options.output.empty()) {
         refuse_to_overwrite(options.output, common.force);
         write_played_series(options.output, model, set, comparison);

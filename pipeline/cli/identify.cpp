@@ -42,9 +42,15 @@ Outcome identify(const IdentifyCommandOptions& options, const Common& common) {
 namespace palpate::pipeline {
 
 void Subcommands::add_identify(CLI::App& app) {
-    auto* sub = subcommand(app, "identify", "Stiffness per link by particle filter.",
-                           "  palpate identify model.json set/ -o fitted --parameters zones\n",
-                           [this] { return commands::identify(identify, common); });
+    auto* sub =
+        subcommand(app, "identify", "Stiffness per link by particle filter.",
+                   "  palpate identify model.json set/ -o fitted --parameters zones\n"
+                   "  palpate identify model.json set/ --fixed torsion -o fitted     # known: not fitted\n\n"
+                   "Prior: each stiffness is log-normal about the model's own, which follows from its sections\n"
+                   "and the material ('palpate skeleton --young'); posterior.csv tells its mean and sd. To move\n"
+                   "it, edit model.json. burion2008 takes an even one from --search-low to --search-high times\n"
+                   "the model's own.\n",
+                   [this] { return commands::identify(identify, common); });
     sub->add_option("MODEL", identify.model, "model.json")->required();
     sub->add_option("SET", identify.set, "The measurements")->required();
     sub->add_option("-o,--output", identify.output,

@@ -1,14 +1,19 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "identify/diagnosis/diagnose.h"
 #include "identify/diagnosis/ladder.h"
 #include "identify/effects/catalogue.h"
+#include "mesh/errors.h"
+#include "mesh/text/words.h"
 #include "pipeline/command_line/flags.h"
 #include "pipeline/command_line/subcommands.h"
 #include "pipeline/output/json/diagnosis.h"
 #include "pipeline/output/ladder.h"
+#include "pipeline/output/text/comparison.h"
 #include "pipeline/output/text/diagnosis.h"
 #include "pipeline/run/model_and_set.h"
+#include "pipeline/synthesis/effects/effect_spec.h"
 
 namespace palpate::pipeline::commands {
 namespace {
@@ -31,10 +36,35 @@ identify::Diagnosis diagnose_aloud(const identify::BodyModel& body, const identi
     return found;
 }
 
+/// Effects with the numbers that a fit is to begin with.
+std::vector<skeleton::EffectRecord> starts_of(const std::vector<std::string>& specs) {
+    std::vector<skeleton::EffectRecord> starts;
+    for (const EffectSpec& spec : read_specs(specs)) {
+        const auto& parameters = identify::find_effect(spec.effect)->description().parameters;
+        for (const skeleton::EffectParameter& given : spec.given) {
+            const auto names = [&](const std::string& words) {
+                return fmt::format(", {},", words.substr(0, words.find(" ["))).find(", " + given.name + ",") !=
+                       std::string::npos;
+            };
+            if (std::ranges::none_of(parameters, names))
+                throw InvalidInput(fmt::format("effect '{}' has no number {}; it has {}", spec.effect,
+                                               mesh::cited(given.name), fmt::join(parameters, "; ")));
+        }
+        starts.push_back({spec.effect, spec.given});
+    }
+    return starts;
+}
+
+std::vector<std::string> names_of(const std::vector<skeleton::EffectRecord>& effects) {
+    std::vector<std::string> names;
+    for (const skeleton::EffectRecord& effect : effects) names.push_back(effect.name);
+    return names;
+}
+
 /// "reference" or "skeleton".
-std::string judged_on(const ImproveCommandOptions& options) {
+std::string judged_on(const ImproveCommandOptions& options, const std::vector<std::string>& effects) {
     std::string of_links;
-    for (const std::string& name : options.add) {
+    for (const std::string& name : effects) {
         if (identify::find_effect(name)->is_of_links()) of_links = name;
     }
     if (!options.body.empty()) return options.body;
@@ -48,26 +78,30 @@ std::string judged_on(const ImproveCommandOptions& options) {
 Outcome improve(const ImproveCommandOptions& options, const Common& common) {
     const fs::path output = options.output.empty() ? fs::path("improved") : options.output;
     refuse_to_overwrite(output, common.force);
-    const std::string kind = judged_on(options);
+    const std::vector<skeleton::EffectRecord> starts = starts_of(options.add);
+    const std::vector<std::string> asked = names_of(starts);
+    const std::string kind = judged_on(options, asked);
     const ModelAndSet given = read_model_and_set(options.model, options.set);
     const identify::LadderOptions how{.identify = identify_options(options.overrides, common),
                                       .diagnose = diagnose_options(options.overrides.on_defaults().diagnose,
                                                                    given.set.density.has_value(), given.model, common),
-                                      .only_better = options.automatic};
+                                      .only_better = options.automatic,
+                                      .start = starts};
     how.identify.validate();
     const auto body = body_to_diagnose(kind, given, options.overrides.on_defaults().edge_length);
     std::optional<identify::Diagnosis> found;
     if (options.automatic) found = diagnose_aloud(*body, given.set, how.diagnose);
-    const std::vector<std::string>& effects = found ? found->explanation : options.add;
+    const std::vector<std::string>& effects = found ? found->explanation : asked;
     identify::Ladder ladder = identify::build_ladder(given.model, *body, given.set, effects, how,
                                                      found ? &*found : nullptr, Console::progress());
     ladder.identified.damping = damping_of(ladder.steps.back().model, given.set, how.identify.seed, common);
-    write_ladder(output, ladder);
+    write_ladder(output, ladder, *body);
 
     Outcome outcome;
     outcome.json = to_json(ladder);
     outcome.json["model"] = (output / "model.json").string();
     outcome.text = ladder_in_words(outcome.json);
+    outcome.text += compare_in_words(final_comparison(ladder, *body), "The result, fitted to all probes,") + "\n";
     for (const std::string& note : ladder.notes) outcome.text += "  " + note + "\n";
     outcome.text +=
         fmt::format("Model: {}\nParaView: {}\n", (output / "model.json").string(), (output / "ladder.pvd").string());
@@ -92,9 +126,12 @@ void Subcommands::add_improve(CLI::App& app) {
     sub->add_option("-o,--output", improve.output,
                     "Folder for model.json, ladder.json, ladder.pvd; improved by default");
     auto* what = sub->add_option_group("What to add", "one of these");
-    what->add_option("--add", improve.add, "An effect ('palpate effects' lists them); repeatable, a step each")
+    what->add_option("--add", improve.add,
+                     "An effect ('palpate effects' lists them), EFFECT[:name=value,...]; repeatable, a step each. Its\n"
+                     "numbers are fitted; values are where the fit begins: gravity:gz=-9810")
         ->expected(1)
-        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
+        ->check(CLI::Validator([](std::string& spec) { return objection_to_spec(spec); }, "EFFECT[:name=value,...]"));
     what->add_flag("--auto", improve.automatic, "What a diagnosis names");
     what->require_option(1);
     add_body(sub, improve.body, "by default, but for what links alone have");

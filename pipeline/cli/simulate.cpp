@@ -3,13 +3,20 @@
 #include <algorithm>
 #include <cmath>
 
+#include "identify/effects/catalogue.h"
 #include "identify/loading/loads.h"
+#include "identify/measurements/files/read_markers.h"
 #include "mesh/errors.h"
 #include "mesh/formats/vtk/vtk_files.h"
+#include "mesh/text/atomic_file.h"
+#include "mesh/text/words.h"
 #include "pipeline/analysis/forecast.h"
 #include "pipeline/command_line/commands.h"
 #include "pipeline/command_line/console.h"
 #include "pipeline/command_line/subcommands.h"
+#include "pipeline/output/csv/played_positions.h"
+#include "pipeline/synthesis/effects/effect_spec.h"
+#include "skeleton/effects/effect.h"
 #include "skeleton/model/io/model_io.h"
 #include "skeleton/runtime/body.h"
 
@@ -122,8 +129,7 @@ private:
     std::vector<mesh::SeriesStep> series_;
 };
 
-Outcome simulate_motion(const SimulateOptions& options, const fs::path& output) {
-    const skeleton::Model model = skeleton::read_model(options.model);
+Outcome simulate_motion(const SimulateOptions& options, const skeleton::Model& model, const fs::path& output) {
     if (model.skin.empty())
         throw InvalidInput(options.model.string() + ": has no skin that could be pressed; give the model one");
     const std::vector<identify::LoadState> states = identify::read_probes(options.probes);
@@ -152,6 +158,30 @@ Outcome simulate_motion(const SimulateOptions& options, const fs::path& output) 
     return outcome;
 }
 
+/// A model with effects added; one that it has already is replaced. What a direction leaves out is 0.
+skeleton::Model with_effects(skeleton::Model model, const std::vector<std::string>& specs) {
+    for (const EffectSpec& spec : read_specs(specs)) {
+        const skeleton::KnownEffect* known = skeleton::find_known_effect(spec.effect);
+        if (!known) {
+            identify::find_effect(spec.effect);  // which names those that there are
+            throw InvalidInput(fmt::format("effect '{}' is a fault of measurements: no model plays it", spec.effect));
+        }
+        skeleton::EffectRecord effect{spec.effect, spec.given};
+        for (const skeleton::KnownParameter& parameter : known->parameters) {
+            const auto told = std::ranges::find(effect.parameters, parameter.name, &skeleton::EffectParameter::name);
+            const bool is_of_gravity = spec.effect == "gravity" && !effect.parameters.empty();
+            if (told != effect.parameters.end())
+                told->unit = parameter.unit;
+            else if (is_of_gravity)
+                effect.parameters.push_back({parameter.name, 0, parameter.unit});
+        }
+        skeleton::make_physics(effect);  // which refuses what is missing or out of range
+        std::erase_if(model.effects, [&](const skeleton::EffectRecord& own) { return own.name == effect.name; });
+        model.effects.push_back(std::move(effect));
+    }
+    return model;
+}
+
 /// The largest displacement of each state and its interval; of many states the first ones.
 std::string in_words(const std::vector<identify::LoadState>& states, const std::vector<Forecast>& forecasts) {
     constexpr std::size_t most = 12;
@@ -173,8 +203,10 @@ std::string in_words(const std::vector<identify::LoadState>& states, const std::
 Outcome simulate(const SimulateOptions& options, const Common& common) {
     const fs::path output = options.output.empty() ? fs::path("simulation") : options.output;
     refuse_to_overwrite(output, common.force);
-    if (options.dt) return simulate_motion(options, output);
-    const skeleton::Model model = skeleton::read_model(options.model);
+    const skeleton::Model model = with_effects(skeleton::read_model(options.model), options.add);
+    if (options.dt) return simulate_motion(options, model, output);
+    const std::vector<identify::Marker> markers =
+        options.markers.empty() ? std::vector<identify::Marker>{} : identify::read_markers(options.markers);
     const std::vector<identify::LoadState> states = identify::read_probes(options.probes);
     const fs::path posterior = options.posterior.empty() ? options.model.parent_path() : options.posterior;
     const std::optional<ModelUncertainty> uncertainty = read_uncertainty(model, posterior, options.draws);
@@ -199,8 +231,12 @@ Outcome simulate(const SimulateOptions& options, const Common& common) {
     }
     mesh::write_pvd(output / "simulation.pvd", steps);
     Outcome outcome;
-    outcome.text = fmt::format("{}: {} equilibria.\n", (output / "simulation.pvd").string(), states.size());
-    outcome.json = {{"file", (output / "simulation.pvd").string()}, {"states", results}};
+    outcome.text = fmt::format("{}: {}.\n", (output / "simulation.pvd").string(),
+                               mesh::count_of(std::ssize(states), "equilibrium", "equilibria"));
+    const fs::path positions = output / "positions.csv";
+    mesh::write_text(positions, played_positions_csv(model, states, forecasts, markers));
+    outcome.json = {
+        {"file", (output / "simulation.pvd").string()}, {"positions", positions.string()}, {"states", results}};
     if (uncertainty) {
         outcome.text += in_words(states, forecasts);
         const Vec3 sizes = model.surface.vertices.colwise().maxCoeff() - model.surface.vertices.colwise().minCoeff();
@@ -213,7 +249,9 @@ Outcome simulate(const SimulateOptions& options, const Common& common) {
         outcome.json["forecast_error"] = uncertainty->forecast_error.relative;
         outcome.json["extrapolations"] = beyond;
     }
-    outcome.text += fmt::format("Next: paraview {}\n", (output / "simulation.pvd").string());
+    outcome.text += fmt::format(
+        "Positions of {}{}: {}\nNext: paraview {}\n", markers.empty() ? "the skin's vertices" : "the markers",
+        uncertainty ? ", with their intervals" : "", positions.string(), (output / "simulation.pvd").string());
     return outcome;
 }
 
@@ -225,12 +263,23 @@ void Subcommands::add_simulate(CLI::App& app) {
     auto* sub = subcommand(
         app, "simulate",
         "Plays the model: equilibria under given contacts, with intervals where a posterior is there, or motion.",
-        "  palpate simulate model.json --probes set/probes.csv -o played\n"
+        "  palpate simulate model.json --probes set/probes.csv --markers set/markers.csv -o played\n"
+        "  palpate simulate model.json --probes set/probes.csv --add gravity:gz=-9810 -o hanging\n"
         "  palpate simulate model.json --probes set/probes.csv --dt 0.002 --duration 0.5 -o moved\n",
         [this] { return commands::simulate(simulate, common); });
     sub->add_option("MODEL", simulate.model, "model.json")->required();
     sub->add_option("--probes", simulate.probes, "probes.csv: probe,time,x,y,z,fx,fy,fz,radius [mm, N]")->required();
-    sub->add_option("-o,--output", simulate.output, "Folder for simulation.pvd; simulation by default");
+    sub->add_option("-o,--output", simulate.output,
+                    "Folder for simulation.pvd and positions.csv; simulation by default");
+    sub->add_option("--markers", simulate.markers,
+                    "markers.csv: marker,x,y,z [mm], whose positions are written; the skin's vertices by default");
+    sub->add_option(
+           "--add", simulate.add,
+           "An effect to play besides the model's own, EFFECT:name=value,... ('palpate effects NAME' lists the\n"
+           "names): gravity:gz=-9810. Repeatable; one that the model has is replaced")
+        ->expected(1)
+        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
+        ->check(CLI::Validator([](std::string& spec) { return objection_to_spec(spec); }, "EFFECT:name=value,..."));
     sub->add_option("--posterior", simulate.posterior,
                     "Folder with particles.csv and identify.json, which tell how far equilibria can be relied on; by\n"
                     "default that of the model, where they are");

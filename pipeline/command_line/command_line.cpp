@@ -5,9 +5,8 @@
 #include <CLI/CLI.hpp>
 #include <thread>
 
-#include "pipeline/command_line/command_tree.h"
 #include "pipeline/command_line/subcommands.h"
-#include "pipeline/command_line/tree.h"
+#include "pipeline/command_line/usage_error.h"
 #include "pipeline/version.h"
 
 namespace palpate::pipeline {
@@ -46,6 +45,13 @@ CLI::App* Subcommands::subcommand(CLI::App& app, const std::string& name, const 
                                   const std::string& examples, const std::function<commands::Outcome()>& action) {
     CLI::App* sub = app.add_subcommand(name, what + "\n\nExamples:\n" + examples);
     sub->callback([this, action] { command = action; });
+    sub->footer(
+        "Everywhere:\n"
+        "  --json                      The result as one JSON object on standard output\n"
+        "  --threads INT               Threads; all cores by default. They change no number\n"
+        "  --seed UINT                 Seed of everything random\n"
+        "  --force                     Replace files that palpate did not make\n"
+        "  -q,--quiet  -v,--verbose    Errors only; more detail\n");
     return sub;
 }
 
@@ -94,11 +100,7 @@ std::optional<commands::ExitCode> CommandLine::parse(int argc, char** argv) {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& e) {
         if (e.get_exit_code() == 0) return app.exit(e), commands::done;
-        const std::string slip = spelling_error(tree_of(app), {argv + 1, argv + argc});
-        if (slip.empty())
-            app.exit(e);
-        else
-            fmt::print(stderr, "error: {}\n", slip);
+        fmt::print(stderr, "error: {}\n", usage_error(app, e, {argv + 1, argv + argc}));
         return commands::wrong_usage;
     }
     return std::nullopt;

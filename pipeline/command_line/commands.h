@@ -94,7 +94,7 @@ Outcome diagnose(const DiagnoseCommandOptions& options, const Common& common);
 
 struct ImproveCommandOptions {
     std::filesystem::path model, set, output;
-    std::vector<std::string> add = {};  // effects, a rung each
+    std::vector<std::string> add = {};  // effects, EFFECT[:name=value,...], a rung each; from these values
     bool automatic = false;             // what a diagnosis names, in place of those
     std::string body = {};              // as for a diagnosis; empty: the skeleton where an effect is of its links alone
     CaseOverrides overrides = {};
@@ -113,6 +113,8 @@ struct SimulateOptions {
     bool implicit = false;                         // a step a frame, stable at any size, in place of small ones
     std::filesystem::path posterior = {};          // folder of particles.csv; empty: the model's own, if there is one
     int draws = 32;                                // from it, for intervals of equilibria; 0: none
+    std::vector<std::string> add = {};             // effects besides the model's own, EFFECT:name=value,...
+    std::filesystem::path markers = {};            // markers.csv, whose positions are written; empty: the skin's
 };
 Outcome simulate(const SimulateOptions& options, const Common& common);
 
@@ -139,7 +141,8 @@ Outcome play(const PlayOptions& options, const Common& common);
 
 struct NewOptions {
     std::filesystem::path folder;
-    std::string rig = {};  // indenter, tensile, pneumatic, tendon: a measurement set; empty: a case
+    std::string rig = {};       // indenter, tensile, pneumatic, tendon: a measurement set; empty: a case
+    bool measurements = false;  // an empty set to fill in, in place of a case
 };
 /// A commented case.yaml or measurement set, and a small body to try it on. @throws InvalidInput when the folder is
 /// there and not empty.

@@ -22,8 +22,11 @@ public:
     static void error(const std::string& text);
     static void detail(const std::string& text);  // with -v only
 
-    /// Progress of a step: a bar with the time left on a terminal, plain lines now and then elsewhere.
+    /// Progress of a step: a bar with the time that it takes on a terminal, plain lines now and then elsewhere.
+    /// Messages take its line; it comes back below them.
     static Progress progress();
+    /// Takes a bar that is left away, for what is printed next.
+    static void end_progress();
 };
 
 }  // namespace palpate::pipeline

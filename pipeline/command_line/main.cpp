@@ -52,6 +52,7 @@ int main(int argc, char** argv) {
     const tbb::global_control threads(tbb::global_control::max_allowed_parallelism,
                                       static_cast<std::size_t>(line.common().threads));
     const commands::Outcome outcome = guarded(line.command(), line.common().threads);
+    Console::end_progress();
     if (line.common().json) {
         // a command that serves has told its result when it began
         if (!outcome.json.is_null()) fmt::print("{}\n", outcome.json.dump(2));

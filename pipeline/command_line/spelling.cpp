@@ -8,21 +8,34 @@
 
 namespace palpate::pipeline {
 
+namespace {
+
+/// The first argument that is neither a flag nor the value of one: it should be a command. Null: there is none.
+const std::string* first_word(const CommandTree& tree, const std::vector<std::string>& arguments) {
+    for (std::size_t i = 0; i < arguments.size(); ++i) {
+        if (!arguments[i].starts_with("-")) return &arguments[i];
+        const bool has_value = std::ranges::any_of(tree.common, [&](const FlagHelp& flag) {
+            return flag.takes_value && std::ranges::find(flag.names, arguments[i]) != flag.names.end();
+        });
+        if (has_value) ++i;
+    }
+    return nullptr;
+}
+
+}  // namespace
+
 std::string spelling_error(const CommandTree& tree, const std::vector<std::string>& arguments) {
-    const auto is_verb = [&](const std::string& word) {
-        return std::ranges::find(tree.subcommands, word, &CommandHelp::name) != tree.subcommands.end();
-    };
-    const auto found = std::ranges::find_if(arguments, is_verb);
-    if (found == arguments.end()) {
-        const auto word = std::ranges::find_if(arguments, [](const std::string& a) { return !a.starts_with("-"); });
-        if (word == arguments.end()) return {};
+    const std::string* word = first_word(tree, arguments);
+    if (!word) return {};
+    const auto found = std::ranges::find(tree.subcommands, *word, &CommandHelp::name);
+    if (found == tree.subcommands.end()) {
         std::vector<std::string> subcommands;
         for (const CommandHelp& command : tree.subcommands) subcommands.push_back(command.name);
         return fmt::format("{} is no command{}; there are {}. 'palpate --help' tells what they do", mesh::cited(*word),
                            mesh::suggestion(*word, subcommands), fmt::join(subcommands, ", "));
     }
 
-    const CommandHelp& command = *std::ranges::find(tree.subcommands, *found, &CommandHelp::name);
+    const CommandHelp& command = *found;
     std::vector<std::string> known{"--help"};
     for (const auto* flags : {&command.flags, &tree.common}) {
         for (const FlagHelp& flag : *flags) known.insert(known.end(), flag.names.begin(), flag.names.end());

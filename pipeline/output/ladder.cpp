@@ -10,6 +10,7 @@
 #include "pipeline/output/damping.h"
 #include "pipeline/output/json/comparison.h"
 #include "pipeline/output/json/json_values.h"
+#include "pipeline/output/json/reference_comparison.h"
 #include "pipeline/output/text/words.h"
 #include "pipeline/output/vtk/ladder_series.h"
 #include "pipeline/output/vtk/series.h"
@@ -34,7 +35,8 @@ json to_json(const identify::LadderStep& step) {
     result["predicted_rms_mm"] = known(step.predicted_rms_mm);
     result["reference"] = nullptr;
     if (step.reference) {
-        result["reference"] = errors_json(*step.reference);
+        result["reference"] = pipeline::to_json(step.material);
+        result["reference"].update(errors_json(*step.reference));
         result["reference"]["whitened_rms"] = known(step.reference->whitened_rms);
         result["reference"]["held_out_whitened_rms"] = known(step.reference->held_out_whitened_rms);
     }
@@ -44,19 +46,20 @@ json to_json(const identify::LadderStep& step) {
 std::string millimetres(const json& error) {
     std::string text = fmt::format("{:.3g} mm rms", error["rms_mm"].get<double>());
     if (error["held_out_rms_mm"].is_number()) {
-        text += fmt::format(" ({:.3g} on probes held out)", error["held_out_rms_mm"].get<double>());
+        text += fmt::format(" ({:.3g} on held-out probes)", error["held_out_rms_mm"].get<double>());
     }
     return text;
 }
 
 std::string step_in_words(const json& step) {
     const auto effects = step["effects"].get<std::vector<std::string>>();
-    std::string text = (effects.empty() ? "Without: " : "With " + listed(effects) + ": ") + millimetres(step);
+    std::string text = (effects.empty() ? "Nothing added: " : "With " + listed(effects) + ": ") + millimetres(step);
     if (step["reference"].is_object()) {
         text += "; in finite elements " + millimetres(step["reference"]);
         if (step["predicted_rms_mm"].is_number()) {
             text += fmt::format(", where the screen had expected {:.3g}", step["predicted_rms_mm"].get<double>());
         }
+        if (step["reference"].contains("young_mpa")) text += ", with " + material_in_words(step["reference"]);
     }
     return text + ".";
 }
@@ -91,7 +94,18 @@ std::string ladder_in_words(const json& ladder) {
            "\n";
 }
 
-void write_ladder(const std::filesystem::path& folder, const identify::Ladder& ladder) {
+json final_comparison(const identify::Ladder& ladder, const identify::BodyModel& body) {
+    const identify::LadderStep& last = ladder.steps.back();
+    json result = to_json(last.comparison, last.set);
+    if (last.reference)
+        add_reference(result, body, ladder.whole.problem, ladder.whole.best(), last.set, last.comparison);
+    else
+        add_no_reference(result, "it was judged on the skeleton");
+    return result;
+}
+
+void write_ladder(const std::filesystem::path& folder, const identify::Ladder& ladder,
+                  const identify::BodyModel& body) {
     const skeleton::Model& model = ladder.steps.back().model;
     write_ladder_series(folder, ladder);
     for (std::size_t i = 0; i < ladder.steps.size(); ++i) {
@@ -106,6 +120,7 @@ void write_ladder(const std::filesystem::path& folder, const identify::Ladder& l
     mesh::write_text(folder / "identify.json", summary_json(ladder.identified).dump(2) + "\n");
     skeleton::write_model_vtp(folder / "model.vtp", model);
     skeleton::write_model(folder / "model.json", model);
+    mesh::write_text(folder / "compare.json", final_comparison(ladder, body).dump(2) + "\n");
     mesh::write_text(folder / "ladder.json", to_json(ladder).dump(2) + "\n");
 }
 

@@ -14,6 +14,7 @@ struct RunResults {
     nlohmann::json compare;              // as in compare.json
     nlohmann::json diagnosis = nullptr;  // as in diagnosis.json; null: it was not asked
     nlohmann::json ladder = nullptr;     // as in ladder.json; null: likewise
+    nlohmann::json improved = nullptr;   // as in improve/compare.json; null: nothing was added
     std::vector<identify::PosteriorRow> posterior = {};
     nlohmann::json modes = nullptr;    // as in identify.json
     nlohmann::json damping = nullptr;  // as in identify.json; null: the set holds no motion

@@ -96,7 +96,7 @@ void RunDiagnosis::compare_reference(json& compare, const skeleton::Model& model
     if (why_none_.empty()) {
         why_none_ = reason_of_failure([&] {
             const identify::Diagnosis& diagnosis = diagnosed(model);
-            add_reference(compare, reference(), diagnosis, set_, comparison);
+            add_reference(compare, reference(), diagnosis.problem, diagnosis.baseline, set_, comparison);
             warn_of_modulus(compare, *subject_.set);  // with what the set itself says of its material
         });
     }
@@ -118,12 +118,17 @@ json RunDiagnosis::improve(const skeleton::Model& model, const json& diagnosis) 
         identify::Ladder ladder =
             identify::build_ladder(model, reference(), set_, effects, how, &diagnosed(model), Console::progress());
         ladder.identified.damping = damping_of(ladder.steps.back().model, set_, how.identify.seed, common_);
-        write_ladder(folder, ladder);
+        write_ladder(folder, ladder, reference());
         return json{{"steps", ladder.steps.size()}, {"rms_mm", ladder.steps.back().skeleton.rms_mm}};
     });
     json result = json::parse(mesh::read_text(folder / "ladder.json"));
     const json& steps = result["steps"];
     for (const json& note : result["notes"]) Console::notice(note.get<std::string>());
+    if (steps.size() > 1) {
+        const json identified = json::parse(mesh::read_text(folder / "identify.json"));
+        for (const json& note : identified["notes"])
+            Console::notice(fmt::format("with {}: {}", listed(effects), note.get<std::string>()));
+    }
     report_stage(folder_, "improve", ran,
                  steps.size() < 2 ? (effects.empty() ? "nothing to add" : "nothing added")
                                   : fmt::format("{:.3g} to {:.3g} mm rms", steps.front()["rms_mm"].get<double>(),

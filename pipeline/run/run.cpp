@@ -72,6 +72,8 @@ public:
         if (subject_.set) results.diagnosis = run_diagnosis.diagnose(start);
         results.compare = compare_all(run_diagnosis);
         if (subject_.set) results.ladder = run_diagnosis.improve(start, results.diagnosis);
+        if (!results.ladder.is_null() && results.ladder["steps"].size() > 1)
+            results.improved = json::parse(mesh::read_text(folder_.path() / "improve/compare.json"));
         measure_sphere_curve(folder_, subject_, {.repaired = {}, .surface = surface_, .volume = body_, .notes = {}},
                              start, common_);
         write_view_script(folder_.path() / "view.py");
@@ -268,7 +270,8 @@ private:
                 // In small strain both laws agree, and a real-time model is to be bent far.
                 if (!subject_.set) found.model.law = skeleton::EquilibriumLaw::large_rotation;
                 found.damping = damping_of(found.model, fit_, options.seed, common_);
-                Console::notices(found.notes);
+                for (const std::string& note : found.notes)
+                    Console::notice((subject_.set ? "nothing added: " : "") + note);
                 write_identification(folder_.path() / "identify", found);
                 return summary_json(found);
             });

@@ -6,6 +6,8 @@
 #include "pipeline/output/ladder.h"
 #include "pipeline/output/text/comparison.h"
 #include "pipeline/output/text/diagnosis.h"
+#include "pipeline/output/text/words.h"
+#include "pipeline/output/text/worst.h"
 
 namespace palpate::pipeline::commands {
 namespace {
@@ -30,11 +32,24 @@ std::string next_command(const Subject& subject, const RunResults& results, cons
     return fmt::format("palpate simulate {} --probes {} -o played", model, (fs::path(set) / "probes.csv").string());
 }
 
-std::string summary(const Subject& subject, const RunResults& results, const fs::path& run) {
-    std::string text = fmt::format("{}: {} spheres, {} links.\n{}\n", subject.settings.name, results.spheres,
-                                   results.links, compare_in_words(results.compare));
+/// What was found: of a model that something was added to, the one that came of it is what is told of.
+std::string findings(const RunResults& results) {
+    std::string text;
+    if (results.improved.is_null()) text = compare_in_words(results.compare) + "\n" + worst_table(results.compare);
     if (!results.diagnosis.is_null()) text += diagnosis_in_words(results.diagnosis) + "\n";
     if (!results.ladder.is_null()) text += ladder_in_words(results.ladder);
+    if (!results.improved.is_null()) {
+        const auto added = results.ladder["steps"].back()["effects"].get<std::vector<std::string>>();
+        text +=
+            compare_in_words(results.improved, fmt::format("The model with {}, fitted to all probes,", listed(added))) +
+            "\n" + worst_table(results.improved);
+    }
+    return text;
+}
+
+std::string summary(const Subject& subject, const RunResults& results, const fs::path& run) {
+    std::string text = fmt::format("{}: {} spheres, {} links.\n{}", subject.settings.name, results.spheres,
+                                   results.links, findings(results));
     if (!results.damping.is_null()) text += damping_in_words(results.damping);
     return text + fmt::format("\nReport: {}\nParaView: paraview --script={}\nNext: {}\n",
                               (run / "report.html").string(), (run / "view.py").string(),

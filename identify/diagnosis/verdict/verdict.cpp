@@ -98,7 +98,7 @@ std::string objection_of_held_out(const Diagnosis& diagnosis, const FittedExplan
     constexpr double chance = 1.1;
     const double with = explained.held_out.rms_mm, without = diagnosis.baseline_held_out.rms_mm;
     if (with <= chance * without) return {};
-    return fmt::format("probes left out are predicted worse with it, to {:.3g} mm instead of {:.3g} mm", with, without);
+    return fmt::format("held-out probes are predicted worse with it, to {:.3g} mm instead of {:.3g} mm", with, without);
 }
 
 /// Left-out probes that err more than fitted ones tell of an overfit to single probes, unless the excess is within what
@@ -111,7 +111,7 @@ std::string objection_of_overfit(const Diagnosis& diagnosis, const FittedExplana
     const double most = fitted * (options.most_gap + chance / static_cast<double>(diagnosis.problem.rows()));
     const double predicted = std::max(0.0, without * without - unseen * unseen);
     if (unseen <= 1 || unseen * unseen <= most * most + std::pow(options.effect_error, 2) * predicted) return {};
-    return fmt::format("it overfits single probes: the error of left-out probes is {:.2f} times that of fitted ones",
+    return fmt::format("it overfits single probes: the error of held-out probes is {:.2f} times that of fitted ones",
                        unseen / fitted);
 }
 

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "identify/effects/effect.h"
+#include "identify/effects/vector_words.h"
 
 namespace palpate::identify {
 namespace {
@@ -61,10 +62,13 @@ public:
     }
 
     std::string sentence(const skeleton::EffectRecord& record) const override {
+        return sentence_with(record, Mat3::Zero());
+    }
+
+    std::string sentence_with(const skeleton::EffectRecord& record, const Eigen::MatrixXd& covariance) const override {
         const Vec3 g(record.parameters[0].value, record.parameters[1].value, record.parameters[2].value);
-        const Vec3 towards = g.norm() > 0 ? Vec3(g.normalized()) : Vec3(Vec3::Zero());
-        return fmt::format("Gravity is missing: {:.2f} m/s^2 along ({:.2f}, {:.2f}, {:.2f}).", g.norm() / 1000,
-                           towards.x(), towards.y(), towards.z());
+        constexpr double metre = 1000;  // [mm]
+        return fmt::format("Gravity is missing: {}.", vector_in_words(g, covariance, metre, "m/s^2"));
     }
 
     std::optional<std::uint64_t> stream() const override { return 0; }

@@ -1,8 +1,9 @@
 #include <fmt/format.h>
 
-#include <cmath>
+#include <numbers>
 
 #include "identify/effects/effect.h"
+#include "identify/effects/vector_words.h"
 #include "skeleton/model/state.h"
 
 namespace palpate::identify {
@@ -42,11 +43,17 @@ public:
     }
 
     std::string sentence(const skeleton::EffectRecord& record) const override {
+        return sentence_with(record, Eigen::MatrixXd::Zero(6, 6));
+    }
+
+    std::string sentence_with(const skeleton::EffectRecord& record, const Eigen::MatrixXd& covariance) const override {
         const auto& p = record.parameters;
         const Vec3 t(p[0].value, p[1].value, p[2].value), w(p[3].value, p[4].value, p[5].value);
+        constexpr double degree = std::numbers::pi / 180;
         return fmt::format(
-            "The readings are misaligned: their frame is off by {:.2g} mm and {:.2g} degrees against the model's.",
-            t.norm(), w.norm() * 180 / M_PI);
+            "The readings are misaligned: their frame is off by {} and turned by {} against the model's.",
+            vector_in_words(t, covariance.topLeftCorner<3, 3>(), 1, "mm"),
+            vector_in_words(w, covariance.bottomRightCorner<3, 3>(), degree, "degrees", "about"));
     }
 
     MeasurementSet corrected(const MeasurementSet& set, const skeleton::EffectRecord& record) const override {

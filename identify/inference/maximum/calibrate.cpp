@@ -15,6 +15,7 @@
 namespace palpate::identify {
 namespace {
 
+constexpr double hardly_any = 0.001;  // of the displacement: told as less
 constexpr double first_error = 0.03;  // relative model error to begin with
 constexpr double least_error = 1e-6;  // the model error never falls below it: no model is exact
 // of half the chi^2: a hundredth of a posterior's sd; a tenth where another fit follows
@@ -234,8 +235,9 @@ Calibration calibrate(const skeleton::Model& model, const std::vector<StateReadi
         std::ranges::transform(others, starts.begin(), &FitResult::theta);
         others = calibrator.other_modes(domain, prior, fit, starts);
     }
-    calibrator.note(
-        fmt::format("relative model error: {}, beyond the noise", mesh::share_of(model_error, "the displacement")));
+    calibrator.note(fmt::format("error of the model beyond the noise: {}",
+                                model_error < hardly_any ? "less than 0.1 % of the displacement"
+                                                         : mesh::share_of(model_error, "the displacement")));
     if (!fit.converged) calibrator.note("the fit stopped before it converged: interpret the posterior with care");
     return {std::move(domain), std::move(prior), std::move(fit),         std::move(others),
             std::move(coarse), model_error,      calibrator.equilibria_, std::move(calibrator.notes_)};

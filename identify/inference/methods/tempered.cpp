@@ -159,7 +159,7 @@ IdentifyResult identify_tempered(const skeleton::Model& model, const Measurement
                         result.modes.size()));
     }
     if (!std::isnan(result.forecast_error.relative)) {
-        result.notes.push_back(fmt::format("a probe that is left out of the fit: off by {}{}",
+        result.notes.push_back(fmt::format("a probe that is held out of the fit is off by {}{}",
                                            calibration.fit.spectrum.is_whole ? "" : "at least ",
                                            mesh::share_of(result.forecast_error.relative, "its displacement")));
     }

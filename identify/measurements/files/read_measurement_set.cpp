@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "identify/measurements/files/read_markers.h"
 #include "identify/measurements/files/set_description.h"
 #include "identify/measurements/files/tables.h"
 #include "identify/measurements/measurement_places.h"
@@ -48,6 +49,14 @@ std::vector<LoadState> read_probes(const fs::path& file) {
     if (set.states.empty())
         throw InvalidInput(fmt::format("{}: the table has no rows. Add a row per contact and instant.", file.string()));
     return set.states;
+}
+
+std::vector<Marker> read_markers(const fs::path& file) {
+    MeasurementSet set;
+    TableReader(set, SetUnits{}).read_markers(file);
+    if (set.markers.empty())
+        throw InvalidInput(fmt::format("{}: the table has no rows. Add one a marker.", file.string()));
+    return set.markers;
 }
 
 MeasurementSet read_measurement_set(const fs::path& path) {

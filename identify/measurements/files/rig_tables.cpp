@@ -70,6 +70,7 @@ Vec3 read_turn(const CsvTable& table, int row) {
 
 void TableReader::read_motions(const fs::path& file) {
     const CsvTable table(file, {"probe", "time", "tool", "x", "y", "z"}, {"rx", "ry", "rz"}, {"tool"});
+    require_length(table, {"x", "y", "z"});
     for (int row = 0; row < table.rows(); ++row) {
         check_not_negative(table, row);
         const int tool = index_of_name(table, row, "tool", set_.tools);
@@ -136,7 +137,8 @@ void TableReader::read_displacements(const fs::path& file, const std::optional<S
                         "such state. Add its row to probes.csv (with zero force when nothing pressed), or correct the "
                         "numbers.",
                         file.string(), since->probe, since->time));
-    const CsvTable table(file, {"probe", "time", "marker", "ux", "uy", "uz"}, {"sigma"});
+    const CsvTable table(file, {"probe", "time", "marker", "ux", "uy", "uz"}, {"sigma"}, {"marker"});
+    require_length(table, {"ux", "uy", "uz", "sigma"});
     std::set<std::pair<std::size_t, int>> seen;  // of differences; those from rest are positions
     int of_reference = 0;
     for (int row = 0; row < table.rows(); ++row) {
@@ -149,7 +151,7 @@ void TableReader::read_displacements(const fs::path& file, const std::optional<S
             check_single(number, marker, table.where(row));
         } else if (!seen.emplace(number, marker).second) {
             throw InvalidInput(fmt::format("{}: marker {} has a displacement of this state already. Keep one.",
-                                           table.where(row), table.integer(row, "marker")));
+                                           table.where(row), table.text(row, "marker")));
         }
         const double sigma = position_sigma(table, row);
         const Vec3 u = units_.length * vector_if_given(table, row, {"ux", "uy", "uz"});
@@ -160,7 +162,7 @@ void TableReader::read_displacements(const fs::path& file, const std::optional<S
                 throw InvalidInput(
                     fmt::format("{}: marker {} has moved by [{:.4g}] since this very state. Name the state that was "
                                 "the reference under 'displacements.since' in set.yaml.",
-                                table.where(row), table.integer(row, "marker"), fmt::join(u, ", ")));
+                                table.where(row), table.text(row, "marker"), fmt::join(u, ", ")));
             ++of_reference;
             continue;
         }
@@ -175,6 +177,7 @@ void TableReader::read_displacements(const fs::path& file, const std::optional<S
 
 void TableReader::read_reactions(const fs::path& file) {
     const CsvTable table(file, {"probe", "time", "tool", "fx", "fy", "fz"}, {"mx", "my", "mz", "sigma"}, {"tool"});
+    table.require_unit({"fx", "fy", "fz", "sigma"}, units_.force_name, "set.yaml");
     for (int row = 0; row < table.rows(); ++row) {
         LoadState& measured = set_.states[known_state(table, row)];
         const int tool = index_of_name(table, row, "tool", set_.tools);

@@ -28,6 +28,8 @@ SetUnits read_units(const mesh::YamlFields& set) {
     SetUnits units;
     if (!set.has("units")) return units;
     const mesh::YamlFields given = set.mapping("units");
+    if (given.has("length")) units.length_name = given.text("length");
+    if (given.has("force")) units.force_name = given.text("force");
     units.length = unit_factor(given, "length", {{"mm", 1}, {"cm", 10}, {"m", 1000}}, units.length);
     units.force = unit_factor(given, "force", {{"N", 1}, {"mN", 1e-3}}, units.force);
     if (given.has("time")) given.choice("time", {"s"});

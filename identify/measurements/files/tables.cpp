@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
+#include <limits>
 #include <set>
 
 #include "mesh/errors.h"
@@ -19,6 +21,14 @@ namespace {
 
 Vec3 vector(const CsvTable& table, int row, const std::array<std::string, 3>& columns) {
     return {table.number(row, columns[0]), table.number(row, columns[1]), table.number(row, columns[2])};
+}
+
+/// "7" for a cell that spreadsheets may have made "7.0"; a word as it is.
+std::string marker_key(const std::string& cell) {
+    const auto number = mesh::parse_number(cell);
+    constexpr double most = std::numeric_limits<int>::max();
+    const bool is_whole = number && *number == std::floor(*number) && std::abs(*number) <= most;
+    return is_whole ? std::to_string(static_cast<int>(*number)) : cell;
 }
 
 }  // namespace
@@ -60,6 +70,8 @@ void TableReader::check_time(const StateName& name, const std::string& where) {
 
 void TableReader::read_probes(const fs::path& file) {
     const CsvTable table(file, {"probe", "time", "x", "y", "z", "fx", "fy", "fz", "radius"});
+    require_length(table, {"x", "y", "z", "radius"});
+    table.require_unit({"fx", "fy", "fz"}, units_.force_name, "set.yaml");
     for (int row = 0; row < table.rows(); ++row) {
         const StateName name = state_name(table, row);
         check_time(name, table.where(row));
@@ -117,20 +129,26 @@ void TableReader::find_fields(const fs::path& folder) {
 }
 
 void TableReader::read_markers(const fs::path& file) {
-    const CsvTable table(file, {"marker", "x", "y", "z"}, {"ax", "ay", "az"});
+    const CsvTable table(file, {"marker", "x", "y", "z"}, {"ax", "ay", "az"}, {"marker"});
+    require_length(table, {"x", "y", "z", "ax", "ay", "az"});
+    bool are_numbers = true;
+    for (int row = 0; row < table.rows(); ++row)
+        are_numbers = are_numbers && mesh::parse_integer(marker_key(table.name(row, "marker"))).has_value();
     for (int row = 0; row < table.rows(); ++row) {
         Marker marker;
-        marker.id = table.integer(row, "marker");
+        const std::string key = marker_key(table.name(row, "marker"));
+        marker.id = are_numbers ? *mesh::parse_integer(key) : row + 1;
+        if (!are_numbers) marker.name = key;
         marker.rest = units_.length * vector(table, row, {"x", "y", "z"});
         const Vec3 anchor = units_.length * vector_if_given(table, row, {"ax", "ay", "az"});
         if (anchor.allFinite()) marker.anchor = anchor;
         if (!marker.anchor && !anchor.array().isNaN().all())
             throw InvalidInput(
                 fmt::format("{}: marker {} has half an anchor. Give ax, ay and az, or leave all three empty.",
-                            table.where(row), marker.id));
-        if (!marker_of_.try_emplace(marker.id, static_cast<int>(set_.markers.size())).second)
-            throw InvalidInput(fmt::format("{}: marker {} has a row already. Give each marker its own number.",
-                                           table.where(row), marker.id));
+                            table.where(row), key));
+        if (!marker_of_.try_emplace(key, static_cast<int>(set_.markers.size())).second)
+            throw InvalidInput(fmt::format("{}: marker {} has a row already. Give each marker its own {}.",
+                                           table.where(row), key, are_numbers ? "number" : "name"));
         set_.markers.push_back(marker);
     }
 }
@@ -147,15 +165,20 @@ std::size_t TableReader::known_state(const CsvTable& table, int row) const {
 }
 
 int TableReader::marker_of_row(const CsvTable& table, int row) const {
-    if (std::isnan(table.at(row, "marker"))) return -1;
-    const int id = table.integer(row, "marker");
-    const auto found = marker_of_.find(id);
-    if (found == marker_of_.end())
-        throw InvalidInput(
-            fmt::format("{}: marker {} is not in markers.csv. Add its rest position there, or leave the cell "
-                        "empty for an unlabelled reading.",
-                        table.where(row), id));
-    return found->second;
+    const std::string key = marker_key(table.text(row, "marker"));
+    if (key.empty()) return -1;
+    const auto found = marker_of_.find(key);
+    if (found != marker_of_.end()) return found->second;
+    std::vector<std::string> known;
+    std::ranges::transform(set_.markers, std::back_inserter(known), label_of);
+    throw InvalidInput(fmt::format(
+        "{}: marker {} is not in markers.csv{}. Add its rest position there, or leave the cell empty for an "
+        "unlabelled reading.",
+        table.where(row), key, mesh::parse_integer(key) ? "" : mesh::suggestion(key, known)));
+}
+
+void TableReader::require_length(const CsvTable& table, const std::vector<std::string>& columns) const {
+    table.require_unit(columns, units_.length_name, "set.yaml");
 }
 
 double TableReader::position_sigma(const CsvTable& table, int row) const {
@@ -180,12 +203,13 @@ void TableReader::check_single(std::size_t state, int marker, const std::string&
         throw InvalidInput(
             fmt::format("{}: marker {} was read already for probe {} at time {}. Keep one reading, or "
                         "give repeated measurements probes of their own.",
-                        where, set_.markers[static_cast<std::size_t>(marker)].id, set_.states[state].probe,
+                        where, label_of(set_.markers[static_cast<std::size_t>(marker)]), set_.states[state].probe,
                         set_.states[state].time));
 }
 
 void TableReader::read_positions(const fs::path& file) {
-    const CsvTable table(file, {"probe", "time", "marker", "x", "y", "z"}, {"sigma"});
+    const CsvTable table(file, {"probe", "time", "marker", "x", "y", "z"}, {"sigma"}, {"marker"});
+    require_length(table, {"x", "y", "z", "sigma"});
     for (int row = 0; row < table.rows(); ++row) {
         const std::size_t state = known_state(table, row);
         const Reading reading = read_position(table, row);
@@ -206,7 +230,7 @@ void TableReader::add_to_recording(const CsvTable& table, int row, const std::ma
     const Reading reading = read_position(table, row);
     if (reading.marker < 0)
         throw InvalidInput(
-            fmt::format("{}: a reading of a body in motion has no marker. Give its number.", table.where(row)));
+            fmt::format("{}: a reading of a body in motion has no marker. Give its number or name.", table.where(row)));
     std::vector<Recording::Instant>& instants = set_.recordings[found->second].instants;
     if (time < 0 || (!instants.empty() && time < instants.back().time))
         throw InvalidInput(
@@ -217,7 +241,7 @@ void TableReader::add_to_recording(const CsvTable& table, int row, const std::ma
     std::vector<Reading>& seen = instants.back().readings;
     if (std::ranges::find(seen, reading.marker, &Reading::marker) != seen.end())
         throw InvalidInput(fmt::format("{}: marker {} was read already for probe {} at time {}. Keep one reading.",
-                                       table.where(row), table.integer(row, "marker"), probe, time));
+                                       table.where(row), table.text(row, "marker"), probe, time));
     if (!reading.position.array().isNaN().all()) seen.push_back(reading);
 }
 
@@ -230,7 +254,8 @@ void TableReader::read_recordings(const fs::path& loads, const fs::path& reading
         if (is_new) set_.recordings.push_back({.probe = load.probe, .loads = {}, .instants = {}});
         set_.recordings[entry->second].loads.push_back(std::move(load));
     }
-    const CsvTable table(readings, {"probe", "time", "marker", "x", "y", "z"}, {"sigma"});
+    const CsvTable table(readings, {"probe", "time", "marker", "x", "y", "z"}, {"sigma"}, {"marker"});
+    require_length(table, {"x", "y", "z", "sigma"});
     for (int row = 0; row < table.rows(); ++row) add_to_recording(table, row, recording_of);
     for (const Recording& recording : set_.recordings) {
         if (recording.instants.empty())

@@ -45,6 +45,8 @@ private:
     std::size_t known_state(const mesh::CsvTable& table, int row) const;
     /// @throws InvalidInput where time is negative, or runs backwards within a probe.
     void check_time(const StateName& name, const std::string& where);
+    /// @throws InvalidInput where the header of one of these columns tells another unit of length than set.yaml.
+    void require_length(const mesh::CsvTable& table, const std::vector<std::string>& columns) const;
     /// The marker of a row, or -1 where its cell is empty.
     int marker_of_row(const mesh::CsvTable& table, int row) const;
     /// @throws InvalidInput where a state has a reading of this marker already.
@@ -58,7 +60,7 @@ private:
     const SetUnits& units_;
     std::map<StateName, std::size_t> index_of_;   // of the states
     std::map<int, double> last_time_;             // of each probe, so far
-    std::map<int, int> marker_of_;                // id in the files -> index
+    std::map<std::string, int> marker_of_;        // id in the files -> index
     std::set<std::pair<std::size_t, int>> seen_;  // state and marker of the positions that were read
     std::string first_table_;                     // that has made states
     std::string beyond_;                          // where another one has made one first; "": none has

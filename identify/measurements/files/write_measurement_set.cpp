@@ -77,7 +77,7 @@ std::string description(const MeasurementSet& set, const fs::path& folder) {
 std::string markers_table(const MeasurementSet& set) {
     std::string text = "marker,x,y,z,ax,ay,az\n";
     for (const Marker& marker : set.markers)
-        text += fmt::format("{},{},{}\n", marker.id, table_cells(marker.rest),
+        text += fmt::format("{},{},{}\n", table_name(label_of(marker)), table_cells(marker.rest),
                             table_cells(marker.anchor.value_or(Vec3::Constant(missing))));
     return text;
 }
@@ -90,7 +90,7 @@ std::string position_rows(const MeasurementSet& set, int probe, double time, con
         if (reading.since) continue;  // of displacements.csv
         const auto marker = static_cast<std::size_t>(reading.marker);
         text += fmt::format("{},{},{},{},{}\n", probe, time,
-                            reading.marker < 0 ? "" : fmt::format("{}", set.markers.at(marker).id),
+                            reading.marker < 0 ? "" : table_name(label_of(set.markers.at(marker))),
                             table_cells(reading.position), table_cell(reading.sigma));
     }
     return text;

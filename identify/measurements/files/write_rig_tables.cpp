@@ -56,8 +56,8 @@ std::string displacements_table(const MeasurementSet& set) {
         for (const Reading& reading : state.readings) {
             if (!reading.since) continue;
             const Marker& marker = set.markers.at(static_cast<std::size_t>(reading.marker));
-            rows += fmt::format("{},{},{},{}\n", name, marker.id, table_cells(reading.position - marker.rest),
-                                table_cell(reading.sigma));
+            rows += fmt::format("{},{},{},{}\n", name, table_name(label_of(marker)),
+                                table_cells(reading.position - marker.rest), table_cell(reading.sigma));
         }
         return rows;
     });
@@ -69,6 +69,10 @@ std::string table_cell(double value) { return std::isnan(value) ? "" : fmt::form
 
 std::string table_cells(const Vec3& v) {
     return fmt::format("{},{},{}", table_cell(v.x()), table_cell(v.y()), table_cell(v.z()));
+}
+
+std::string table_name(const std::string& name) {
+    return name.find_first_of(",;#\t") == std::string::npos ? name : '"' + name + '"';
 }
 
 std::optional<StateName> displacements_since(const MeasurementSet& set) {

@@ -19,5 +19,7 @@ std::optional<StateName> displacements_since(const MeasurementSet& set);
 /// A number of a table as it is read back; empty for NaN.
 std::string table_cell(double value);
 std::string table_cells(const Vec3& v);
+/// A name, in quotes where it holds what means something in a table.
+std::string table_name(const std::string& name);
 
 }  // namespace palpate::identify

@@ -36,7 +36,7 @@ std::string commented_case() {
     };
     for (const char* section : {"material", "volume", "skeleton", "probing", "identify", "diagnose", "expect"})
         fill_in(section, example_section_yaml(section, examples));
-    for (const char* place : {"unit", "longest", "label", "seed"})
+    for (const char* place : {"unit", "longest", "label", "keep", "seed"})
         fill_in(place, example_yaml(setting_at(place), examples));
     fill_in("surface_formats", mesh::surface_extensions());
     return text;
@@ -49,6 +49,7 @@ Outcome new_case(const NewOptions& options, const Common&) {
     if (fs::exists(folder) && !(fs::is_directory(folder) && fs::is_empty(folder))) {
         throw InvalidInput(fmt::format("{}: exists already; choose another name", folder.string()));
     }
+    if (options.measurements) return new_measurements(options);
     if (!options.rig.empty()) return new_rig(options);
     mesh::write_text(folder / "case.yaml", commented_case());
     mesh::write_surface(folder / "body.stl", example_body());
@@ -66,10 +67,14 @@ namespace palpate::pipeline {
 void Subcommands::add_new(CLI::App& app) {
     auto* sub = subcommand(app, "new", "A commented case, or measurement set, to start from.",
                            "  palpate new my-body && palpate run my-body/case.yaml\n"
+                           "  palpate new --measurements my-set              # empty tables, to fill in\n"
                            "  palpate new --rig indenter my-set && palpate check my-set\n",
                            [this] { return commands::new_case(new_case, common); });
     sub->add_option("NAME", new_case.folder, "The folder to make")->required();
+    auto* measurements = sub->add_flag("--measurements", new_case.measurements,
+                                       "An empty measurement set to fill in, in place of a case");
     sub->add_option("--rig", new_case.rig, "A measurement set, as such a rig writes it, in place of a case")
+        ->excludes(measurements)
         ->check(CLI::IsMember(commands::rig_names()));
 }
 

@@ -50,6 +50,9 @@ const std::vector<Rig>& rigs() {
     return all;
 }
 
+/// What an empty set stands beside until there is a body.
+mesh::Surface example_bar() { return mesh::make_box({0, 0, 0}, {100, 20, 20}, {20, 4, 4}); }
+
 void write_files(const fs::path& folder, std::string_view files) {
     constexpr std::string_view mark = ">>> ";
     while (files.starts_with(mark)) {
@@ -69,6 +72,17 @@ const std::vector<std::string>& rig_names() {
         return all;
     }();
     return names;
+}
+
+Outcome new_measurements(const NewOptions& options) {
+    write_files(options.folder, rig_measurements_text);
+    mesh::write_surface(options.folder / "body.stl", example_bar());
+    const std::string folder = options.folder.string();
+    return {
+        .text = fmt::format("{0}: an empty measurement set, its files explained, and body.stl, a bar in the place of "
+                            "your body: fill in probes.csv, markers.csv and positions.csv.\nNext: palpate check {0}\n",
+                            folder),
+        .json = {{"set", (options.folder / "set.yaml").string()}, {"mesh", (options.folder / "body.stl").string()}}};
 }
 
 Outcome new_rig(const NewOptions& options) {

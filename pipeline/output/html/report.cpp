@@ -19,6 +19,7 @@
 #include "pipeline/output/text/comparison.h"
 #include "pipeline/output/text/diagnosis.h"
 #include "pipeline/output/text/words.h"
+#include "pipeline/output/text/worst.h"
 
 namespace palpate::pipeline {
 namespace {
@@ -48,6 +49,23 @@ std::string before_and_after(const RunFiles& files, double before, const char* k
     return fmt::format("{:.3g} → {:.3g}", files.ladder["steps"].front()[key].get<double>(), last.get<double>());
 }
 
+/// "nothing added" or "with gravity".
+std::string with_what(const RunFiles& files) {
+    const std::vector<std::string> added = added_effects(files);
+    return added.empty() ? "nothing added" : "with " + listed(added);
+}
+
+/// The material that finite elements come to, of the last step.
+std::string material_tiles(const RunFiles& files) {
+    const json& fit = files.improved.is_object() ? files.improved["baseline"] : files.compare["baseline"];
+    if (!fit.is_object()) return {};
+    const std::string words = material_in_words(fit), of = ", finite elements, " + with_what(files);
+    const std::size_t ratio = words.find(", ν");
+    std::string html = tile(words.substr(0, ratio), "Young's modulus" + of);
+    if (ratio != std::string::npos) html += tile(words.substr(ratio + 2), "Poisson's ratio");
+    return html;
+}
+
 std::string tiles(const RunFiles& files) {
     const auto held =
         std::count_if(files.model.spheres.begin(), files.model.spheres.end(), [](auto& s) { return s.held; });
@@ -57,12 +75,13 @@ std::string tiles(const RunFiles& files) {
     const json& noise = error["noise_mm"];
     std::string html = "<div class=\"tiles\">";
     if (!files.diagnosis.is_null()) html += tile(files.diagnosis["verdict"].get<std::string>(), "verdict");
-    html += tile(before_and_after(files, error["rms_mm"].get<double>(), "rms_mm") + " mm", "rms error of the model");
+    html += tile(before_and_after(files, error["rms_mm"].get<double>(), "rms_mm") + " mm",
+                 files.errors_after.empty() ? "rms error of the model" : "rms error of the model, " + with_what(files));
     if (noise.is_number()) html += tile(fmt::format("{:.2g} mm", noise.get<double>()), "noise of the measurements");
     return html +
-           tile(share_of(error["relative"]), files.errors_after.empty()
-                                                 ? "rms error over rms displacement"
-                                                 : "rms error over rms displacement, nothing added") +
+           tile(share_of(files.improved.is_object() ? files.improved["error"]["relative"] : error["relative"]),
+                "rms error over rms displacement" + (files.improved.is_object() ? ", " + with_what(files) : "")) +
+           material_tiles(files) +
            tile(fmt::format("{} + {}", files.model.spheres.size() - held, held), "spheres, free + held") +
            tile(std::to_string(files.model.links.size()), "links") +
            tile(fmt::format("{} of {}", informed, files.posterior.size()), "stiffnesses that the data inform") +
@@ -91,19 +110,54 @@ std::string pictures(const RunFiles& files) {
     return html + "</div>";
 }
 
-std::string probe_chart(const RunFiles& files) {
+/// What a print-out of one page leaves out.
+std::string aside(const std::string& html) { return html.empty() ? "" : "<div class=\"aside\">" + html + "</div>"; }
+
+/// Errors of the states, of compare.json's "probes"; `share`: over their displacements.
+std::vector<Bar> error_bars(const RunFiles& files, const json& compare, bool share) {
     const json held_out = files.record.value("held_out_probes", json::array());
-    std::vector<Bar> rms, relative;
-    for (const json& p : files.compare["probes"]) {
+    std::vector<Bar> bars;
+    for (const json& p : compare["probes"]) {
         const bool kept = std::find(held_out.begin(), held_out.end(), p["probe"]) != held_out.end();
         const std::string label = fmt::format("probe {}, time {:g}{}", p["probe"].get<int>(), p["time"].get<double>(),
                                               kept ? ", held out" : "");
-        rms.push_back({label, p["rms_mm"].get<double>(), kept});
-        if (p["relative"].is_number()) relative.push_back({label, 100 * p["relative"].get<double>(), kept});
+        const json& value = share ? p["relative"] : p["rms_mm"];
+        if (value.is_number()) bars.push_back({label, (share ? 100 : 1) * value.get<double>(), kept});
     }
-    return "<div class=\"pair\">" + bar_chart(rms, "Error of each state", "mm rms") +
-           bar_chart(relative, "Error over displacement of each state", "%") + "</div>" +
-           (held_out.empty() ? "" : "<p class=\"soft\">Orange: kept from the fit.</p>");
+    return bars;
+}
+
+std::string probe_chart(const RunFiles& files) {
+    const bool held_out = !files.record.value("held_out_probes", json::array()).empty();
+    std::string html = "<div class=\"pair\">";
+    if (files.improved.is_object()) {
+        html +=
+            bar_chart(error_bars(files, files.compare, false), "Error of each state, nothing added", "mm rms") +
+            bar_chart(error_bars(files, files.improved, false), "Error of each state, " + with_what(files), "mm rms");
+    } else {
+        html += bar_chart(error_bars(files, files.compare, false), "Error of each state", "mm rms") +
+                bar_chart(error_bars(files, files.compare, true), "Error over displacement of each state", "%");
+    }
+    return html + "</div>" + (held_out ? "<p class=\"soft\">Orange: held out of the fit.</p>" : "");
+}
+
+/// The worst probes and markers, and the part of the body, as compare prints them.
+std::string worst_section(const json& compare) {
+    const std::string table = worst_table(compare);
+    return table.empty() ? "" : "<pre class=\"table\" tabindex=\"0\">" + escape(table) + "</pre>";
+}
+
+std::string error_section(const RunFiles& files) {
+    std::string html = "<h2 id=\"errors\">Where it is wrong</h2>";
+    if (files.improved.is_object()) {
+        html += "<p>" +
+                escape(compare_in_words(files.improved, "The model " + with_what(files) + ", fitted to all probes,")) +
+                "</p>" + worst_section(files.improved);
+    } else {
+        if (!files.diagnosis.is_null()) html += "<p>" + escape(compare_in_words(files.compare)) + "</p>";
+        html += worst_section(files.compare);
+    }
+    return html + aside(pictures(files) + probe_chart(files));
 }
 
 std::string stage_table(const RunFiles& files) {
@@ -131,9 +185,8 @@ std::string assumption_list(const RunFiles& files) {
     std::string items;
     for (const json& a : files.record.value("assumptions", json::array()))
         items += "<li>" + escape(a.get<std::string>()) + "</li>";
-    for (const json& n : files.record["stages"]["identify"]["figures"].value("notes", json::array())) {
-        items += "<li>" + escape(n.get<std::string>()) + "</li>";
-    }
+    const std::string of_model = files.best == "improve" ? "The model " + with_what(files) + ": " : "";
+    for (const std::string& note : files.notes) items += "<li>" + escape(of_model + note) + "</li>";
     for (const json* asked : {&files.diagnosis, &files.ladder}) {
         if (asked->is_null()) continue;
         for (const json& n : (*asked)["notes"]) items += "<li>" + escape(n.get<std::string>()) + "</li>";
@@ -142,7 +195,7 @@ std::string assumption_list(const RunFiles& files) {
 }
 
 std::string view_section(const RunFiles& files, const fs::path& run) {
-    const json data = view_data(run, files.record, files.compare, files.ladder, files.posterior);
+    const json data = view_data(run, files.record, files.compare, files.ladder, files.diagnosis, files.posterior);
     if (data.is_null()) {
         return "<p class=\"soft\">This run was made by an older palpate: run it again to turn the body here.</p>";
     }
@@ -189,22 +242,18 @@ std::string contents(const std::string& page) {
 void write_report(const fs::path& run, const fs::path& page) {
     const RunFiles files = read_run(run);
     const std::string name = escape(files.model.name.empty() ? run.filename().string() : files.model.name);
-    std::string sections =
-        missing_section(files.diagnosis) + ladder_section(files.ladder) + budget_section(files.compare);
-    sections += "<h2 id=\"errors\">Where it is wrong</h2>" +
-                (files.diagnosis.is_null() ? "" : "<p>" + escape(compare_in_words(files.compare)) + "</p>") +
-                pictures(files) + probe_chart(files);
-    sections += stiffness_section(files.posterior, files.particles, files.prior, files.best + "/posterior.csv") +
-                damping_section(run / files.best) + convergence_section(run / "identify/convergence.csv") +
-                spheres_section(files.quality);
-    sections += assumption_list(files) + file_section(files);
-    sections += "<h2 id=\"times\">Times</h2>" + stage_table(files);
-    sections +=
+    std::string sections = aside(missing_section(files.diagnosis)) + ladder_section(files.ladder) +
+                           aside(budget_section(files.compare, files.improved)) + error_section(files);
+    std::string more = stiffness_section(files.posterior, files.particles, files.prior, files.best + "/posterior.csv") +
+                       damping_section(run / files.best) + convergence_section(run / "identify/convergence.csv") +
+                       spheres_section(files.quality) + assumption_list(files) + file_section(files);
+    more += "<h2 id=\"times\">Times</h2>" + stage_table(files);
+    more +=
         "<h2 id=\"settings\">Settings</h2><details open><summary>case.yaml: every setting, defaults included"
-        "</summary><pre>" +
-        escape(files.settings) + "</pre></details><p class=\"soft\">palpate " +
-        escape(files.record.value("version", "")) +
-        fmt::format(", seed {}", files.record.value("seed", json()).dump()) + "</p>";
+        "</summary><pre tabindex=\"0\">" +
+        escape(files.settings) + "</pre></details>";
+    sections += aside(more) + "<p class=\"soft\">palpate " + escape(files.record.value("version", "")) +
+                fmt::format(", seed {}", files.record.value("seed", json()).dump()) + "</p>";
     mesh::write_text(page,
                      "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">"
                      "<meta name=\"viewport\" content=\"width=device-width,initial-scale=1\">"

@@ -88,6 +88,11 @@ std::vector<Dot> errors_after(const fs::path& step) {
 
 }  // namespace
 
+std::vector<std::string> added_effects(const RunFiles& files) {
+    if (files.ladder.is_null()) return {};
+    return files.ladder["steps"].back()["effects"].get<std::vector<std::string>>();
+}
+
 RunFiles read_run(const fs::path& run) {
     if (!fs::exists(run / "run.json")) {
         throw InvalidInput(
@@ -107,7 +112,10 @@ RunFiles read_run(const fs::path& run) {
     files.prior = prior_in(run / "case.yaml");
     files.model = skeleton::read_model(run / files.best / "model.json");
     files.errors_before = errors_before(files.compare);
-    if (!files.ladder.is_null() && files.ladder["steps"].size() > 1) {
+    if (const json identified = read_if_there(run / files.best / "identify.json"); identified.is_object())
+        files.notes = identified["notes"].get<std::vector<std::string>>();
+    if (!added_effects(files).empty()) {
+        files.improved = read_if_there(run / "improve/compare.json");
         files.errors_after =
             errors_after(run / fmt::format("improve/ladder_{:03}.vtp", files.ladder["steps"].size() - 1));
     }

@@ -16,6 +16,8 @@ namespace palpate::pipeline {
 struct RunFiles {
     nlohmann::json record, compare;
     nlohmann::json diagnosis, ladder, quality;  // null where the run did not ask
+    nlohmann::json improved;                    // compare.json of the model with all effects in; null: none was added
+    std::vector<std::string> notes;             // of the identification of the model to use
     std::string settings;
     std::string best;                               // the folder of the model to use: "improve" where there is one
     std::vector<identify::PosteriorRow> posterior;  // of that model
@@ -24,6 +26,9 @@ struct RunFiles {
     skeleton::Model model;
     std::vector<Dot> errors_before, errors_after;  // rms of each marker; after: with all effects in, may be empty
 };
+
+/// The effects that are in a ladder's last step.
+std::vector<std::string> added_effects(const RunFiles& files);
 
 /// @throws IoError when there is no such file, InvalidInput when it is no JSON.
 nlohmann::json read_json(const std::filesystem::path& file);

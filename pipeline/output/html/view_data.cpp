@@ -10,7 +10,9 @@
 #include "mesh/formats/vtk/poly_data.h"
 #include "pipeline/analysis/link_uncertainty.h"
 #include "pipeline/output/base64.h"
+#include "pipeline/output/html/findings.h"
 #include "pipeline/output/text/words.h"
+#include "skeleton/model/io/model_io.h"
 
 namespace palpate::pipeline {
 namespace {
@@ -61,12 +63,14 @@ const Eigen::MatrixXd& array_of(const mesh::PolyData& part, const std::string& n
 struct Series {
     fs::path folder;
     std::string name;
+    fs::path model = {};  // its file, where there is one
     std::vector<mesh::SeriesStep> skin, spheres, markers, loads;
 };
 
 Series series_in(const fs::path& folder, const std::string& name) {
     return {folder,
             name,
+            folder / "model.json",
             mesh::read_pvd(folder / "skin.pvd"),
             mesh::read_pvd(folder / "skeleton.pvd"),
             mesh::read_pvd(folder / "markers.pvd"),
@@ -81,7 +85,11 @@ std::vector<Series> all_series(const fs::path& run, const json& ladder) {
         const auto effects = ladder["steps"][i]["effects"].get<std::vector<std::string>>();
         all.push_back(series_in(folder, effects.empty() ? "nothing added" : "with " + listed(effects)));
     }
-    if (all.empty() && fs::exists(run / "compare/skeleton.pvd")) all.push_back(series_in(run / "compare", "as fitted"));
+    if (!all.empty()) all.back().model = run / "improve/model.json";  // which the last one plays
+    if (all.empty() && fs::exists(run / "compare/skeleton.pvd")) {
+        all.push_back(series_in(run / "compare", "as fitted"));
+        all.back().model = run / "identify/model.json";
+    }
     return all;
 }
 
@@ -154,7 +162,7 @@ json quantities_json(const mesh::PolyData& spheres, const std::vector<identify::
 
 }  // namespace
 
-json view_data(const fs::path& run, const json& record, const json& compare, const json& ladder,
+json view_data(const fs::path& run, const json& record, const json& compare, const json& ladder, const json& diagnosis,
                const std::vector<identify::PosteriorRow>& posterior, std::size_t budget) {
     const std::vector<Series> all = all_series(run, ladder);
     if (all.empty() || all.front().skin.empty()) return nullptr;
@@ -184,10 +192,15 @@ json view_data(const fs::path& run, const json& record, const json& compare, con
     if (std::ranges::all_of(result["states"], [](const json& state) { return state["held_out"].get<bool>(); })) {
         for (json& state : result["states"]) state["held_out"] = false;
     }
+    result["exchanged"] = diagnosis.is_null() ? json::array() : diagnosis.value("exchanged_markers", json::array());
+    result["outliers"] = diagnosis.is_null() ? json::array() : diagnosis.value("outlier_readings", json::array());
     result["left_out"] = all.front().skin.size() - states.size();
     for (const Series& series : all) {
         json step = {{"name", series.name}, {"states", json::array()}};
         for (const std::size_t s : states) step["states"].push_back(answer_json(series, s));
+        step["findings"] = fs::exists(series.model)
+                               ? findings_json(skeleton::read_model(series.model).effects, diagnosis)
+                               : json::array();
         const bool last = &series == &all.back();
         step["quantities"] = quantities_json(mesh::read_poly_data(series.spheres.front().file),
                                              last ? posterior : std::vector<identify::PosteriorRow>{});

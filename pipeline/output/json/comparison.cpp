@@ -12,6 +12,15 @@ namespace {
 
 using nlohmann::json;
 
+/// Where the first contact of a state presses; null where nothing does.
+json pressed_at(const identify::MeasurementSet& set, int probe, double time) {
+    const identify::LoadState* state = identify::find_state(set, {probe, time});
+    if (!state) return nullptr;
+    for (const mesh::Contact& contact : state->contacts)
+        if (!contact.force.isZero(0)) return numbers(contact.point);
+    return nullptr;
+}
+
 /// Rms error of each marker over all states, with its place at rest.
 json marker_errors(const identify::Comparison& c, const identify::MeasurementSet& set) {
     std::vector<double> squares(set.markers.size(), 0.0);
@@ -34,6 +43,7 @@ json marker_errors(const identify::Comparison& c, const identify::MeasurementSet
         markers.push_back({{"marker", set.markers[m].id},
                            {"rms_mm", std::sqrt(squares[m] / counts[m])},
                            {"at", numbers(set.markers[m].rest)}});
+        if (!set.markers[m].name.empty()) markers.back()["name"] = set.markers[m].name;
     }
     return markers;
 }
@@ -62,7 +72,8 @@ json to_json(const identify::Comparison& c, const identify::MeasurementSet& set)
                                     {"time", p.time},
                                     {"rms_mm", p.rms},
                                     {"max_mm", p.max},
-                                    {"relative", known(p.relative)}});
+                                    {"relative", known(p.relative)},
+                                    {"at", pressed_at(set, p.probe, p.time)}});
     }
     result["worst"] = json::array();
     for (const auto& w : c.worst) {
@@ -74,6 +85,8 @@ json to_json(const identify::Comparison& c, const identify::MeasurementSet& set)
                                    {"towards", numbers(w.towards)}});
     }
     result["markers"] = marker_errors(c, set);
+    const mesh::Box box = mesh::bounding_box(set.rest_surface.vertices);
+    result["box"] = {{"min", numbers(box.min)}, {"max", numbers(box.max)}};
     return result;
 }
 

@@ -19,6 +19,12 @@ json parameters_json(const identify::Candidate& candidate) {
     return result;
 }
 
+std::string sentence_of(const identify::Candidate& candidate) {
+    const identify::EffectEstimate& told = candidate.estimate;
+    return told.covariance.size() > 0 ? candidate.effect->sentence_with(told.effect, told.covariance)
+                                      : candidate.effect->sentence(told.effect);
+}
+
 json to_json(const identify::Candidate& candidate, const identify::BodyModel& model) {
     const identify::EffectDescription& description = candidate.effect->description();
     json result = {{"effect", description.name},
@@ -39,13 +45,12 @@ json to_json(const identify::Candidate& candidate, const identify::BodyModel& mo
         result["whitened_rms"] = known(candidate.refit->whitened_rms);
         result["law"] = model.laws()[candidate.refit->explanation.law];
     }
-    if (candidate.held_out) {
+    if (candidate.held_out && candidate.refit) {
         result["held_out_rms_mm"] = known(candidate.held_out->rms_mm);
         result["held_out_whitened_rms"] = known(candidate.held_out->whitened_rms);
     }
     if (!candidate.objection.empty()) result["objection"] = candidate.objection;
-    if (!candidate.estimate.effect.parameters.empty())
-        result["sentence"] = candidate.effect->sentence(candidate.estimate.effect);
+    if (!candidate.estimate.effect.parameters.empty()) result["sentence"] = sentence_of(candidate);
     return result;
 }
 
@@ -82,6 +87,16 @@ json baseline_of(const identify::Diagnosis& diagnosis, const identify::BodyModel
     return result;
 }
 
+/// What is fitted with the explanation in force; null where none is claimed.
+json explained_of(const identify::Diagnosis& diagnosis, const identify::BodyModel& model) {
+    if (!diagnosis.explained) return nullptr;
+    json result = baseline_json(model, diagnosis.problem, diagnosis.explained->fit);
+    result["rms_mm"] = known(diagnosis.explained->fit.rms_mm);
+    result["whitened_rms"] = known(diagnosis.explained->fit.whitened_rms);
+    result["held_out_rms_mm"] = known(diagnosis.explained->held_out.rms_mm);
+    return result;
+}
+
 /// Readings that are off by themselves, as the files name them.
 json outlier_readings(const identify::Diagnosis& diagnosis, const identify::MeasurementSet& set) {
     json result = json::array();
@@ -94,6 +109,18 @@ json outlier_readings(const identify::Diagnosis& diagnosis, const identify::Meas
         const identify::LoadState& state = set.states[whole.state[n]];
         result.push_back(
             {{"probe", state.probe}, {"time", state.time}, {"marker", set.markers[whole.coordinate[n] / 3].id}});
+    }
+    return result;
+}
+
+/// Pairs whose labels look swapped.
+json exchanged_markers(const identify::Diagnosis& diagnosis, const identify::MeasurementSet& set) {
+    json result = json::array();
+    for (const identify::ExchangedMarkers& one : diagnosis.outliers.exchanged) {
+        const identify::LoadState& state = set.states[one.state];
+        result.push_back({{"probe", state.probe},
+                          {"time", state.time},
+                          {"markers", {set.markers[one.markers.first].id, set.markers[one.markers.second].id}}});
     }
     return result;
 }
@@ -115,7 +142,9 @@ json to_json(const identify::Diagnosis& diagnosis, const identify::BodyModel& mo
             {"noise_known", diagnosis.noise_known},
             {"independent_readings", diagnosis.independent},
             {"baseline", baseline_of(diagnosis, model)},
+            {"explained", explained_of(diagnosis, model)},
             {"outlier_readings", outlier_readings(diagnosis, set)},
+            {"exchanged_markers", exchanged_markers(diagnosis, set)},
             {"notes", diagnosis.notes}};
 }
 

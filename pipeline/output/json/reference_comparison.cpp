@@ -45,39 +45,35 @@ json regions_json(const identify::MeasurementSet& set, const identify::ErrorLoca
 
 }  // namespace
 
+json to_json(const identify::MaterialEstimate& material) {
+    return {{"law", material.law},
+            {"young_mpa", known(material.young)},
+            {"young_sd_mpa", known(material.young_sd)},
+            {"poisson", known(material.poisson)},
+            {"poisson_sd", known(material.poisson_sd)},
+            {"poisson_declared", material.poisson_is_declared}};
+}
+
 json baseline_json(const identify::BodyModel& model, const identify::Problem& problem, const identify::Refit& fit) {
-    const identify::ModelSetting setting = fit.explanation.setting();
-    json result = {{"law", model.laws()[setting.law]},
-                   {"young_mpa", model.young(setting)},
-                   {"poisson", nullptr},
-                   {"poisson_sd", nullptr},
-                   {"unsure_mm", identify::errors_of(problem, fit).nuisance_sd},
-                   {"discretisation_mm", nullptr}};
+    json result = to_json(identify::material_of(model, fit));
+    result["unsure_mm"] = identify::errors_of(problem, fit).nuisance_sd;
+    result["discretisation_mm"] = nullptr;
     if (problem.discretisation.size() > 0) {
         result["discretisation_mm"] =
             std::sqrt(problem.discretisation.squaredNorm() / static_cast<double>(problem.rows()));
     }
-    const auto& parameters = model.parameters();
-    const auto nu = std::ranges::find(parameters, "compressibility", &identify::StiffnessParameter::name);
-    if (nu != parameters.end()) {
-        // nu = (1 - e^theta) / 2
-        const auto j = nu - parameters.begin();
-        const double ratio = std::exp(fit.explanation.theta[j]);
-        result["poisson"] = (1 - ratio) / 2;
-        result["poisson_sd"] = ratio / 2 * std::sqrt(fit.covariance(j, j));
-    }
     return result;
 }
 
-void add_reference(json& compare, const identify::BodyModel& reference, const identify::Diagnosis& diagnosis,
-                   const identify::MeasurementSet& set, const identify::Comparison& comparison) {
-    const identify::Problem& problem = diagnosis.problem;
-    const identify::FitErrors errors = identify::errors_of(problem, diagnosis.baseline);
+void add_reference(json& compare, const identify::BodyModel& reference, const identify::Problem& problem,
+                   const identify::Refit& fit, const identify::MeasurementSet& set,
+                   const identify::Comparison& comparison) {
+    const identify::FitErrors errors = identify::errors_of(problem, fit);
     compare["reference"] = {{"rms_mm", errors.rms},
                             {"max_mm", errors.max},
                             {"relative", known(errors.relative)},
                             {"whitened_rms", errors.whitened_rms}};
-    compare["baseline"] = baseline_json(reference, problem, diagnosis.baseline);
+    compare["baseline"] = baseline_json(reference, problem, fit);
     const double noise = problem.rms_sigma();
     compare["budget"] = to_json(identify::split_error_budget(identify::mean_square_error(problem, set, comparison),
                                                              noise * noise, errors.left));

@@ -65,14 +65,19 @@ std::string held_out_words(const json& compare) {
 std::string reference_words(const json& compare) {
     const json baseline = compare.value("baseline", json()), reference = compare.value("reference", json());
     if (!baseline.is_object() || !reference.is_object()) return {};
-    std::string material =
-        fmt::format("{}, E = {:.3g} MPa", baseline["law"].get<std::string>(), baseline["young_mpa"].get<double>());
-    if (baseline["poisson"].is_number()) {
-        material += fmt::format(", nu = {:.3f} +- {:.3f}", baseline["poisson"].get<double>(),
-                                baseline["poisson_sd"].get<double>());
-    }
-    return fmt::format(" The same body in finite elements ({}) is off by {:.3g} mm rms: {}.", material,
+    return fmt::format(" The same body in finite elements ({}, {}) is off by {:.3g} mm rms: {}.",
+                       baseline["law"].get<std::string>(), material_in_words(baseline),
                        reference["rms_mm"].get<double>(), in_sigmas(reference["whitened_rms"]));
+}
+
+/// How the error goes with the load, where it is more than finite elements leave.
+std::string load_words(const json& compare) {
+    if (!compare.contains("load_exponent") || compare["adequate"].get<bool>() || is_explained_by_reference(compare))
+        return {};
+    const json& exponent = compare["load_exponent"];
+    return fmt::format(" The error goes with the load to the power {}: {}.",
+                       mesh::with_sd(exponent["value"].get<double>(), exponent["sd"].get<double>()),
+                       exponent["words"].get<std::string>());
 }
 
 std::string budget_words(const json& compare) {
@@ -104,11 +109,11 @@ std::string region_words(const json& compare) {
 }
 
 /// How far the model is off, in positions and in the forces of tools, as far as these were measured.
-std::string error_words(const json& compare) {
+std::string error_words(const json& compare, const std::string& model) {
     const json& error = compare["error"];
     std::string text;
     if (!compare["probes"].empty())
-        text = fmt::format("The model is off by {:.3g} mm rms, {}, and by {:.3g} mm at most.",
+        text = fmt::format("{} is off by {:.3g} mm rms, {}, and by {:.3g} mm at most.", model,
                            error["rms_mm"].get<double>(), share(error), error["max_mm"].get<double>());
     if (error.contains("reactions")) {
         const json& forces = error["reactions"];
@@ -116,7 +121,7 @@ std::string error_words(const json& compare) {
                                      ? mesh::share_of(forces["relative"].get<double>(), "the measured forces")
                                      : "where none was measured";
         text +=
-            fmt::format("{}The reactions of its tools are off by {:.3g} N rms, {}, and by {:.3g} N at most.",
+            fmt::format("{}The reactions of tools are off by {:.3g} N rms, {}, and by {:.3g} N at most.",
                         text.empty() ? "" : " ", forces["rms_n"].get<double>(), part, forces["max_n"].get<double>());
     }
     return text;
@@ -124,12 +129,12 @@ std::string error_words(const json& compare) {
 
 }  // namespace
 
-std::string compare_in_words(const json& compare) {
+std::string compare_in_words(const json& compare, const std::string& model) {
     const json& error = compare["error"];
-    std::string text = error_words(compare);
+    std::string text = error_words(compare, model);
     text += if_it_explains_nothing(error["relative"]);
     if (compare.contains("held_out")) {
-        text += fmt::format(" On the probes that were fitted it is off by {}, on those kept from the fit by {}.",
+        text += fmt::format(" On the probes that were fitted it is off by {}, on those held out by {}.",
                             share(compare["fitted"]), share(compare["held_out"]));
     }
     text += held_out_words(compare) + noise_words(compare);
@@ -137,13 +142,7 @@ std::string compare_in_words(const json& compare) {
         text += fmt::format(" The model has no equilibrium under the full load of probes {}: a reduced load was used.",
                             fmt::join(compare["not_borne"].get<std::vector<int>>(), ", "));
     }
-    if (compare.contains("load_exponent")) {
-        const json& exponent = compare["load_exponent"];
-        text += fmt::format(" The error goes with the load to the power {:.1f} +- {:.1f}: {}.",
-                            exponent["value"].get<double>(), exponent["sd"].get<double>(),
-                            exponent["words"].get<std::string>());
-    }
-    return text + reference_words(compare) + budget_words(compare) + region_words(compare);
+    return text + load_words(compare) + reference_words(compare) + budget_words(compare) + region_words(compare);
 }
 
 }  // namespace palpate::pipeline

@@ -5,7 +5,7 @@
 
 namespace palpate::pipeline {
 
-/// What compare.json says, in sentences.
-std::string compare_in_words(const nlohmann::json& compare);
+/// What compare.json says, in sentences. @param model what the first one begins with
+std::string compare_in_words(const nlohmann::json& compare, const std::string& model = "The model");
 
 }  // namespace palpate::pipeline

@@ -10,8 +10,6 @@ namespace {
 
 using nlohmann::json;
 
-constexpr double worth_telling = -690;  // ln of a share below which "10^-300" says no more
-
 const json* find(const json& ranking, const std::string& effect) {
     const auto found = std::ranges::find_if(ranking, [&](const json& c) { return c["effect"] == effect; });
     return found == ranking.end() ? nullptr : &*found;
@@ -23,23 +21,43 @@ std::string sentence_of(const json& candidate, bool alone) {
     const std::string fallback = "The effect " + candidate["effect"].get<std::string>() + " is missing.";
     const std::string sentence = candidate.value("sentence", fallback);
     if (!alone) return sentence;
-    return with_aside(sentence, fmt::format("probability {:.2f}", candidate["probability"].get<double>()));
+    return with_aside(sentence, "probability " + probability_in_words(candidate["probability"].get<double>()));
 }
 
-/// How much less likely one candidate is than another: "0.3 times" or "10^-54 times".
+/// How much less likely than the first the second is.
 std::string how_likely(double log_ratio) {
-    if (log_ratio < worth_telling) return "less than 10^-300 times";
-    if (log_ratio < std::log(1e-3)) return fmt::format("10^{:.0f} times", log_ratio / std::log(10.0));
-    return fmt::format("{:.2g} times", std::exp(log_ratio));
+    constexpr double ruled_out = 1e-3;
+    if (log_ratio < std::log(ruled_out)) return "less than a thousandth as likely";
+    return fmt::format("{:.2g} times as likely", std::exp(log_ratio));
+}
+
+/// A fit that leaves less and is not claimed: what speaks against it are the numbers that it takes.
+std::string why_closer_is_not_likelier(const json& first, const json& second) {
+    const std::size_t own = first["parameters"].size(), others = second["parameters"].size();
+    const bool fits_closer = first["rms_mm"].is_number() && second["rms_mm"].is_number() &&
+                             second["rms_mm"].get<double>() < first["rms_mm"].get<double>();
+    if (!fits_closer || others <= own) return {};
+    return fmt::format(
+        ", though it leaves {:.3g} mm rms: it takes {} free numbers for that against {}, more than it "
+        "gains by them",
+        second["rms_mm"].get<double>(), others, own);
 }
 
 std::string without_it(const json& diagnosis) {
     const json& baseline = diagnosis["baseline"];
     std::string text = fmt::format(" Without it the model errs by {:.3g} mm rms", baseline["rms_mm"].get<double>());
     if (baseline.contains("load_exponent")) {
-        text += ", and " + baseline["load_exponent"]["words"].get<std::string>();
+        text += and_under_load(baseline["load_exponent"]);
     }
     return text + ".";
+}
+
+/// What the stiffness comes to with the explanation, and was taken for without it.
+std::string material_words(const json& diagnosis) {
+    const json explained = diagnosis.value("explained", json());
+    if (!explained.is_object()) return {};
+    return fmt::format(" With it finite elements have {}; without it they would have {}.", material_in_words(explained),
+                       material_in_words(diagnosis["baseline"]));
 }
 
 std::string drop_words(const json& diagnosis, const json& candidate) {
@@ -48,9 +66,9 @@ std::string drop_words(const json& diagnosis, const json& candidate) {
                                    candidate["kind"] == "body" ? "Adding" : "Correcting for",
                                    diagnosis["baseline"]["rms_mm"].get<double>(), candidate["rms_mm"].get<double>());
     if (candidate["held_out_rms_mm"].is_number()) {
-        text += fmt::format(" ({:.3g} on probes left out)", candidate["held_out_rms_mm"].get<double>());
+        text += fmt::format(" ({:.3g} on probes held out one by one)", candidate["held_out_rms_mm"].get<double>());
     }
-    return text + ", " + in_sigmas(candidate["whitened_rms"]) + ".";
+    return text + ", " + in_sigmas(candidate["whitened_rms"]) + "." + material_words(diagnosis);
 }
 
 std::string runner_up(const json& diagnosis) {
@@ -60,7 +78,8 @@ std::string runner_up(const json& diagnosis) {
     const std::string name = ranking[1]["effect"];
     if (ranking[1].contains("objection"))
         return fmt::format(" Runner-up: {}, not claimed: {}.", name, ranking[1]["objection"].get<std::string>());
-    return fmt::format(" Runner-up: {}, {} as likely.", name, how_likely(behind));
+    return fmt::format(" Runner-up: {}, {}{}.", name, how_likely(behind),
+                       why_closer_is_not_likelier(ranking[0], ranking[1]));
 }
 
 std::string missing_effect(const json& diagnosis) {
@@ -100,7 +119,7 @@ std::string unexplained(const json& diagnosis) {
     std::string text = fmt::format("An effect outside the catalogue is missing: the model error is {:.3g} mm rms, {}",
                                    baseline["rms_mm"].get<double>(), in_sigmas(baseline["whitened_rms"]));
     if (baseline.contains("load_exponent")) {
-        text += ", and " + baseline["load_exponent"]["words"].get<std::string>();
+        text += and_under_load(baseline["load_exponent"]);
     }
     text += ".";
     const json& ranking = diagnosis["ranking"];

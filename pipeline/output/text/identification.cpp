@@ -4,6 +4,7 @@
 #include <map>
 #include <string>
 
+#include "mesh/text/words.h"
 #include "pipeline/output/damping.h"
 #include "pipeline/output/identification.h"
 #include "pipeline/output/text/words.h"
@@ -72,7 +73,8 @@ std::string identification_in_words(const identify::IdentifyResult& found) {
         if (found.log_evidence != 0) text += fmt::format("; ln evidence {:.6g}", found.log_evidence);
         text += ".\n";
     }
-    if (found.equilibria > 0) text += fmt::format("  {} equilibria were solved.\n", found.equilibria);
+    if (found.equilibria > 0)
+        text += fmt::format("  {} solved.\n", mesh::count_of(found.equilibria, "equilibrium was", "equilibria were"));
 
     text += '\n';
     text += found.posterior.size() <= most_rows ? parameter_table(found) : kinds_table(found);

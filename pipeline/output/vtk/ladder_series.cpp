@@ -49,6 +49,21 @@ void write_step(const std::filesystem::path& file, const identify::LadderStep& s
     mesh::write_vtp_lines(file, measured, {}, data);
 }
 
+/// The state that the first step errs most in; the first one where none was read.
+std::size_t worst_state(const identify::LadderStep& step) {
+    std::size_t worst = 0;
+    double most = -1;
+    for (const identify::ProbeError& error : step.comparison.probes) {
+        for (std::size_t s = 0; s < step.set.states.size(); ++s) {
+            const identify::LoadState& state = step.set.states[s];
+            if (state.probe != error.probe || state.time != error.time || !(error.rms > most)) continue;
+            most = error.rms;
+            worst = s;
+        }
+    }
+    return worst;
+}
+
 }  // namespace
 
 void write_ladder_series(const std::filesystem::path& folder, const identify::Ladder& ladder) {
@@ -59,6 +74,16 @@ void write_ladder_series(const std::filesystem::path& folder, const identify::La
         steps.push_back({static_cast<double>(i), file});
     }
     mesh::write_pvd(folder / "ladder.pvd", steps);
+
+    // One state, step by step: of files that the steps' own series hold.
+    const std::size_t state = worst_state(ladder.steps.front());
+    for (const char* part : {"skin", "markers"}) {
+        std::vector<mesh::SeriesStep> of_state;
+        for (std::size_t i = 0; i < ladder.steps.size(); ++i)
+            of_state.push_back({static_cast<double>(i),
+                                folder / fmt::format("step_{}", i) / fmt::format("{}_{:03}.vtp", part, state)});
+        mesh::write_pvd(folder / fmt::format("ladder_{}.pvd", part), of_state);
+    }
 }
 
 }  // namespace palpate::pipeline

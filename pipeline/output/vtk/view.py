@@ -4,6 +4,7 @@
 # Four views: fit, error, stiffness, ladder (where effects were added). Each array is named alike in every file, with its
 # unit: "error [mm]", "displacement [mm]", "measured [mm]", "elongation [N/mm]".
 import json
+import math
 import os
 import sys
 
@@ -61,8 +62,27 @@ def plain(display, colour, opacity=1.0):
     display.Opacity = opacity
 
 
+def round_above(value):
+    """The least of 1, 2, 2.5, 5, 10 times a power of ten that is not below a value."""
+    if value <= 0:
+        return 1.0
+    power = 10.0 ** math.floor(math.log10(value))
+    return next(digit * power for digit in (1, 2, 2.5, 5, 10) if digit * power >= value * (1 - 1e-9))
+
+
+def round_labels(low, high, logarithmic):
+    """Round numbers between two others: fifths, or powers of ten and their halves."""
+    if not logarithmic:
+        return [low + (high - low) * i / 5 for i in range(6)]
+    powers = range(math.floor(math.log10(low)), math.ceil(math.log10(high)) + 1)
+    labels = [digit * 10.0 ** p for p in powers for digit in (1, 2, 5) if low <= digit * 10.0 ** p <= high]
+    return labels if len(labels) < 8 else [v for v in labels if abs(math.log10(v) % 1) < 1e-9]
+
+
 def colour(view, source, association, array, low=None, high=None, logarithmic=False):
-    """Colours by an array, in viridis, from low to high, with a legend in this view alone."""
+    """Colours by an array, in viridis, from low to a round number above high, with a legend in this view alone."""
+    if high is not None and not logarithmic:
+        high = round_above(high)
     display = GetDisplayProperties(source, view)
     ColorBy(display, (association, array), True)
     table = display.LookupTable
@@ -79,6 +99,12 @@ def colour(view, source, association, array, low=None, high=None, logarithmic=Fa
     bar.Title, bar.ComponentTitle = array, ""
     bar.TitleColor = bar.LabelColor = [0, 0, 0]
     bar.ScalarBarLength = 0.4
+    if high is not None:
+        bar.UseCustomLabels = 1
+        bar.CustomLabels = round_labels(low, high, logarithmic)
+        bar.AddRangeLabels = 0
+        bar.AutomaticLabelFormat = 0
+        bar.LabelFormat = "%-#6.3g"
     return display
 
 
@@ -159,22 +185,24 @@ def stiffness_view(view):
 
 
 def ladder_view(view):
-    """Errors of all states, step by step of the ladder: play it to see them fall."""
-    skin = PVDReader(FileName=os.path.join(steps()[0], "skin.pvd"))
-    markers = PVDReader(FileName=path("improve", "ladder.pvd"))
-    plain(Show(skin, view), GREY, 0.3)
+    """The state that the first model errs most in, step by step of the ladder: the bent body and its error vectors."""
+    skin = PVDReader(FileName=path("improve", "ladder_skin.pvd"))
+    markers = PVDReader(FileName=path("improve", "ladder_markers.pvd"))
+    skin.UpdatePipeline(0)
     markers.UpdatePipeline(0)
+    warp = WarpByVector(Input=skin, Vectors=["POINTS", "displacement [mm]"])
+    plain(Show(warp, view), GREY, 0.3)
     arrows = arrows_of(markers, 1.0)
     Show(arrows, view)
     colour(view, arrows, "POINTS", "error [mm]", 0, lengths(markers, "error [mm]")[1])
     view.ViewTime = 0
     with open(path("improve", "ladder.json")) as file:
         told = ["%s %.3g mm" % (" + ".join(s["effects"]) or "nothing added:", s["rms_mm"]) for s in json.load(file)["steps"]]
-    return "Ladder: play it. " + ", ".join(told)
+    return "Ladder, worst state: play it. " + ", ".join(told)
 
 
 builders = [fit_view, error_view, stiffness_view]
-if os.path.exists(path("improve", "ladder.pvd")):
+if os.path.exists(path("improve", "ladder_skin.pvd")):
     builders.append(ladder_view)
 layout = CreateLayout("palpate")
 views = []
@@ -203,10 +231,10 @@ for view, build in zip(views, builders):
 layout.SetSize(1800, 1100)
 for view in views:
     Render(view)
-    view.ResetCamera()
-    camera = view.GetActiveCamera()
-    camera.Elevation(-60)
-    camera.Azimuth(20)
+    # z up, from a little above and before the body
+    view.CameraFocalPoint = [0, 0, 0]
+    view.CameraPosition = [0.35, -1, 0.45]
+    view.CameraViewUp = [0, 0, 1]
     view.ResetCamera(True)
     view.CameraParallelScale *= 1.1  # room for the legend
     Render(view)

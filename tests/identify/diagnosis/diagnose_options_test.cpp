@@ -185,7 +185,7 @@ TEST_F(Diagnosed, WhatBendsToEachProbeIsNoClaim) {
     found.baseline_held_out.whitened_rms = 1;  // an effect that hardly shows on left-out probes
     EXPECT_EQ(verdict(most - 0.01), Verdict::missing_effect);
     EXPECT_EQ(verdict(most + 0.01), Verdict::unexplained);
-    EXPECT_THAT(found.tried.front().objection, HasSubstr("left-out probes"));
+    EXPECT_THAT(found.tried.front().objection, HasSubstr("held-out probes"));
 
     // Of an effect of 10 sigmas there, discretisation may alter a tenth: 1 sigma, which adds in squares.
     found.baseline_held_out.whitened_rms = 10;

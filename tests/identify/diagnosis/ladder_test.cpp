@@ -66,6 +66,14 @@ TEST_F(Climbed, GravityLowersTheErrorOnFittedAndOnHeldOutProbes) {
     EXPECT_LT(with_gravity.skeleton.held_out_rms_mm, 0.7 * bare.skeleton.held_out_rms_mm);
     EXPECT_GT(with_gravity.log_evidence, bare.log_evidence + 1000);
     EXPECT_EQ(ladder.verdict, Verdict::adequate);
+
+    // Each step tells the material that its own fit comes to.
+    const MaterialEstimate told = material_of(*reference_, ladder.whole.best());
+    EXPECT_EQ(with_gravity.material.young, told.young);
+    EXPECT_GT(told.young_sd, 0);
+    EXPECT_LT(told.young_sd, 0.05 * told.young);
+    EXPECT_NEAR(told.young, 0.3, 4 * told.young_sd);  // the body's, within 4 sd
+    EXPECT_NE(bare.material.young, told.young) << "without gravity it is another";
 }
 
 TEST_F(Climbed, TheModelHoldsTheEffect) {

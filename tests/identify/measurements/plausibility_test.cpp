@@ -28,11 +28,19 @@ TEST(Plausibility, ASoundSetIsLeftAlone) {
 }
 
 TEST(Plausibility, ASlipOfUnitsShows) {
-    EXPECT_THAT(implausible(pressed_cube(1e-4, 1, 1)), Contains(HasSubstr("0.01 mm long")));
-    EXPECT_THAT(implausible(pressed_cube(1e4, 1, 1)), ElementsAre(HasSubstr("1e+06 mm long")));
+    EXPECT_THAT(implausible(pressed_cube(1e-4, 1, 1)), Contains(HasSubstr("0.01 mm at its longest, smaller")));
+    EXPECT_THAT(implausible(pressed_cube(1e4, 1, 1)), ElementsAre(HasSubstr("1e+06 mm at its longest, larger")));
     EXPECT_THAT(implausible(pressed_cube(1, 1, 1000)), ElementsAre(HasSubstr("marker 7 in probe 1 at time 0")));
     EXPECT_THAT(implausible(pressed_cube(1, 1e9, 1)), ElementsAre(HasSubstr("block of steel")));
     EXPECT_THAT(implausible(pressed_cube(1, 1e-13, 1)), ElementsAre(HasSubstr("less than any solid")));
+}
+
+TEST(Plausibility, MarkersInOneSpotAreInAnotherUnit) {
+    MeasurementSet set = pressed_cube(1, 1, 1);
+    for (int m = 0; m < 3; ++m) set.markers.push_back({m, Vec3(100, 50, 50 + 0.01 * m), std::nullopt});
+    EXPECT_THAT(implausible(set), ElementsAre(HasSubstr("All 4 markers lie within 0.02 mm of each other")));
+    set.markers.back().rest.z() = 60;
+    EXPECT_THAT(implausible(set), IsEmpty());
 }
 
 TEST(Plausibility, ASlipOfUnitsShowsInReactions) {

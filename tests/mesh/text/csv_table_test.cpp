@@ -39,6 +39,37 @@ TEST_F(Csv, ReadsWhatSpreadsheetsWrite) {
     EXPECT_EQ(read.where(1), "table.csv, line 6");
 }
 
+TEST_F(Csv, ReadsSemicolonsWithDecimalCommas) {
+    const CsvTable read = table(
+        "\xEF\xBB\xBF"
+        "A;b;C\r\n1,5;-2;0,25\r\n2.5;1e3;\r\n;;\r\n");
+    ASSERT_EQ(read.rows(), 2) << "a row of empty cells is none";
+    EXPECT_EQ(read.at(0, "a"), 1.5);
+    EXPECT_EQ(read.at(0, "b"), -2);
+    EXPECT_EQ(read.at(0, "c"), 0.25);
+    EXPECT_EQ(read.at(1, "a"), 2.5);
+    EXPECT_EQ(read.at(1, "b"), 1000);
+    EXPECT_TRUE(std::isnan(read.at(1, "c")));
+    EXPECT_EQ(table("a\tb\n1,5\t2\n").at(0, "a"), 1.5);
+    EXPECT_TRUE(says(refusal("a;b\n1.234,5;2\n"), {"line 2", "1.234,5", "no number"}));
+}
+
+TEST_F(Csv, WhatWasNotMeasuredMayBeWritten) {
+    const CsvTable read = table("a,b,c\nnan,NA,n/a\n1,NaN,\n");
+    ASSERT_EQ(read.rows(), 2);
+    for (const char* column : {"a", "b", "c"}) EXPECT_TRUE(std::isnan(read.at(0, column)));
+    EXPECT_TRUE(says(message_of<InvalidInput>([&] { read.number(1, "b"); }), {"line 3", "column b", "empty"}));
+}
+
+TEST_F(Csv, AHeaderMayTellUnits) {
+    const CsvTable read = table("A [mm], b (N) ,c\n1,2,3\n");
+    EXPECT_EQ(read.at(0, "a"), 1);
+    read.require_unit({"a", "c"}, "mm", "set.yaml");
+    read.require_unit({"b"}, "N", "set.yaml");
+    EXPECT_TRUE(says(message_of<InvalidInput>([&] { read.require_unit({"a"}, "m", "set.yaml"); }),
+                     {"table.csv, column a", "[mm]", "set.yaml says m"}));
+}
+
 TEST_F(Csv, AnOptionalColumnMayBeAbsent) {
     const CsvTable read = table("a,b\n1,2\n");
     EXPECT_TRUE(read.has("a"));
@@ -68,7 +99,7 @@ TEST_F(Csv, ReadsTheSameInEveryLocale) {
 }
 
 TEST_F(Csv, RefusesWhatIsNoNumber) {
-    for (const char* word : {"nan", "NaN", "inf", "-inf", "1e999", "0x10", "1.5mm", "1 2", "--1", "+-1", "1e", "''"})
+    for (const char* word : {"inf", "-inf", "1e999", "0x10", "1.5mm", "1 2", "--1", "+-1", "1e", "''"})
         EXPECT_TRUE(says(refusal("a,b\n1,2\n3," + std::string(word) + "\n"),
                          {"table.csv, line 3", "column b", word, "no number"}));
     EXPECT_TRUE(says(refusal("a,b\n1,\"2,5\"\n"), {"line 2", "'2,5'"}));
@@ -88,7 +119,7 @@ TEST_F(Csv, RefusesColumnsThatItDoesNotKnow) {
     EXPECT_TRUE(says(refusal("1,2\n3,4\n"), {"line 1", "unknown column '1'", "header"}));
     EXPECT_TRUE(says(refusal("a,c\n"), {"'b' is missing"}));
     EXPECT_TRUE(says(refusal("a,b,a\n"), {"'a' is named twice"}));
-    EXPECT_TRUE(says(refusal("a;b\n1;2\n"), {"no comma", "by commas"}));
+    EXPECT_TRUE(says(refusal("a b\n1 2\n"), {"no comma, semicolon or tab", "by commas"}));
     EXPECT_TRUE(says(refusal("# only a comment\n"), {"empty", "a,b"}));
 }
 

@@ -16,8 +16,10 @@
 namespace palpate::pipeline {
 namespace {
 
+using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::Not;
+using ::testing::StartsWith;
 
 struct Finished {
     int code;
@@ -62,6 +64,39 @@ TEST(CommandLine, JsonStandsAloneOnStandardOutput) {
     const Finished failed = palpate("check --json " + (scratch / "none.stl").string());
     EXPECT_EQ(failed.code, 3);
     EXPECT_TRUE(nlohmann::json::parse(failed.out).contains("error"));
+}
+
+/// What stands on standard error.
+std::string complaint(const std::string& arguments) {
+    const std::string command = std::string(PALPATE_PROGRAM) + " " + arguments + " 2>&1 >/dev/null";
+    FILE* pipe = popen(command.c_str(), "r");
+    std::string out;
+    std::array<char, 4096> buffer{};
+    while (const std::size_t count = fread(buffer.data(), 1, buffer.size(), pipe)) out.append(buffer.data(), count);
+    pclose(pipe);
+    return out;
+}
+
+TEST(CommandLine, WrongUsageIsToldLikeAnyOtherError) {
+    EXPECT_THAT(complaint("rnu x"), StartsWith("error: 'rnu' is no command (did you mean 'run'?)"));
+    EXPECT_THAT(complaint("--threads 2 chek mesh"), HasSubstr("did you mean 'check'?"));
+    EXPECT_THAT(complaint(""), StartsWith("error: a command is needed, one of run, check"));
+    EXPECT_THAT(complaint("run"), StartsWith("error: palpate run: INPUT is needed; 'palpate run --help'"));
+    EXPECT_THAT(complaint("check a b"), StartsWith("error: palpate check: 'b' is too many"));
+    EXPECT_THAT(complaint("check a --threads 0"), HasSubstr("--threads: '0' is no number from 1 to 1024"));
+    EXPECT_THAT(complaint("compare a b --tolerance -1"), HasSubstr("--tolerance: '-1' is no number of 0 or more"));
+    EXPECT_THAT(complaint("improve a b"), HasSubstr("one of --add or --auto is needed"));
+    EXPECT_THAT(complaint("diagnose a b --body spheres"), HasSubstr("'spheres' is none of"));
+    EXPECT_THAT(complaint("check a --jsn"), HasSubstr("did you mean '--json'?"));
+    EXPECT_THAT(complaint("simulate m --probes p --add gravity:gz"), HasSubstr("error: palpate simulate: "));
+}
+
+TEST(CommandLine, EveryHelpTellsWhatEveryCommandTakes) {
+    for (const char* command : {"run", "check", "mesh", "skeleton", "probe", "identify", "compare", "diagnose",
+                                "improve", "effects", "simulate", "report", "new", "info", "export", "play"}) {
+        const std::string help = palpate(std::string(command) + " --help").out;
+        EXPECT_THAT(help, AllOf(HasSubstr("--json"), HasSubstr("--threads"), HasSubstr("--seed"))) << command;
+    }
 }
 
 TEST(CommandLine, HelpBeginsWithExamples) {

@@ -128,7 +128,7 @@ class Scene {
     const gl = this.gl;
     if (gl.canvas.width !== width || gl.canvas.height !== height) Object.assign(gl.canvas, {width, height});
     gl.viewport(0, 0, width, height);
-    gl.clearColor(1, 1, 1, 1);
+    gl.clearColor(...(this.paper ?? [1, 1, 1]), 1);
     gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
     this.view = camera.view();
     this.projection = camera.projection(width / height);

@@ -45,21 +45,35 @@ function startView() {
   fill(at('step'), run.steps.map((s) => s.name));
   fill(at('colour'), quantities.map((q) => q.name));
   at('step-label').hidden = run.steps.length < 2;
+  at('findings-label').hidden = !run.exchanged.length && !run.steps.some((s) => s.findings.length);
   at('measured-label').hidden = !run.states.some((s) => s.measured);
   at('frame').max = count * run.steps.length - 1;
   const round = (v) => +v.toPrecision(2);
   at('magnify').value = furthest > 0 && furthest < 0.03 * size ? round(0.1 * size / furthest) : 1;
   at('lengthen').value = worst > 0 ? Math.max(1, round(0.12 * size / worst)) : 1;
+  // Loads sit on the body as it is bent: they move with the skin's vertex nearest to them.
+  for (const state of run.states) {
+    state.loads = state.loads.map((load) => Object.assign(load, {vertex: rest.length ? nearestVertex(rest, load) : -1}));
+  }
   /// A load's arrow: it ends at the body where it pushes, and begins there where it pulls.
-  const arrowOf = ([x, y, z, ...force]) => {
+  const arrowOf = (load, skin, magnify) => {
+    const [x, y, z, ...force] = load, moved = skin && skin.length && load.vertex >= 0 ? point3(skin, load.vertex) : [0, 0, 0];
     const length = 0.22 * size * Math.hypot(...force) / strongest, unit = force.map((f) => f / (Math.hypot(...force) || 1));
-    const tip = [x, y, z], pushes = unit.reduce((sum, u, i) => sum + u * (tip[i] - middle[i]), 0) < 0;
+    const tip = [x, y, z].map((v, i) => v + (magnify ?? 0) * moved[i]), pushes = unit.reduce((sum, u, i) => sum + u * (tip[i] - middle[i]), 0) < 0;
     const other = tip.map((v, i) => v + (pushes ? -1 : 1) * length * unit[i]);
     return {start: pushes ? other : tip, end: pushes ? tip : other};
   };
   // The picture holds the body at rest and, as far as it is magnified now, all that it does.
   const box = new Box().hold(body), moves = +at('magnify').value;
-  run.states.forEach((s) => s.loads.forEach((load) => { const {start, end} = arrowOf(load); box.hold(start).hold(end); }));
+  run.steps[0].states.forEach((answer, i) => run.states[i].loads.forEach((load) => {
+    const {start, end} = arrowOf(load, answer.skin, moves);
+    box.hold(start).hold(end);
+  }));
+  for (const step of run.steps) {
+    step.found = findingGlyphs(step.findings, {middle, size, held: run.spheres.held,
+      spheres: Array.from(run.spheres.radii, (_, i) => point3(run.spheres.centers, i))});
+    for (const {glyph, shape} of step.found) if (shape !== 'tube') box.hold(glyph.start).hold(glyph.end);
+  }
   box.hold(run.spheres.centers, null, 0, run.spheres.radii);
   run.states.forEach((s) => s.measured && box.hold(rest, s.measured, moves));
   run.steps[0].states.forEach((s) => { box.hold(rest, s.skin, moves); box.hold(run.spheres.centers, s.spheres, moves, run.spheres.radii); });
@@ -67,6 +81,10 @@ function startView() {
 
   // First the state that goes most wrong, which is what the page is about.
   const first = run.steps[0].states.reduce((best, s, i, all) => (s.rms > (all[best].rms || 0) ? i : best), 0);
+
+  const isDark = matchMedia('(prefers-color-scheme: dark)');
+  let onPaper = false;
+  isDark.addEventListener('change', () => requestDraw());
 
   let shown = {step: 0, state: first}, before = shown, began = -1e9, playing = 0, drawn = {glyphs: []};
   const still = matchMedia('(prefers-reduced-motion: reduce)').matches;
@@ -111,6 +129,8 @@ function startView() {
     const state = run.steps[shown.step].states[shown.state], now = run.states[shown.state], markers = state.markers;
     const values = quantity.links ? null : valuesOf(quantity, state);
     const area = at('canvas').getBoundingClientRect(), dots = Math.min(devicePixelRatio || 1, 2);
+    const dark = isDark.matches && !onPaper, ink = dark ? [0.9, 0.92, 0.94] : measuredColour;
+    scene.paper = dark ? [0.078, 0.094, 0.114] : [1, 1, 1];
     scene.begin(camera, Math.round(area.width * dots), Math.round(area.height * dots));
 
     const spheres = added(run.spheres.centers, between((s) => s.spheres, share), magnify);
@@ -142,12 +162,21 @@ function startView() {
         const start = [0, 1, 2].map((c) => markers.rest[3 * i + c] + magnify * (markers.measured[3 * i + c] - markers.error[3 * i + c]));
         const end = start.map((v, c) => v + lengthen * error[3 * i + c]);
         const length = Math.hypot(...end.map((v, c) => v - start[c]));
-        if (length > 0.004 * size) arrows.push({start, end, radius: Math.min(0.004 * size, 0.06 * length), colour: measuredColour});
+        if (length > 0.004 * size) arrows.push({start, end, radius: Math.min(0.004 * size, 0.06 * length), colour: ink});
       });
       scene.glyphs('arrow', arrows);
     }
+    if (at('show-positions').checked) {
+      const measured = added(Array.from(markers.rest), markers.measured, magnify);
+      scene.glyphs('ball', markers.id.map((id, i) => {
+        drawn.glyphs.push({at: point3(measured, i), text: `marker ${id}, as measured`});
+        return ball(point3(measured, i), 0.0055 * size, ink);
+      }));
+    }
+    if (at('show-findings').checked) drawFindings(now, markers, magnify);
     if (at('show-loads').checked) {
-      scene.glyphs('arrow', now.loads.map((load) => ({...arrowOf(load), radius: 0.009 * size, colour: loadColour})));
+      const bent = between((s) => s.skin, share);
+      scene.glyphs('arrow', now.loads.map((load) => ({...arrowOf(load, bent, magnify), radius: 0.009 * size, colour: loadColour})));
     }
     if (at('show-measured').checked && now.measured) scene.wires(added(rest, now.measured, magnify), wireColour);
     if (at('show-spheres').checked) {
@@ -161,6 +190,22 @@ function startView() {
     if (share < 1) requestDraw();
   }
 
+  /// What was found by the step that is shown, and markers of this state that look swapped.
+  function drawFindings(now, markers, magnify) {
+    for (const {shape, glyph, opacity, text} of run.steps[shown.step].found) {
+      scene.glyphs(shape, [glyph], opacity);
+      if (text) drawn.glyphs.push({at: glyph.start.map((v, i) => (v + glyph.end[i]) / 2), text});
+    }
+    const here = (one) => one.probe === now.probe && Math.abs(one.time - now.time) < 1e-9;
+    for (const pair of run.exchanged.filter(here)) {
+      const places = pair.markers.map((id) => markers.id.indexOf(id)).filter((i) => i >= 0)
+        .map((i) => [0, 1, 2].map((c) => markers.rest[3 * i + c] + magnify * markers.measured[3 * i + c]));
+      if (places.length < 2) continue;
+      scene.glyphs('tube', [{start: places[0], end: places[1], radius: 0.004 * size, colour: foundColour}]);
+      drawn.glyphs.push({at: places[0].map((v, i) => (v + places[1][i]) / 2), text: `markers ${pair.markers.join(' and ')} look swapped`});
+    }
+  }
+
   function tell(quantity, scale, state) {
     const number = (v) => (Number.isFinite(v) ? `${+v.toPrecision(3)}` : '–');
     at('low').textContent = number(scale.low);
@@ -169,6 +214,9 @@ function startView() {
     at('what').textContent = `${quantity.name}${quantity.logarithmic ? ', logarithmic' : ''}: ${quantity.words}`;
     const model = run.steps.length > 1 ? `Model: ${run.steps[shown.step].name}. ` : '';
     at('told').textContent = `${model}Probe ${titles[shown.state]}: off by ${number(state.rms)} mm rms, ${number(state.largest)} mm at most.`;
+    const found = run.steps[shown.step].findings.map((f) => f.words);
+    at('found').hidden = !found.length || !at('show-findings').checked;
+    at('found').replaceChildren(document.createElement('i'), found.join(' '));
     at('frame').value = shown.step * count + shown.state;
     at('frame').setAttribute('aria-valuetext', at('told').textContent);
     at('state').value = shown.state;
@@ -208,7 +256,8 @@ function startView() {
   steer(at('canvas'), camera, {draw: requestDraw, move: (by) => goTo(frame() + by), play: () => play(!playing),
     hint: (x, y) => hint(at('hint'), camera, drawn.glyphs, at('canvas'), x, y)});
   new ResizeObserver(requestDraw).observe(at('canvas'));
-  addEventListener('beforeprint', draw);
+  addEventListener('beforeprint', () => { onPaper = true; draw(); });
+  addEventListener('afterprint', () => { onPaper = false; requestDraw(); });
   requestDraw();
 }
 

@@ -110,7 +110,7 @@ TEST_F(ReadSurface, VerticesThatNoFaceUsesAreLeftOut) {
         read_body(folder.write("a.obj", obj_vertices + "v 1e9 0 0\n" + obj_tetrahedron.substr(obj_vertices.size())));
     EXPECT_EQ(body.surface.vertices.rows(), 4);
     ASSERT_EQ(body.notes.size(), 1U);
-    EXPECT_TRUE(says(body.notes[0], {"1 vertices", "left out"}));
+    EXPECT_TRUE(says(body.notes[0], {"1 vertex that", "is left out"}));
 }
 
 TEST_F(ReadSurface, SizesBeyondMeaningAreRefused) {

@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "identify/measurements/measurement_set.h"
 #include "mesh/errors.h"
 #include "mesh/text/atomic_file.h"
@@ -71,6 +73,39 @@ TEST_F(RigSets, AreToldByCheckAndInfo) {
                                       std::pair("tendon/actuations.csv", "what actuators were set to"),
                                       std::pair("tensile/displacements.csv", "measured displacements of markers")})
         EXPECT_EQ(describe(scratch / table).kind, kind);
+}
+
+TEST_F(RigSets, AnEmptySetIsThereToBeFilledIn) {
+    const std::filesystem::path set = scratch / "mine";
+    EXPECT_THAT(commands::new_case({.folder = set, .measurements = true}, {}).text,
+                AllOf(HasSubstr("an empty measurement set"), HasSubstr("palpate check")));
+    EXPECT_TRUE(says(message_of<InvalidInput>([&] { checked(set); }), {"probes.csv", "no rows", "Add a row"}));
+
+    // as its comments show
+    for (const char* table : {"probes.csv", "markers.csv", "positions.csv"}) {
+        std::string text = mesh::read_text(set / table);
+        for (const char* row : {"# 0,", "# 1,", "# tip_top", "# middle"})
+            for (std::size_t at = text.find(row); at != std::string::npos; at = text.find(row)) text.erase(at, 2);
+        mesh::write_text(set / table, text);
+    }
+    EXPECT_THAT(checked(set).text,
+                AllOf(HasSubstr("2 states (1 loaded), 2 markers, 2 readings"), HasSubstr("The surface is sound")));
+    const identify::MeasurementSet read = identify::read_measurement_set(set);
+    EXPECT_EQ(read.markers.front().name, "tip_top");
+    EXPECT_EQ(read.states.back().readings.front().marker, 0);
+    identify::write_measurement_set(scratch / "copy", read);
+    EXPECT_EQ(identify::read_measurement_set(scratch / "copy").markers.front().name, "tip_top");
+
+    mesh::write_text(set / "positions.csv", "probe;time;Marker;X [mm];y;z\r\n1;0;tip_tpo;99,2;10;14,1\r\n");
+    EXPECT_TRUE(says(message_of<InvalidInput>([&] { checked(set); }),
+                     {"positions.csv, line 2", "tip_tpo", "did you mean 'tip_top'?"}));
+    mesh::write_text(set / "positions.csv", "probe;time;Marker;X [m];y;z\r\n1;0;tip_top;99,2;nan;14,1\r\n");
+    EXPECT_TRUE(
+        says(message_of<InvalidInput>([&] { checked(set); }), {"positions.csv, column x", "[m]", "set.yaml says mm"}));
+    mesh::write_text(set / "positions.csv", "probe;time;Marker;X [mm];y;z\r\n1;0;tip_top;99,2;nan;14,1\r\n");
+    const identify::Reading reading = identify::read_measurement_set(set).states.back().readings.front();
+    EXPECT_EQ(reading.position.x(), 99.2);
+    EXPECT_TRUE(std::isnan(reading.position.y()));
 }
 
 TEST_F(RigSets, WithoutAForceTellRatiosOnly) {

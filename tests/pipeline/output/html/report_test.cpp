@@ -5,6 +5,7 @@
 
 #include <map>
 #include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "identify/comparison/compare.h"
 #include "identify/loading/readings.h"
@@ -17,6 +18,7 @@
 #include "pipeline/command_line/commands.h"
 #include "pipeline/output/csv/posterior.h"
 #include "pipeline/output/html/charts/charts.h"
+#include "pipeline/output/html/findings.h"
 #include "pipeline/output/html/report.h"
 #include "pipeline/output/html/sections/fit_sections.h"
 #include "pipeline/output/html/sections/inquiry_sections.h"
@@ -56,7 +58,7 @@ const std::filesystem::path& beam_run() {
 
 json data_of(const std::filesystem::path& run, std::size_t budget = 3'000'000) {
     return view_data(run, json::parse(mesh::read_text(run / "run.json")),
-                     json::parse(mesh::read_text(run / "compare/compare.json")), nullptr,
+                     json::parse(mesh::read_text(run / "compare/compare.json")), nullptr, nullptr,
                      read_posterior(run / "identify/posterior.csv"), budget);
 }
 
@@ -133,6 +135,33 @@ TEST(ViewData, HoldsTheBodyAndEachAnswer) {
         EXPECT_FALSE(state["measured"].is_null()) << "simulated: the field is known";
 }
 
+/// What was found is drawn where it is, without what the readings do not determine of it.
+TEST(FindingsJson, TellsWhatCanBeDrawn) {
+    const json diagnosis = {{"ranking",
+                             {{{"effect", "gravity"},
+                               {"sentence", "Gravity is missing: 9.2 m/s^2 along -z."},
+                               {"parameters",
+                                {{"gx", {{"value", 4700.0}, {"sd", 4200.0}}},
+                                 {"gy", {{"value", -90.0}, {"sd", 320.0}}},
+                                 {"gz", {{"value", -9200.0}, {"sd", 460.0}}}}}}}}};
+    const json found = findings_json(
+        {{"gravity", {{"gx", 4700, "mm/s^2"}, {"gy", -90, "mm/s^2"}, {"gz", -9200, "mm/s^2"}}},
+         {"inclusion", {{"cx", 1, "mm"}, {"cy", 2, "mm"}, {"cz", 3, "mm"}, {"radius", 4, "mm"}, {"ratio", 8, "1"}}},
+         {"contact",
+          {{"nx", 0, "1"}, {"ny", 0, "1"}, {"nz", 1, "1"}, {"offset", -5, "mm"}, {"stiffness", 1, "N/mm^3"}}}},
+        diagnosis);
+    ASSERT_EQ(found.size(), 3U);
+    EXPECT_EQ(found[0]["kind"], "arrow");
+    EXPECT_EQ(found[0]["vector"], json({0.0, -90.0, -9200.0}));
+    EXPECT_EQ(found[0]["words"], "Gravity is missing: 9.2 m/s^2 along -z.");
+    EXPECT_EQ(found[1]["kind"], "ball");
+    EXPECT_EQ(found[1]["center"], json({1.0, 2.0, 3.0}));
+    EXPECT_EQ(found[1]["radius"], 4.0);
+    EXPECT_EQ(found[2]["kind"], "plane");
+    EXPECT_EQ(found[2]["offset"], -5.0);
+    EXPECT_THAT(found[1]["words"].get<std::string>(), HasSubstr("hard"));
+}
+
 /// Where not all states fit, those with the largest errors are kept.
 TEST(ViewData, KeepsTheWorstStatesWithinItsBudget) {
     const json whole = data_of(beam_run()), small = data_of(beam_run(), 1);
@@ -144,6 +173,61 @@ TEST(ViewData, KeepsTheWorstStatesWithinItsBudget) {
         if (probe["rms_mm"] > worst["rms_mm"]) worst = probe;
     }
     EXPECT_EQ(small["states"][0]["probe"], worst["probe"]);
+}
+
+/// What is played is written for a spreadsheet, too: where a marker is, and how far that can be relied on.
+TEST(Simulate, WritesPositionsWithTheirIntervals) {
+    const TemporaryFolder scratch;
+    const std::filesystem::path model = beam_run() / "identify/model.json";
+    mesh::write_text(scratch / "probes.csv", "probe,time,x,y,z,fx,fy,fz,radius\n1,0,100,10,20,0,0,-0.001,4\n");
+    mesh::write_text(scratch / "markers.csv", "marker,x,y,z\ntip,100,10,20\nfoot,0,10,10\n");
+    const auto rows_of = [&](const char* name) {
+        std::istringstream lines(mesh::read_text(scratch / name / "positions.csv"));
+        std::vector<std::string> rows;
+        for (std::string line; std::getline(lines, line);)
+            if (!line.starts_with("#")) rows.push_back(line);
+        return rows;
+    };
+    commands::simulate({.model = model,
+                        .probes = scratch / "probes.csv",
+                        .output = scratch / "played",
+                        .markers = scratch / "markers.csv"},
+                       {});
+    const std::vector<std::string> pressed = rows_of("played");
+    ASSERT_EQ(pressed.size(), 3U);
+    EXPECT_EQ(pressed[0], "probe,time,marker,x,y,z,ux,uy,uz,sd,within_95");
+    EXPECT_THAT(pressed[1], AllOf(::testing::StartsWith("1,0,tip,"), Not(::testing::EndsWith(","))));
+    const auto cell = [](const std::string& row, int column) {
+        std::istringstream cells(row);
+        std::string one;
+        for (int c = 0; c <= column; ++c) std::getline(cells, one, ',');
+        return std::stod(one);
+    };
+    EXPECT_LT(cell(pressed[1], 8), 0) << "pressed down";
+    EXPECT_NEAR(cell(pressed[1], 5), 20 + cell(pressed[1], 8), 1e-4);
+    EXPECT_NEAR(cell(pressed[2], 8), 0, 1e-3 * std::abs(cell(pressed[1], 8))) << "it is held";
+    EXPECT_NEAR(cell(pressed[1], 10), 1.96 * cell(pressed[1], 9), 1e-3 * cell(pressed[1], 10));
+
+    // its own weight besides
+    commands::simulate({.model = model,
+                        .probes = scratch / "probes.csv",
+                        .output = scratch / "hanging",
+                        .add = {"gravity:gz=-9810"},
+                        .markers = scratch / "markers.csv"},
+                       {});
+    EXPECT_LT(cell(rows_of("hanging")[1], 8), cell(pressed[1], 8));
+    EXPECT_THROW(commands::simulate({.model = model,
+                                     .probes = scratch / "probes.csv",
+                                     .output = scratch / "none",
+                                     .add = {"misalignment:tx=1"}},
+                                    {}),
+                 InvalidInput);
+    EXPECT_THROW(commands::simulate({.model = model,
+                                     .probes = scratch / "probes.csv",
+                                     .output = scratch / "none",
+                                     .add = {"inclusion:ratio=8"}},
+                                    {}),
+                 InvalidInput);
 }
 
 /// The pictures show what the errors were told of.
@@ -213,7 +297,8 @@ TEST(MissingSection, PutsEveryCandidateInWords) {
         missing_section(diagnosis),
         AllOf(HasSubstr("<b>Claimed.</b> Gravity is &lt;missing&gt;."), HasSubstr("gz -9810 ± 12 mm/s^2"),
               HasSubstr("The body meets an unreported flat obstacle"), HasSubstr("No claim: too much of the misfit."),
-              HasSubstr("Screened only: it would leave 1.7 mm rms.")));
+              HasSubstr("Screened only: it would leave 1.7 mm rms."), HasSubstr("above 0.99"), HasSubstr("below 0.01"),
+              Not(HasSubstr("left out"))));
     EXPECT_EQ(missing_section(nullptr), "");
 }
 

@@ -7,6 +7,7 @@
 #include "pipeline/output/text/comparison.h"
 #include "pipeline/output/text/diagnosis.h"
 #include "pipeline/output/text/words.h"
+#include "pipeline/output/text/worst.h"
 
 namespace palpate::pipeline {
 namespace {
@@ -19,6 +20,7 @@ using ::testing::Not;
 json candidate(const std::string& effect, double log_bayes_factor, double probability, const std::string& sentence) {
     return {{"effect", effect},
             {"kind", "body"},
+            {"parameters", json::object()},
             {"probability", probability},
             {"log_bayes_factor", log_bayes_factor},
             {"rms_mm", 0.9},
@@ -41,11 +43,29 @@ json diagnosis(const std::string& verdict, const std::vector<std::string>& expla
 }
 
 TEST(DiagnosisInWords, NamesTheEffectWithItsEvidence) {
-    EXPECT_THAT(
-        diagnosis_in_words(diagnosis("missing-effect", {"gravity"})),
-        AllOf(HasSubstr("Gravity is missing (probability 0.98): 9.90 m/s^2"), HasSubstr("errs by 6.4 mm"),
-              HasSubstr("there without any load"), HasSubstr("from 6.4 to 0.9 mm rms (0.92 on probes left out)"),
-              HasSubstr("Runner-up: misalignment, 10^-54 times as likely")));
+    EXPECT_THAT(diagnosis_in_words(diagnosis("missing-effect", {"gravity"})),
+                AllOf(HasSubstr("Gravity is missing (probability 0.98): 9.90 m/s^2"),
+                      HasSubstr("errs by 6.4 mm rms, with or without load."),
+                      HasSubstr("from 6.4 to 0.9 mm rms (0.92 on probes held out one by one), no more than noise"),
+                      HasSubstr("Runner-up: misalignment, less than a thousandth as likely."), Not(HasSubstr("10^"))));
+}
+
+TEST(DiagnosisInWords, TellsTheStiffnessWithTheEffectAndWithout) {
+    json d = diagnosis("missing-effect", {"gravity"});
+    d["baseline"].update({{"young_mpa", 0.168}, {"poisson", nullptr}});
+    d["explained"] = {{"young_mpa", 0.2417}, {"young_sd_mpa", 0.012}, {"poisson", 0.452}, {"poisson_sd", 0.031}};
+    EXPECT_THAT(diagnosis_in_words(d), HasSubstr("With it finite elements have E = 0.242 ± 0.012 MPa, ν = 0.45 ± 0.03; "
+                                                 "without it they would have E = 0.168 MPa."));
+}
+
+TEST(DiagnosisInWords, SaysWhyACloserFitIsNotTheAnswer) {
+    json d = diagnosis("missing-effect", {"gravity"});
+    d["ranking"][0]["parameters"] = {{"gx", 0}, {"gy", 0}, {"gz", 0}};
+    d["ranking"][1]["parameters"] = {{"tx", 0}, {"ty", 0}, {"tz", 0}, {"rx", 0}, {"ry", 0}, {"rz", 0}};
+    EXPECT_THAT(diagnosis_in_words(d), Not(HasSubstr("free numbers"))) << "it fits no closer";
+    d["ranking"][1]["rms_mm"] = 0.85;
+    EXPECT_THAT(diagnosis_in_words(d), HasSubstr("though it leaves 0.85 mm rms: it takes 6 free numbers for that "
+                                                 "against 3"));
 }
 
 TEST(DiagnosisInWords, NamesSeveralTogether) {
@@ -100,7 +120,7 @@ json compared() {
 
 TEST(CompareInWords, TellsTheBudgetAndTheWorstRegionFirst) {
     EXPECT_THAT(compare_in_words(compared()),
-                AllOf(HasSubstr("the model lacks something"), HasSubstr("neo-hooke, E = 0.31 MPa, nu = 0.450 +- 0.010"),
+                AllOf(HasSubstr("the model lacks something"), HasSubstr("neo-hooke, E = 0.31 MPa, ν = 0.450 ± 0.010"),
                       HasSubstr("1.0 % is noise, 12.0 % the coarseness of the skeleton, 87.0 % physics"),
                       HasSubstr("2 of 3 regions, worst round (80, 20, 0) (9 sigma), (1, 2, 3)")));
 }
@@ -116,6 +136,17 @@ TEST(CompareInWords, BlamesNothingWhereFiniteElementsLeaveNoise) {
     c["reference"]["whitened_rms"] = 1.05;
     EXPECT_THAT(compare_in_words(c),
                 AllOf(Not(HasSubstr("lacks")), HasSubstr("87.0 % uncertainty of contacts and clamps")));
+}
+
+/// What finite elements explain is no physics that is missing, however it goes with the load.
+TEST(CompareInWords, TellsHowTheErrorGoesWithTheLoadOnlyWhereItIsUnexplained) {
+    json c = compared();
+    c["load_exponent"] = {{"value", -0.62}, {"sd", 0.31}, {"words", "the error is there without any load"}};
+    EXPECT_THAT(compare_in_words(c), HasSubstr("to the power -0.6 ± 0.3: the error is there without any load."));
+    c["reference"]["whitened_rms"] = 0.9;
+    EXPECT_THAT(compare_in_words(c, "The model with gravity"),
+                AllOf(Not(HasSubstr("without any load")), HasSubstr("The model with gravity is off by 1.8 mm rms"),
+                      HasSubstr("1.7 mm rms: no more than noise and unknown contacts explain.")));
 }
 
 TEST(CompareInWords, AnErrorBeyondTheDisplacementIsToldAsTimesOfIt) {
@@ -145,13 +176,48 @@ TEST(LadderInWords, TellsEveryStepAndTheVerdict) {
            {"rms_mm", 0.9},
            {"held_out_rms_mm", nullptr},
            {"predicted_rms_mm", 1.0},
-           {"reference", {{"rms_mm", 0.8}, {"held_out_rms_mm", 0.85}}}}}},
+           {"reference",
+            {{"rms_mm", 0.8},
+             {"held_out_rms_mm", 0.85},
+             {"young_mpa", 0.242},
+             {"young_sd_mpa", 0.012},
+             {"poisson", 0.499},
+             {"poisson_sd", 2e-5},
+             {"poisson_declared", true}}}}}},
         {"verdict", "adequate"}};
     EXPECT_THAT(ladder_in_words(ladder),
-                AllOf(HasSubstr("Without: 6.4 mm rms (6.3 on probes held out)."),
-                      HasSubstr("With gravity: 0.9 mm rms; in finite elements 0.8 mm rms (0.85 on probes held out), "
-                                "where the screen had expected 1."),
+                AllOf(HasSubstr("Nothing added: 6.4 mm rms (6.3 on held-out probes)."),
+                      HasSubstr("With gravity: 0.9 mm rms; in finite elements 0.8 mm rms (0.85 on held-out probes), "
+                                "where the screen had expected 1, with E = 0.242 ± 0.012 MPa, ν = 0.499 (the set's)."),
                       HasSubstr("The residual of the finite-element model is noise.")));
+}
+
+TEST(Words, ACertaintyIsToldAsABound) {
+    EXPECT_EQ(probability_in_words(0.0), "below 0.01");
+    EXPECT_EQ(probability_in_words(0.5), "0.50");
+    EXPECT_EQ(probability_in_words(0.99999), "above 0.99");
+    EXPECT_EQ(in_sigmas(0.876), "no more than noise and unknown contacts explain");
+    EXPECT_EQ(in_sigmas(4.84), "4.8 times what noise and unknown contacts explain");
+    EXPECT_EQ(in_sigmas(nullptr), "an unknown multiple of the noise");
+    EXPECT_EQ(material_in_words({{"young_mpa", 1.0}, {"poisson", 0.4993}, {"poisson_sd", 0.001}}),
+              "E = 1 MPa, ν above 0.497");
+}
+
+TEST(WorstTable, NamesProbesMarkersAndThePartOfTheBody) {
+    const json compare = {
+        {"box", {{"min", {0, 0, 0}}, {"max", {80, 20, 20}}}},
+        {"probes",
+         {{{"probe", 1}, {"time", 0.0}, {"rms_mm", 0.5}, {"max_mm", 1.0}, {"relative", nullptr}, {"at", nullptr}},
+          {{"probe", 3}, {"time", 2.0}, {"rms_mm", 2.1}, {"max_mm", 5.0}, {"relative", 0.5}, {"at", {80, 10, 20}}}}},
+        {"markers",
+         {{{"marker", 4}, {"rms_mm", 0.1}, {"at", {40, 10, 10}}},
+          {{"marker", 1}, {"name", "tip_top"}, {"rms_mm", 3.0}, {"at", {79, 0, 20}}}}}};
+    const std::string table = worst_table(compare);
+    EXPECT_THAT(table, AllOf(HasSubstr("probe 3, 2 s"), HasSubstr("50.0 %"), HasSubstr("(80, 10, 20) mm, +x end, top"),
+                             HasSubstr("no load"), HasSubstr("marker tip_top"), HasSubstr("+x end, -y side, top"),
+                             HasSubstr("marker 4"), HasSubstr("middle")));
+    EXPECT_LT(table.find("probe 3"), table.find("probe 1")) << "the worst first";
+    EXPECT_LT(table.find("tip_top"), table.find("marker 4"));
 }
 
 TEST(Words, AnAsideStandsBeforeTheColonOrTheFullStop) {

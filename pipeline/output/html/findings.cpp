@@ -1,0 +1,91 @@
+#include "pipeline/output/html/findings.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "identify/effects/catalogue.h"
+
+namespace palpate::pipeline {
+namespace {
+
+using nlohmann::json;
+
+double number(const skeleton::EffectRecord& effect, const std::string& name) {
+    const auto found = std::ranges::find(effect.parameters, name, &skeleton::EffectParameter::name);
+    return found == effect.parameters.end() ? 0 : found->value;
+}
+
+json vector(const skeleton::EffectRecord& effect, const std::array<const char*, 3>& names) {
+    return {number(effect, names[0]), number(effect, names[1]), number(effect, names[2])};
+}
+
+const json* candidate_of(const json& diagnosis, const std::string& effect) {
+    if (diagnosis.is_null()) return nullptr;
+    const auto found = std::ranges::find_if(diagnosis["ranking"], [&](const json& c) { return c["effect"] == effect; });
+    return found == diagnosis["ranking"].end() ? nullptr : &*found;
+}
+
+/// Without the components that the readings do not determine: their standard deviation is a large part of the rest, and
+/// several times that of the best known one.
+void leave_undetermined_out(json& vector, const std::array<const char*, 3>& names, const json* candidate) {
+    if (!candidate) return;
+    const json& parameters = (*candidate)["parameters"];
+    std::array<double, 3> sd{};
+    for (std::size_t a = 0; a < 3; ++a) {
+        if (!parameters.contains(names[a]) || !parameters[names[a]]["sd"].is_number()) return;
+        sd[a] = parameters[names[a]]["sd"].get<double>();
+    }
+    constexpr double much = 0.25, several = 3;
+    const double least = *std::ranges::min_element(sd);
+    for (std::size_t a = 0; a < 3; ++a) {
+        double rest = 0;
+        for (std::size_t b = 0; b < 3; ++b)
+            if (b != a) rest = std::hypot(rest, vector[b].get<double>());
+        if (rest > 0 && sd[a] > much * rest && sd[a] > several * least) vector[a] = 0.0;
+    }
+}
+
+/// What the diagnosis says of it, else what it is.
+std::string words_of(const skeleton::EffectRecord& effect, const json* candidate) {
+    if (candidate && candidate->contains("sentence")) return (*candidate)["sentence"];
+    const auto known = identify::effect_named(effect.name);
+    return known && !effect.parameters.empty() ? known->sentence(effect) : effect.name;
+}
+
+}  // namespace
+
+json findings_json(const std::vector<skeleton::EffectRecord>& effects, const json& diagnosis) {
+    constexpr std::array gravity{"gx", "gy", "gz"}, normal{"nx", "ny", "nz"}, centre{"cx", "cy", "cz"};
+    json findings = json::array();
+    for (const skeleton::EffectRecord& effect : effects) {
+        const json* candidate = candidate_of(diagnosis, effect.name);
+        json found{{"words", words_of(effect, candidate)}};
+        if (effect.name == "gravity") {
+            found["kind"] = "arrow";
+            found["vector"] = vector(effect, gravity);
+            leave_undetermined_out(found["vector"], gravity, candidate);
+        } else if (effect.name == "anisotropy") {
+            found["kind"] = "axis";
+            found["vector"] = vector(effect, normal);
+        } else if (effect.name == "inclusion") {
+            found["kind"] = "ball";
+            found["center"] = vector(effect, centre);
+            found["radius"] = number(effect, "radius");
+        } else if (effect.name == "contact") {
+            found["kind"] = "plane";
+            found["vector"] = vector(effect, normal);
+            found["offset"] = number(effect, "offset");
+        } else if (effect.name == "compliant-support") {
+            found["kind"] = "springs";
+        } else {
+            found["kind"] = "words";
+        }
+        findings.push_back(std::move(found));
+    }
+    return findings;
+}
+
+}  // namespace palpate::pipeline

@@ -1,0 +1,78 @@
+#include "pipeline/output/text/words.h"
+
+#include "mesh/text/words.h"
+
+namespace palpate::pipeline {
+namespace {
+
+using nlohmann::json;
+
+double number_or_nothing(const json& object, const char* key) {
+    const json value = object.value(key, json());
+    return value.is_number() ? value.get<double>() : 0;
+}
+
+std::string poisson_in_words(const json& material) {
+    const double ratio = material["poisson"].get<double>(), sd = number_or_nothing(material, "poisson_sd");
+    if (material.value("poisson_declared", false)) return fmt::format("ν = {:.3g} (the set's)", ratio);
+    constexpr double incompressible = 0.499;  // beyond it nothing that is measured changes
+    const double least = ratio - 2 * sd;
+    if (ratio > incompressible) return fmt::format("ν above {:.3f}", std::min(least, incompressible));
+    return "ν = " + mesh::with_sd(ratio, sd);
+}
+
+}  // namespace
+
+std::string if_it_explains_nothing(const json& relative) {
+    if (!relative.is_number() || !(relative.get<double>() > 1)) return {};
+    return " That is more than the markers moved: the model explains nothing. Check where the body is held, the units, "
+           "the sign of the forces, and that body, markers and forces are in one frame.";
+}
+
+std::string place(const json& at) {
+    return fmt::format("({:.3g}, {:.3g}, {:.3g})", at[0].get<double>(), at[1].get<double>(), at[2].get<double>());
+}
+
+std::string in_sigmas(const json& whitened_rms) {
+    if (!whitened_rms.is_number()) return "an unknown multiple of the noise";
+    constexpr double adequate = 1.1;  // as a diagnosis takes it
+    const double times = whitened_rms.get<double>();
+    return times <= adequate ? "no more than noise and unknown contacts explain"
+                             : fmt::format("{:.2g} times what noise and unknown contacts explain", times);
+}
+
+std::string material_in_words(const json& material) {
+    if (!material["young_mpa"].is_number()) return {};
+    std::string text = fmt::format(
+        "E = {} MPa", mesh::with_sd(material["young_mpa"].get<double>(), number_or_nothing(material, "young_sd_mpa")));
+    if (material["poisson"].is_number()) text += ", " + poisson_in_words(material);
+    return text;
+}
+
+std::string and_under_load(const json& load_exponent) {
+    const std::string words = load_exponent["words"];
+    return words == "the error is there without any load" ? ", with or without load" : ", and " + words;
+}
+
+std::string probability_in_words(double probability) {
+    constexpr double told = 0.01;
+    if (probability < told) return "below 0.01";
+    if (probability > 1 - told) return "above 0.99";
+    return fmt::format("{:.2f}", probability);
+}
+
+std::string listed(const std::vector<std::string>& names) {
+    std::string text;
+    for (std::size_t i = 0; i < names.size(); ++i) {
+        text += (i == 0 ? "" : i + 1 == names.size() ? " and " : ", ") + names[i];
+    }
+    return text;
+}
+
+std::string with_aside(std::string sentence, const std::string& aside) {
+    std::size_t at = sentence.find(": ");
+    if (at == std::string::npos) at = sentence.ends_with('.') ? sentence.size() - 1 : sentence.size();
+    return sentence.insert(at, " (" + aside + ")");
+}
+
+}  // namespace palpate::pipeline

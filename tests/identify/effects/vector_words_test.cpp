@@ -1,0 +1,31 @@
+#include "identify/effects/vector_words.h"
+
+#include <gtest/gtest.h>
+
+namespace palpate::identify {
+namespace {
+
+Mat3 variances(double x, double y, double z) { return Vec3(x * x, y * y, z * z).asDiagonal(); }
+
+TEST(VectorInWords, TellsSizeAndDirection) {
+    EXPECT_EQ(vector_in_words({20, -90, -9200}, variances(300, 320, 460), 1000, "m/s^2"), "9.2 ± 0.5 m/s^2 along -z");
+    EXPECT_EQ(vector_in_words({0.06, 0.08, 0}, variances(0.001, 0.001, 0.001), 0.01, "percent", "about"),
+              "10.00 ± 0.10 percent about (0.60, 0.80, 0.00)");
+}
+
+TEST(VectorInWords, WhatIsNotDeterminedStandsApart) {
+    EXPECT_EQ(vector_in_words({4700, -90, -9200}, variances(4200, 320, 460), 1000, "m/s^2"),
+              "9.2 ± 0.5 m/s^2 along -z; along x it is not determined");
+    const Vec3 open(1, 1, 0);
+    const Mat3 covariance = variances(1, 1, 1) + 100 * open * open.transpose();
+    EXPECT_EQ(vector_in_words({3, 4, -20}, covariance, 1, "mm"),
+              "20.0 ± 1.0 mm along -z; along (0.71, 0.71, 0.00) it is not determined");
+}
+
+TEST(VectorInWords, PoorlyKnownAllRoundIsNotTakenApart) {
+    EXPECT_EQ(vector_in_words({0, 0, 5}, variances(3, 3, 3), 1, "mm"), "5 ± 3 mm along +z");
+    EXPECT_EQ(vector_in_words(Vec3::Zero(), Mat3::Zero(), 1, "mm"), "0 mm");
+}
+
+}  // namespace
+}  // namespace palpate::identify
