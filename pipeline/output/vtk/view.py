@@ -233,11 +233,11 @@ for view in views:
     Render(view)
     # z up, from a little above and before the body
     view.ResetCamera()
-    focus, place = list(view.CameraFocalPoint), list(view.CameraPosition)
-    distance = math.dist(focus, place)
-    view.CameraPosition = [f + distance * d for f, d in zip(focus, (0.31, -0.87, 0.39))]
-    view.CameraViewUp = [0, 0, 1]
-    view.ResetCamera()
+    camera = view.GetActiveCamera()
+    focus, distance = camera.GetFocalPoint(), camera.GetDistance()
+    camera.SetPosition([f + distance * d for f, d in zip(focus, (0.31, -0.87, 0.39))])
+    camera.SetViewUp(0, 0, 1)
+    view.ResetCamera(True)
     view.CameraParallelScale *= 1.1  # room for the legend
     Render(view)
 if len(sys.argv) > 1 and sys.argv[-1].endswith(".png"):
