@@ -146,8 +146,9 @@ std::string refusal_of_flat(const mesh::Surface& surface) {
     constexpr double least = 1e-4;  // of the longest side: foil of 10 um over 100 mm
     if (extent.minCoeff() > least * extent.maxCoeff()) return {};
     return fmt::format(
-        "the surface is flat: {:.3g} mm long and {:.3g} mm thick. A body has a thickness: give the closed surface of a "
-        "solid",
+        "the surface is flat, {:.3g} mm long and {:.3g} mm thick, and encloses nothing. A body has a thickness: give "
+        "the "
+        "closed surface of a solid",
         extent.maxCoeff(), extent.minCoeff());
 }
 

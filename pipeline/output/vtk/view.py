@@ -63,11 +63,11 @@ def plain(display, colour, opacity=1.0):
 
 
 def round_above(value):
-    """The least of 1, 2, 2.5, 5, 10 times a power of ten that is not below a value."""
+    """The least of 1, 1.5, 2, 2.5, 3, 4, 5, 6, 8, 10 times a power of ten that is not below a value."""
     if value <= 0:
         return 1.0
     power = 10.0 ** math.floor(math.log10(value))
-    return next(digit * power for digit in (1, 2, 2.5, 5, 10) if digit * power >= value * (1 - 1e-9))
+    return next(digit * power for digit in (1, 1.5, 2, 2.5, 3, 4, 5, 6, 8, 10) if digit * power >= value * (1 - 1e-9))
 
 
 def round_labels(low, high, logarithmic):
@@ -232,9 +232,11 @@ layout.SetSize(1800, 1100)
 for view in views:
     Render(view)
     # z up, from a little above and before the body
-    view.CameraFocalPoint = [0, 0, 0]
-    view.CameraPosition = [0.35, -1, 0.45]
-    view.CameraViewUp = [0, 0, 1]
+    view.ResetCamera()
+    camera = view.GetActiveCamera()
+    focus, distance = camera.GetFocalPoint(), camera.GetDistance()
+    camera.SetPosition([f + distance * d for f, d in zip(focus, (0.31, -0.87, 0.39))])
+    camera.SetViewUp(0, 0, 1)
     view.ResetCamera(True)
     view.CameraParallelScale *= 1.1  # room for the legend
     Render(view)
