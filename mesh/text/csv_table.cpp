@@ -94,10 +94,10 @@ CsvTable::CsvTable(const std::filesystem::path& file, const std::vector<std::str
                             cells.size(), columns_.size(), fmt::join(columns_, ",")));
         std::vector<double> row;
         row.reserve(cells.size());
-        std::vector<std::string> text(names.empty() ? 0 : cells.size());
+        std::vector<std::string> named(names.empty() ? 0 : cells.size());
         for (std::size_t c = 0; c < cells.size(); ++c) {
             if (is_name[c]) {
-                text[c] = cells[c];
+                named[c] = cells[c];
                 row.push_back(std::numeric_limits<double>::quiet_NaN());
                 continue;
             }
@@ -111,7 +111,7 @@ CsvTable::CsvTable(const std::filesystem::path& file, const std::vector<std::str
         }
         lines_.push_back(line);
         cells_.push_back(std::move(row));
-        text_.push_back(std::move(text));
+        text_.push_back(std::move(named));
     }
     if (columns_.empty())
         throw InvalidInput(fmt::format("{}: the file is empty. Its first line names the columns: {}.",
