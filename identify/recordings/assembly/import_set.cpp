@@ -44,6 +44,7 @@ void check_all_are_mapped(const ImportMap& map, const std::vector<fs::path>& fil
         };
         if (std::ranges::any_of(map.files, is_named)) continue;
         std::vector<std::string> names;
+        names.reserve(map.files.size());
         for (const MappedFile& mapped : map.files) names.push_back(mapped.file);
         throw InvalidInput(
             fmt::format("{}: the map says nothing of this file{}; it names {}. Add an entry to 'files' in {}.",
@@ -72,7 +73,7 @@ void check_times(const recordings::Recording& recording) {
 }
 
 std::vector<FileRecordings> read_files(const ImportMap& map, const ImportOptions& options,
-                                       const std::vector<fs::path>& folders, ImportReport& report) {
+                                       const std::vector<fs::path>& folders, std::vector<std::string>& notes) {
     std::vector<FileRecordings> files;
     files.reserve(map.files.size());
     for (const MappedFile& mapped : map.files) {
@@ -90,7 +91,7 @@ std::vector<FileRecordings> read_files(const ImportMap& map, const ImportOptions
         for (const recordings::Recording& recording : file.recordings) {
             check_times(recording);
             for (const std::string& note : recording.notes)
-                report.notes.push_back(fmt::format("{}: {}", recording.source, note));
+                notes.push_back(fmt::format("{}: {}.", recording.source, note));
         }
     }
     return files;
@@ -215,7 +216,8 @@ ImportedSet import_set(const ImportOptions& options) {
 
     ImportedSet imported;
     ImportReport& report = imported.report;
-    std::vector<FileRecordings> files = read_files(map, options, all_folders, report);
+    std::vector<std::string> of_readers;
+    std::vector<FileRecordings> files = read_files(map, options, all_folders, of_readers);
     mend(map, files, report);
     const std::vector<ProbeRecording> recordings = merge_recordings(map, std::move(files), report);
     check_names(map, recordings);
@@ -233,6 +235,7 @@ ImportedSet import_set(const ImportOptions& options) {
     const ProbeStates& rest = rest_of(map, probes);
     const StateFrames frames = register_states(map, probes, rest, report);
     imported.set = filled_set(map, probes, rest, frames, report);
+    report.notes.insert(report.notes.end(), of_readers.begin(), of_readers.end());
     return imported;
 }
 

@@ -121,8 +121,9 @@ private:
             with_points == reference_->recordings.end() ? reference_->recordings.front() : *with_points;
         probe_.times = first.times;
         probe_.has_clock = first.has_clock;
+        // of points in a plane a file tells no third coordinate, or a 0 for it
         probe_.is_planar = !first.points.empty() && std::ranges::all_of(first.points, [](const RecordedPoint& point) {
-            return point.at.row(2).array().isNaN().all();
+            return (point.at.row(2).array().isNaN() || point.at.row(2).array() == 0).all();
         });
     }
 
@@ -166,7 +167,7 @@ private:
         const bool has_clock = std::ranges::any_of(
             file.recordings, [](const recordings::Recording& recording) { return recording.has_clock; });
         const auto has_as_many = [&](const recordings::Recording& recording) {
-            return recording.times == probe_.times;
+            return recording.times.size() == probe_.times.size() && recording.times == probe_.times;
         };
         if (!has_clock && !probe_.has_clock && std::ranges::all_of(file.recordings, has_as_many)) {
             report_.clocks.push_back(

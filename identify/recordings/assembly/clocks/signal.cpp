@@ -86,6 +86,7 @@ double noise_of(const Eigen::VectorXd& values) {
 
 double interval_of(const Eigen::VectorXd& times) {
     std::vector<double> steps;
+    steps.reserve(static_cast<std::size_t>(times.size()));
     for (Eigen::Index i = 1; i < times.size(); ++i) steps.push_back(times[i] - times[i - 1]);
     return median(std::move(steps));
 }

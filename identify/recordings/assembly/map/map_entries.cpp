@@ -52,6 +52,7 @@ Vec3 axis_of(const YamlFields& entry, const char* key) {
 template <class Items>
 int target_of(const YamlFields& entry, const char* key, const Items& items) {
     std::vector<std::string> names;
+    names.reserve(items.size());
     for (const auto& item : items) names.push_back(item.name);
     if (names.empty())
         throw InvalidInput(
@@ -169,6 +170,7 @@ MappedValue parse_value(const std::string& name, const std::string& text, const 
     const auto* known = std::ranges::find(known_units, unit, &KnownUnit::name);
     if (known == std::end(known_units)) {
         std::vector<std::string> names;
+        names.reserve(std::size(known_units));
         for (const KnownUnit& each : known_units) names.emplace_back(each.name);
         throw InvalidInput(fmt::format("{}: {} is no unit that is known here{}. Known: {}.", where, mesh::cited(unit),
                                        mesh::suggestion(unit, names), mesh::listed(names)));

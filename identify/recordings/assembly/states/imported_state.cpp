@@ -195,8 +195,8 @@ std::vector<ImportedState> find_states(const ImportMap& map, const ProbeRecordin
         state.from = times[part.first] - half;
         state.to = times[part.last - 1] + half;
         // shorter than the interval by far: what rounding leaves is no time
-        const double digit = std::pow(10, std::floor(std::log10(std::max(half, 1e-9))) - 1);
-        state.time = std::round((times[part.first] + times[part.last - 1]) / 2 / digit) * digit;
+        const double per_second = std::pow(10, 1 - std::floor(std::log10(std::max(half, 1e-9))));
+        state.time = std::round((times[part.first] + times[part.last - 1]) / 2 * per_second) / per_second;
         double squares = 0;
         for (const RecordedPoint& point : probe.points) state.points.push_back(steady_point(point, part, squares));
         if (!probe.points.empty()) state.drift = std::sqrt(squares / (3.0 * static_cast<double>(probe.points.size())));

@@ -19,7 +19,7 @@ struct PointNames {
 /// By their distances from each other, which no rigid motion alters and a bending one little between neighbours: of all
 /// ways to choose, the one with the least sum over pairs of ((d - D) / D)^2 (D_min / D)^2, near pairs before far ones.
 /// Sought to the end, branch by branch, where that is less work than a second; the choice is clear if each other one
-/// leaves twice as much at least. @param seen, wanted (n x 3); rows of NaN are not there
+/// leaves half as much again at least. @param seen, wanted (n x 3); rows of NaN are not there
 PointNames name_points(const Points& seen, const Points& wanted);
 
 }  // namespace palpate::identify

@@ -7,7 +7,7 @@
 namespace palpate::identify {
 namespace {
 
-using Words = std::initializer_list<const char*>;
+using Words = std::vector<const char*>;
 
 TEST_F(RigOfABar, RefusesKeysThatItDoesNotKnow) {
     EXPECT_TRUE(says(refusal("clock: {lag", "clok: {lag"), {"map.yaml, line", "clok", "did you mean 'clock'"}));
@@ -42,7 +42,10 @@ TEST_F(RigOfABar, RefusesValuesThatMeanNothing) {
         {{"{file: load.csv,", "{file: load.csv, values: {name: p, value: high},"}, {"'high'", "10 kPa"}},
         {{"{file: load.csv,", "{file: load.csv, values: {name: p, value: 3 kPascal},"}, {"'kPascal'", "no unit"}},
         {{"{file: points.csv,", "{file: points.csv, names: [a, b, c, d, e, f, g, h, i, i],"}, {"i"}}};
-    for (const auto& [slip, words] : slips) EXPECT_TRUE(says(refusal(slip.first, slip.second), words)) << slip.second;
+    for (const auto& [slip, words] : slips) {
+        const std::string message = refusal(slip.first, slip.second);
+        for (const char* word : words) EXPECT_TRUE(says(message, {word})) << slip.second;
+    }
 }
 
 const std::string tools =
