@@ -51,10 +51,10 @@ struct ParabolaFit {
     Eigen::Index samples = 0;
 };
 
-ParabolaFit fit_parabola(const Signal& motion, const Signal& force, double lag) {
+ParabolaFit fit_parabola(const Signal& motion, const Signal& force, double lag, double fast = 0, double pivot = 0) {
     std::vector<double> x, y;
     for (Eigen::Index i = 0; i < force.times.size(); ++i) {
-        const double value = value_at(motion, force.times[i] + lag);
+        const double t = force.times[i], value = value_at(motion, t + lag + fast * (t - pivot));
         if (std::isnan(value)) continue;
         x.push_back(value);
         y.push_back(force.values[i]);
@@ -110,26 +110,37 @@ FineLag refine_lag(const Signal& motion, const Signal& force, double lag, double
     return {lag, std::sqrt(2 * variance / (n * curvature))};
 }
 
-Signal part_of(const Signal& signal, double from, double to) {
-    std::vector<Eigen::Index> kept;
-    for (Eigen::Index i = 0; i < signal.times.size(); ++i)
-        if (signal.times[i] >= from && signal.times[i] <= to) kept.push_back(i);
-    return {signal.times(kept), signal.values(kept)};
-}
-
-/// A rate where the two halves tell different lags.
+/// Lag and rate together, by Newton's steps from the lag alone; the rate is kept where it is beyond 4 sd.
 void add_rate(const Signal& motion, const Signal& force, double step, LagEstimate& estimate) {
     const double begin = force.times[0], end = force.times[force.times.size() - 1], middle = (begin + end) / 2;
-    const Signal early = part_of(force, begin, middle), late = part_of(force, middle, end);
-    if (std::min(early.times.size(), late.times.size()) < 10) return;
-    const double lag = estimate.clock.offset, within = 20 * step;
-    const FineLag a = refine_lag(motion, early, lag, step, within), b = refine_lag(motion, late, lag, step, within);
-    const double sd = std::hypot(a.sd, b.sd), apart = (end - begin) / 2;
-    if (a.sd >= within || b.sd >= within || std::abs(b.lag - a.lag) <= 4 * sd) return;
-    estimate.clock.rate = 1 + (b.lag - a.lag) / apart;
-    estimate.clock.rate_sd = sd / apart;
-    estimate.clock.offset = (a.lag + b.lag) / 2 - (estimate.clock.rate - 1) * middle;
-    estimate.clock.sd = sd / 2;
+    const Eigen::Vector2d h(0.25 * step, 0.25 * step / ((end - begin) / 2));  // the ends move by as much as the middle
+    const auto mean_square = [&](const Eigen::Vector2d& x) {
+        const ParabolaFit fit = fit_parabola(motion, force, x[0], x[1], middle);
+        return fit.samples > 0 ? fit.squares / static_cast<double>(fit.samples) : 0;
+    };
+    Eigen::Vector2d x(estimate.clock.offset, 0);
+    Eigen::Matrix2d H;
+    for (int turns = 0; turns < 12; ++turns) {
+        const Eigen::Vector2d a(h[0], 0), b(0, h[1]);
+        const double here = mean_square(x), a1 = mean_square(x + a), a0 = mean_square(x - a), b1 = mean_square(x + b),
+                     b0 = mean_square(x - b);
+        const double across =
+            mean_square(x + a + b) - mean_square(x + a - b) - mean_square(x - a + b) + mean_square(x - a - b);
+        H << (a1 - 2 * here + a0) / (h[0] * h[0]), across / (4 * h[0] * h[1]), across / (4 * h[0] * h[1]),
+            (b1 - 2 * here + b0) / (h[1] * h[1]);
+        if (!(H(0, 0) > 0 && H.determinant() > 0)) return;  // one landmark alone tells no rate
+        const Eigen::Vector2d slope((a1 - a0) / (2 * h[0]), (b1 - b0) / (2 * h[1]));
+        const Eigen::Vector2d move = -H.inverse() * slope;
+        x += move * std::min(1.0, 4 / move.cwiseQuotient(h).cwiseAbs().maxCoeff());
+    }
+    const ParabolaFit fit = fit_parabola(motion, force, x[0], x[1], middle);
+    const auto n = static_cast<double>(fit.samples);
+    const double r = std::clamp(fit.neighbours, 0.0, 0.99);
+    const Eigen::Matrix2d covariance = 2 * fit.squares / std::max(1.0, n - 5) * (1 + r) / (1 - r) / n * H.inverse();
+    const double rate_sd = std::sqrt(covariance(1, 1));
+    if (std::abs(x[1]) <= 4 * rate_sd) return;
+    estimate.clock = {
+        .offset = x[0] - x[1] * middle, .rate = 1 + x[1], .sd = std::sqrt(covariance(0, 0)), .rate_sd = rate_sd};
 }
 
 }  // namespace

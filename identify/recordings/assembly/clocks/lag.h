@@ -27,8 +27,8 @@ struct LagEstimate {
 /// both smoothed alike, which shifts neither, the force is fitted by a parabola of the motion, as a stiffening body
 /// answers: the sum of squares S(lag) has its least within a sample, by Newton's steps;
 ///   sd^2 = 2 s^2 k / S''(lag),   s^2 = S / (n - 4),   k = (1 + r) / (1 - r)
-/// with r the correlation of successive residuals. Where each half of the recording tells a lag by itself, their
-/// difference beyond 4 sd is a difference of the clocks' rates.
+/// with r the correlation of successive residuals. Where more than one landmark is seen the clocks' rates are fitted
+/// along, and kept where they differ by more than 4 sd of the same Hessian.
 ///
 /// @pre both without gaps, at least ten samples each
 LagEstimate estimate_lag(const Signal& motion, const Signal& force);

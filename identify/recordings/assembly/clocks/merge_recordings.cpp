@@ -107,8 +107,11 @@ public:
             probe_.values_act_always = probe_.values_act_always || file->mapped->values_act_always;
         }
         add(*reference_, [](double t) { return t; });
+        for (std::size_t i = 1; i < files.size(); ++i)
+            if (shares_frames(*files[i])) add_frame_by_frame(*files[i]);
         add_quantities(map_, probe_);
-        for (std::size_t i = 1; i < files.size(); ++i) add_by_rule(*files[i]);
+        for (std::size_t i = 1; i < files.size(); ++i)
+            if (!shares_frames(*files[i])) add_by_rule(*files[i]);
         from_zero();
         return std::move(probe_);
     }
@@ -135,6 +138,8 @@ private:
             for (double& t : times) t = on_clock(t);
             for (const RecordedPoint& point : recording.points) add_point(point, times, file.name);
             for (const RecordedChannel& channel : recording.channels) {
+                // each file has what clocks are merged by
+                if (channel.name == map_.clock.channel && probe_.channel(channel.name)) continue;
                 if (probe_.channel(channel.name))
                     throw InvalidInput(
                         fmt::format("{}: two channels of probe {} are called {}. Give one another name in "
@@ -163,18 +168,20 @@ private:
         probe_.points.push_back(std::move(resampled));
     }
 
+    /// Neither has a clock, and both have as many frames.
+    bool shares_frames(const FileRecordings& file) const {
+        return !probe_.has_clock && std::ranges::none_of(file.recordings, [&](const recordings::Recording& recording) {
+            return recording.has_clock || recording.times.size() != probe_.times.size() ||
+                   recording.times != probe_.times;
+        });
+    }
+
+    void add_frame_by_frame(const FileRecordings& file) {
+        report_.clocks.push_back({file.name, "frame by frame, as both have no clock and as many frames", probe_.probe});
+        add(file, [](double t) { return t; });
+    }
+
     void add_by_rule(const FileRecordings& file) {
-        const bool has_clock = std::ranges::any_of(
-            file.recordings, [](const recordings::Recording& recording) { return recording.has_clock; });
-        const auto has_as_many = [&](const recordings::Recording& recording) {
-            return recording.times.size() == probe_.times.size() && recording.times == probe_.times;
-        };
-        if (!has_clock && !probe_.has_clock && std::ranges::all_of(file.recordings, has_as_many)) {
-            report_.clocks.push_back(
-                {file.name, "frame by frame, as both have no clock and as many frames", probe_.probe});
-            add(file, [](double t) { return t; });
-            return;
-        }
         switch (map_.clock.kind) {
             case ClockRule::Kind::trigger:
                 return add_by_fit(file, by_trigger(file), fmt::format("by the edges of '{}'", map_.clock.channel));

@@ -92,8 +92,7 @@ public:
 
     double rms(const Points& points, const RigidMotion& pose) const {
         const Eigen::VectorXd d = linearised(pose(points)).distances;
-        const double limit = cut * median_of(d.cwiseAbs());
-        return std::sqrt(d.cwiseAbs().cwiseMin(std::max(limit, 1e-12)).squaredNorm() / static_cast<double>(d.size()));
+        return std::sqrt(d.squaredNorm() / static_cast<double>(d.size()));
     }
 
     double size() const { return size_; }

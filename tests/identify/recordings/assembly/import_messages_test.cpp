@@ -101,6 +101,11 @@ TEST_F(RigOfABar, RefusesALagThatIsNotClear) {
     EXPECT_TRUE(says(message_of([&] { imported(); }), {"3 samples are too few"}));
 }
 
+TEST_F(RigOfABar, RefusesATriggerThatOneSideHasNot) {
+    EXPECT_TRUE(says(refusal("{lag: auto}", "{trigger: load, level: 0.5}"),
+                     {"load.csv", "trigger 'load'", "1 edges here and 0 in points.csv"}));
+}
+
 TEST_F(RigOfABar, RefusesACommonColumnThatIsNone) {
     EXPECT_TRUE(says(refusal("{lag: auto}", "{common: frame}"), {"common column 'frame'", "points.csv"}));
     std::string text = map();
@@ -130,9 +135,9 @@ TEST_F(RigOfABar, RefusesValuesThatActWhereNothingMoves) {
 TEST_F(RigOfABar, RefusesTwoOfOneName) {
     write_points("more.csv", true);
     change("  - {file: load.csv",
-           "  - {file: more.csv, time: time, points: [{name: m1, at: [m1_x, m1_y, m1_z]}]}\n  - {file: "
+           "  - {file: more.csv, time: time, points: [{name: m4, at: [m4_x, m4_y, m4_z]}]}\n  - {file: "
            "load.csv");
-    EXPECT_TRUE(says(message_of([&] { imported(); }), {"two points of probe 1 are called 'm1'", "names"}));
+    EXPECT_TRUE(says(message_of([&] { imported(); }), {"two points of probe 1 are called 'm4'", "names"}));
 }
 
 }  // namespace

@@ -54,16 +54,44 @@ TEST_F(RigOfABar, IsReadBackAsItWasWritten) {
 }
 
 TEST_F(RigOfABar, IsMergedByATrigger) {
-    // the load itself is one: it passes 0.5 N upward once
-    change("clock: {lag: auto}", "clock: {trigger: load, level: 0.5}");
-    EXPECT_TRUE(
-        says(message_of([&] { imported(); }), {"load.csv", "trigger 'load'", "1 edges here and 0 in points.csv"}));
-    // and with a quantity of the points on the other side that passes a level when the load passes half
     std::string text = map();
-    text.replace(text.find("clock: {lag: auto}"), 18, "clock: {lag: 0.5}");
+    text.replace(text.find("{lag: auto}"), 11, "{trigger: sync}");
+    text.replace(text.find("name: load, unit: N}"), 20, "name: load, unit: N}, {column: \"3\", name: sync, unit: V}");
     folder.write("map.yaml", text);
     const ImportedSet got = imported();
-    EXPECT_EQ(got.report.clocks[0].offset, 0.5);
+    ASSERT_EQ(got.report.clocks.size(), 1U);
+    const ClockReport& clock = got.report.clocks[0];
+    EXPECT_NEAR(clock.offset + clock.rate * 4 - (lag + 4), 0,
+                0.007);  // edges are seen by a sample of 10 ms, half of it late
+    EXPECT_NEAR(clock.sd, 0.01 / std::sqrt(12) / std::sqrt(2), 0.001);
+    EXPECT_NEAR(got.set.states[2].contacts[0].force.z(), -2, 0.005);
+}
+
+TEST_F(RigOfABar, IsMergedByACommonColumn) {
+    std::string text = map();
+    text.replace(text.find("{lag: auto}"), 11, "{common: count}");
+    text.replace(text.find("name: load, unit: N}"), 20, "name: load, unit: N}, {column: \"4\", name: count}");
+    folder.write("map.yaml", text);
+    const ImportedSet got = imported();
+    EXPECT_TRUE(says(got.report.clocks[0].how, {"common column 'count'"}));
+    EXPECT_NEAR(got.set.states[1].contacts[0].force.z(), -1, 0.005);
+}
+
+TEST_F(RigOfABar, IsMergedByALagThatIsTold) {
+    change("{lag: auto}", "{lag: 0.7321}");
+    const ImportedSet got = imported();
+    EXPECT_EQ(got.report.clocks[0].offset, 0.7321);
+    EXPECT_NEAR(got.set.states[1].contacts[0].force.z(), -1, 0.005);
+}
+
+TEST_F(RigOfABar, TellsDisplacementsWhereTheseAreAskedFor) {
+    change("states: plateaus", "readings: displacements");
+    const ImportedSet got = imported();
+    EXPECT_TRUE(got.set.states[0].readings.empty()) << "they count from here";
+    const StateName rest{got.set.states[0].probe, got.set.states[0].time};
+    for (const Reading& reading : got.set.states[1].readings) EXPECT_EQ(reading.since, rest);
+    write_measurement_set(folder / "set", got.set);
+    EXPECT_EQ(read_measurement_set(folder / "set").states[1].readings.size(), markers.size());
 }
 
 TEST_F(RigOfABar, IsToldItsLoadCellsDrift) {
@@ -94,7 +122,7 @@ TEST_F(RigOfABar, KeepsTheHeightOfMarkersThatStandOff) {
     ASSERT_TRUE(got.set.markers[1].anchor);
     EXPECT_NEAR((*got.set.markers[1].anchor - Vec3(50, 5, 20)).norm(), 0, noise);
     EXPECT_NEAR(got.set.markers[1].rest.z(), 26, noise / 2);
-    EXPECT_TRUE(says(all_notes(got), {"1 of 6 markers stand off", "6 mm"}));
+    EXPECT_TRUE(says(all_notes(got), {"1 of 6 markers stand off", "by 6"}));
 }
 
 TEST_F(RigOfABar, HasAStateEverySoOftenWhereThatIsAsked) {

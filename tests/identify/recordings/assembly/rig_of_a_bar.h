@@ -32,6 +32,8 @@ struct RigOfABar : ::testing::Test {
         const auto on = [&](double at) { return 1 / (1 + std::exp(-(time - at) / 0.04)); };
         return on(2) + on(4.5) - 2 * on(7.2);
     }
+    /// What both loggers were given: 5 V from 1.5 s to 6.25 s, and from 8 s on.
+    static double sync(double time) { return (time > 1.5 && time < 6.25) || time > 8 ? 5 : 0; }
     static Vec3 bent(const Vec3& at, double newton) { return at - newton * 3e-4 * at.x() * at.x() * Vec3::UnitZ(); }
 
     RigOfABar() {
@@ -47,7 +49,7 @@ struct RigOfABar : ::testing::Test {
         if (has_fiducials) places.insert(places.end(), fiducials.begin(), fiducials.end());
         for (std::size_t p = 0; p < places.size(); ++p)
             for (const char* axis : {"x", "y", "z"}) text += "," + point_name(p) + "_" + axis;
-        text += "\n";
+        text += ",sync,count\n";
         RandomStream random(1, 1, 1);
         for (int f = 0; f < 900; ++f) {
             const double time = f / 100.0;
@@ -57,7 +59,7 @@ struct RigOfABar : ::testing::Test {
                 const Vec3 seen = R.transpose() * (at - t);
                 for (int axis = 0; axis < 3; ++axis) text += "," + std::to_string(seen[axis] + noise * random.normal());
             }
-            text += "\n";
+            text += "," + std::to_string(sync(time)) + "," + std::to_string(f) + "\n";
         }
         folder.write(name, text);
     }
@@ -67,12 +69,13 @@ struct RigOfABar : ::testing::Test {
 
     /// @param drift of the cell over the recording [N]
     void write_load(const std::string& name, double drift = 0) const {
-        std::string text = "time [s],load [N]\n";
+        std::string text = "time [s],load [N],sync [V],count\n";
         RandomStream random(1, 2, 1);
         for (int f = 0; f < 8000; ++f) {
             const double time = f / 1000.0;
             text += std::to_string(time) + "," +
-                    std::to_string(force(time + lag) + drift * time / 8 + load_noise * random.normal()) + "\n";
+                    std::to_string(force(time + lag) + drift * time / 8 + load_noise * random.normal()) + "," +
+                    std::to_string(sync(time + lag)) + "," + std::to_string(100 * (time + lag)) + "\n";
         }
         folder.write(name, text);
     }
