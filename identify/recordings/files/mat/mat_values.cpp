@@ -134,7 +134,13 @@ MatCorrelation read_here(const std::filesystem::path& file) {
 }  // namespace
 
 MatCorrelation read_mat_correlation(const std::filesystem::path& file) {
-    // matio trusts what a file says of its sizes.
+    // matio trusts what a file says of its sizes, and may not come to an end of a broken one.
+    constexpr double seconds = 5, bytes_a_second = 5e6;   // a slow disk's
+    constexpr double mebibytes = 1024, most_packed = 20;  // zlib packs matrices of numbers no denser
+    std::error_code unreadable;
+    const double bytes = static_cast<double>(std::filesystem::file_size(file, unreadable));
+    const mesh::ChildLimits limits{.seconds = seconds + bytes / bytes_a_second,
+                                   .mebibytes = mebibytes + most_packed * bytes / (1 << 20)};
     mesh::ChildResult child = mesh::run_in_child(
         [&] {
             std::string refusal;
@@ -146,10 +152,10 @@ MatCorrelation read_mat_correlation(const std::filesystem::path& file) {
             }
             return mesh::to_bytes(refusal, data);
         },
-        {.seconds = 300, .mebibytes = 8192});
+        limits);
     if (child.end != mesh::ChildResult::End::Answered)
         throw InvalidInput(
-            fmt::format("{}: breaks what reads MATLAB files, or asks for more than 8 GiB. The file is broken: "
+            fmt::format("{}: breaks what reads MATLAB files, or keeps it busy without end. The file is broken: "
                         "save it again.",
                         file.filename().string()));
     std::string refusal;

@@ -53,12 +53,10 @@ bool is_counter_name(const std::string& name) {
 
 /// Names of vectors that are no positions: "Fx", "moment_y", "acc.z", "rot_x".
 bool is_other_vector(const std::string& point) {
-    static const std::vector<std::string> names{"f",       "m",      "t",      "force",    "forces",       "moment",
-                                                "moments", "torque", "acc",    "a",        "acceleration", "gyro",
-                                                "mag",     "v",      "vel",    "velocity", "rot",          "rotation",
-                                                "q",       "quat",   "angle",  "euler",    "omega",        "kraft",
-                                                "strain",  "e",      "stress", "load",     "grad",         "normal",
-                                                "n",       "w"};
+    static const std::vector<std::string> names{"f",     "force", "forces",   "moment", "moments",      "torque",
+                                                "acc",   "gyro",  "mag",      "vel",    "acceleration", "velocity",
+                                                "rot",   "q",     "rotation", "quat",   "angle",        "euler",
+                                                "omega", "kraft", "strain",   "stress", "load",         "normal"};
     std::string bare = lower_case(point);
     while (!bare.empty() && (std::isdigit(static_cast<unsigned char>(bare.back())) != 0 || bare.back() == '_'))
         bare.pop_back();
@@ -77,7 +75,7 @@ bool is_time_unit(const NumberColumn& column) {
 }
 
 bool is_counter(const Eigen::VectorXd& values) {
-    if (values.size() < 2) return false;
+    if (values.size() < 2 || !values.allFinite()) return false;
     const double first = values[0];
     return first == std::floor(first) &&
            (values - Eigen::VectorXd::LinSpaced(values.size(), first, first + static_cast<double>(values.size() - 1)))

@@ -67,7 +67,7 @@ bool looks_like_date(const std::string& word) {
         const bool inside = i > 0 && is_digit(word[i - 1]);
         if ((c == '.' || c == '/' || c == ':' || c == '-') && inside)
             ++separators;
-        else if (!is_digit(c) && c != ' ' && c != 't' && c != 'z')
+        else if (!is_digit(c) && c != ' ' && c != 't' && c != 'z' && !(c == ',' && separators >= 2))
             is_digits_only = false;
     }
     if (is_digits_only) return separators >= 2 || (separators == 1 && word.find_first_of("/:") != std::string::npos);

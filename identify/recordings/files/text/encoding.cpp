@@ -84,9 +84,12 @@ char utf16_order(std::string_view bytes) {
     const std::size_t size = std::min(bytes.size(), looked_at) / 2 * 2;
     for (std::size_t i = 0; i < size; ++i)
         if (bytes[i] == '\0') ++zeros[i % 2];
-    if (size == 0 || zeros[0] + zeros[1] < size / 4) return 0;
-    if (zeros[0] == 0) return 'l';
-    return zeros[1] == 0 ? 'b' : '\0';
+    if (size == 0 || zeros[0] + zeros[1] < size / 4 || (zeros[0] > 0 && zeros[1] > 0)) return 0;
+    // The other bytes are letters, not the small numbers of a binary file.
+    const bool has_controls = std::any_of(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(size), [](char c) {
+        return c != '\0' && static_cast<unsigned char>(c) < 0x20 && c != '\t' && c != '\r' && c != '\n';
+    });
+    return has_controls ? '\0' : zeros[0] == 0 ? 'l' : 'b';
 }
 
 /// Bytes that no text has, but binary files soon.

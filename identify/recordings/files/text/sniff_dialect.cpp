@@ -95,14 +95,15 @@ Judged judged(const Lines& lines, char delimiter, const FileMap& map) {
         for (const std::string_view cell : cells_of(line, delimiter)) weigh(cell, evidence);
     const Dialect dialect = decided(delimiter, evidence, map);
 
-    constexpr int price_of_text = 2;  // cutting "1,5;2,5" at commas gives two numbers and a text
+    // Cutting "1,5;2,5;3,5" at commas gives two numbers and two texts; a name beside a number is none worse than none.
+    constexpr int worth_of_number = 3, price_of_text = 2;
     std::map<std::size_t, int> score_of_width;
     for (const std::string_view line : lines) {
         const auto cells = cells_of(line, delimiter);
         int score = 0;
         for (const std::string_view cell : cells) {
             const auto kind = value_of(cell, dialect).kind;
-            if (kind == CellValue::Kind::number) ++score;
+            if (kind == CellValue::Kind::number) score += worth_of_number;
             if (kind == CellValue::Kind::text) score -= price_of_text;
         }
         if (score > 0) score_of_width[cells.size()] += score;
