@@ -38,9 +38,10 @@ TEST_F(ImportCommand, DescribesFilesAndDraftsAMap) {
     const commands::Outcome written = run({.files = {}, .output = folder / "draft.yaml", .describe = true});
     EXPECT_THAT(written.text, HasSubstr("--map"));
     EXPECT_EQ(mesh::read_text(folder / "draft.yaml"), told.json["map"].get<std::string>());
-    // what is drafted is a map, once the mesh is there
-    std::filesystem::copy_file(folder / "bar.stl", folder / "body.stl");
-    EXPECT_EQ(run({.files = {}, .output = folder / "set", .map = folder / "draft.yaml"}).code, commands::done);
+    // what is drafted is a map: what is missing is the mesh
+    EXPECT_THAT(
+        message_of<IoError>([&] { run({.files = {}, .output = folder / "set", .map = folder / "draft.yaml"}); }),
+        AllOf(HasSubstr("draft.yaml"), HasSubstr("no file 'body.stl'")));
 }
 
 TEST_F(ImportCommand, WritesNothingWhereTheSetWouldNotBeTaken) {
