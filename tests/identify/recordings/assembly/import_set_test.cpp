@@ -56,6 +56,7 @@ TEST_F(RigOfABar, IsReadBackAsItWasWritten) {
 TEST_F(RigOfABar, IsMergedByATrigger) {
     std::string text = map();
     text.replace(text.find("{lag: auto}"), 11, "{trigger: sync}");
+    text.replace(text.find("{file: points.csv,"), 18, "{file: points.csv, channels: [{column: sync, name: sync}],");
     text.replace(text.find("name: load, unit: N}"), 20, "name: load, unit: N}, {column: \"3\", name: sync, unit: V}");
     folder.write("map.yaml", text);
     const ImportedSet got = imported();
@@ -70,6 +71,7 @@ TEST_F(RigOfABar, IsMergedByATrigger) {
 TEST_F(RigOfABar, IsMergedByACommonColumn) {
     std::string text = map();
     text.replace(text.find("{lag: auto}"), 11, "{common: count}");
+    text.replace(text.find("{file: points.csv,"), 18, "{file: points.csv, channels: [{column: count, name: count}],");
     text.replace(text.find("name: load, unit: N}"), 20, "name: load, unit: N}, {column: \"4\", name: count}");
     folder.write("map.yaml", text);
     const ImportedSet got = imported();
