@@ -80,6 +80,7 @@ std::optional<commands::ExitCode> CommandLine::parse(int argc, char** argv) {
     Subcommands& subcommands = impl_->subcommands;
     subcommands.add_run(app);
     subcommands.add_check(app);
+    subcommands.add_import(app);
     subcommands.add_mesh(app);
     subcommands.add_skeleton(app);
     subcommands.add_probe(app);

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "pipeline/command_line/commands.h"
+#include "pipeline/command_line/import_options.h"
 
 namespace palpate::pipeline {
 
@@ -15,6 +16,7 @@ struct Subcommands {
 
     commands::RunOptions run;
     commands::CheckOptions check;
+    commands::ImportCommandOptions importing;
     commands::MeshOptions mesh;
     commands::SkeletonOptions skeleton;
     QualityOptions quality;     // of it,
@@ -35,6 +37,7 @@ struct Subcommands {
     // Each in its own file, pipeline/cli/<command>.cpp, beside what the command does.
     void add_run(CLI::App& app);
     void add_check(CLI::App& app);
+    void add_import(CLI::App& app);
     void add_mesh(CLI::App& app);
     void add_skeleton(CLI::App& app);
     void add_probe(CLI::App& app);

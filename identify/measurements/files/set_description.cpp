@@ -79,16 +79,7 @@ void read_rest(const std::filesystem::path& file, double unit, MeasurementSet& s
 
 }  // namespace
 
-SetDescription read_set_description(const std::filesystem::path& file, MeasurementSet& set) {
-    const YamlFields fields = YamlFields::from_file(file);
-    SetDescription description;
-    description.is_first_format = read_format(fields);
-    set.folder = file.parent_path();
-    check_parts(fields, description.is_first_format, set.folder);
-    set.name = fields.has("name") ? fields.text("name") : std::filesystem::absolute(set.folder).filename().string();
-    description.units = read_units(fields);
-    const SetUnits& units = description.units;
-
+void read_conditions(const YamlFields& fields, const SetUnits& units, MeasurementSet& set) {
     check_region_paths(fields.mappings("supports"), set.folder);
     set.supports = mesh::read_regions(fields, "supports", units.length);
 
@@ -99,6 +90,19 @@ SetDescription read_set_description(const std::filesystem::path& file, Measureme
     if (fields.has("noise")) read_noise(fields.mapping("noise"), units, set);
     read_correlation(fields, units.length, set);
     if (fields.has("material")) set.material = read_material(fields.mapping("material"));
+}
+
+SetDescription read_set_description(const std::filesystem::path& file, MeasurementSet& set) {
+    const YamlFields fields = YamlFields::from_file(file);
+    SetDescription description;
+    description.is_first_format = read_format(fields);
+    set.folder = file.parent_path();
+    check_parts(fields, description.is_first_format, set.folder);
+    set.name = fields.has("name") ? fields.text("name") : std::filesystem::absolute(set.folder).filename().string();
+    description.units = read_units(fields);
+    const SetUnits& units = description.units;
+
+    read_conditions(fields, units, set);
     description.displacements_since = read_reference(fields);
 
     const std::filesystem::path surface = path_inside(fields, "rest_surface", set.folder);

@@ -1,0 +1,373 @@
+#include <fmt/format.h>
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+
+#include "identify/recordings/assembly/clocks/lag.h"
+#include "identify/recordings/assembly/clocks/probe_recording.h"
+#include "identify/recordings/assembly/clocks/triggers.h"
+#include "mesh/errors.h"
+#include "mesh/text/words.h"
+
+namespace palpate::identify {
+namespace {
+
+/// Mean of some points along an axis, frame by frame.
+Eigen::VectorXd mean_along(const ProbeRecording& probe, const std::vector<std::string>& names, const Vec3& axis) {
+    Eigen::VectorXd sum = Eigen::VectorXd::Zero(probe.times.size());
+    for (const std::string& name : names) {
+        Eigen::Matrix3Xd at = probe.point(name)->at;
+        if (probe.is_planar) at.row(2).setZero();
+        sum += at.transpose() * axis;
+    }
+    return sum / static_cast<double>(names.size());
+}
+
+/// The map's quantities that this probe's points tell, beginning with 0.
+void add_quantities(const ImportMap& map, ProbeRecording& probe) {
+    for (const MappedQuantity& quantity : map.quantities) {
+        const auto is_there = [&](const std::string& name) { return probe.point(name) != nullptr; };
+        if (!std::ranges::all_of(quantity.points, is_there) || !std::ranges::all_of(quantity.minus, is_there)) continue;
+        Eigen::VectorXd values = mean_along(probe, quantity.points, quantity.along);
+        if (!quantity.minus.empty()) values -= mean_along(probe, quantity.minus, quantity.along);
+        const Signal told = without_gaps({probe.times, values});
+        if (told.values.size() > 0) values.array() -= told.values[0];
+        probe.channels.push_back({quantity.name, "mm", {probe.times, values}});
+    }
+}
+
+/// The direction in which all points move most, and where they are along it: the leading principal component.
+Signal leading_motion(const ProbeRecording& probe) {
+    const auto frames = probe.times.size();
+    Eigen::MatrixXd X(3 * std::ssize(probe.points), frames);
+    for (std::size_t p = 0; p < probe.points.size(); ++p)
+        X.middleRows(3 * static_cast<Eigen::Index>(p), 3) = probe.points[p].at;
+    for (auto row : X.rowwise()) {
+        const Signal told = without_gaps({probe.times, row.transpose()});
+        const double mean = told.values.size() > 0 ? told.values.mean() : 0;
+        row = row.array().isFinite().select(row.array() - mean, 0).matrix().eval();
+    }
+    Eigen::VectorXd v = X.colwise().norm().transpose();
+    v.array() -= v.mean();
+    for (int step = 0; step < 100 && v.norm() > 0; ++step) v = (X.transpose() * (X * v)).normalized();
+    return {probe.times, v};
+}
+
+const RecordedChannel* channel_of(const std::vector<recordings::Recording>& recordings, const std::string& name,
+                                  const recordings::Recording*& of) {
+    for (const recordings::Recording& recording : recordings)
+        for (const RecordedChannel& channel : recording.channels)
+            if (channel.name == name) {
+                of = &recording;
+                return &channel;
+            }
+    return nullptr;
+}
+
+/// Edges of a trigger, or events of its name.
+std::vector<double> trigger_times(const std::vector<recordings::Recording>& recordings, const ClockRule& rule,
+                                  double& interval) {
+    const recordings::Recording* of = nullptr;
+    if (const RecordedChannel* channel = channel_of(recordings, rule.channel, of)) {
+        interval = interval_of(of->times);
+        return edges_of({of->times, channel->values}, rule.rising, rule.level);
+    }
+    std::vector<double> times;
+    for (const recordings::Recording& recording : recordings)
+        for (const RecordedEvent& event : recording.events)
+            if (event.name == rule.channel) times.push_back(event.time);
+    std::ranges::sort(times);
+    interval = 0;
+    return times;
+}
+
+/// Merges the files of one probe.
+class ProbeMerge {
+public:
+    ProbeMerge(const ImportMap& map, int number, ImportReport& report) : map_(map), report_(report) {
+        probe_.probe = number;
+    }
+
+    ProbeRecording merged(std::vector<FileRecordings*> files) {
+        // the points' clock is everybody's; without points the first file's is
+        const auto shows_points = [](const FileRecordings* file) {
+            return std::ranges::any_of(file->recordings,
+                                       [](const recordings::Recording& r) { return !r.points.empty(); });
+        };
+        std::ranges::stable_partition(files, shows_points);
+        reference_ = files.front();
+        begin();
+        for (FileRecordings* file : files) {
+            probe_.files.push_back(file->name);
+            const std::vector<MappedValue>& values = file->mapped->values;
+            probe_.values.insert(probe_.values.end(), values.begin(), values.end());
+            probe_.values_act_always = probe_.values_act_always || file->mapped->values_act_always;
+        }
+        add(*reference_, [](double t) { return t; });
+        for (std::size_t i = 1; i < files.size(); ++i)
+            if (shares_frames(*files[i])) add_frame_by_frame(*files[i]);
+        add_quantities(map_, probe_);
+        for (std::size_t i = 1; i < files.size(); ++i)
+            if (!shares_frames(*files[i])) add_by_rule(*files[i]);
+        from_zero();
+        return std::move(probe_);
+    }
+
+private:
+    void begin() {
+        const auto with_points = std::ranges::find_if(reference_->recordings,
+                                                      [](const recordings::Recording& r) { return !r.points.empty(); });
+        const recordings::Recording& first =
+            with_points == reference_->recordings.end() ? reference_->recordings.front() : *with_points;
+        probe_.times = first.times;
+        probe_.has_clock = first.has_clock;
+        // of points in a plane a file tells no third coordinate, or a 0 for it
+        probe_.is_planar = !first.points.empty() && std::ranges::all_of(first.points, [](const RecordedPoint& point) {
+            return (point.at.row(2).array().isNaN() || point.at.row(2).array() == 0).all();
+        });
+    }
+
+    /// All of a file, at times that `on_clock` makes of its own (NaN: not on this clock).
+    template <class OnClock>
+    void add(const FileRecordings& file, const OnClock& on_clock) {
+        for (const recordings::Recording& recording : file.recordings) {
+            Eigen::VectorXd times = recording.times;
+            for (double& t : times) t = on_clock(t);
+            for (const RecordedPoint& point : recording.points) add_point(point, times, file.name);
+            for (const RecordedChannel& channel : recording.channels) {
+                // each file has what clocks are merged by
+                if (channel.name == map_.clock.channel && probe_.channel(channel.name)) continue;
+                if (probe_.channel(channel.name))
+                    throw InvalidInput(
+                        fmt::format("{}: two channels of probe {} are called {}. Give one another name in "
+                                    "the map: channels: - {{column: ..., name: ...}}.",
+                                    file.name, probe_.probe, mesh::cited(channel.name)));
+                probe_.channels.push_back({channel.name, channel.unit, without_gaps({times, channel.values})});
+            }
+        }
+    }
+
+    void add_point(const RecordedPoint& point, const Eigen::VectorXd& times, const std::string& file) {
+        if (probe_.point(point.name))
+            throw InvalidInput(
+                fmt::format("{}: two points of probe {} are called {}. Name them in the map: names: [...].", file,
+                            probe_.probe, mesh::cited(point.name)));
+        if (times.size() == probe_.times.size() && times == probe_.times) {
+            probe_.points.push_back(point);
+            return;
+        }
+        RecordedPoint resampled{.name = point.name, .at = Eigen::Matrix3Xd(3, probe_.times.size()), .displacement = {}};
+        for (int axis = 0; axis < 3; ++axis) {
+            const Signal signal = without_gaps({times, point.at.row(axis).transpose()});
+            for (Eigen::Index f = 0; f < probe_.times.size(); ++f)
+                resampled.at(axis, f) = value_at(signal, probe_.times[f]);
+        }
+        probe_.points.push_back(std::move(resampled));
+    }
+
+    /// Neither has a clock, and both have as many frames.
+    bool shares_frames(const FileRecordings& file) const {
+        return !probe_.has_clock && std::ranges::none_of(file.recordings, [&](const recordings::Recording& recording) {
+            return recording.has_clock || recording.times.size() != probe_.times.size() ||
+                   recording.times != probe_.times;
+        });
+    }
+
+    void add_frame_by_frame(const FileRecordings& file) {
+        report_.clocks.push_back({file.name, "frame by frame, as both have no clock and as many frames", probe_.probe});
+        add(file, [](double t) { return t; });
+    }
+
+    void add_by_rule(const FileRecordings& file) {
+        switch (map_.clock.kind) {
+            case ClockRule::Kind::trigger:
+                return add_by_fit(file, by_trigger(file), fmt::format("by the edges of '{}'", map_.clock.channel));
+            case ClockRule::Kind::common:
+                return add_by_common(file);
+            case ClockRule::Kind::lag:
+                if (map_.clock.lag)
+                    return add_by_fit(file, {.offset = *map_.clock.lag}, "by the lag that the map tells");
+                return add_by_fit(file, by_lag(file), "by the lag at which force and motion agree best");
+        }
+    }
+
+    void add_by_fit(const FileRecordings& file, const ClockFit& clock, const std::string& how) {
+        report_.clocks.push_back({file.name, how, probe_.probe, clock.offset, clock.rate, clock.sd});
+        add(file, [&](double t) { return clock.offset + clock.rate * t; });
+    }
+
+    ClockFit by_trigger(const FileRecordings& file) const {
+        double interval = 0, other_interval = 0;
+        const std::vector<double> reference = trigger_times(reference_->recordings, map_.clock, interval),
+                                  other = trigger_times(file.recordings, map_.clock, other_interval);
+        const auto fit = match_edges(reference, other, interval, other_interval);
+        if (!fit)
+            throw InvalidInput(fmt::format(
+                "{}: the trigger '{}' has {} edges here and {} in {}, which cannot be paired in one way. Tell its "
+                "level and "
+                "edge (clock: {{trigger: ..., edge: rising, level: ...}}), or merge by clock: {{lag: auto}}.",
+                file.name, map_.clock.channel, other.size(), reference.size(), reference_->name));
+        return *fit;
+    }
+
+    /// The motion that forces are compared with: told, or that of all points.
+    Signal motion() const {
+        if (!map_.clock.motion.empty()) {
+            const NamedSignal* told = probe_.channel(map_.clock.motion);
+            if (!told)
+                throw InvalidInput(fmt::format("{}: clock.motion names {}, and {} has no such channel or quantity.",
+                                               map_.file.filename().string(), mesh::cited(map_.clock.motion),
+                                               reference_->name));
+            return without_gaps(told->signal);
+        }
+        if (!probe_.points.empty()) return without_gaps(leading_motion(probe_));
+        for (const MappedUse& use : map_.uses)
+            if (const NamedSignal* used = probe_.channel(use.channel)) return without_gaps(used->signal);
+        return probe_.channels.empty() ? Signal{} : without_gaps(probe_.channels.front().signal);
+    }
+
+    /// A channel of another file that the map uses, or its first one.
+    Signal force_of(const FileRecordings& file) const {
+        const recordings::Recording* of = nullptr;
+        std::vector<std::string> names{map_.clock.force};
+        for (const MappedUse& use : map_.uses) names.push_back(use.channel);
+        for (const std::string& name : names)
+            if (const RecordedChannel* channel = name.empty() ? nullptr : channel_of(file.recordings, name, of))
+                return without_gaps({of->times, channel->values});
+        for (const recordings::Recording& recording : file.recordings)
+            if (!recording.channels.empty()) return without_gaps({recording.times, recording.channels.front().values});
+        // another tracking system
+        for (const recordings::Recording& recording : file.recordings) {
+            ProbeRecording other;
+            other.times = recording.times;
+            other.points = recording.points;
+            return without_gaps(leading_motion(other));
+        }
+        return {};
+    }
+
+    ClockFit by_lag(const FileRecordings& file) const {
+        const Signal moved = motion(), force = force_of(file);
+        if (std::min(moved.times.size(), force.times.size()) < 10)
+            throw InvalidInput(
+                fmt::format("{}: {} samples are too few to find its lag behind {} by. Tell it (clock: {{lag: "
+                            "0.1}}).",
+                            file.name, std::min(moved.times.size(), force.times.size()), reference_->name));
+        const LagEstimate estimate = estimate_lag(moved, force);
+        if (!estimate.is_clear)
+            throw InvalidInput(
+                fmt::format("{}: at which lag it agrees with {} is not clear: their correlation is {:.2f} at {:.4g} s, "
+                            "and {:.2f} at "
+                            "{:.4g} s. Give both a trigger (clock: {{trigger: CHANNEL}}), a common column (clock: "
+                            "{{common: CHANNEL}}), "
+                            "or tell the lag in seconds (clock: {{lag: 0.1}}).",
+                            file.name, reference_->name, estimate.correlation, estimate.clock.offset, estimate.rival,
+                            estimate.rival_lag));
+        return estimate.clock;
+    }
+
+    /// Both sides tell the same quantity, which rises or falls: its values are the clock.
+    void add_by_common(const FileRecordings& file) {
+        const std::string& name = map_.clock.channel;
+        const NamedSignal* here = probe_.channel(name);
+        const recordings::Recording* of = nullptr;
+        const RecordedChannel* there = channel_of(file.recordings, name, of);
+        const Signal other = there ? without_gaps({of->times, there->values}) : Signal{};
+        const Signal own = here ? without_gaps(here->signal) : Signal{};
+        if (own.values.size() < 2 || other.values.size() < 2)
+            throw InvalidInput(
+                fmt::format("{}: the common column {} is not in {}. Each file of a probe needs it, or a "
+                            "quantity of its points (quantities).",
+                            file.name, mesh::cited(name), own.values.size() < 2 ? reference_->name : file.name));
+        check_monotone(own, reference_->name);
+        check_monotone(other, file.name);
+        const Signal rising = monotone(own), told = monotone(other);
+        // times here as a function of the common value; values that stand still are taken at their middle
+        const Signal inverse = inverted(rising);
+        const Signal by_time{told.times, told.values.unaryExpr([&](double v) { return value_at(inverse, v); })};
+        const Signal known = without_gaps(by_time);
+        if (known.times.size() < 2)
+            throw InvalidInput(
+                fmt::format("{}: '{}' goes from {:.4g} to {:.4g} here and from {:.4g} to {:.4g} in {}: they "
+                            "have nothing in common. Are the units the same?",
+                            file.name, name, other.values.minCoeff(), other.values.maxCoeff(), own.values.minCoeff(),
+                            own.values.maxCoeff(), reference_->name));
+        report_.clocks.push_back({file.name, fmt::format("by the common column '{}'", name), probe_.probe});
+        FileRecordings rest = file;
+        for (recordings::Recording& recording : rest.recordings)
+            std::erase_if(recording.channels, [&](const RecordedChannel& channel) { return channel.name == name; });
+        add(rest, [&](double t) { return value_at(known, t); });
+    }
+
+    void check_monotone(const Signal& signal, const std::string& file) const {
+        constexpr double off = 0.02;  // of the range, rms: what is left is no noise of a sensor
+        const Signal fit = monotone(signal);
+        const double range = signal.values.maxCoeff() - signal.values.minCoeff();
+        const double rms =
+            std::sqrt((fit.values - signal.values).squaredNorm() / static_cast<double>(signal.values.size()));
+        if (rms > off * range)
+            throw InvalidInput(
+                fmt::format("{}: the common column '{}' goes up and down, and its values tell no times. "
+                            "Merge by clock: {{lag: auto}}.",
+                            file, map_.clock.channel));
+    }
+
+    /// @pre monotone
+    static Signal inverted(const Signal& signal) {
+        std::vector<double> values, times;
+        const bool falls = signal.values[signal.values.size() - 1] < signal.values[0];
+        for (Eigen::Index begin = 0; begin < signal.values.size();) {
+            Eigen::Index end = begin;
+            while (end < signal.values.size() && signal.values[end] == signal.values[begin]) ++end;
+            values.push_back(signal.values[begin]);
+            times.push_back((signal.times[begin] + signal.times[end - 1]) / 2);
+            begin = end;
+        }
+        if (falls) {
+            std::ranges::reverse(values);
+            std::ranges::reverse(times);
+        }
+        return {Eigen::Map<Eigen::VectorXd>(values.data(), std::ssize(values)),
+                Eigen::Map<Eigen::VectorXd>(times.data(), std::ssize(times))};
+    }
+
+    void from_zero() {
+        const double first = probe_.times[0];
+        probe_.times.array() -= first;
+        for (NamedSignal& channel : probe_.channels) channel.signal.times.array() -= first;
+        for (ClockReport& clock : report_.clocks)
+            if (clock.probe == probe_.probe) clock.offset -= first;
+    }
+
+    const ImportMap& map_;
+    ImportReport& report_;
+    FileRecordings* reference_ = nullptr;
+    ProbeRecording probe_;
+};
+
+}  // namespace
+
+const NamedSignal* ProbeRecording::channel(const std::string& name) const {
+    const auto found = std::ranges::find(channels, name, &NamedSignal::name);
+    return found == channels.end() ? nullptr : &*found;
+}
+
+const RecordedPoint* ProbeRecording::point(const std::string& name) const {
+    const auto found = std::ranges::find(points, name, &RecordedPoint::name);
+    return found == points.end() ? nullptr : &*found;
+}
+
+std::vector<ProbeRecording> merge_recordings(const ImportMap& map, std::vector<FileRecordings> files,
+                                             ImportReport& report) {
+    std::map<int, std::vector<FileRecordings*>> of_probe;
+    for (FileRecordings& file : files) of_probe[file.mapped->probe].push_back(&file);
+    std::vector<ProbeRecording> probes;
+    probes.reserve(of_probe.size());
+    for (auto& [number, of] : of_probe) probes.push_back(ProbeMerge(map, number, report).merged(of));
+    return probes;
+}
+
+}  // namespace palpate::identify

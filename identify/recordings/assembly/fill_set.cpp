@@ -1,0 +1,325 @@
+#include "identify/recordings/assembly/fill_set.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <optional>
+#include <set>
+
+#include "identify/measurements/rest_body.h"
+#include "mesh/errors.h"
+#include "mesh/text/words.h"
+
+namespace palpate::identify {
+namespace {
+
+constexpr double on_surface = 1e-3;  // of the longest side: nearer than a marker's base is thick
+constexpr double by_noise = 3;       // sd
+
+/// A state's point in the mesh's frame; of points in a plane the third coordinate is NaN.
+Vec3 registered(const ProbeRecording& probe, const RigidMotion& frame, Vec3 at) {
+    if (!probe.is_planar) return frame(at);
+    at.z() = 0;
+    Vec3 moved = frame(at);
+    moved.z() = missing;
+    return moved;
+}
+
+class SetFiller {
+public:
+    SetFiller(const ImportMap& map, const std::vector<ProbeStates>& probes, const ProbeStates& rest,
+              const StateFrames& frames, ImportReport& report)
+        : map_(map), probes_(probes), rest_(rest), frames_(frames), report_(report), set_(map.set) {}
+
+    MeasurementSet filled() {
+        find_markers();
+        std::size_t frame = 0;
+        for (const ProbeStates& probe : probes_) {
+            check_values(probe);
+            for (const ImportedState& state : probe.states) add_state(probe, state, frames_.of_state[frame++]);
+            tell_drift(probe);
+        }
+        return std::move(set_);
+    }
+
+private:
+    /// Frame of the rest's first state.
+    const RigidMotion& rest_frame() const {
+        std::size_t before = 0;
+        for (const ProbeStates& probe : probes_) {
+            if (&probe == &rest_) break;
+            before += probe.states.size();
+        }
+        return frames_.of_state[before];
+    }
+
+    /// Points that are not of the body: fiducials, and what moves tools or measures.
+    std::set<std::string> others() const {
+        std::set<std::string> names;
+        for (const MappedPlace& place : map_.places)
+            if (!place.is_marker) names.insert(place.name);
+        for (const MappedUse& use : map_.uses) names.insert(use.points.begin(), use.points.end());
+        for (const MappedQuantity& quantity : map_.quantities) {
+            names.insert(quantity.points.begin(), quantity.points.end());
+            names.insert(quantity.minus.begin(), quantity.minus.end());
+        }
+        return names;
+    }
+
+    std::vector<std::string> marker_names() const {
+        std::vector<std::string> names;
+        if (map_.names_markers) {
+            for (const MappedPlace& place : map_.places)
+                if (place.is_marker) names.push_back(place.name);
+            return names;
+        }
+        const std::set<std::string> left_out = others();
+        for (const ProbeStates& probe : probes_)
+            for (const RecordedPoint& point : probe.probe->points)
+                if (!left_out.contains(point.name) && std::ranges::find(names, point.name) == names.end())
+                    names.push_back(point.name);
+        return names;
+    }
+
+    /// Whole numbers of their own stay; others are numbered from 1.
+    static std::vector<int> ids_of(const std::vector<std::string>& names) {
+        std::vector<int> ids;
+        for (const std::string& name : names) {
+            const auto number = mesh::parse_integer(name);
+            if (!number || *number < 0) break;
+            ids.push_back(*number);
+        }
+        if (ids.size() < names.size() || std::set<int>(ids.begin(), ids.end()).size() < ids.size()) {
+            ids.resize(names.size());
+            for (std::size_t i = 0; i < ids.size(); ++i) ids[i] = static_cast<int>(i) + 1;
+        }
+        return ids;
+    }
+
+    /// Where a marker rests, if it is known.
+    std::optional<Vec3> rest_place(const std::string& name) const {
+        const auto told = std::ranges::find(map_.places, name, &MappedPlace::name);
+        if (told != map_.places.end() && told->at) return told->at;
+        const auto point = std::ranges::find(rest_.probe->points, name, &RecordedPoint::name);
+        if (!map_.is_rest_seen || point == rest_.probe->points.end()) return std::nullopt;
+        Vec3 at = rest_.states.front().points[static_cast<std::size_t>(point - rest_.probe->points.begin())].at;
+        if (rest_.probe->is_planar) at.z() = 0;
+        if (!at.allFinite()) return std::nullopt;
+        return rest_frame()(at);
+    }
+
+    void find_markers() {
+        const std::vector<std::string> names = marker_names();
+        const std::vector<int> ids = ids_of(names);
+        const RestBody body(set_.rest_surface);
+        const double near = on_surface * body.box.longest_side();
+        std::string not_seen;
+        int standing_off = 0;
+        double highest = 0;
+        for (std::size_t i = 0; i < names.size(); ++i) {
+            const auto place = rest_place(names[i]);
+            if (!place) {
+                not_seen += fmt::format("{}{}", not_seen.empty() ? "" : ", ", mesh::cited(names[i]));
+                continue;
+            }
+            Marker marker{.id = ids[i], .rest = *place, .anchor = {}};
+            const auto told = std::ranges::find(map_.places, names[i], &MappedPlace::name);
+            const mesh::SurfacePoint on = body.tree.closest(*place);
+            if (told != map_.places.end() && told->attached)
+                marker.anchor = told->attached;
+            else if (on.distance > near && !(body.is_closed && body.tree.inside(*place)))
+                marker.anchor = on.position;
+            if (marker.anchor) {
+                ++standing_off;
+                highest = std::max(highest, (*place - *marker.anchor).norm());
+            }
+            index_of_[names[i]] = static_cast<int>(set_.markers.size());
+            set_.markers.push_back(marker);
+            report_.markers.push_back(names[i]);
+        }
+        if (!not_seen.empty())
+            report_.notes.push_back(
+                fmt::format("Left out, as nobody knows where they rest (no place 'at' in the map, and {}): "
+                            "{}.",
+                            map_.is_rest_seen ? "not seen in the first state" : "'rest: none'", not_seen));
+        if (standing_off > 0)
+            report_.notes.push_back(
+                fmt::format("{} of {} markers stand off the surface, by {:.3g} mm at most; each is tied to "
+                            "its nearest point (ax,ay,az).",
+                            standing_off, set_.markers.size(), highest));
+    }
+
+    /// Values that act where points have moved need a state in which they have not.
+    void check_values(const ProbeStates& probe) const {
+        if (probe.probe->values.empty() || probe.probe->values_act_always || probe.states.size() > 1) return;
+        throw InvalidInput(
+            fmt::format("{}: probe {} has one state, and its values act in those in which the points have left "
+                        "their first place. Say 'while: always' in its entry of 'files'.",
+                        map_.file.filename().string(), probe.probe->probe));
+    }
+
+    void add_state(const ProbeStates& probe, const ImportedState& imported, const RigidMotion& frame) {
+        LoadState state{.probe = imported.probe, .time = imported.time};
+        const StateName rest{rest_.states.front().probe, rest_.states.front().time};
+        const bool is_rest = state.probe == rest.probe && state.time == rest.time;
+        for (std::size_t p = 0; p < imported.points.size(); ++p) {
+            if (map_.reads_displacements && is_rest) break;  // they count from here
+            const auto marker = index_of_.find(probe.probe->points[p].name);
+            const SteadyPoint& point = imported.points[p];
+            if (marker == index_of_.end() || point.at.array().isNaN().all()) continue;
+            const Vec3 at = registered(*probe.probe, frame, point.at);
+            if (at.array().isNaN().all()) continue;
+            const bool is_known = point.sigma > 0;
+            state.readings.push_back(
+                {.marker = marker->second,
+                 .position = at,
+                 .sigma = is_known ? std::max(least_position_noise, frame.scale * point.sigma) : missing,
+                 .since = map_.reads_displacements ? std::optional(rest) : std::nullopt});
+        }
+        for (std::size_t u = 0; u < map_.uses.size(); ++u) add_use(probe, imported, frame, u, state);
+        set_.states.push_back(std::move(state));
+    }
+
+    /// What a channel says in a state, tared; nothing where it says nothing.
+    std::optional<SteadyValue> value_in(const ProbeStates& probe, const ImportedState& state, std::size_t u) const {
+        const MappedUse& use = map_.uses[u];
+        SteadyValue value = state.values[u];
+        if (value.samples == 0) return std::nullopt;
+        const bool is_a_number = probe.probe->channel(use.channel) == nullptr;
+        if (is_a_number && !probe.probe->values_act_always && !state.has_moved) value.mean = 0;
+        if (use.tare) value.mean -= probe.states.front().values[u].mean;
+        if (std::isfinite(use.sigma)) value.sigma = use.sigma;
+        return value;
+    }
+
+    void add_use(const ProbeStates& probe, const ImportedState& imported, const RigidMotion& frame, std::size_t u,
+                 LoadState& state) {
+        const MappedUse& use = map_.uses[u];
+        if (!use.points.empty()) {
+            add_motion_of_points(probe, imported, frame, use, state);
+            return;
+        }
+        const auto value = value_in(probe, imported, u);
+        if (!value) return;
+        switch (use.kind) {
+            case MappedUse::Kind::force: {
+                // what a load cell reads at rest is its noise
+                const bool is_noise = !imported.has_moved && std::abs(value->mean) <= by_noise * value->sigma;
+                if (!is_noise && value->mean != 0)
+                    state.contacts.push_back({use.at, value->mean * use.axis, use.radius});
+                break;
+            }
+            case MappedUse::Kind::motion: {
+                mesh::ToolMotion& motion = motion_of(use, state);
+                (use.is_about ? motion.rotation : motion.translation) += value->mean * use.axis;
+                break;
+            }
+            case MappedUse::Kind::reaction:
+                add_reaction(use, *value, state);
+                break;
+            case MappedUse::Kind::actuation:
+                if (value->mean != 0)
+                    state.actuations.push_back({use.target, value->mean, value->sigma > 0 ? value->sigma : missing});
+                break;
+        }
+    }
+
+    static mesh::ToolMotion& motion_of(const MappedUse& use, LoadState& state) {
+        auto found = std::ranges::find(state.motions, use.target, &mesh::ToolMotion::tool);
+        if (found == state.motions.end()) {
+            state.motions.push_back({.tool = use.target});
+            found = state.motions.end() - 1;
+        }
+        for (const int axis : use.free) found->translation[axis] = missing;
+        return *found;
+    }
+
+    static void add_reaction(const MappedUse& use, const SteadyValue& value, LoadState& state) {
+        auto found = std::ranges::find(state.reactions, use.target, &ReactionReading::tool);
+        if (found == state.reactions.end()) {
+            state.reactions.push_back({.tool = use.target});
+            found = state.reactions.end() - 1;
+        }
+        Eigen::Index axis = 0;
+        use.axis.cwiseAbs().maxCoeff(&axis);
+        (use.is_about ? found->moment : found->force)[axis] = value.mean * (use.axis[axis] < 0 ? -1 : 1);
+        if (!use.is_about && value.sigma > 0)
+            found->sigma = std::max({least_force_noise, value.sigma, std::isnan(found->sigma) ? 0 : found->sigma});
+    }
+
+    /// Places of some points in a state, in the mesh's frame; of those in a plane with z 0.
+    static Points places_of(const std::vector<std::string>& names, const ProbeRecording& probe,
+                            const ImportedState& state, const RigidMotion& frame) {
+        Points places(std::ssize(names), 3);
+        for (std::size_t i = 0; i < names.size(); ++i) {
+            const auto point = std::ranges::find(probe.points, names[i], &RecordedPoint::name);
+            Vec3 at = Vec3::Constant(missing);
+            if (point != probe.points.end())
+                at = registered(probe, frame, state.points[static_cast<std::size_t>(point - probe.points.begin())].at);
+            if (probe.is_planar) at.z() = 0;
+            places.row(static_cast<Eigen::Index>(i)) = at.transpose();
+        }
+        return places;
+    }
+
+    /// A tool goes where points on it go.
+    void add_motion_of_points(const ProbeStates& probe, const ImportedState& imported, const RigidMotion& frame,
+                              const MappedUse& use, LoadState& state) const {
+        const Points before = places_of(use.points, *rest_.probe, rest_.states.front(), rest_frame()),
+                     after = places_of(use.points, *probe.probe, imported, frame);
+        if (!before.allFinite() || !after.allFinite()) return;
+        mesh::ToolMotion& motion = motion_of(use, state);
+        const Vec3 origin = set_.tools[static_cast<std::size_t>(use.target)].origin;
+        Vec3 moved = (after - before).colwise().mean().transpose();
+        if (use.turns) {
+            const Registration fit =
+                probe.probe->is_planar ? fit_counterparts_in_plane(before, after) : fit_counterparts(before, after);
+            const Eigen::AngleAxisd turn(fit.motion.R);
+            motion.rotation += turn.angle() * turn.axis();
+            moved = fit.motion(origin) - origin;
+        }
+        for (int axis = 0; axis < 3; ++axis) motion.translation[axis] += moved[axis];
+    }
+
+    /// What load cells read where nothing loads the body, against the first time.
+    void tell_drift(const ProbeStates& probe) {
+        for (std::size_t u = 0; u < map_.uses.size(); ++u) {
+            const MappedUse& use = map_.uses[u];
+            const bool is_a_force = use.kind == MappedUse::Kind::force || use.kind == MappedUse::Kind::reaction;
+            if (!is_a_force || !probe.probe->channel(use.channel)) continue;
+            const SteadyValue& first = probe.states.front().values[u];
+            const ImportedState* last = nullptr;
+            for (const ImportedState& state : probe.states)
+                if (!state.has_moved && state.values[u].samples > 0) last = &state;
+            if (!last || last == &probe.states.front() || first.samples == 0) continue;
+            const double drift = last->values[u].mean - first.mean, sd = std::hypot(last->values[u].sigma, first.sigma);
+            if (std::abs(drift) <= by_noise * sd) continue;
+            report_.notes.push_back(
+                fmt::format("Probe {}: without load '{}' reads {:.3g} {} more at {:.4g} s than at {:.4g} s ({:.2g} "
+                            "sd): the load cell "
+                            "drifts, or the body has not come back.",
+                            probe.probe->probe, use.channel, drift, use.is_about ? "N mm" : "N", last->time,
+                            probe.states.front().time, std::abs(drift) / sd));
+        }
+    }
+
+    const ImportMap& map_;
+    const std::vector<ProbeStates>& probes_;
+    const ProbeStates& rest_;
+    const StateFrames& frames_;
+    ImportReport& report_;
+    MeasurementSet set_;
+    std::map<std::string, int> index_of_;  // marker by the point's name
+};
+
+}  // namespace
+
+MeasurementSet filled_set(const ImportMap& map, const std::vector<ProbeStates>& probes, const ProbeStates& rest,
+                          const StateFrames& frames, ImportReport& report) {
+    return SetFiller(map, probes, rest, frames, report).filled();
+}
+
+}  // namespace palpate::identify

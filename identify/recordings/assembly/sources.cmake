@@ -1,0 +1,18 @@
+set(assembly_sources
+  assembly/fill_set.cpp
+  assembly/import_report.cpp
+  assembly/import_set.cpp
+  assembly/clocks/lag.cpp
+  assembly/clocks/merge_recordings.cpp
+  assembly/clocks/signal.cpp
+  assembly/clocks/triggers.cpp
+  assembly/frames/register_states.cpp
+  assembly/frames/rigid_motion.cpp
+  assembly/frames/surface_fit.cpp
+  assembly/map/map_entries.cpp
+  assembly/map/read_import_map.cpp
+  assembly/states/imported_state.cpp
+  assembly/states/plateaus.cpp
+  assembly/tracks/assignment.cpp
+  assembly/tracks/mend_tracks.cpp
+  assembly/tracks/name_points.cpp)

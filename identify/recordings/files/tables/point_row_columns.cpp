@@ -1,0 +1,146 @@
+#include <algorithm>
+#include <string_view>
+
+#include "identify/recordings/files/tables/column_roles.h"
+#include "identify/recordings/files/tables/table_recording.h"
+
+namespace palpate::identify {
+namespace {
+
+/// How programs name coordinates at rest and displacements; '@' stands for x, y and z. Names in this order go first.
+constexpr std::string_view coordinate_names[]{"model_coordinates_@",
+                                              "model_coordinate_@",
+                                              "coordinate_@",
+                                              "@_undef",
+                                              "@ undef",
+                                              "@_undeformed",
+                                              "undeformed @",
+                                              "@_ref",
+                                              "ref_@",
+                                              "reference @",
+                                              "reference_@",
+                                              "@_0",
+                                              "@0",
+                                              "coord_@",
+                                              "coordinate @",
+                                              "@-coordinate",
+                                              "@ coordinate",
+                                              "position @",
+                                              "pos_@",
+                                              "@"};
+constexpr std::string_view displacement_names[]{"model_displacement_@",
+                                                "displacement_@",
+                                                "displacement @",
+                                                "@-displacement",
+                                                "@ displacement",
+                                                "@_displacement",
+                                                "displacement.@",
+                                                "disp_@",
+                                                "disp @",
+                                                "disp.@",
+                                                "u_@",
+                                                "u@",
+                                                "d@",
+                                                "d_@",
+                                                "delta_@",
+                                                "delta @"};
+
+int find_column(const NumberTable& table, std::string_view name, bool any_case) {
+    for (std::size_t c = 0; c < table.columns.size(); ++c) {
+        const std::string& own = table.columns[c].name;
+        if (any_case ? lower_case(own) == lower_case(name) : own == name) return static_cast<int>(c);
+    }
+    return -1;
+}
+
+int find_any(const NumberTable& table, std::initializer_list<std::string_view> names) {
+    for (const std::string_view name : names)
+        if (const int c = find_column(table, name, true); c >= 0) return c;
+    return -1;
+}
+
+std::string with_axis(std::string_view pattern, char axis) {
+    std::string name(pattern);
+    std::ranges::replace(name, '@', axis);
+    return name;
+}
+
+/// The first way of naming by which x and y are there. Large letters first: VIC-3D's small ones are pixels.
+template <std::size_t n>
+std::array<int, 3> by_names(const NumberTable& table, const std::string_view (&patterns)[n]) {
+    for (const std::string_view pattern : patterns)
+        for (const std::string_view axes : {"XYZ", "xyz"}) {
+            std::array<int, 3> found{};
+            for (std::size_t k = 0; k < 3; ++k) {
+                const std::string name = with_axis(pattern, axes[k]);
+                found[k] = find_column(table, name, false);
+                if (found[k] < 0 && pattern.size() > 1) found[k] = find_column(table, name, true);
+            }
+            if (found[0] >= 0 && found[1] >= 0) return found;
+        }
+    return {-1, -1, -1};
+}
+
+std::array<int, 3> displacements_in(const NumberTable& table) {
+    for (const std::string_view letters : {"UVW", "uvw"}) {
+        std::array<int, 3> found{};
+        for (std::size_t k = 0; k < 3; ++k) found[k] = find_column(table, letters.substr(k, 1), false);
+        if (found[0] >= 0 && found[1] >= 0) return found;
+    }
+    return by_names(table, displacement_names);
+}
+
+std::string program_of(const NumberTable& table) {
+    const bool is_dice = find_any(table, {"subset_id", "status_flag"}) >= 0 && find_any(table, {"gamma"}) >= 0;
+    if (is_dice) return "DICe, image correlation";
+    const bool is_gom = table.preamble.find("gom") != std::string::npos ||
+                        table.preamble.find("aramis") != std::string::npos || find_any(table, {"x_undef"}) >= 0;
+    if (is_gom) return "GOM Aramis, image correlation";
+    const bool is_vic = find_any(table, {"sigma"}) >= 0 &&
+                        (find_column(table, "X", false) >= 0 || table.preamble.find("vic-3d") != std::string::npos);
+    if (is_vic) return "VIC-3D, image correlation";
+    return "image correlation, a row for each point";
+}
+
+PointRowColumns told_by_map(const NumberTable& table, const std::string& file, const FileMap& map) {
+    PointRowColumns columns{.format = "table, a row for each point"};
+    const auto index = [&](const ColumnPlace& place) { return column_of(table, place.column, file); };
+    if (map.point_column) columns.point = index(*map.point_column);
+    if (map.frame_column) columns.frame = index(*map.frame_column);
+    if (map.time) columns.time = index(*map.time);
+    if (!map.points.empty()) {
+        for (std::size_t k = 0; k < map.points[0].at.size(); ++k) columns.at[k] = index(map.points[0].at[k]);
+        for (std::size_t k = 0; k < map.points[0].displacement.size(); ++k)
+            columns.displacement[k] = index(map.points[0].displacement[k]);
+        return columns;
+    }
+    columns.at = by_names(table, coordinate_names);
+    columns.displacement = displacements_in(table);
+    return columns;
+}
+
+}  // namespace
+
+std::optional<PointRowColumns> point_rows_in(const NumberTable& table, const TextFile& text, const FileMap& map) {
+    if (map.point_column || map.format == "dic") return told_by_map(table, text.file().filename().string(), map);
+    if (!table.has_names || !map.points.empty() || !map.channels.empty()) return std::nullopt;
+    PointRowColumns columns;
+    columns.at = by_names(table, coordinate_names);
+    if (columns.at[0] < 0) return std::nullopt;
+    for (const int c : columns.at)
+        if (c >= 0 && table.columns[static_cast<std::size_t>(c)].is_text) return std::nullopt;
+    columns.displacement = displacements_in(table);
+    columns.point = find_any(table, {"id", "subset_id", "point_id", "point", "marker", "marker_id", "name", "label",
+                                     "node", "facet", "landmark", "point id", "facet id", "track_id", "particle"});
+    columns.frame = find_any(table, {"frame", "stage", "step", "image", "frame_number"});
+    columns.time = roles_of(table).time;
+    columns.quality = find_any(table, {"sigma"});
+    const bool is_moving = columns.frame >= 0 || columns.time >= 0;
+    const bool has_displacement = columns.displacement[0] >= 0;
+    // With instants and without names it is one point that moves.
+    if (is_moving && columns.point < 0) return std::nullopt;
+    columns.format = has_displacement ? program_of(table) : "table, a row for each point";
+    return columns;
+}
+
+}  // namespace palpate::identify

@@ -1,0 +1,95 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "tests/identify/recordings/read_sample.h"
+#include "tests/identify/recordings/text_samples.h"
+#include "tests/temporary_folder.h"
+
+namespace palpate::identify {
+namespace {
+
+TEST(Trc, HoldsMarkersAndTimes) {
+    const TemporaryFolder folder;
+    const auto recordings = read_recordings(folder.write("run.trc", trc_sample));
+    ASSERT_EQ(recordings.size(), 1u);
+    const Recording& run = recordings[0];
+    EXPECT_EQ(run.format, "TRC, motion capture");
+    ASSERT_EQ(run.points.size(), 2u);
+    EXPECT_EQ(run.points[1].name, "Tip");
+    EXPECT_NEAR(run.points[1].at(0, 0), 40, 1e-12);  // 4 cm
+    EXPECT_TRUE(run.points[1].at.col(1).array().isNaN().all());
+    EXPECT_NEAR(run.times[2], 0.02, 1e-12);
+    EXPECT_TRUE(run.has_clock);
+}
+
+TEST(Trc, SaysWhereItIsBroken) {
+    EXPECT_TRUE(says(refusal_of("PathFileType\t4\n"), {"cut off"}));
+    EXPECT_TRUE(says(refusal_of(replaced(trc_sample, "\t2\tcm", "\t3\tcm")), {"3 markers", "names 2"}));
+    EXPECT_TRUE(says(refusal_of(replaced(trc_sample, "4.1", "4,x")), {"line 9", "Tip x", "4,x", "no number"}));
+    EXPECT_TRUE(says(refusal_of(replaced(trc_sample, "\tcm\t", "\tparsec\t")), {"parsec", "no unit of length"}));
+    EXPECT_TRUE(says(refusal_of(replaced(trc_sample, "0.02\t", "0.005\t")), {"line 9", "time runs backwards"}));
+}
+
+TEST(Motive, TakesMarkersAndLeavesBodiesOut) {
+    const TemporaryFolder folder;
+    const auto recordings = read_recordings(folder.write("take.csv", motive_sample));
+    ASSERT_EQ(recordings.size(), 1u);
+    const Recording& take = recordings[0];
+    EXPECT_EQ(take.format, "OptiTrack Motive, CSV");
+    ASSERT_EQ(take.points.size(), 2u);
+    EXPECT_EQ(take.points[0].name, "Plate:Marker1");
+    // The measured marker, not the place that the rigid body solves for.
+    EXPECT_NEAR(take.points[0].at(0, 0), 110, 1e-9);
+    EXPECT_NEAR(take.points[1].at(2, 1), 330, 1e-9);
+    EXPECT_TRUE(take.points[1].at.col(0).array().isNaN().all());
+    EXPECT_NEAR(take.times[1], 0.0041667, 1e-9);
+    EXPECT_TRUE(notes_tell(take, "Rigid Body"));
+}
+
+TEST(Motive, SaysWhatIsMissing) {
+    EXPECT_TRUE(says(refusal_of(replaced(motive_sample, ",Type,", ",Kind,")), {"'Type'", "header information"}));
+    EXPECT_TRUE(says(refusal_of(replaced(motive_sample, "Meters", "Feetish")), {"Feetish", "no unit of length"}));
+    std::string no_markers = motive_sample;
+    for (const char* kind : {"Rigid Body Marker", "Marker,Marker,Marker,Marker,Marker,Marker"})
+        for (std::size_t at; (at = no_markers.find(kind)) != std::string::npos;)
+            no_markers.replace(at, std::string(kind).size(),
+                               std::string(kind) == "Rigid Body Marker" ? "Bone" : "Bone,Bone,Bone,Bone,Bone,Bone");
+    EXPECT_TRUE(says(refusal_of(no_markers), {"holds no markers", "Bone"}));
+}
+
+TEST(Vicon, HoldsTrajectoriesDevicesAndEventsOnTheirClocks) {
+    const TemporaryFolder folder;
+    const auto recordings = read_recordings(folder.write("trial.csv", vicon_sample));
+    ASSERT_EQ(recordings.size(), 3u);
+    const Recording& points = recordings[0];
+    ASSERT_EQ(points.points.size(), 2u);
+    EXPECT_EQ(points.points[0].name, "Arm:LASI");
+    EXPECT_NEAR(points.points[1].at(1, 1), 5.5, 1e-12);
+    EXPECT_NEAR(points.times[1], 0.01, 1e-12);
+    ASSERT_EQ(points.events.size(), 1u);
+    EXPECT_NEAR(points.events[0].time, 0.015, 1e-12);
+
+    const auto devices = std::ranges::find(recordings, "trial.csv, devices", &Recording::source);
+    ASSERT_NE(devices, recordings.end());
+    ASSERT_EQ(devices->channels.size(), 2u);
+    EXPECT_EQ(devices->channels[0].name, "Plate - Force Fx");
+    EXPECT_EQ(devices->channels[1].unit, "N*mm");
+    EXPECT_NEAR(devices->times[3], 0.015, 1e-12);  // frame 2, sub frame 1, two of them a frame, 200 a second
+
+    const auto models = std::ranges::find(recordings, "trial.csv, model outputs", &Recording::source);
+    ASSERT_NE(models, recordings.end());
+    EXPECT_EQ(models->channels[0].unit, "rad");
+}
+
+TEST(Vicon, SaysWhereItIsBroken) {
+    EXPECT_TRUE(says(refusal_of("Trajectories\n100\n"), {"line 1", "cut off"}));
+    EXPECT_TRUE(
+        says(refusal_of(replaced(vicon_sample, "Trajectories\n100", "Trajectories\nfast")), {"fast", "above 0"}));
+    EXPECT_TRUE(says(refusal_of(replaced(vicon_sample, "2,0,1.1", "1,0,1.1")), {"frames run backwards"}));
+    EXPECT_TRUE(says(refusal_of(replaced(vicon_sample, "2,0,1.1", "2,0,12.05.2024")), {"12.05.2024", "a date"}));
+    EXPECT_TRUE(says(refusal_of("Joints\n100\nx\n"), {"neither trajectories"}));
+}
+
+}  // namespace
+}  // namespace palpate::identify
