@@ -62,7 +62,7 @@ TEST_P(BrokenFiles, AreReadOrRefused) {
     EXPECT_GT(refused, 0);
 }
 
-std::string mat(std::filesystem::path (*write)(const std::filesystem::path&)) {
+std::string mat(const std::function<std::filesystem::path(const std::filesystem::path&)>& write) {
     const TemporaryFolder folder;
     return mesh::read_text(write(folder / "a.mat"));
 }
@@ -91,8 +91,9 @@ INSTANTIATE_TEST_SUITE_P(
                     Sample{"vtk", "scan.vtk", text(vtk_sample)},
                     Sample{"table", "t.csv", text("0,0.000,1,2,3,4,5,6\n1,0.005,1,2,3,4,5,6\n2,0.010,1,2,3,4,5,7\n")},
                     Sample{"clock", "t.csv", text("time;F [N]\n12:00:01,5;1,5\n12:00:02,5;2,5\n12:00:03,5;2,25\n")},
-                    Sample{"ncorr", "dic.mat", [] { return mat(write_ncorr); }},
-                    Sample{"multidic", "dic.mat", [] { return mat(write_multidic); }}),
+                    Sample{"ncorr", "dic.mat", [] { return mat([](const auto& file) { return write_ncorr(file); }); }},
+                    Sample{"multidic", "dic.mat",
+                           [] { return mat([](const auto& file) { return write_multidic(file); }); }}),
     [](const testing::TestParamInfo<Sample>& each) { return each.param.name; });
 
 }  // namespace

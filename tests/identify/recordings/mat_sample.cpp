@@ -41,15 +41,16 @@ std::filesystem::path write(const std::filesystem::path& file, matvar_t* variabl
 
 }  // namespace
 
-std::filesystem::path write_ncorr(const std::filesystem::path& file) {
+std::filesystem::path write_ncorr(const std::filesystem::path& file, double spacing, bool is_even) {
     matvar_t* displacements = structure(nullptr, {"plot_u_ref_formatted", "plot_v_ref_formatted"}, 2);
     for (std::size_t f = 0; f < 2; ++f) {
         const double u = 0.5 * static_cast<double>(f + 1), v = 0.25;
-        Mat_VarSetStructFieldByName(displacements, "plot_u_ref_formatted", f, matrix({0, u, u, u, u, u}, 2));
+        Mat_VarSetStructFieldByName(displacements, "plot_u_ref_formatted", f,
+                                    matrix({0, u, u, u, u, u}, f == 0 || is_even ? 2 : 3));
         Mat_VarSetStructFieldByName(displacements, "plot_v_ref_formatted", f, matrix({0, v, v, v, v, v}, 2));
     }
     matvar_t* info = structure(nullptr, {"spacing", "pixtounits", "units"});
-    Mat_VarSetStructFieldByName(info, "spacing", 0, matrix({4}, 1));
+    Mat_VarSetStructFieldByName(info, "spacing", 0, matrix({spacing}, 1));
     Mat_VarSetStructFieldByName(info, "pixtounits", 0, matrix({0.1}, 1));
     Mat_VarSetStructFieldByName(info, "units", 0, characters("mm"));
     matvar_t* saved = structure("data_dic_save", {"displacements", "dispinfo"});
@@ -58,14 +59,15 @@ std::filesystem::path write_ncorr(const std::filesystem::path& file) {
     return write(file, saved);
 }
 
-std::filesystem::path write_multidic(const std::filesystem::path& file) {
+std::filesystem::path write_multidic(const std::filesystem::path& file, bool is_even) {
     constexpr double nan = std::numeric_limits<double>::quiet_NaN();
     matvar_t* moved = structure(nullptr, {"DispVec"});
     Mat_VarSetStructFieldByName(moved, "DispVec", 0,
                                 cells({matrix({0, 0, 0, 0, 0, 0}, 2), matrix({0.5, nan, 0, nan, 0, nan}, 2)}));
     matvar_t* results = structure("DIC3DPPresults", {"Points3D", "Disp"});
-    Mat_VarSetStructFieldByName(results, "Points3D", 0,
-                                cells({matrix({1, 4, 2, 5, 3, 6}, 2), matrix({1.5, nan, 2, nan, 3, nan}, 2)}));
+    Mat_VarSetStructFieldByName(
+        results, "Points3D", 0,
+        cells({matrix({1, 4, 2, 5, 3, 6}, 2), matrix({1.5, nan, 2, nan, 3, nan}, is_even ? 2 : 3)}));
     Mat_VarSetStructFieldByName(results, "Disp", 0, moved);
     return write(file, results);
 }

@@ -81,11 +81,16 @@ TEST(Tables, TimesRiseAndHaveAUnit) {
     EXPECT_TRUE(notes_tell(read_sample("time,F\n0,1\n1,2\n1,3\n"), "1 times are those of the row before"));
 }
 
-TEST(Tables, NamesTellPoints) {
-    const Recording run =
-        read_sample("t,tip_x [cm],tip_y [cm],tip_z [cm],m2 X,m2 Y,Fx,Fy,Fz\n0,1,2,3,4,5,6,7,8\n1,1,,3,4,5,6,7,8\n");
-    ASSERT_EQ(run.points.size(), 1u);  // m2 is in another unit, or none: x, y of the first unit
+TEST(Tables, NamesAndUnitsTellPointsFromForces) {
+    const Recording run = read_sample(
+        "t,tip_x [cm],tip_y [cm],tip_z [cm],m2X [mm],m2Y [mm],Fx,Fy,Fz,load_x [N]\n"
+        "0,1,2,3,4,5,6,7,8,9\n1,1,,3,4,5,6,7,8,9\n");
+    ASSERT_EQ(run.points.size(), 2u);
     EXPECT_EQ(run.points[0].name, "tip");
+    EXPECT_EQ(run.points[0].at.col(0), Eigen::Vector3d(10, 20, 30));
+    EXPECT_EQ(run.points[1].at.col(0), Eigen::Vector3d(4, 5, 0));
+    ASSERT_EQ(run.channels.size(), 4u);
+    EXPECT_EQ(run.channels[3].name, "load_x");
 }
 
 TEST(Tables, NamesTellPointsInAPlane) {
@@ -95,6 +100,31 @@ TEST(Tables, NamesTellPointsInAPlane) {
     EXPECT_EQ(run.points[1].at.col(0), Eigen::Vector3d(3, 4, 0));
     EXPECT_TRUE(run.points[1].at.col(1).array().isNaN().all());
     EXPECT_TRUE(run.channels.empty());
+}
+
+TEST(Tables, NamesMayStandInTwoLines) {
+    for (const char* groups : {"bodyparts,tip,tip,tip,base,base,base\n", ",tip,,,base,,\n"}) {
+        const Recording run = read_sample("scorer,net,net,net,net,net,net\n" + std::string(groups) +
+                                          "coords,x,y,likelihood,x,y,likelihood\n"
+                                          "0,1,2,0.9,3,4,0.9\n1,5,6,0.9,7,8,0.9\n2,5,6,0.9,7,8,0.8\n");
+        ASSERT_EQ(run.points.size(), 2u);
+        EXPECT_EQ(run.points[1].name, "base");
+        EXPECT_EQ(run.points[1].at.col(1), Eigen::Vector3d(7, 8, 0));
+        ASSERT_EQ(run.channels.size(), 2u);
+        EXPECT_EQ(run.channels[1].name, "base likelihood");
+        EXPECT_TRUE(notes_tell(run, "line 2 names groups"));
+    }
+}
+
+TEST(Tables, OfRosHaveTimesSince1970AndNoPointsOfOrientations) {
+    const Recording run = read_sample(
+        "%time,field.header.seq,field.pose.position.x,field.pose.position.y,field.pose.position.z,"
+        "field.pose.orientation.x,field.pose.orientation.y,field.pose.orientation.z,field.pose.orientation.w\n"
+        "1700000000000000000,1,1,2,3,0,0,0,1\n1700000000250000000,2,4,5,6,0,0,0,1\n");
+    EXPECT_NEAR(run.times[1] - run.times[0], 0.25, 1e-6);  // a double holds 1.7e9 s to 2e-7
+    ASSERT_EQ(run.points.size(), 1u);
+    EXPECT_EQ(run.points[0].name, "field.pose.position");
+    EXPECT_EQ(run.points[0].at.col(1), Eigen::Vector3d(4, 5, 6));
 }
 
 TEST(Tables, WithoutNamesAClockAndThreesAreGuessedAndSaid) {
@@ -203,7 +233,7 @@ TEST(Unknown, SaysWhatWasRecognisedAndGivesAMap) {
     EXPECT_TRUE(says(refusal_of(std::string("\1\0\2\0\3", 5)), {"it is binary", "C3D", "MATLAB"}));
     EXPECT_TRUE(says(refusal_of("solid a\nfacet normal 0 0 1\n"), {"STL", "body"}));
     EXPECT_TRUE(says(refusal_of(""), {"run.csv", "empty"}));
-    EXPECT_TRUE(says(refusal_of("name,note\n1,a\n2,b\n"), {"neither points nor channels", "A map to start from"}));
+    EXPECT_TRUE(says(refusal_of("frame,note\n1,a\n2,b\n"), {"neither points nor channels", "A map to start from"}));
     EXPECT_TRUE(says(message_of<IoError>([] { read_recordings("/nowhere/run.csv"); }), {"/nowhere/run.csv"}));
 }
 

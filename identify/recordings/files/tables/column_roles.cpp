@@ -53,13 +53,15 @@ bool is_counter_name(const std::string& name) {
 
 /// Names of vectors that are no positions: "Fx", "moment_y", "acc.z", "rot_x".
 bool is_other_vector(const std::string& point) {
-    static const std::vector<std::string> names{"f",     "force", "forces",   "moment", "moments",      "torque",
-                                                "acc",   "gyro",  "mag",      "vel",    "acceleration", "velocity",
-                                                "rot",   "q",     "rotation", "quat",   "angle",        "euler",
-                                                "omega", "kraft", "strain",   "stress", "load",         "normal"};
+    static const std::vector<std::string> names{
+        "f",     "force",    "forces", "moment",       "moments",  "torque",      "acc",        "gyro",   "mag",
+        "vel",   "velocity", "rot",    "acceleration", "rotation", "orientation", "quaternion", "quat",   "q",
+        "angle", "euler",    "omega",  "linear",       "angular",  "wrench",      "kraft",      "strain", "stress",
+        "load",  "normal",   "std",    "sigma",        "error",    "err",         "covariance"};
+    // The last word counts: "imu.linear_acceleration", "F 2".
     std::string bare = lower_case(point);
-    while (!bare.empty() && (std::isdigit(static_cast<unsigned char>(bare.back())) != 0 || bare.back() == '_'))
-        bare.pop_back();
+    bare.erase(bare.find_last_not_of("0123456789_ .:-/") + 1);
+    bare = bare.substr(bare.find_last_of("_ .:-/") + 1);
     return is_one_of(bare, names);
 }
 
@@ -74,6 +76,15 @@ bool is_time_unit(const NumberColumn& column) {
     return unit && unit->name == "s";
 }
 
+/// "ElapsedTime", "Zeit ab Start": values of such a name that rise are times.
+bool is_rising_time(const NumberColumn& column) {
+    const std::string name = lower_case(column.name);
+    if (column.is_text || (name.find("time") == name.npos && name.find("zeit") == name.npos)) return false;
+    const Eigen::Index n = column.values.size();
+    return n > 1 && column.values.allFinite() && column.values[n - 1] > column.values[0] &&
+           std::is_sorted(column.values.begin(), column.values.end());
+}
+
 bool is_counter(const Eigen::VectorXd& values) {
     if (values.size() < 2 || !values.allFinite()) return false;
     const double first = values[0];
@@ -81,6 +92,15 @@ bool is_counter(const Eigen::VectorXd& values) {
            (values - Eigen::VectorXd::LinSpaced(values.size(), first, first + static_cast<double>(values.size() - 1)))
                    .cwiseAbs()
                    .maxCoeff() == 0;
+}
+
+/// A column that numbers the rows: by its name, or the first one, whatever its name.
+bool is_counter_column(const NumberTable& table, std::size_t c) {
+    const NumberColumn& column = table.columns[c];
+    if (column.is_text || !is_counter(column.values)) return false;
+    constexpr Eigen::Index enough = 3;  // rows that rise by 1 by chance are fewer
+    const bool is_first = c == 0 && table.columns.size() > 1 && table.rows() >= enough && column.unit.empty();
+    return is_first || column.name.empty() || is_counter_name(column.name);
 }
 
 /// Points whose coordinates have names.
@@ -178,13 +198,12 @@ ColumnRoles roles_of(const NumberTable& table) {
     std::vector<char> used(table.columns.size());
     for (std::size_t c = 0; c < table.columns.size() && table.has_names; ++c) {
         const NumberColumn& column = table.columns[c];
-        const std::string lower = lower_case(column.name);
-        const bool is_time = is_time_name(column.name) || (is_time_unit(column) && lower.find("time") != lower.npos);
+        const bool is_time =
+            is_time_name(column.name) || is_rising_time(column) || (c == 0 && is_time_unit(column) && !column.is_text);
         if (roles.time < 0 && is_time) {
             roles.time = static_cast<int>(c);
             used[c] = 1;
-        } else if (!column.is_text && (is_counter_name(column.name) || column.name.empty()) &&
-                   is_counter(column.values)) {
+        } else if (is_counter_column(table, c)) {
             if (roles.frame < 0) roles.frame = static_cast<int>(c);
             used[c] = 1;
         }

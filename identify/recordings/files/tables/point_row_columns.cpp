@@ -116,6 +116,8 @@ PointRowColumns told_by_map(const NumberTable& table, const std::string& file, c
     }
     columns.at = by_names(table, coordinate_names);
     columns.displacement = displacements_in(table);
+    columns.quality = find_any(table, {"sigma"});
+    if (columns.displacement[0] >= 0) columns.format = program_of(table);
     return columns;
 }
 

@@ -82,12 +82,60 @@ Eigen::Matrix3Xd coordinates(const std::vector<ColumnPlace>& places, Eigen::Inde
     return at;
 }
 
-/// As the first point's column tells it.
+/// One of the table's own.
+const NumberColumn& own_column(const NumberTable& table, int c) { return table.columns[static_cast<std::size_t>(c)]; }
+
+/// As the first point tells it whose columns do.
 std::string told_unit(const NumberTable& table, const std::vector<PointColumns>& points) {
     for (const PointColumns& point : points)
-        if (const std::string& unit = table.columns[static_cast<std::size_t>(point.at[0])].unit; !unit.empty())
-            return unit;
+        if (const std::string& unit = own_column(table, point.at[0]).unit; !unit.empty()) return unit;
     return {};
+}
+
+void add_mapped_points(const FileMap& map, const std::string& file, Eigen::Index rows, MappedColumns& columns,
+                       Recording& recording) {
+    const double factor = position_factor(map, columns.numbers(map.points[0].at[0]).unit, file, recording);
+    for (const MappedPoint& point : map.points) {
+        recording.points.push_back({point.name, coordinates(point.at, rows, factor, columns), {}});
+        if (!point.displacement.empty())
+            recording.points.back().displacement = coordinates(point.displacement, rows, factor, columns);
+    }
+}
+
+void add_found_points(const NumberTable& table, const ColumnRoles& roles, const FileMap& map, const std::string& file,
+                      Recording& recording) {
+    const std::string told = told_unit(table, roles.points);
+    const double factor = position_factor(map, told, file, recording);
+    for (const PointColumns& point : roles.points) {
+        const std::string& own = own_column(table, point.at[0]).unit;
+        const bool is_other = map.unit.empty() && !own.empty() && own != told;
+        Eigen::Matrix3Xd at = Eigen::Matrix3Xd::Zero(3, table.rows());
+        for (std::size_t k = 0; k < 3; ++k)
+            if (point.at[k] >= 0)
+                at.row(static_cast<Eigen::Index>(k)) =
+                    (is_other ? length_in_mm(own, file) : factor) * own_column(table, point.at[k]).values.transpose();
+        drop_partly_seen(at);
+        recording.points.push_back({point.name, std::move(at), {}});
+    }
+}
+
+void add_mapped_channels(const FileMap& map, MappedColumns& columns, Recording& recording) {
+    for (const MappedChannel& channel : map.channels) {
+        const NumberColumn& column = columns.numbers(channel.place);
+        const std::string name = !channel.name.empty()  ? channel.name
+                                 : !column.name.empty() ? column.name
+                                                        : fmt::format("column {}", channel.place.column);
+        recording.channels.push_back(
+            in_our_units(name, channel.unit.empty() ? column.unit : channel.unit, column.values));
+    }
+}
+
+void add_found_channels(const NumberTable& table, const ColumnRoles& roles, Recording& recording) {
+    for (const int c : roles.channels) {
+        const NumberColumn& column = own_column(table, c);
+        recording.channels.push_back(in_our_units(column.name.empty() ? fmt::format("column {}", c + 1) : column.name,
+                                                  column.unit, column.values));
+    }
 }
 
 void set_clock(const NumberTable& table, const TextFile& text, const FileMap& map, const NumberColumn* time, int frame,
@@ -116,46 +164,16 @@ Recording rows_of_instants(const NumberTable& table, const TextFile& text, const
     const bool is_mapped = !map.points.empty() || !map.channels.empty();
     if (!is_mapped) recording.notes.insert(recording.notes.end(), roles.notes.begin(), roles.notes.end());
 
-    const NumberColumn* time = map.time ? &columns.any(*map.time)
-                               : roles.time >= 0 && (!is_mapped || table.has_names)
-                                   ? &table.columns[static_cast<std::size_t>(roles.time)]
-                                   : nullptr;
+    const NumberColumn* time = map.time                                             ? &columns.any(*map.time)
+                               : roles.time >= 0 && (!is_mapped || table.has_names) ? &own_column(table, roles.time)
+                                                                                    : nullptr;
     set_clock(table, text, map, time, roles.frame, recording);
-
-    const auto at_index = [&](int c) -> const NumberColumn& { return table.columns[static_cast<std::size_t>(c)]; };
-    if (!map.points.empty()) {
-        const double factor = position_factor(map, columns.numbers(map.points[0].at[0]).unit, file, recording);
-        for (const MappedPoint& point : map.points) {
-            recording.points.push_back({point.name, coordinates(point.at, table.rows(), factor, columns), {}});
-            if (!point.displacement.empty())
-                recording.points.back().displacement = coordinates(point.displacement, table.rows(), factor, columns);
-        }
-    } else if (map.channels.empty() && !roles.points.empty()) {
-        const double factor = position_factor(map, told_unit(table, roles.points), file, recording);
-        for (const PointColumns& point : roles.points) {
-            Eigen::Matrix3Xd at = Eigen::Matrix3Xd::Zero(3, table.rows());
-            for (int k = 0; k < 3; ++k)
-                if (point.at[static_cast<std::size_t>(k)] >= 0)
-                    at.row(k) = factor * at_index(point.at[static_cast<std::size_t>(k)]).values.transpose();
-            drop_partly_seen(at);
-            recording.points.push_back({point.name, std::move(at), {}});
-        }
-    }
-    if (!map.channels.empty()) {
-        for (const MappedChannel& channel : map.channels) {
-            const NumberColumn& column = columns.numbers(channel.place);
-            const std::string name = !channel.name.empty()  ? channel.name
-                                     : !column.name.empty() ? column.name
-                                                            : fmt::format("column {}", channel.place.column);
-            recording.channels.push_back(
-                in_our_units(name, channel.unit.empty() ? column.unit : channel.unit, column.values));
-        }
-    } else if (map.points.empty()) {
-        for (const int c : roles.channels) {
-            const NumberColumn& column = at_index(c);
-            recording.channels.push_back(in_our_units(
-                column.name.empty() ? fmt::format("column {}", c + 1) : column.name, column.unit, column.values));
-        }
+    if (is_mapped) {
+        if (!map.points.empty()) add_mapped_points(map, file, table.rows(), columns, recording);
+        add_mapped_channels(map, columns, recording);
+    } else {
+        if (!roles.points.empty()) add_found_points(table, roles, map, file, recording);
+        add_found_channels(table, roles, recording);
     }
     name_points(map, file, recording);
     for (const NumberColumn& column : table.columns)

@@ -163,6 +163,7 @@ Recording rows_of_points(const NumberTable& table, const PointRowColumns& column
         recording.notes.emplace_back("coordinates are those at rest: positions are these and the displacements");
     if (lost > 0) recording.notes.push_back(fmt::format("{} rows of a negative sigma: not found there", lost));
     if (columns.point < 0) recording.notes.emplace_back("points are named by the order of their rows");
+    name_points(map, file, recording);
     return recording;
 }
 

@@ -16,6 +16,18 @@ namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
+/// A group's name stands before those of its columns; an empty cell goes on with the group before.
+void prefix_groups(const TextFile& text, const TableLines& lines, NumberTable& table) {
+    const auto groups = header_cells(text, lines.head.groups, lines.width);
+    std::string_view group;
+    for (std::size_t c = 0; c < table.columns.size(); ++c) {
+        if (c < groups.size() && !groups[c].empty()) group = groups[c];
+        std::string& name = table.columns[c].name;
+        if (!group.empty() && !name.empty()) name = fmt::format("{} {}", group, name);
+    }
+    table.notes.push_back(fmt::format("line {} names groups of columns", lines.head.groups + 1));
+}
+
 void name_columns(const TextFile& text, const TableLines& lines, NumberTable& table) {
     if (lines.head.names >= 0) {
         const auto names = header_cells(text, lines.head.names, lines.width);
@@ -29,6 +41,7 @@ void name_columns(const TextFile& text, const TableLines& lines, NumberTable& ta
                 table.columns[c].name = told.name;
                 table.columns[c].unit = told.unit;
             }
+            if (lines.head.groups >= 0) prefix_groups(text, lines, table);
             table.notes.push_back(fmt::format("line {} names the columns", lines.head.names + 1));
         }
     } else {

@@ -13,7 +13,8 @@ namespace palpate::identify {
 namespace {
 
 struct LineCount {
-    int cells = 0;  // without missing ones at the end
+    int width = 0;  // cells, missing ones at the end too
+    int cells = 0;  // without these
     int numbers = 0, missing = 0, others = 0;
     bool is_row() const { return numbers > 0 && numbers >= others; }
     bool is_blank() const { return numbers + others == 0; }
@@ -23,7 +24,7 @@ LineCount count_of(const TextFile& text, int line) {
     LineCount count;
     int at = 0;
     for (const std::string_view cell : text.cells(line)) {
-        ++at;
+        count.width = ++at;
         const auto kind = value_of(cell, text.dialect()).kind;
         if (!cell.empty()) count.cells = at;
         if (kind == CellValue::Kind::number)
@@ -60,7 +61,7 @@ std::vector<Run> runs_of(const TextFile& text, int first) {
             goes_on = false;
             continue;
         }
-        const int width = std::max(count.cells, 1);
+        const int width = std::max(count.width, 1);
         // A few narrower rows above are settings; a single wider one is one too.
         constexpr std::size_t few = 3;
         if (!goes_on || (runs.back().rows.size() == 1 && width != runs.back().width) ||
@@ -106,6 +107,7 @@ int line_above(const TextFile& text, int line) {
     return -1;
 }
 
+/// The line of names, and that of units between it and the numbers.
 void find_names(const TextFile& text, const FileMap& map, TableLines& table) {
     TableHead& head = table.head;
     const int above = line_above(text, head.first_row);
@@ -120,15 +122,28 @@ void find_names(const TextFile& text, const FileMap& map, TableLines& table) {
         return;
     }
     if (above < 0) return;
-    if (is_unit_row(text, above, table.width)) {
-        const int names = line_above(text, above);
-        if (names >= 0 && is_header(text, names, table.width)) {
-            head.units = above;
-            head.names = names;
-            return;
-        }
+    const int names = is_unit_row(text, above, table.width) ? line_above(text, above) : -1;
+    if (names >= 0 && is_header(text, names, table.width)) {
+        head.units = above;
+        head.names = names;
+    } else if (is_header(text, above, table.width)) {
+        head.names = above;
     }
-    if (is_header(text, above, table.width)) head.names = above;
+}
+
+/// Names that come again stand below names of groups: "Tip,,,Base,," or "Tip,Tip,Tip,Base,Base,Base".
+void find_groups(const TextFile& text, TableLines& table) {
+    TableHead& head = table.head;
+    const int above = head.names > 0 ? line_above(text, head.names) : -1;
+    if (above < 0 || text.dialect().delimiter == ' ') return;
+    const auto names = header_cells(text, head.names, table.width);
+    const bool is_repeated = std::ranges::any_of(
+        names, [&](std::string_view name) { return !name.empty() && std::ranges::count(names, name) > 1; });
+    const auto groups = header_cells(text, above, table.width);
+    const auto told = std::ranges::count_if(groups, [](std::string_view cell) { return !cell.empty(); });
+    const bool is_of_texts = std::ranges::all_of(
+        groups, [&](std::string_view cell) { return value_of(cell, text.dialect()).kind != CellValue::Kind::number; });
+    if (is_repeated && told > 1 && is_of_texts && static_cast<int>(groups.size()) <= table.width) head.groups = above;
 }
 
 [[noreturn]] void refuse_line(const TextFile& text, int line) {
@@ -204,6 +219,7 @@ TableLines find_table(const TextFile& text, const FileMap& map) {
     for (std::size_t r = 0; r < runs.size(); ++r)
         if (r != chosen && runs[r].width > 1 && runs[r].rows.size() > 1) table.others.push_back(runs[r].rows.front());
     find_names(text, map, table);
+    find_groups(text, table);
     return table;
 }
 

@@ -11,6 +11,7 @@ namespace palpate::identify {
 struct TableHead {
     int first_row = 0;           // all of them counted from 0
     int names = -1, units = -1;  // -1: there is none
+    int groups = -1;             // names above names: "Tip,,,Base,," above "x,y,z,x,y,z"
 };
 
 /// Which lines are a table's: where it begins, how many cells a row has, and which lines name them.
