@@ -293,7 +293,7 @@ private:
             const SteadyValue& first = probe.states.front().values[u];
             const ImportedState* last = nullptr;
             for (const ImportedState& state : probe.states)
-                if (!state.has_moved && state.values[u].samples > 0) last = &state;
+                if (state.is_back && state.values[u].samples > 0) last = &state;
             if (!last || last == &probe.states.front() || first.samples == 0) continue;
             const double drift = last->values[u].mean - first.mean, sd = std::hypot(last->values[u].sigma, first.sigma);
             if (std::abs(drift) <= by_noise * sd) continue;

@@ -209,7 +209,11 @@ std::vector<ImportedState> find_states(const ImportMap& map, const ProbeRecordin
     }
     double most = 0;
     for (const ImportedState& state : states) most = std::max(most, distance(state, states.front()));
-    for (ImportedState& state : states) state.has_moved = distance(state, states.front()) > most / 2;
+    for (ImportedState& state : states) {
+        const double away = distance(state, states.front());
+        state.has_moved = away > most / 2;
+        state.is_back = away <= most / 10;
+    }
     if (drifting > 0)
         notes.push_back(fmt::format(
             "Probe {}: {} of {} plateaus drift by more than they scatter, as of a body that creeps; each is the mean "

@@ -21,6 +21,7 @@ struct ImportedState {
     std::vector<SteadyPoint> points;  // of the probe's points
     std::vector<SteadyValue> values;  // of the map's uses: samples 0 where none was told
     bool has_moved = false;           // its points are further than halfway from where they were at first
+    bool is_back = true;              // they are where they were at first, within a tenth of the way
     double drift = 0;                 // of the points from its beginning to its end, rms [mm]
 };
 
