@@ -58,7 +58,7 @@ TEST_F(ImportCommand, WritesNothingWhereTheSetWouldNotBeTaken) {
 TEST_F(ImportCommand, KeepsWhatItDidNotMake) {
     folder.write("set/notes.txt", "mine");
     EXPECT_THAT(message_of([&] { run({.files = {}, .output = folder / "set"}); }), HasSubstr("--force"));
-    EXPECT_EQ(run({.files = {}, .output = folder / "set"}, {.force = true}).code, commands::done);
+    EXPECT_EQ(run({.files = {}, .output = folder / "set"}, {.force = true, .seed = {}}).code, commands::done);
 }
 
 TEST_F(ImportCommand, SaysWhatIsMissing) {

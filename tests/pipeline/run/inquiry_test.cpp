@@ -11,6 +11,7 @@
 #include "pipeline/command_line/commands.h"
 #include "pipeline/run/expectation.h"
 #include "skeleton/model/io/model_io.h"
+#include "tests/messages.h"
 #include "tests/pipeline/heavy_beam.h"
 
 namespace palpate::pipeline {
