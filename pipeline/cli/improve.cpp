@@ -1,5 +1,7 @@
 #include <fmt/format.h>
+
 #include <fmt/ranges.h>
+#include <algorithm>
 
 #include "identify/diagnosis/diagnose.h"
 #include "identify/diagnosis/ladder.h"
@@ -56,8 +58,8 @@ std::vector<skeleton::EffectRecord> starts_of(const std::vector<std::string>& sp
 }
 
 std::vector<std::string> names_of(const std::vector<skeleton::EffectRecord>& effects) {
-    std::vector<std::string> names;
-    for (const skeleton::EffectRecord& effect : effects) names.push_back(effect.name);
+    std::vector<std::string> names(effects.size());
+    std::ranges::transform(effects, names.begin(), &skeleton::EffectRecord::name);
     return names;
 }
 

@@ -97,7 +97,7 @@ public:
             return std::ranges::any_of(file->recordings,
                                        [](const recordings::Recording& r) { return !r.points.empty(); });
         };
-        std::ranges::stable_partition(files, shows_points);
+        std::stable_partition(files.begin(), files.end(), shows_points);
         reference_ = files.front();
         begin();
         for (FileRecordings* file : files) {

@@ -134,12 +134,17 @@ bool is_one_column_of_commas(const Lines& lines) {
 Dialect sniff_dialect(const std::vector<std::string_view>& lines, const FileMap& map) {
     const Lines sample = sample_of(lines);
     if (map.delimiter) return judged(sample, *map.delimiter, map).dialect;
-    // In this order where they are equally good: blanks also separate what tabs do.
+    // In this order where they are equally good, as without rows of numbers, and occur: blanks also separate what tabs
+    // do.
+    const auto occurs = [&](char delimiter) {
+        return std::ranges::any_of(sample, [&](std::string_view line) { return line.find(delimiter) != line.npos; });
+    };
     Judged best = judged(sample, '\t', map);
     for (const char delimiter : {';', ',', ' '}) {
         if (delimiter == ',' && map.decimal == ',') continue;
         const Judged other = judged(sample, delimiter, map);
-        if (other.score > best.score) best = other;
+        const bool is_as_good = other.score == best.score && occurs(delimiter) && !occurs(best.dialect.delimiter);
+        if (other.score > best.score || is_as_good) best = other;
     }
     if (best.dialect.delimiter == ',' && !map.decimal && is_one_column_of_commas(sample))
         best.dialect = {.delimiter = ';', .decimal = ','};

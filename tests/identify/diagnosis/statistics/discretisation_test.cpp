@@ -93,7 +93,7 @@ TEST_F(Discretisation, OfWhatAGripFeelsIsToldToo) {
     const auto error = model.discretisation_error(q, setting, action, *model.tangent(q, setting, action));
     ASSERT_TRUE(error);
     const Eigen::VectorXd expected = truth.reactions(exact, setting, action) - model.reactions(q, setting, action);
-    EXPECT_GT(expected.norm(), 0.005 * model.reactions(q, setting, action).norm());
+    EXPECT_GT(expected.norm(), 5e-4 * model.reactions(q, setting, action).norm());
     // A refined equilibrium ends with a twentieth of the displacement to go; a grip's stiff springs feel more of it.
     EXPECT_LT((error->reactions - expected).norm(), 0.25 * expected.norm());
     const Points moved = truth.observe(exact, setting) - model.observe(q, setting);
