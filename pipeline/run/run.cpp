@@ -305,7 +305,11 @@ private:
             return json{{"relative", result["error"]["relative"]}};
         });
         json result = json::parse(mesh::read_text(folder / "compare.json"));
-        tell("compare", ran, fmt::format("{:.3g} mm rms", result["error"]["rms_mm"].get<double>()));
+        const json& error = result["error"];
+        tell("compare", ran,
+             result["probes"].empty() && error.contains("reactions")
+                 ? fmt::format("{:.3g} N rms", error["reactions"]["rms_n"].get<double>())
+                 : fmt::format("{:.3g} mm rms", error["rms_mm"].get<double>()));
         return result;
     }
 
