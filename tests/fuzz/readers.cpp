@@ -5,6 +5,7 @@
 #include <string>
 
 #include "identify/measurements/measurement_set.h"
+#include "identify/recordings/files/read_recordings.h"
 #include "mesh/formats/read_body.h"
 #include "mesh/formats/solution/read_solution.h"
 #include "mesh/formats/surface/read_surface.h"
@@ -16,6 +17,8 @@
 #include "pipeline/output/csv/posterior.h"
 #include "samples/lattice.h"
 #include "skeleton/model/io/model_io.h"
+#include "tests/identify/recordings/c3d_sample.h"
+#include "tests/identify/recordings/text_samples.h"
 #include "tests/temporary_folder.h"
 
 namespace palpate::fuzz {
@@ -215,6 +218,11 @@ Reader tetgen() {
 }
 void read_body(const fs::path& file) { mesh::read_body(file); }
 
+/// A file of a rig.
+Reader recording(const char* name, const std::string& file, const std::string& content) {
+    return written(name, file, content, [](const fs::path& f) { identify::read_recordings(f); });
+}
+
 }  // namespace
 
 std::vector<Reader> all_readers() {
@@ -248,7 +256,16 @@ std::vector<Reader> all_readers() {
         rig("motions.csv", "motions.csv"),
         rig("reactions.csv", "reactions.csv"),
         rig("actuations.csv", "actuations.csv"),
-        rig("displacements.csv", "displacements.csv")};
+        rig("displacements.csv", "displacements.csv"),
+        recording("c3d", "run.c3d", identify::C3dSample().bytes()),
+        recording("trc", "run.trc", identify::trc_sample),
+        recording("motive", "take.csv", identify::motive_sample),
+        recording("vicon", "trial.csv", identify::vicon_sample),
+        recording("bluehill", "pull.csv", identify::bluehill_sample),
+        recording("testxpert", "pull.tra", identify::zwick_sample),
+        recording("aramis", "frame.txt", identify::aramis_sample),
+        recording("dice", "frame.csv", identify::dice_sample),
+        recording("long_table", "long.csv", identify::long_sample)};
     for (const mesh::SurfaceFormat& format : mesh::surface_formats())
         if (format.write) readers.push_back(surface(format.extension));
     return readers;
