@@ -29,7 +29,8 @@ TEST_F(RigOfABar, BrokenInTwoHundredWaysIsTakenOrRefused) {
     std::vector<std::string> sound;
     for (const char* name : names) sound.push_back(mesh::read_text(folder / name));
     int refused = 0, taken = 0;
-    for (int i = 0; i < fuzz::inputs(200); ++i) {
+    const int inputs = fuzz::inputs(200);
+    for (int i = 0; i < inputs; ++i) {
         std::mt19937_64 random(static_cast<std::uint64_t>(i));
         const std::size_t which = static_cast<std::size_t>(i) % std::size(names);
         folder.write(names[which], fuzz::mutated(sound[which], random));
@@ -47,8 +48,9 @@ TEST_F(RigOfABar, BrokenInTwoHundredWaysIsTakenOrRefused) {
         }
         folder.write(names[which], sound[which]);
     }
-    EXPECT_GT(refused, 20);
-    EXPECT_GT(taken, 20);
+    // neither all nor none, or the mutations would tell nothing
+    EXPECT_GT(refused, inputs / 20);
+    EXPECT_GT(taken, inputs / 20);
 }
 
 }  // namespace
