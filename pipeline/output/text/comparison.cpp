@@ -112,7 +112,7 @@ std::string region_words(const json& compare) {
 std::string error_words(const json& compare, const std::string& model) {
     const json& error = compare["error"];
     std::string text;
-    if (!compare["probes"].empty())
+    if (!error.contains("reactions") || !compare.value("probes", json::array()).empty())
         text = fmt::format("{} is off by {:.3g} mm rms, {}, and by {:.3g} mm at most.", model,
                            error["rms_mm"].get<double>(), share(error), error["max_mm"].get<double>());
     if (error.contains("reactions")) {
