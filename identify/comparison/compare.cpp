@@ -92,10 +92,6 @@ void find_worst(const MeasurementSet& set, const std::vector<StateReadings>& sta
     if (result.worst.size() > worst_readings) result.worst.resize(worst_readings);
 }
 
-}  // namespace
-
-namespace {
-
 /// `predicted`: as RiggedPrediction tells them.
 std::optional<ReactionError> error_of_reactions(const MeasurementSet& set, const std::vector<Points>& predicted) {
     ReactionError result;
@@ -167,6 +163,10 @@ Comparison compare(const skeleton::Model& model, const MeasurementSet& set, int 
             {rms(predicted[s] - states[s].rest), result.probes.back().rms, noise_of(states[s]), states[s].coordinates});
     }
     if (totals.coordinates == 0) {
+        if (!reactions)
+            throw InvalidInput("measurement set '" + set.name +
+                               "' tells neither a position nor a force that a model could answer: positions.csv needs "
+                               "rows that name a marker, or reactions.csv forces (fx, fy, fz) of tools that are moved");
         result.relative = reactions->relative;
         return result;
     }

@@ -87,7 +87,7 @@ std::vector<FineZone> contact_zones(const identify::MeasurementSet& set) {
             if (!is_known) zones.push_back(zone);
         }
     }
-    // Tetrahedra grow from a zone by a fourth of the distance or so, whatever its surface asks for.
+    // Tetrahedra grow slower away from a zone than its surface asks for.
     constexpr double nodes_of_zone = 130;  // (radius / edge)^3, counted on a block
     double nodes = 0;
     for (const FineZone& zone : zones) nodes += nodes_of_zone * std::pow(zone.radius / zone.edge, 3);

@@ -6,7 +6,7 @@
 
 namespace palpate::skeleton {
 
-/// Where an attached point is in a state, alone: a tenth of the work of a CarriedPoint.
+/// Where an attached point is in a state, without the derivatives that a CarriedPoint holds.
 Vec3 carried_place(const Attachment& point, const State& rest, const State& state);
 
 /// An attached point in a state: where it is, and how it moves with the spheres that carry it.

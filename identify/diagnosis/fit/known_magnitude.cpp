@@ -9,8 +9,6 @@
 namespace palpate::identify {
 namespace {
 
-constexpr double ln_2pi = 1.8378770664093453;
-
 /// The likelihood along a direction, integrated over the known magnitude.
 class AlongDirections {
 public:
@@ -41,10 +39,6 @@ Vec3 along(const Vec3& centre, const Vec3& step) {
     return angle == 0 ? centre : Vec3(std::cos(angle) * centre + std::sin(angle) / angle * step);
 }
 
-}  // namespace
-
-namespace {
-
 /// Directions in a grid in the plane that touches the unit sphere, along the axes of what is uncertain there.
 struct DirectionGrid {
     std::vector<Vec3> at;
@@ -54,7 +48,7 @@ struct DirectionGrid {
 
 /// `reach`: half of its sides, in sd of `covariance` (of a vector of unit length).
 DirectionGrid grid_about(const Vec3& centre, const AlongDirections& directions, const Mat3& covariance, double reach) {
-    constexpr int half = 200;  // modes are told apart by their likelihood to a hundredth, with an axis open
+    constexpr int half = 200;  // fine enough for modes on an axis that is open, at whose ends the grid is coarse
     const Vec3 u = centre.unitOrthogonal(), v = centre.cross(u);
     Eigen::Matrix<double, 3, 2> T;
     T << u, v;

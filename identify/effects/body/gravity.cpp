@@ -39,7 +39,7 @@ public:
         return result;
     }
 
-    /// The earth's: from 9764 on mountains at the equator to 9834 at the pole. [WGS 84]
+    /// The earth's: from 9764 on mountains at the equator to 9834 at the pole. [Hirt et al. 2013]
     std::optional<MagnitudePrior> magnitude() const override { return MagnitudePrior{9800 / g0, 20 / g0}; }
 
     bool enforce(const Eigen::VectorXd& values, ModelSetting& setting) const override {
