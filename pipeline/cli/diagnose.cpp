@@ -8,6 +8,7 @@
 #include "pipeline/command_line/subcommands.h"
 #include "pipeline/output/json/diagnosis.h"
 #include "pipeline/output/text/diagnosis.h"
+#include "pipeline/output/vtk/missing_series.h"
 #include "pipeline/run/model_and_set.h"
 
 namespace palpate::pipeline::commands {
@@ -23,7 +24,8 @@ Outcome diagnose(const DiagnoseCommandOptions& options, const Common& common) {
     const identify::Diagnosis found = identify::diagnose(*body, given.set, how, Console::progress());
 
     Outcome outcome;
-    outcome.json = to_json(found, *body, given.set);
+    const std::string field = options.output.empty() ? "" : write_missing_series(options.output, given.set, found);
+    outcome.json = to_json(found, *body, given.set, field);
     outcome.text = diagnosis_in_words(outcome.json) + "\n";
     for (const std::string& note : found.notes) outcome.text += "  " + note + "\n";
     if (!options.output.empty()) {
