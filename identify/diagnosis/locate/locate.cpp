@@ -52,7 +52,13 @@ public:
             // camera's.
             const bool alone = basis.form == SourceForm::traction || basis.form == SourceForm::frame;
             const double share = -std::log(static_cast<double>(laws.size() + (alone ? 2 : 0)));
-            for (const auto& [law, strength] : laws) add(basis, law, strength, share);
+            // A set says what touches the body: that something does in all states, though none says so, is less likely
+            // than a force that needs no touch, which it cannot be told from where the body is slender.
+            constexpr double unsaid = -2.3;  // ln of a tenth
+            for (const auto& [law, strength] : laws) {
+                const bool touches = basis.kind == SourceKind::boundary && law == SourceLaw::constant;
+                add(basis, law, strength, share + (touches ? unsaid : 0));
+            }
             if (!alone) continue;
             for (const auto& [probe, strength] : probes)
                 add(basis, SourceLaw::one_probe, strength, share - std::log(static_cast<double>(probes.size())), probe);
