@@ -25,7 +25,6 @@ Eigen::SparseMatrix<double> half_of(const Eigen::SparseMatrix<double>& H) {
 
 Eigen::VectorXd dense_forms(const Eigen::SparseMatrix<double>& half, const Eigen::VectorXd& g,
                             const Eigen::MatrixXd& X) {
-    openblas_set_num_threads(1);  // how BLAS shares work among threads of its own, busy or not, changes last digits
     const Eigen::MatrixXd T = half;
     const auto P = static_cast<int>(T.rows());
     Eigen::VectorXd forms(X.rows());

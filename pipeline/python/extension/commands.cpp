@@ -6,6 +6,8 @@
 #include <map>
 
 #include "pipeline/case/settings.h"
+#include "pipeline/output/ladder.h"
+#include "pipeline/output/text/diagnosis.h"
 #include "pipeline/python/extension/bind.h"
 #include "pipeline/python/extension/border.h"
 #include "pipeline/python/extension/overrides.h"
@@ -99,6 +101,10 @@ void bind_commands(py::module_& module) {
         const commands::PlayOptions options{.model = model, .output = output};
         return told(at_work(call, [&] { return commands::play(options, call.common); }));
     });
+    module.def("diagnosis_in_words",
+               [](const std::string& json) { return pipeline::diagnosis_in_words(nlohmann::json::parse(json)); });
+    module.def("ladder_in_words",
+               [](const std::string& json) { return pipeline::ladder_in_words(nlohmann::json::parse(json)); });
     module.def("effects",
                [](const std::string& name, const Call& call) { return told(commands::effects({name}, call.common)); });
 }

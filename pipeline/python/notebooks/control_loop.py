@@ -22,34 +22,34 @@ tip = surface[np.argmax(surface[:, 0] + 0.01 * surface[:, 2])]
 h, turns, period = 1e-3, 2, 1.0  # [s]
 times = np.arange(0, turns * period, h)
 angle = 2 * np.pi * times / period
-wanted = tip + 2.0 * np.column_stack([np.zeros_like(times), np.sin(angle), np.cos(angle) - 1])
+circle = 2.0 * np.column_stack([np.zeros_like(times), np.sin(angle), np.cos(angle) - 1])  # [mm]
 stiffness = 0.05  # of the robot's spring [N/mm]
 
 
 def lead(gain):
-    """Where the tip goes, and what the hand feels, with an integral controller of that gain [1/s]."""
-    places, forces = np.empty_like(wanted), np.empty_like(wanted)
+    """How the tip moves, and what the hand feels, with an integral controller of that gain [1/s]."""
+    moved, forces = np.empty_like(circle), np.empty_like(circle)
     with palpate.Body(model, damping_ratio=0.5) as body:
         hand = body.touch(tip, 3.0)
-        correction = np.zeros(3)
+        start, correction = body.place(hand), np.zeros(3)
         began = time.perf_counter()
-        for k, target in enumerate(wanted):
-            body.drag(hand, target + correction, stiffness)
+        for k, wanted in enumerate(circle):
+            body.drag(hand, start + wanted + correction, stiffness)
             body.step(h)
-            places[k], forces[k] = body.place(hand), body.force(hand)
-            correction += gain * h * (target - places[k])
+            moved[k], forces[k] = body.place(hand) - start, body.force(hand)
+            correction += gain * h * (wanted - moved[k])
         seconds = time.perf_counter() - began
-    print(f"gain {gain:g} 1/s: {seconds / len(wanted) * 1e6:.0f} us a turn of the loop")
-    return places, forces
+    print(f"gain {gain:g} 1/s: {seconds / len(circle) * 1e6:.0f} us a turn of the loop")
+    return moved, forces
 
 
 runs = {"without correction": lead(0.0), "with correction": lead(40.0)}
 
 # %%
 figure, (plane, force) = plt.subplots(1, 2, figsize=(10, 4.5))
-plane.plot(*wanted[:, 1:].T, "k--", label="wanted")
-for name, (places, forces) in runs.items():
-    plane.plot(*places[:, 1:].T, label=name)
+plane.plot(*circle[:, 1:].T, "k--", label="wanted")
+for name, (moved, forces) in runs.items():
+    plane.plot(*moved[:, 1:].T, label=name)
     force.plot(times, np.linalg.norm(forces, axis=1), label=name)
 plane.set(xlabel="y [mm]", ylabel="z [mm]", aspect="equal")
 force.set(xlabel="time [s]", ylabel="force on the hand [N]")

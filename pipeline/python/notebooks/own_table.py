@@ -2,8 +2,8 @@
 # # Bring your own table
 #
 # A table as a lab keeps it, in centimetres and grams, becomes a measurement set of arrays; a skeleton is fitted to it with
-# and without its weight. What should be seen: without gravity the model hangs too high in every trial, with it the model
-# follows.
+# and without its weight. What should be seen: without gravity the model does not move where no mass hangs, and is too
+# soft to make up for it; with its weight it follows.
 
 # %%
 import os
@@ -14,9 +14,8 @@ import numpy as np
 import palpate
 
 samples = Path(os.environ.get("PALPATE_SAMPLES", "samples"))
-table = np.genfromtxt(
-    samples / "../pipeline/python/notebooks/beam_in_the_lab.csv", delimiter=",", names=True, comments="#"
-)
+file = samples.parent / "pipeline/python/notebooks/beam_in_the_lab.csv"
+table = np.genfromtxt(file, delimiter=",", names=True, skip_header=2)
 print(table.dtype.names)
 
 # %% [markdown]

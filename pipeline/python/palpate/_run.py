@@ -43,12 +43,14 @@ class Run:
     @cached_property
     def diagnosis(self):
         found = self._optional("diagnose/diagnosis.json")
-        return Diagnosis(found["verdict"], found) if found else None
+        return Diagnosis(_core.diagnosis_in_words(json.dumps(found)), found) if found else None
 
     @cached_property
     def ladder(self):
         found = self._optional("improve/ladder.json")
-        return Ladder(found["verdict"], found, self.model, None, found.get("notes", ())) if found else None
+        if not found:
+            return None
+        return Ladder(_core.ladder_in_words(json.dumps(found)), found, self.model, None, found.get("notes", ()))
 
     @cached_property
     def start(self):
