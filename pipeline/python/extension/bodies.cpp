@@ -126,7 +126,7 @@ void bind_bodies(py::module_& module) {
              }),
              py::arg("model"), py::arg("contacts") = 8, py::arg("damping_ratio") = py::none())
         .def("close", &OpenBody::close, "Gives it back; arrays of it stay as they are.")
-        .def_property_readonly("closed", &OpenBody::closed)
+        .def_property_readonly("closed", &OpenBody::closed, "Was it given back?")
         .def("__enter__", [](py::object self) { return self; })
         .def("__exit__", [](OpenBody& self, const py::args&) { self.close(); })
         .def_property_readonly(

@@ -59,7 +59,8 @@ std::vector<double> tabled(const identify::MeasurementSet& set, const std::vecto
 
 TabledSet::TabledSet(identify::MeasurementSet given) : set(std::move(given)) {
     rest.resize(std::ssize(set.markers), 3);
-    for (std::size_t m = 0; m < set.markers.size(); ++m) rest.row(static_cast<Eigen::Index>(m)) = set.markers[m].rest.transpose();
+    for (std::size_t m = 0; m < set.markers.size(); ++m)
+        rest.row(static_cast<Eigen::Index>(m)) = set.markers[m].rest.transpose();
     positions = table_of(set, 3, [&](double* at, std::size_t s, std::size_t r) {
         Eigen::Map<Vec3>{at} = set.states[s].readings[r].position;
     });

@@ -3,7 +3,8 @@
 #
 # How many probes, read by how many markers, does a campaign need? Finite elements play the body, the readings get the
 # camera's noise, the skeleton is fitted to each campaign, and all are judged by the same other probes, read without noise.
-# What should be seen: the error falls with both, and a few probes that many markers read tell more than many that few do.
+# What should be seen: the error falls with both, until what is left is the skeleton's own coarseness; two probes that twelve
+# markers read tell as much as four that four markers read.
 
 # %%
 import os

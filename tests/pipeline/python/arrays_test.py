@@ -1,6 +1,7 @@
 """Arrays in and out: views of the objects' own memory, and what is refused."""
 
 import gc
+import resource
 import unittest
 
 import numpy as np
@@ -124,6 +125,33 @@ class Given(unittest.TestCase):
             palpate.Mesh(CORNERS, [[0, 1, 2, 9]])
         with self.assertRaisesRegex(palpate.InvalidInput, "must have the shape"):
             palpate.Mesh(CORNERS, [[0, 1, 2]])
+
+
+def resident():
+    """Memory of this process [bytes]."""
+    with open("/proc/self/statm") as file:
+        return int(file.read().split()[1]) * resource.getpagesize()
+
+
+class Memory(unittest.TestCase):
+    def test_is_given_back(self):
+        def round_trip():
+            m, surface = model(), palpate.Surface(CORNERS, FACES)
+            kept = m.stiffness, m.centers, surface.vertices
+            body = palpate.Body(m)
+            kept += (body.skin, body.positions)
+            body.push(body.touch((60, 10, 20)), (0, 0, -0.01))
+            body.close()
+            with self.assertRaises(palpate.InvalidInput):
+                palpate.Surface(CORNERS, [[0, 1, 9]])
+
+        for _ in range(20):
+            round_trip()
+        before = resident()
+        for _ in range(100):
+            round_trip()
+        # A model, a body and their arrays take more than 100 kB: a hundred of them, were one of these kept, 10 MB.
+        self.assertLess(resident() - before, 4e6)
 
 
 class Sets(unittest.TestCase):

@@ -10,7 +10,7 @@ import numpy as np
 import palpate
 from bodies import COARSE, bar_file, measured, model, model_file, program, set_folder
 
-SHORT = ("--particles", 40)
+SHORT = ("--particles", 40, "--threads", 1)
 
 
 class SameNumbers(unittest.TestCase):
@@ -27,8 +27,8 @@ class SameNumbers(unittest.TestCase):
 
     def test_identify(self):
         theirs, ours = self.folder / "identified", self.folder / "identified_here"
-        program("identify", model_file(), set_folder(), "-o", theirs, *SHORT, "--threads", 1)
-        found = palpate.identify(model(), measured(), ours, particles=40, threads=2)
+        program("identify", model_file(), set_folder(), "-o", theirs, *SHORT)
+        found = palpate.identify(model(), measured(), ours, particles=40, threads=1)
         for name in ("model.json", "posterior.csv", "particles.csv", "identify.json", "convergence.csv"):
             self.assertEqual((theirs / name).read_bytes(), (ours / name).read_bytes(), name)
         np.testing.assert_array_equal(found.model.stiffness, palpate.Model.read(theirs / "model.json").stiffness)
@@ -50,7 +50,7 @@ class SameNumbers(unittest.TestCase):
         self.assertEqual(ours.json, theirs)
         self.assertIn(ours.verdict, str(ours._repr_html_()))
         ladder = palpate.improve(
-            model(), measured(), "gravity", self.folder / "improved", body="skeleton", particles=40
+            model(), measured(), "gravity", self.folder / "improved", body="skeleton", particles=40, threads=1
         )
         theirs = self.folder / "improved_there"
         program("improve", model_file(), set_folder(), "--add", "gravity", "--body", "skeleton", "-o", theirs, *SHORT)
@@ -76,10 +76,10 @@ class SameNumbers(unittest.TestCase):
         self.assertEqual(palpate.check(set_folder()).json, program("check", set_folder()))
 
     def test_run(self):
-        how = ("--spheres", 6, "--edge-length", 14, "--probes", 6, "--particles", 40)
+        how = ("--spheres", 6, "--edge-length", 14, "--probes", 6, *SHORT)
         program("run", bar_file(), "-o", self.folder / "run", *how)
         ours = palpate.run(
-            bar_file(), self.folder / "run_here", spheres=6, edge_length=14.0, probes=6, particles=40
+            bar_file(), self.folder / "run_here", spheres=6, edge_length=14.0, probes=6, particles=40, threads=1
         )
         for name in ("identify/model.json", "compare/compare.json", "case.yaml"):
             self.assertEqual((self.folder / "run" / name).read_bytes(), (ours.folder / name).read_bytes(), name)

@@ -12,7 +12,7 @@ from bodies import bar_file, measured, model, model_file, set_folder
 
 
 def identified(seed=1):
-    return palpate.identify(model_file(), set_folder(), particles=40, seed=seed, threads=2).model.stiffness.copy()
+    return palpate.identify(model_file(), set_folder(), particles=40, seed=seed, threads=1).model.stiffness.copy()
 
 
 def in_child(queue):
