@@ -11,7 +11,7 @@ import matplotlib.pyplot as plt
 import palpate
 
 samples = os.environ.get("PALPATE_SAMPLES", "samples")
-run = palpate.run(f"{samples}/dragonskin-beam/case.yaml", "dragonskin-beam-run", edge_length=15)
+run = palpate.run(f"{samples}/dragonskin-beam/case.yaml", "dragonskin-beam-run", edge_length=12)
 print(run.diagnosis)
 steps = run.ladder.steps
 plt.bar([" + ".join(step["effects"]) or "nothing added" for step in steps], run.ladder.rms, width=0.4)

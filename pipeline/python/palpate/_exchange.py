@@ -7,6 +7,7 @@ import importlib
 import numpy as np
 
 from . import _core
+from .errors import InvalidInput
 
 _SOURCES = {
     "pandas": "python3-pandas (Debian) or pandas (pip)",
@@ -83,23 +84,20 @@ def set_dataset(set):
 def resampled(posterior, draws=1000, seed=1):
     """Draws of equal weight (draws, parameters): systematic resampling, the same ones each time."""
     if posterior.draws.shape[0] == 0:
-        raise _core_error("posterior: has no draws; identify with particles")
+        raise InvalidInput("posterior: has no draws; identify with particles")
     places = (np.random.default_rng(seed).random() + np.arange(draws)) / draws
     sums = np.cumsum(posterior.weights)
     return posterior.draws[np.searchsorted(sums / sums[-1], places)]
 
 
-def _core_error(message):
-    from .errors import InvalidInput
-
-    return InvalidInput(message)
-
-
 def inference_data(posterior, draws=1000, seed=1):
-    """An arviz.InferenceData with one chain of equally likely draws; each parameter is a variable."""
+    """An arviz.InferenceData (a DataTree by arviz 1) with one chain of equally likely draws, a variable a parameter."""
+    arviz = imported("arviz")
     drawn = resampled(posterior, draws, seed)
     values = {name: drawn[None, :, i] for i, name in enumerate(posterior.parameters)}
-    return imported("arviz").from_dict(posterior=values, attrs={"created_by": "palpate"})
+    if int(arviz.__version__.split(".")[0]) >= 1:
+        return arviz.from_dict({"posterior": values})
+    return arviz.from_dict(posterior=values)
 
 
 # --- Meshes ----------------------------------------------------------------------------------------------------------
@@ -118,14 +116,14 @@ def mesh_from_meshio(mesh):
     """Tetrahedra of a meshio.Mesh as a palpate.Mesh."""
     kind = "tetra10" if "tetra10" in mesh.cells_dict else "tetra"
     if kind not in mesh.cells_dict:
-        raise _core_error(f"mesh: has cells {', '.join(mesh.cells_dict) or 'of no kind'}, must have tetra or tetra10")
+        raise InvalidInput(f"mesh: has cells {', '.join(mesh.cells_dict) or 'of no kind'}, must have tetra or tetra10")
     return _core.Mesh(_in_space(mesh.points), mesh.cells_dict[kind])
 
 
 def surface_from_meshio(mesh):
     """Triangles of a meshio.Mesh as a palpate.Surface."""
     if "triangle" not in mesh.cells_dict:
-        raise _core_error(f"mesh: has cells {', '.join(mesh.cells_dict) or 'of no kind'}, must have triangle")
+        raise InvalidInput(f"mesh: has cells {', '.join(mesh.cells_dict) or 'of no kind'}, must have triangle")
     return _core.Surface(_in_space(mesh.points), mesh.cells_dict["triangle"])
 
 
