@@ -13,7 +13,7 @@ from pathlib import Path
 
 import numpy as np
 import palpate
-from bodies import bar_file, measured, model, model_file, set_folder
+from bodies import SAMPLES, bar_file, measured, model, model_file, set_folder
 
 
 class Stop(Exception):
@@ -94,6 +94,10 @@ class Callbacks(unittest.TestCase):
         before = self.identified()
         self.interrupted(lambda tell: palpate.identify(model_file(), set_folder(), particles=200_000, progress=tell))
         np.testing.assert_array_equal(self.identified(), before)
+
+    def test_ctrl_c_while_a_child_process_works(self):
+        organ = SAMPLES / "organ" / "organ.stl"
+        self.interrupted(lambda tell: palpate.mesh(organ, edge_length=1.5, progress=tell))
 
     def test_ctrl_c_in_a_diagnosis(self):
         self.interrupted(lambda tell: palpate.diagnose(model_file(), set_folder(), edge_length=2.5, progress=tell))
