@@ -1,5 +1,7 @@
 #include "pipeline/python/extension/border.h"
 
+#include <utility>
+
 #include "mesh/system/child_process.h"
 #include "pipeline/cli/shell/system_limits.h"
 
@@ -44,7 +46,7 @@ void translate_exceptions() {
             PyErr_SetObject(kind.ptr(), kind(what).ptr());
         };
         try {
-            if (thrown) std::rethrow_exception(thrown);
+            if (thrown) std::rethrow_exception(std::move(thrown));
         } catch (const InvalidInput& e) {
             raise("InvalidInput", e.what());
         } catch (const LimitReached& e) {
