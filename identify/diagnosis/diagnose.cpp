@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "identify/diagnosis/locate/locate.h"
 #include "identify/diagnosis/search/baselines.h"
 #include "identify/diagnosis/search/crushing.h"
 #include "identify/diagnosis/search/mesh_correction.h"
@@ -72,6 +73,10 @@ public:
         result_.large_deformation_failed = baselines_.large_deformation_failed();
         result_.false_claims = options_.false_claims;
         decide_verdict(model_, options_, result_);
+        if (options_.screen && result_.verdict != Verdict::adequate) {
+            tell("where it is", 0.95);
+            result_.missing = where_missing(model_, set_, result_, options_.refit.threads);
+        }
         note_mesh_error();
         if (options_.refit.magnitude == MagnitudeUse::alternative && result_.best().has_known_magnitude)
             result_.notes.emplace_back(

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "identify/diagnosis/fit/refit.h"
+#include "identify/diagnosis/locate/missing_source.h"
 #include "identify/diagnosis/statistics/held_out.h"
 #include "identify/diagnosis/statistics/outliers.h"
 #include "mesh/core/contact.h"
@@ -87,6 +88,7 @@ struct Diagnosis {
     Outliers outliers;                 // readings as the set numbers them
     Problem problem;                   // without the outliers
     std::optional<NextProbe> next_probe;
+    std::optional<MissingSource> missing;   // what the baseline leaves, located, whatever its name; none where adequate
     int independent = 0;                    // readings, see independent_readings()
     double false_claims = 0;                // probability that an effect is claimed where none is missing, at most
     bool large_deformation_failed = false;  // none of its laws found its equilibria

@@ -154,6 +154,13 @@ public:
     virtual Points skin_positions(const Eigen::VectorXd& q, const ModelSetting& setting) const = 0;
     /// d skin_positions / d step (3s x dofs).
     virtual Eigen::SparseMatrix<double> skin_motion(const Eigen::VectorXd& q, const ModelSetting& setting) const = 0;
+    /// Points of the material at rest (n x 3) [mm], and the share of the mass that each stands for (n); they add up to
+    /// 1.
+    virtual const Points& material_points() const = 0;
+    virtual const Eigen::VectorXd& material_shares() const = 0;
+    /// d where they stand / d step (3n x dofs).
+    virtual Eigen::SparseMatrix<double> material_motion() const = 0;
+
     /// Does the body close in cavities, which can be under pressure?
     virtual bool has_cavities() const = 0;
 

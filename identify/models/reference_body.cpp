@@ -75,6 +75,18 @@ Points centres_of(const mesh::VolumeMesh& mesh) {
     return centres;
 }
 
+/// The displacements of some nodes out of those of all (3 nodes x dofs).
+Eigen::SparseMatrix<double> selection_of(const std::vector<int>& nodes, int dofs) {
+    std::vector<Eigen::Triplet<double>> ones;
+    ones.reserve(3 * nodes.size());
+    for (std::size_t i = 0; i < nodes.size(); ++i) {
+        for (int c = 0; c < 3; ++c) ones.emplace_back(3 * static_cast<int>(i) + c, 3 * nodes[i] + c, 1.0);
+    }
+    Eigen::SparseMatrix<double> result(std::ssize(ones), dofs);
+    result.setFromTriplets(ones.begin(), ones.end());
+    return result;
+}
+
 /// Elements of which some nodes are held and some are not.
 std::vector<char> cut_by_support(const mesh::VolumeMesh& mesh, const std::vector<char>& held) {
     std::vector<char> cut(mesh.tetrahedra.rows(), 0);
@@ -117,6 +129,9 @@ struct ReferenceBody::Impl {
     std::vector<int> skin_nodes;
     Points skin;
     Eigen::VectorXd skin_areas;
+    std::vector<int> material_nodes;
+    Points material_points;
+    Eigen::VectorXd material_shares;
 
     /// The body on a finer mesh.
     struct Finer;
@@ -166,6 +181,10 @@ ReferenceBody::ReferenceBody(const mesh::VolumeMesh& mesh, const std::vector<mes
     i.skin_nodes = skin.nodes;
     i.skin = mesh.nodes(skin.nodes, Eigen::all);
     i.skin_areas = skin.weights;
+    const fem::NodeWeights material = i.body.points(fem::ActsOn::material, 1);
+    i.material_nodes = material.nodes;
+    i.material_points = mesh.nodes(material.nodes, Eigen::all);
+    i.material_shares = material.weights / material.weights.sum();
     const double start = std::log(options.young.value_or(0.1));
     // Young's modulus to a factor of twenty. A ratio that is told is taken at its word; else nu = .45, from about .13
     // to .49.
@@ -347,14 +366,13 @@ Points ReferenceBody::skin_positions(const Eigen::VectorXd& q, const ModelSettin
 }
 
 Eigen::SparseMatrix<double> ReferenceBody::skin_motion(const Eigen::VectorXd&, const ModelSetting&) const {
-    std::vector<Eigen::Triplet<double>> ones;
-    ones.reserve(3 * impl_->skin_nodes.size());
-    for (std::size_t i = 0; i < impl_->skin_nodes.size(); ++i) {
-        for (int c = 0; c < 3; ++c) ones.emplace_back(3 * static_cast<int>(i) + c, 3 * impl_->skin_nodes[i] + c, 1.0);
-    }
-    Eigen::SparseMatrix<double> result(std::ssize(ones), dofs());
-    result.setFromTriplets(ones.begin(), ones.end());
-    return result;
+    return selection_of(impl_->skin_nodes, dofs());
+}
+
+const Points& ReferenceBody::material_points() const { return impl_->material_points; }
+const Eigen::VectorXd& ReferenceBody::material_shares() const { return impl_->material_shares; }
+Eigen::SparseMatrix<double> ReferenceBody::material_motion() const {
+    return selection_of(impl_->material_nodes, dofs());
 }
 
 bool ReferenceBody::has_cavities() const { return impl_->body.has_cavities(); }

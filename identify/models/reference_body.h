@@ -63,6 +63,9 @@ public:
     const Eigen::VectorXd& skin_areas() const override;
     Points skin_positions(const Eigen::VectorXd& q, const ModelSetting& setting) const override;
     Eigen::SparseMatrix<double> skin_motion(const Eigen::VectorXd& q, const ModelSetting& setting) const override;
+    const Points& material_points() const override;
+    const Eigen::VectorXd& material_shares() const override;
+    Eigen::SparseMatrix<double> material_motion() const override;
     bool has_cavities() const override;
     const Points& support_points() const override;
     const Eigen::VectorXd& support_shares() const override;

@@ -90,6 +90,8 @@ struct SkeletonBody::Impl {
     Points centres, support_points;
     std::vector<char> at_support;
     Eigen::VectorXd support_shares, skin_areas;
+    Points spheres;  // where they rest
+    Eigen::VectorXd mass_shares;
     bool has_cavities;
     std::unique_ptr<ContactLoads> loads;
 
@@ -154,11 +156,16 @@ SkeletonBody::SkeletonBody(const skeleton::Model& model, const std::vector<Marke
     i.find_kinds(prior_sd);
     i.young = young;
     const Points& reach = model.surface.vertices;
-    Points spheres(std::ssize(model.spheres), 3);
+    i.spheres.resize(std::ssize(model.spheres), 3);
+    i.mass_shares.resize(std::ssize(model.spheres));
     for (std::size_t s = 0; s < model.spheres.size(); ++s) {
-        spheres.row(static_cast<Eigen::Index>(s)) = model.spheres[s].center;
+        i.spheres.row(static_cast<Eigen::Index>(s)) = model.spheres[s].center;
+        i.mass_shares[static_cast<Eigen::Index>(s)] = model.spheres[s].mass;
     }
-    const Points& extent = reach.rows() > 0 ? reach : spheres;
+    // A model without masses: all spheres alike.
+    if (!(i.mass_shares.sum() > 0)) i.mass_shares.setOnes();
+    i.mass_shares /= i.mass_shares.sum();
+    const Points& extent = reach.rows() > 0 ? reach : i.spheres;
     i.size = (extent.colwise().maxCoeff() - extent.colwise().minCoeff()).maxCoeff();
 
     i.centres.resize(std::ssize(model.links), 3);
@@ -367,6 +374,20 @@ Points SkeletonBody::skin_positions(const Eigen::VectorXd& q, const ModelSetting
 Eigen::SparseMatrix<double> SkeletonBody::skin_motion(const Eigen::VectorXd& q, const ModelSetting& setting) const {
     return skeleton::observation_jacobian(impl_->model(setting), impl_->equilibrium_of(q, setting),
                                           impl_->by_law[0].skin);
+}
+
+const Points& SkeletonBody::material_points() const { return impl_->spheres; }
+const Eigen::VectorXd& SkeletonBody::material_shares() const { return impl_->mass_shares; }
+
+Eigen::SparseMatrix<double> SkeletonBody::material_motion() const {
+    std::vector<Eigen::Triplet<double>> ones;
+    ones.reserve(static_cast<std::size_t>(impl_->spheres.size()));
+    for (int s = 0; s < static_cast<int>(impl_->spheres.rows()); ++s) {
+        for (int c = 0; c < 3; ++c) ones.emplace_back(3 * s + c, 6 * s + c, 1.0);
+    }
+    Eigen::SparseMatrix<double> result(impl_->spheres.size(), dofs());
+    result.setFromTriplets(ones.begin(), ones.end());
+    return result;
 }
 
 bool SkeletonBody::has_cavities() const { return impl_->has_cavities; }

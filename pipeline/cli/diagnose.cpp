@@ -9,6 +9,7 @@
 #include "pipeline/command_line/subcommands.h"
 #include "pipeline/output/json/diagnosis.h"
 #include "pipeline/output/text/diagnosis.h"
+#include "pipeline/output/vtk/missing_series.h"
 #include "pipeline/run/model_and_set.h"
 
 namespace palpate::pipeline::commands {
@@ -19,7 +20,8 @@ Diagnosed diagnose(const ModelAndSet& given, const DiagnoseCommandOptions& optio
     const identify::DiagnoseOptions how = diagnose_options(wanted, given.set.density.has_value(), given.model, common);
     const auto body = body_to_diagnose(options.body, given, options.overrides.on_defaults().edge_length);
     const identify::Diagnosis found = identify::diagnose(*body, given.set, how, Console::progress());
-    return {to_json(found, *body, given.set), found.explanation, found.notes};
+    const std::string field = options.output.empty() ? "" : write_missing_series(options.output, given.set, found);
+    return {to_json(found, *body, given.set, field), found.explanation, found.notes};
 }
 
 Outcome diagnose(const DiagnoseCommandOptions& options, const Common& common) {

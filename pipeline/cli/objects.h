@@ -11,7 +11,7 @@
 #include "skeleton/construction/build.h"
 
 // What the commands of these names do between reading files and writing them: for them, and for other programs. Files
-// that the options name are neither read nor written here, but for the case and the mesh.
+// that the options name are neither read nor written here, but for the case, the mesh, and missing.pvd of a diagnosis.
 
 namespace palpate::pipeline::commands {
 

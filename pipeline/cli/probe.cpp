@@ -219,6 +219,34 @@ void add_sequence_flags(CLI::App* command, BlindSetOptions& synthesis) {
         ->excludes(continuous);
 }
 
+void add_rig_flags(CLI::App* command, RigOptions& rig) {
+    const auto list = [&](const char* name, std::vector<double>& values, const char* what) {
+        command->add_option(name, values, what)->delimiter(',')->check(CLI::PositiveNumber)->group("Rig");
+    };
+    const auto repeatable = [&](const char* name, std::vector<std::string>& values, const char* what) {
+        command->add_option(name, values, what)
+            ->expected(1)
+            ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
+            ->group("Rig");
+    };
+    command
+        ->add_option("--tool", rig.tool,
+                     "Move a rigid tool in place of pressing with forces, and read its reaction:\n"
+                     "sphere:radius=5 or flat:radius=4 [mm], at --probes places")
+        ->group("Rig");
+    list("--depth", rig.depth, "How far it is pressed in, D1,D2,... [mm]");
+    list("--pressure", rig.pressure, "Set closed cavities to P1,P2,... [MPa], a probe each");
+    repeatable("--cavity", rig.cavity,
+               "x,y,z [mm]: the cavity nearest to it; by default that nearest to the middle. Repeatable");
+    repeatable("--tendon", rig.tendon,
+               "\"x,y,z x,y,z ...\" [mm]: a cable through the body, fixed at its last point. Repeatable");
+    list("--tension", rig.tension, "Pull it with T1,T2,... [N], a probe each");
+    list("--pull", rig.pull, "Or draw in so much of it, L1,L2,... [mm]");
+    command->add_option("--reaction-noise", rig.reaction_noise, "Standard deviation of the tool's force [N]")
+        ->check(CLI::NonNegativeNumber)
+        ->group("Rig");
+}
+
 void add_fault_flags(CLI::App* command, BlindSetOptions& synthesis) {
     command
         ->add_option("--hide", synthesis.hide,
@@ -256,11 +284,12 @@ void add_solver_flags(CLI::App* command, commands::ProbeCommandOptions& probe) {
                                    "Write what is to be computed, in place of computing it: body.inp for Abaqus or\n"
                                    "CalculiX, a step for each state, and probes.csv");
     to->check(CLI::IsMember({"inp"}))->excludes(from)->group("Another solver");
-    for (const char* own :
-         {"--hide", "--law", "--linear", "--levels", "--unload", "--no-unload", "--dwell", "--continuous",
-          "--no-continuous", "--probes", "--displacement", "--tell-material", "--edge-length", "--linear-elements"})
+    for (const char* own : {"--hide", "--law", "--linear", "--levels", "--unload", "--no-unload", "--dwell",
+                            "--continuous", "--no-continuous", "--probes", "--displacement", "--tell-material",
+                            "--edge-length", "--linear-elements", "--tool", "--pressure", "--tendon"})
         from->excludes(command->get_option(own));
-    for (const char* own : {"--hide", "--noise", "--missing", "--unlabelled", "--dwell", "--unload", "--continuous"})
+    for (const char* own : {"--hide", "--noise", "--missing", "--unlabelled", "--dwell", "--unload", "--continuous",
+                            "--tool", "--pressure", "--tendon"})
         to->excludes(command->get_option(own));
 }
 
@@ -273,6 +302,8 @@ void Subcommands::add_probe(CLI::App& app) {
                    "  palpate probe liver.stl -o blind --hide gravity          # what is missing? truth.json tells\n"
                    "  palpate probe liver.stl -o blind --hide inclusion:ratio=8,radius=12 --hide misalignment\n"
                    "  palpate probe finger.stl -o creep --hide viscosity --dwell 0.1,2,10 --unload\n"
+                   "  palpate probe liver.stl -o press --tool sphere:radius=5 --depth 0.5,1,2 --hide inclusion\n"
+                   "  palpate probe finger.stl -o inflate --pressure 0.005,0.01,0.02 --hide gravity\n"
                    "  palpate probe liver.stl -o null --hide none --seed 7      # nothing is hidden\n"
                    "  palpate probe model.json -o twin        # the skeleton itself is the hidden truth\n"
                    "  palpate probe liver.stl --to inp -o deck    # for your own solver; then (cd deck && ccx body)\n"
@@ -287,6 +318,7 @@ void Subcommands::add_probe(CLI::App& app) {
     add_law_flags(sub, probe.synthesis);
     add_flags_of(sub, probe.overrides, "Probing");
     add_sequence_flags(sub, probe.synthesis);
+    add_rig_flags(sub, probe.synthesis.rig);
     add_fault_flags(sub, probe.synthesis);
     add_solver_flags(sub, probe);
 }

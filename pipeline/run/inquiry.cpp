@@ -13,6 +13,7 @@
 #include "pipeline/output/json/reference_comparison.h"
 #include "pipeline/output/ladder.h"
 #include "pipeline/output/text/words.h"
+#include "pipeline/output/vtk/missing_series.h"
 #include "pipeline/run/summary.h"
 
 namespace palpate::pipeline::commands {
@@ -74,7 +75,9 @@ json RunDiagnosis::diagnose(const skeleton::Model& model) {
         why_none_ = reason_of_failure([&] {
             const bool ran =
                 folder_.stage({"diagnose", settings(), subject_.files, {"skeleton"}, {"diagnose/diagnosis.json"}}, [&] {
-                    result = to_json(diagnosed(model), reference(), set_);
+                    const identify::Diagnosis& found = diagnosed(model);
+                    const std::string field = write_missing_series(folder_.path() / "diagnose", set_, found);
+                    result = to_json(found, reference(), set_, field);
                     mesh::write_text(folder_.path() / "diagnose/diagnosis.json", result.dump(2) + "\n");
                     return json{{"verdict", result["verdict"]}};
                 });

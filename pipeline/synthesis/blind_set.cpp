@@ -78,6 +78,7 @@ private:
             throw InvalidInput(fmt::format("effect '{}' is told in sigmas of the noise, and there is none; say --noise",
                                            in_sigmas->effect));
         }
+        refuse_what_rigs_do_not_show();
         for (std::size_t w = 0; w < specs_.size(); ++w) {
             report(progress_, "hiding " + specs_[w].effect,
                    static_cast<double>(w) / static_cast<double>(specs_.size()));
@@ -86,6 +87,20 @@ private:
             blind_set_.hidden.push_back(hide(specimen_, plan_, samplers, {.noise = blind_set_.noise}, play_));
             report(progress_, "hiding " + specs_[w].effect, 1);
             see_to_visibility(blind_set_.hidden.back());
+        }
+    }
+
+    /// Creep is played by forces, and a gain is of forces.
+    void refuse_what_rigs_do_not_show() const {
+        if (specimen_.driven.empty()) return;
+        for (const EffectSpec& spec : specs_) {
+            const bool of_forces = spec.effect == "force-gain";
+            const bool creeps = spec.effect == "viscosity" && !options_.rig.tool.empty();
+            if (!of_forces && !creeps) continue;
+            throw InvalidInput(fmt::format("effect '{}' cannot be hidden where {}; press with forces (leave {} out)",
+                                           spec.effect,
+                                           creeps ? "a tool is moved: its force would relax" : "no force is told",
+                                           options_.rig.tool.empty() ? "--pressure and --tendon" : "--tool"));
         }
     }
 
@@ -172,12 +187,50 @@ private:
             for (std::size_t row = 0; row < plan_.histories[c].rows.size(); ++row, ++s) {
                 identify::LoadState state = plan_.histories[c].state(row);
                 state.readings = read_markers(state, hidden[s], faults(), seed_);
+                state.reactions = reactions_of(state, paths_[c][row]);
                 set.states.push_back(std::move(state));
                 blind_set_.configurations.push_back(paths_[c][row]);
             }
         }
+        read_reactions(set);
         blind_set_.strength = strength_of(specimen_, baseline, hidden);
         blind_set_.strength.add(conditions_.scatter(blind_set_.noise));
+    }
+
+    /// Without noise.
+    std::vector<identify::ReactionReading> reactions_of(const identify::LoadState& state,
+                                                        const Eigen::VectorXd& q) const {
+        if (state.motions.empty()) return {};
+        identify::Action action;
+        action.motions = state.motions;
+        const Eigen::VectorXd all = specimen_.model->reactions(q, conditions_.setting, action);
+        std::vector<identify::ReactionReading> readings;
+        readings.reserve(state.motions.size());
+        for (std::size_t m = 0; m < state.motions.size(); ++m) {
+            readings.push_back(
+                {.tool = state.motions[m].tool, .force = all.segment<3>(6 * static_cast<Eigen::Index>(m))});
+        }
+        return readings;
+    }
+
+    /// Adds the load cell's noise.
+    void read_reactions(identify::MeasurementSet& set) const {
+        double squares = 0;
+        int count = 0;
+        for (const identify::LoadState& state : set.states) {
+            for (const identify::ReactionReading& reading : state.reactions) {
+                squares += reading.force.squaredNorm();
+                ++count;
+            }
+        }
+        if (count == 0) return;
+        const double by_default = blind_set_.noise > 0 ? rounded_down(default_noise * std::sqrt(squares / count)) : 0;
+        const double noise = options_.rig.reaction_noise.value_or(by_default);
+        if (noise <= 0) return;
+        set.reaction_noise = noise;
+        for (identify::LoadState& state : set.states) {
+            for (identify::ReactionReading& reading : state.reactions) add_reaction_noise(state, noise, seed_, reading);
+        }
     }
 
     void include_material() {

@@ -9,7 +9,36 @@
 
 namespace palpate::pipeline {
 
+void RigOptions::validate() const {
+    const auto belongs = [](bool one, const char* name, bool other, const char* needed) {
+        if (one && !other) throw InvalidInput(fmt::format("{} is told without {}; say both", name, needed));
+    };
+    belongs(!tool.empty(), "--tool", !depth.empty(), "--depth");
+    belongs(!depth.empty(), "--depth", !tool.empty(), "--tool");
+    belongs(!cavity.empty(), "--cavity", !pressure.empty(), "--pressure");
+    belongs(!tendon.empty(), "--tendon", !tension.empty() || !pull.empty(), "--tension or --pull");
+    belongs(!tension.empty() || !pull.empty(), tension.empty() ? "--pull" : "--tension", !tendon.empty(), "--tendon");
+    belongs(reaction_noise.has_value(), "--reaction-noise", !tool.empty(), "--tool");
+    if (!tension.empty() && !pull.empty())
+        throw InvalidInput("--tension and --pull are told; a tendon is pulled by one of them");
+    const auto rising = [](const std::vector<double>& values, const char* name, const char* unit) {
+        for (const double value : values) {
+            if (!(value > 0))
+                throw InvalidInput(fmt::format("{} is {}, allowed is a value above 0 {}", name, value, unit));
+        }
+        if (std::ranges::adjacent_find(values, std::greater_equal<>()) != values.end())
+            throw InvalidInput(fmt::format("{} is {}, allowed are values that rise", name, fmt::join(values, ", ")));
+    };
+    rising(depth, "--depth", "mm");
+    rising(pressure, "--pressure", "MPa");
+    rising(tension, "--tension", "N");
+    rising(pull, "--pull", "mm");
+    if (reaction_noise && !(*reaction_noise >= 0))
+        throw InvalidInput(fmt::format("--reaction-noise is {}, allowed is 0 N or more", *reaction_noise));
+}
+
 void BlindSetOptions::validate() const {
+    rig.validate();
     const auto require = [](bool holds, const char* what, double value, const char* allowed) {
         if (!holds) throw InvalidInput(fmt::format("{} is {}, allowed is {}", what, value, allowed));
     };

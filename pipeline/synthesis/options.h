@@ -8,6 +8,21 @@
 
 namespace palpate::pipeline {
 
+/// A rig that moves the body or sets something within it, in place of probes that press with a force.
+struct RigOptions {
+    std::string tool{};                 // "sphere:radius=5" or "flat:radius=4" [mm]; empty: none
+    std::vector<double> depth{};        // how far it is pressed in at each place, ascending [mm]
+    std::vector<std::string> cavity{};  // "x,y,z": the closed cavity nearest to it; none: that nearest to the middle
+    std::vector<double> pressure{};     // that each cavity is set to [MPa]
+    std::vector<std::string> tendon{};  // "x,y,z x,y,z ...": a path through the body, fixed at its last point
+    std::vector<double> tension{};      // that each tendon is pulled with [N]
+    std::vector<double> pull{};         // or the length that is drawn in [mm]
+    std::optional<double> reaction_noise{};  // 1 sigma [N], >= 0; absent: 2 % of the rms force where something is
+                                             // hidden, else none
+    bool empty() const { return tool.empty() && pressure.empty() && tendon.empty(); }
+    void validate() const;  // @throws InvalidInput naming option, value and what belongs to it
+};
+
 /// What a body goes through while it is probed, and what is wrong with it or with the readings; beside how many probes
 /// there are and how far they press (ProbeOptions).
 struct BlindSetOptions {
@@ -21,6 +36,7 @@ struct BlindSetOptions {
                                        // hidden, else none
     double missing = 0;                // share of the readings that are left out, [0, 0.9]
     double unlabelled = 0;             // share of the readings that do not tell their marker, [0, 1]
+    RigOptions rig{};                  // in place of forces
     bool include_material = false;     // in the set, though something is hidden
     void validate() const;             // @throws InvalidInput naming option, value and bound
 };

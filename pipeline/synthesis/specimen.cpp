@@ -12,10 +12,12 @@
 #include "mesh/geometry/surface_tree.h"
 #include "mesh/meshing/smooth_surface.h"
 #include "pipeline/body/body.h"
+#include "pipeline/body/contact_zones.h"
 #include "pipeline/body/reference_body.h"
 #include "pipeline/body/subject_body.h"
 #include "pipeline/synthesis/probing/probing.h"
 #include "pipeline/synthesis/probing/skeleton_probing.h"
+#include "pipeline/synthesis/rig/rig_probes.h"
 
 namespace palpate::pipeline {
 namespace {
@@ -48,6 +50,17 @@ bool is_bare(const skeleton::Model& model) {
     });
 }
 
+/// Where the rig's tools press.
+std::vector<FineZone> zones_of(const RigProbes& driven, const mesh::Surface& surface) {
+    identify::MeasurementSet set;
+    set.rest_surface = surface;
+    set.tools = driven.rig.tools;
+    for (const LoadCourse& course : driven.courses) {
+        for (std::size_t row = 0; row < course.rows.size(); ++row) set.states.push_back(course.state(row));
+    }
+    return contact_zones(set);
+}
+
 }  // namespace
 
 Specimen finite_element_specimen(const Subject& subject, const BlindSetOptions& options, const Progress& progress) {
@@ -57,8 +70,13 @@ Specimen finite_element_specimen(const Subject& subject, const BlindSetOptions& 
     Specimen specimen;
     const double edge = subject.settings.edge_length;
     const double default_edge = subject.volume ? 0 : finer * reference_edge_length(subject.surface);
-    const MeshedBody body =
-        make_body(subject, {.edge_length = edge > 0 ? edge : default_edge, .volume_change = chords_cut_off}, progress);
+    const RigProbes driven = rig_probes(subject.surface, subject.supports, options.rig, subject.settings.probing,
+                                        subject.settings.identify.seed);
+    const MeshedBody body = make_body(subject,
+                                      {.edge_length = edge > 0 ? edge : default_edge,
+                                       .fine = zones_of(driven, subject.surface),
+                                       .volume_change = chords_cut_off},
+                                      progress);
     specimen.notes = body.notes;
     specimen.volume = body.is_ready_made ? body.volume : mesh::curve_to(body.volume, body.repaired);
 
@@ -70,6 +88,10 @@ Specimen finite_element_specimen(const Subject& subject, const BlindSetOptions& 
     const ProbeOptions& probing = subject.settings.probing;
     set.markers = spread_markers(body.surface, subject.supports, probing.markers);
     specimen.contacts = probing_contacts(body.surface, subject.supports, probing, subject.settings.identify.seed);
+    specimen.driven = driven.courses;
+    specimen.notes.insert(specimen.notes.end(), driven.notes.begin(), driven.notes.end());
+    set.tools = driven.rig.tools;
+    set.actuators = driven.rig.actuators;
 
     const fem::Material& material = subject.material;
     specimen.material = material;
@@ -84,7 +106,8 @@ Specimen finite_element_specimen(const Subject& subject, const BlindSetOptions& 
         identify::ReferenceBodyOptions{
             .density = material.density,
             .young = material.young,
-            .dilatation = dilatation_for(body.surface, edge > 0 ? edge : default_edge, material.poisson)});
+            .dilatation = dilatation_for(body.surface, edge > 0 ? edge : default_edge, material.poisson),
+            .rig = driven.rig});
     return specimen;
 }
 
@@ -95,6 +118,8 @@ Specimen skeleton_specimen(const skeleton::Model& model, const ProbeOptions& pro
             "a skeleton has the law of its model.json, or with --linear that of small displacements; "
             "leave --law out");
     }
+    if (!options.rig.empty())
+        throw InvalidInput("a rig drives a body in finite elements; give a mesh in place of a model.json");
     Specimen specimen;
     identify::MeasurementSet& set = specimen.set;
     set.name = model.name;

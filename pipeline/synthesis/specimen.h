@@ -11,6 +11,7 @@
 #include "mesh/core/volume_mesh.h"
 #include "mesh/progress.h"
 #include "pipeline/case/subject.h"
+#include "pipeline/synthesis/loading/load_course.h"
 #include "pipeline/synthesis/options.h"
 #include "pipeline/synthesis/probing/probe_options.h"
 #include "skeleton/model/model.h"
@@ -24,6 +25,7 @@ struct Specimen {
     identify::ModelSetting setting;         // its law and stiffness, and the effects that it has anyway
     identify::MeasurementSet set;           // all of the set but its states
     std::vector<mesh::Contact> contacts;    // where it is touched, one a probe, with forces of 1 N
+    std::vector<LoadCourse> driven = {};    // probes of a rig, in place of those contacts
     double most_force = 0;                  // that any of them may bear [N]
     double stiffness = 0;                   // about its Young's modulus [MPa]
     std::optional<fem::Material> material;  // of finite elements

@@ -85,6 +85,12 @@ json findings_json(const std::vector<skeleton::EffectRecord>& effects, const jso
         }
         findings.push_back(std::move(found));
     }
+    // What no effect is named for.
+    const json where = diagnosis.is_object() ? diagnosis.value("where", json()) : json();
+    if (where.is_object() && diagnosis["explanation"].empty()) {
+        findings.push_back(
+            {{"words", where["sentence"]}, {"kind", "ball"}, {"center", where["at"]}, {"radius", where["spread_mm"]}});
+    }
     return findings;
 }
 

@@ -1,5 +1,7 @@
 #include "pipeline/output/json/diagnosis.h"
 
+#include <cmath>
+
 #include "identify/diagnosis/statistics/fit_errors.h"
 #include "pipeline/output/json/json_values.h"
 #include "pipeline/output/json/reference_comparison.h"
@@ -125,10 +127,38 @@ json exchanged_markers(const identify::Diagnosis& diagnosis, const identify::Mea
     return result;
 }
 
+/// What is left, located; null where nothing is.
+json where_of(const identify::Diagnosis& diagnosis, const identify::MeasurementSet& set, const std::string& field) {
+    if (!diagnosis.missing) return nullptr;
+    const identify::MissingSource& source = *diagnosis.missing;
+    json states = json::array(), evidence = json::object();
+    for (const int s : source.states) states.push_back({{"probe", set.states[s].probe}, {"time", set.states[s].time}});
+    for (std::size_t kind = 0; kind < identify::source_kind_names.size(); ++kind)
+        evidence[identify::source_kind_names[kind]] = known(source.log_bayes_factors[kind]);
+    const bool has_direction = source.direction.norm() > 0;
+    constexpr double degrees = 180 / M_PI;
+    json magnitude = nullptr;
+    if (const auto size = source.magnitude())
+        magnitude = {{"value", known(size->value)}, {"sd", known(size->sd)}, {"unit", size->unit}};
+    return {{"states", states},
+            {"at", numbers(source.at)},
+            {"spread_mm", source.spread},
+            {"direction", has_direction ? numbers(source.direction) : json(nullptr)},
+            {"direction_sd_degrees", has_direction ? known(degrees * source.direction_sd) : json(nullptr)},
+            {"kind", identify::source_kind_names[static_cast<std::size_t>(source.kind)]},
+            {"law", identify::source_law_names[static_cast<std::size_t>(source.likeliest().law)]},
+            {"magnitude", magnitude},
+            {"log_bayes_factor", known(source.log_bayes_factor())},
+            {"log_bayes_factors", evidence},
+            {"explained", source.explained},
+            {"sentence", source.sentence()},
+            {"field", field.empty() ? json(nullptr) : json(field)}};
+}
+
 }  // namespace
 
 json to_json(const identify::Diagnosis& diagnosis, const identify::BodyModel& model,
-             const identify::MeasurementSet& set) {
+             const identify::MeasurementSet& set, const std::string& field) {
     json ranking = json::array();
     for (const identify::Candidate& candidate : diagnosis.ranking) ranking.push_back(to_json(candidate, model));
     return {{"format", "palpate-diagnosis/1"},
@@ -136,6 +166,7 @@ json to_json(const identify::Diagnosis& diagnosis, const identify::BodyModel& mo
             {"false_claim_rate", diagnosis.false_claims},
             {"explanation", diagnosis.explanation},
             {"ranking", ranking},
+            {"where", where_of(diagnosis, set, field)},
             {"next_probe", diagnosis.next_probe ? to_json(*diagnosis.next_probe) : json(nullptr)},
             {"law", model.laws()[diagnosis.law]},
             {"noise_mm", known(diagnosis.noise)},

@@ -146,6 +146,13 @@ std::string adequate(const json& diagnosis) {
     return text + fmt::format(" and is no claim: {}.", ranking[0]["objection"].get<std::string>());
 }
 
+/// Where it is, whatever its name: what an effect that is named need not repeat.
+std::string located(const json& diagnosis) {
+    const json where = diagnosis.value("where", json());
+    if (!where.is_object() || diagnosis["verdict"] == "missing-effect") return {};
+    return " Located, whatever its name: " + where["sentence"].get<std::string>();
+}
+
 std::string next_probe(const json& probe) {
     if (!probe.is_object()) return {};
     std::string text = " The next probe " + probe["why"].get<std::string>();
@@ -164,7 +171,7 @@ std::string diagnosis_in_words(const json& diagnosis) {
                              : verdict == "ambiguous"    ? ambiguous(diagnosis)
                              : verdict == "unexplained"  ? unexplained(diagnosis)
                                                          : adequate(diagnosis);
-    return text + if_it_explains_nothing(diagnosis["baseline"].value("relative", json())) +
+    return text + located(diagnosis) + if_it_explains_nothing(diagnosis["baseline"].value("relative", json())) +
            next_probe(diagnosis["next_probe"]);
 }
 

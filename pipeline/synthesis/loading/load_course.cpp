@@ -6,11 +6,25 @@ namespace palpate::pipeline {
 
 identify::LoadState LoadCourse::state(std::size_t row) const {
     identify::LoadState state{.probe = probe, .time = rows[row].time};
-    if (rows[row].force != 0) {
+    if (drive) {
+        state.motions = motions(rows[row].force);
+        for (const mesh::ActuatorSetting& one : settings(rows[row].force))
+            state.actuations.push_back({one.actuator, one.value});
+    } else if (rows[row].force != 0) {
         state.contacts = {contact};
         state.contacts.front().force *= rows[row].force;
     }
     return state;
+}
+
+std::vector<mesh::ToolMotion> LoadCourse::motions(double amount) const {
+    if (!drive || drive->tool < 0 || amount == 0) return {};
+    return {{.tool = drive->tool, .translation = drive->from + amount * drive->along}};
+}
+
+std::vector<mesh::ActuatorSetting> LoadCourse::settings(double amount) const {
+    if (!drive || drive->actuator < 0 || amount == 0) return {};
+    return {{drive->actuator, amount}};
 }
 
 double LoadCourse::effective_force(std::size_t row, const std::optional<fem::CreepLaw>& creep) const {
@@ -26,7 +40,7 @@ double LoadCourse::effective_force(std::size_t row, const std::optional<fem::Cre
     return force;
 }
 
-LoadCourse unloaded_history() { return {0, {}, {{}}}; }
+LoadCourse unloaded_history() { return {.probe = 0, .contact = {}, .rows = {{}}}; }
 
 std::vector<Row> rows_of(const std::vector<double>& forces, const LoadTiming& timing) {
     const std::vector<double> dwell = timing.dwell.empty() ? std::vector<double>{1} : timing.dwell;

@@ -5,7 +5,9 @@
 
 #include "fem/effects/effects.h"
 #include "identify/measurements/measurement_set.h"
+#include "mesh/core/actuator.h"
 #include "mesh/core/contact.h"
+#include "mesh/core/tool.h"
 #include "pipeline/synthesis/options.h"
 
 namespace palpate::pipeline {
@@ -16,13 +18,25 @@ struct Row {
     double force = 0;  // of the probe [N]; 0: it lets go
 };
 
+/// What a probe moves or sets, in place of pressing with a force: `force` of its rows is how far or how much then.
+struct RigDrive {
+    int tool = -1;              // that is moved; -1: none
+    Vec3 from = Vec3::Zero();   // its translation where it just touches [mm]
+    Vec3 along = Vec3::Zero();  // unit direction that it is moved in from there, by so many mm
+    int actuator = -1;          // that is set to so much; -1: none
+};
+
 /// What one probe does: its contact, and row after row how hard it presses. The force of a row acts since the row
 /// before it, that of the first since time 0.
 struct LoadCourse {
     int probe = 0;
     mesh::Contact contact;  // with 1 N
     std::vector<Row> rows;
+    std::optional<RigDrive> drive = {};  // in place of the contact
 
+    /// A tool's motion and an actuator's setting at an amount; none where it is 0: it is away, or off.
+    std::vector<mesh::ToolMotion> motions(double amount) const;
+    std::vector<mesh::ActuatorSetting> settings(double amount) const;
     /// The state of a measurement set that a row is.
     identify::LoadState state(std::size_t row) const;
     /// The force that an elastic body would have to bear to stand as a creeping one does under what has acted so far:

@@ -51,7 +51,9 @@ public:
     /// Empty: there is none.
     Eigen::VectorXd equilibrium(const mesh::Contact& contact, double force, const Eigen::VectorXd& near) const {
         const std::vector<EquilibriumPath> start{{near}};
-        EquilibriumPath path = simulate(specimen_, conditions_, {{1, contact, {{1, force}}}}, {}, &start).front();
+        EquilibriumPath path =
+            simulate(specimen_, conditions_, {{.probe = 1, .contact = contact, .rows = {{1, force}}}}, {}, &start)
+                .front();
         return path.empty() ? Eigen::VectorXd() : path.front();
     }
 
@@ -110,6 +112,13 @@ EquilibriumPath path_of(const LoadCourse& history, const std::vector<Pressed>& p
     return path;
 }
 
+void leave_out_failed(Plan& plan) {
+    std::vector<char> without;
+    without.reserve(plan.baseline.size());
+    for (const EquilibriumPath& path : plan.baseline) without.push_back(path.empty());
+    leave_out(plan, without);
+}
+
 }  // namespace
 
 Plan make_plan(const Specimen& specimen, const BlindSetOptions& options, const LoadTiming& timing, double largest,
@@ -121,6 +130,18 @@ Plan make_plan(const Specimen& specimen, const BlindSetOptions& options, const L
         throw SolverFailure(
             "the body finds no equilibrium though nothing touches it; is it held, and stiff enough "
             "for its own effects?");
+    }
+    if (!specimen.driven.empty()) {
+        for (LoadCourse course : specimen.driven) {
+            std::vector<double> amounts;
+            for (const Row& row : course.rows) amounts.push_back(row.force);
+            course.rows = rows_of(amounts, timing);
+            plan.histories.push_back(std::move(course));
+        }
+        plan.baseline = simulate(specimen, {.setting = specimen.setting}, plan.histories, {.threads = threads});
+        leave_out_failed(plan);
+        report(progress, "finding the loads", 1.0);
+        return plan;
     }
     const Scaling scaling(specimen, plan.baseline.front().front());
     const std::vector<Eigen::VectorXd> unit_steps = scaling.unit_steps();
@@ -138,15 +159,12 @@ Plan make_plan(const Specimen& specimen, const BlindSetOptions& options, const L
             forces.push_back(pressed.back().force);
             if (pressed.back().q.size() == 0) break;
         }
-        plan.histories[p + 1] = {p + 1, contact, rows_of(forces, timing)};
+        plan.histories[p + 1] = {.probe = p + 1, .contact = contact, .rows = rows_of(forces, timing)};
         if (pressed.back().q.size() > 0) {
             plan.baseline[p + 1] = path_of(plan.histories[p + 1], pressed, scaling.unloaded());
         }
     });
-    std::vector<char> without;
-    without.reserve(plan.baseline.size());
-    for (const EquilibriumPath& path : plan.baseline) without.push_back(path.empty());
-    leave_out(plan, without);
+    leave_out_failed(plan);
     report(progress, "finding the loads", 1.0);
     return plan;
 }

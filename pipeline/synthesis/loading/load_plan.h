@@ -17,6 +17,7 @@ struct Plan {
 /// pass what a contact may bear. It is scaled with nothing hidden in force: so the same seed and options give the same
 /// forces whatever is hidden, and what differs between two sets is what the hidden effect does.
 /// A probe that finds no equilibrium presses less, and is left out when that does not help.
+/// Where a rig drives the specimen its probes are as they were asked for.
 /// @throws SolverFailure when no probe is left.
 Plan make_plan(const Specimen& specimen, const BlindSetOptions& options, const LoadTiming& timing, double largest,
                int threads, const Progress& progress = {});

@@ -50,4 +50,13 @@ std::vector<identify::Reading> read_markers(const identify::LoadState& state, co
     return readings;
 }
 
+void add_reaction_noise(const identify::LoadState& state, double noise, std::uint64_t seed,
+                        identify::ReactionReading& reading) {
+    // Beyond the streams of all probes' markers.
+    constexpr std::uint64_t load_cells = 1ULL << 40U;
+    RandomStream noisy(seed, load_cells + static_cast<std::uint64_t>(state.probe),
+                       std::bit_cast<std::uint64_t>(state.time));
+    reading.force += noise * noisy.normals(3);
+}
+
 }  // namespace palpate::pipeline

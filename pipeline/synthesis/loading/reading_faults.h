@@ -21,4 +21,8 @@ struct ReadingFaults {
 std::vector<identify::Reading> read_markers(const identify::LoadState& state, const Points& positions,
                                             const ReadingFaults& faults, std::uint64_t seed);
 
+/// The same for a force that a tool's load cell reads, 1 sigma of `noise` [N] a component.
+void add_reaction_noise(const identify::LoadState& state, double noise, std::uint64_t seed,
+                        identify::ReactionReading& reading);
+
 }  // namespace palpate::pipeline

@@ -30,7 +30,7 @@ public:
         // One-sided contact is in force as it stands, whatever the law.
         const bool one_sided = std::ranges::any_of(conditions.setting.effects.points,
                                                    [](const auto& point) { return point->is_one_sided(); });
-        if (!model_.is_nonlinear(conditions.setting) && !one_sided)
+        if (!model_.is_nonlinear(conditions.setting) && !one_sided && specimen.driven.empty())
             linear_ = model_.tangent(rest_, conditions.setting, {});
     }
 
@@ -38,7 +38,10 @@ public:
         const double gain = history.probe > 0 && history.probe % 2 == 0 ? conditions_.gain : 1;
         const double force = gain * history.effective_force(row, conditions_.setting.effects.creep);
         Action action;
-        if (force != 0) {
+        if (history.drive) {
+            action.motions = history.motions(history.rows[row].force);
+            action.settings = history.settings(force);
+        } else if (force != 0) {
             action.contacts = {history.contact};
             action.contacts.front().force *= force;
         }

@@ -149,11 +149,23 @@ std::vector<BarGroup> groups_of(const json& ladder, bool reference) {
     return groups;
 }
 
+/// What the model leaves, located, and how the kinds compare.
+std::string where_line(const json& diagnosis) {
+    const json where = diagnosis.value("where", json());
+    if (!where.is_object()) return {};
+    std::string kinds;
+    for (const auto& [kind, ln] : where["log_bayes_factors"].items())
+        kinds += fmt::format("{}{} {}", kinds.empty() ? "" : ", ", kind, evidence(ln));
+    return "<p><b>Whatever its name:</b> " + escape(where["sentence"].get<std::string>()) +
+           " <span class=\"soft\">To first order, about the model without any effect; evidence by kind: " +
+           escape(kinds) + ".</span></p>";
+}
+
 }  // namespace
 
 std::string missing_section(const json& diagnosis) {
     if (diagnosis.is_null()) return {};
-    return "<h2 id=\"missing\">What is missing</h2>" + ranking_table(diagnosis) +
+    return "<h2 id=\"missing\">What is missing</h2>" + where_line(diagnosis) + ranking_table(diagnosis) +
            "<p class=\"soft\">Evidence: ln of the Bayes factor against nothing missing; a claim takes at least 10, and "
            "a "
            "lead of 5. Held out: the error on each probe by a fit to all others, one by one. Over the noise: rms error "

@@ -8,11 +8,11 @@
 namespace palpate::identify {
 namespace {
 
-constexpr double noise = 0.02;  // [mm]
-
 /// A plate of one element in thickness, held along an edge, which readings of a finer mesh are fitted to.
 class Discretisation : public testing::Test {
 protected:
+    static constexpr double noise = 0.02;  // [mm]
+
     static mesh::VolumeMesh plate(const Eigen::Vector3i& cells) {
         return mesh::to_quadratic(mesh::make_bar(Vec3::Zero(), Vec3(60, 40, 4), cells));
     }

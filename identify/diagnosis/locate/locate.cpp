@@ -1,0 +1,319 @@
+#include "identify/diagnosis/locate/locate.h"
+
+#include <Eigen/Eigenvalues>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "identify/diagnosis/locate/source_bases.h"
+#include "identify/diagnosis/locate/source_evidence.h"
+#include "identify/diagnosis/locate/source_laws.h"
+
+namespace palpate::identify {
+namespace {
+
+/// A term with the evidence of its whole set of alternatives still to be divided among them.
+struct Alternative {
+    SourceKind kind;
+    SourceTerm term = {};
+    double log_weight = 0;  // evidence and prior
+    double log_fit = 0;     // among places of the same form and law, and prior
+    double explained = 0;
+    const SourceBasis* basis = nullptr;
+    std::size_t place = 0;
+};
+
+int read_states(const Problem& problem) {
+    const std::set<int> states(problem.state.begin(), problem.state.end());
+    return static_cast<int>(states.size());
+}
+
+class Scan {
+public:
+    Scan(const BodyModel& model, const Problem& problem, const Refit& fit, int threads)
+        : problem_(problem),
+          entries_(reading_entries(problem)),
+          bases_(source_bases(model, problem, fit, entries_, threads)),
+          V_(with_numbers_unknown(fit)),
+          score_(V_, fit.error, read_states(problem)) {}
+
+    std::vector<Alternative> alternatives() {
+        const Eigen::VectorXd everywhere = Eigen::VectorXd::Ones(std::ssize(problem_.stages));
+        const auto laws = common_laws(problem_);
+        const auto probes = probes_alone(problem_);
+        for (const SourceBasis& basis : bases_) {
+            if (basis.places.empty()) continue;
+            if (basis.law) {
+                add(basis, *basis.law, everywhere, 0);
+                continue;
+            }
+            // What differs from state to state by no law of load, time or motion touches from outside, or is the
+            // camera's.
+            const bool alone = basis.form == SourceForm::traction || basis.form == SourceForm::frame;
+            const double share = -std::log(static_cast<double>(laws.size() + (alone ? 2 : 0)));
+            for (const auto& [law, strength] : laws) add(basis, law, strength, share);
+            if (!alone) continue;
+            for (const auto& [probe, strength] : probes)
+                add(basis, SourceLaw::one_probe, strength, share - std::log(static_cast<double>(probes.size())), probe);
+            add_irregular(basis, share);
+        }
+        return std::move(found_);
+    }
+
+    /// What an alternative alters in each state of the set, rms in sigmas of noise (S).
+    Eigen::VectorXd shown(const Alternative& one) const {
+        const Eigen::VectorXd felt =
+            rows_of(*one.basis, one.term.strength, static_cast<Eigen::Index>(one.place), 1) * one.term.mean;
+        Eigen::VectorXd squares = Eigen::VectorXd::Zero(std::ssize(problem_.stages)), count = squares;
+        for (Eigen::Index n = 0; n < problem_.rows(); ++n) {
+            squares[problem_.state[n]] += felt[n] * felt[n];
+            count[problem_.state[n]] += 1;
+        }
+        return squares.cwiseQuotient(count.cwiseMax(1)).cwiseSqrt();
+    }
+
+private:
+    /// Columns of some of a basis' places, under strengths of each state (N x places p).
+    Eigen::MatrixXd rows_of(const SourceBasis& basis, const Eigen::VectorXd& strength, Eigen::Index place,
+                            Eigen::Index places) const {
+        const Eigen::Index p = basis.width;
+        Eigen::MatrixXd result = Eigen::MatrixXd::Zero(problem_.rows(), places * p);
+        for (std::size_t e = 0; e < entries_.size(); ++e) {
+            const double weight = entries_[e].sign * strength[entries_[e].state];
+            if (weight != 0)
+                result.row(entries_[e].row) +=
+                    weight * basis.columns.row(static_cast<Eigen::Index>(e)).segment(place * p, places * p);
+        }
+        return result;
+    }
+
+    void add(const SourceBasis& basis, SourceLaw law, const Eigen::VectorXd& strength, double log_prior,
+             int probe = -1) {
+        const auto places = std::ssize(basis.places);
+        const std::vector<SourceEvidence> all =
+            score_(rows_of(basis, strength, 0, places), basis.width, basis.one_sided);
+        for (std::size_t i = 0; i < all.size(); ++i) {
+            if (!std::isfinite(all[i].log_bayes_factor)) continue;
+            const SourcePlace& place = basis.places[i];
+            Alternative one{.kind = basis.kind, .basis = &basis, .place = i};
+            one.term = {.form = basis.form,
+                        .law = law,
+                        .centre = place.centre,
+                        .radius = place.radius,
+                        .extent = place.extent,
+                        .norm = place.norm,
+                        .axis = place.axis,
+                        .number = probe >= 0 ? probe : place.number,
+                        .log_bayes_factor = all[i].log_bayes_factor,
+                        .mean = all[i].mean,
+                        .sd = all[i].covariance.diagonal().cwiseSqrt(),
+                        .covariance = all[i].covariance,
+                        .strength = strength};
+            one.explained = all[i].explained;
+            one.log_weight = all[i].log_bayes_factor + place.log_prior + log_prior;
+            one.log_fit = all[i].log_fit + place.log_prior;
+            found_.push_back(std::move(one));
+        }
+    }
+
+    /// A vector of its own in each action, at the place that the laws found likeliest; as if only that place could have
+    /// it. Told along the direction that they share most.
+    void add_irregular(const SourceBasis& basis, double log_prior) {
+        const Alternative* best = nullptr;
+        for (const Alternative& one : found_)
+            if (one.basis == &basis && (!best || one.log_weight > best->log_weight)) best = &one;
+        if (!best || basis.width != 3) return;
+        std::vector<int> actions;
+        for (const ReadingEntry& entry : entries_)
+            if (actions.empty() || actions.back() != entry.action) actions.push_back(entry.action);
+        const auto count = std::ssize(actions);
+        Eigen::MatrixXd columns = Eigen::MatrixXd::Zero(problem_.rows(), 3 * count);
+        const auto first = static_cast<Eigen::Index>(3 * best->place);
+        Eigen::Index k = -1;
+        int last = -1;
+        for (std::size_t e = 0; e < entries_.size(); ++e) {
+            if (entries_[e].action != last) ++k;
+            last = entries_[e].action;
+            columns.row(entries_[e].row).segment<3>(3 * k) +=
+                entries_[e].sign * basis.columns.row(static_cast<Eigen::Index>(e)).segment<3>(first);
+        }
+        const SourceEvidence all = score_(columns, static_cast<int>(3 * count)).front();
+        if (!std::isfinite(all.log_bayes_factor)) return;
+
+        const Eigen::Map<const Eigen::MatrixXd> vectors(all.mean.data(), 3, count);
+        Vec3 direction = Eigen::SelfAdjointEigenSolver<Mat3>(vectors * vectors.transpose()).eigenvectors().col(2);
+        Eigen::VectorXd along = vectors.transpose() * direction;
+        Eigen::Index most = 0;
+        const double magnitude = along.cwiseAbs().maxCoeff(&most);
+        if (!(magnitude > 0)) return;
+        const double size = along[most];  // with its sign
+        Alternative one = *best;
+        one.term.law = SourceLaw::irregular;
+        one.term.number = -1;
+        one.term.log_bayes_factor = all.log_bayes_factor;
+        one.term.mean = size * direction;
+        one.term.covariance = all.covariance.block<3, 3>(3 * most, 3 * most);
+        one.term.sd = one.term.covariance.diagonal().cwiseSqrt();
+        one.term.strength = Eigen::VectorXd::Zero(std::ssize(problem_.stages));
+        for (const ReadingEntry& entry : entries_) {
+            const auto own = std::ranges::lower_bound(actions, entry.action) - actions.begin();
+            one.term.strength[entry.state] = along[own] / size;
+        }
+        one.explained = all.explained;
+        one.log_weight = all.log_bayes_factor + log_prior - std::log(static_cast<double>(basis.places.size()));
+        found_.push_back(std::move(one));
+    }
+
+    const Problem& problem_;
+    std::vector<ReadingEntry> entries_;
+    std::vector<SourceBasis> bases_;
+    Whitening V_;
+    SourceScore score_;
+    std::vector<Alternative> found_;
+};
+
+double log_sum(const std::vector<Alternative>& all, SourceKind kind) {
+    double most = -INFINITY;
+    for (const Alternative& one : all)
+        if (one.kind == kind) most = std::max(most, one.log_weight);
+    if (!std::isfinite(most)) return most;
+    double sum = 0;
+    for (const Alternative& one : all)
+        if (one.kind == kind) sum += std::exp(one.log_weight - most);
+    return most + std::log(sum);
+}
+
+bool is_same_but_for_place(const Alternative& a, const Alternative& b) {
+    return a.basis == b.basis && a.term.law == b.term.law && a.term.number == b.term.number;
+}
+
+/// Shares the evidence of alternatives that differ in their place out among them by how well each fits.
+void share_out(std::vector<Alternative>& all) {
+    for (auto first = all.begin(); first != all.end();) {
+        const auto end = std::find_if_not(first, all.end(),
+                                          [&](const Alternative& one) { return is_same_but_for_place(*first, one); });
+        double most = -INFINITY, fit = -INFINITY;
+        for (auto one = first; one != end; ++one) {
+            most = std::max(most, one->log_weight);
+            fit = std::max(fit, one->log_fit);
+        }
+        double evidence = 0, sum = 0;
+        for (auto one = first; one != end; ++one) {
+            evidence += std::exp(one->log_weight - most);
+            sum += std::exp(one->log_fit - fit);
+        }
+        for (auto one = first; one != end; ++one)
+            one->log_weight = most + std::log(evidence) + one->log_fit - fit - std::log(sum);
+        first = end;
+    }
+}
+
+/// Does a source's vector point somewhere?
+bool has_direction(SourceForm form) {
+    return form == SourceForm::force || form == SourceForm::traction || form == SourceForm::marker;
+}
+
+/// Place, spread and direction, averaged over the terms.
+void summarise(MissingSource& source) {
+    Vec3 along = Vec3::Zero();
+    for (const SourceTerm& term : source.terms) {
+        source.at += term.probability * term.centre;
+        if (has_direction(term.form)) along += term.probability * term.mean.head<3>().normalized();
+    }
+    double squares = 0;
+    for (const SourceTerm& term : source.terms)
+        squares += term.probability * ((term.centre - source.at).squaredNorm() + term.extent * term.extent);
+    source.spread = std::sqrt(squares);
+    const SourceTerm& first = source.likeliest();
+    if (!has_direction(first.form)) {
+        source.direction = first.axis;
+        if (first.form == SourceForm::frame) source.direction = first.mean.head<3>().normalized();
+        return;
+    }
+    if (!(along.norm() > 0)) return;
+    source.direction = along.normalized();
+    // Of the likeliest term's vector across its direction, and of how the terms differ.
+    const Mat3 across = Mat3::Identity() - source.direction * source.direction.transpose();
+    const double own =
+        std::sqrt((across * first.covariance.topLeftCorner<3, 3>() * across).trace() / 2) / first.mean.head<3>().norm();
+    const double between = std::sqrt(std::max(0.0, 1 - along.squaredNorm()));
+    source.direction_sd = std::hypot(own, between);
+}
+
+}  // namespace
+
+std::optional<MissingSource> locate_missing(const BodyModel& model, const Problem& problem, const Refit& fit,
+                                            int threads) {
+    if (problem.rows() == 0 || model.skin().rows() == 0) return std::nullopt;
+    Scan scan(model, problem, fit, threads);
+    std::vector<Alternative> all = scan.alternatives();
+    if (all.empty()) return std::nullopt;
+    MissingSource source;
+    share_out(all);
+    for (std::size_t kind = 0; kind < source_kind_names.size(); ++kind)
+        source.log_bayes_factors[kind] = log_sum(all, static_cast<SourceKind>(kind));
+    source.kind =
+        static_cast<SourceKind>(std::ranges::max_element(source.log_bayes_factors) - source.log_bayes_factors.begin());
+    const double sum = source.log_bayes_factor();
+    std::erase_if(all, [&](const Alternative& one) {
+        constexpr double negligible = 1e-3;  // probability
+        return one.kind != source.kind || one.log_weight - sum < std::log(negligible);
+    });
+    if (all.empty()) return std::nullopt;
+    std::ranges::stable_sort(all, std::greater{}, &Alternative::log_weight);
+    double kept = 0;
+    for (const Alternative& one : all) kept += std::exp(one.log_weight - sum);
+    const Eigen::VectorXd shown = scan.shown(all.front());
+    source.explained = all.front().explained;
+    for (Alternative& one : all) {
+        one.term.probability = std::exp(one.log_weight - sum) / kept;
+        source.terms.push_back(std::move(one.term));
+    }
+    constexpr double notable = 0.2;  // of the most: less is within what a first-order model errs by
+    for (Eigen::Index s = 0; s < shown.size(); ++s)
+        if (shown[s] > 0 && shown[s] >= notable * shown.maxCoeff()) source.states.push_back(static_cast<int>(s));
+    summarise(source);
+    return source;
+}
+
+namespace {
+
+/// Single readings that were set aside, as a source.
+MissingSource source_of_outliers(const MeasurementSet& set, const Diagnosis& diagnosis) {
+    const Problem whole = make_problem(set, 1);
+    std::set<int> states;
+    std::vector<Vec3> places;
+    for (Eigen::Index n = 0; n < whole.rows(); ++n) {
+        const bool is_first = n == 0 || whole.reading[n] != whole.reading[n - 1];
+        if (!is_first || !std::ranges::binary_search(diagnosis.outliers.readings, whole.reading[n])) continue;
+        states.insert(whole.state[n]);
+        if (whole.is_position(n)) places.emplace_back(whole.rest.row(whole.channel(n)));
+    }
+    MissingSource source{.kind = SourceKind::sensor};
+    source.log_bayes_factors.fill(-INFINITY);
+    source.log_bayes_factors[static_cast<std::size_t>(SourceKind::sensor)] = diagnosis.outliers.log_bayes_factor;
+    source.states.assign(states.begin(), states.end());
+    SourceTerm term{.form = SourceForm::readings, .law = SourceLaw::irregular, .probability = 1};
+    for (const Vec3& place : places) source.at += place / static_cast<double>(places.size());
+    double squares = 0;
+    for (const Vec3& place : places) squares += (place - source.at).squaredNorm() / static_cast<double>(places.size());
+    source.spread = term.extent = std::sqrt(squares);
+    term.centre = source.at;
+    source.terms = {std::move(term)};
+    return source;
+}
+
+}  // namespace
+
+std::optional<MissingSource> where_missing(const BodyModel& model, const MeasurementSet& set,
+                                           const Diagnosis& diagnosis, int threads) {
+    std::optional<MissingSource> source = locate_missing(model, diagnosis.problem, diagnosis.baseline, threads);
+    const Outliers& outliers = diagnosis.outliers;
+    if (outliers.readings.empty()) return source;
+    const bool is_all = diagnosis.explanation.size() == 1 && !diagnosis.explained;
+    if (source && !is_all) return source;
+    return source_of_outliers(set, diagnosis);
+}
+
+}  // namespace palpate::identify

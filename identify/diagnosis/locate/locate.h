@@ -1,0 +1,20 @@
+#pragma once
+
+#include <optional>
+
+#include "identify/diagnosis/diagnosis.h"
+#include "identify/diagnosis/locate/missing_source.h"
+
+namespace palpate::identify {
+
+/// What a fit leaves of the readings, located, by a linear model at its configurations. Sources of four kinds, in many
+/// places of several sizes and under several laws, compete by evidence; those of the likeliest kind are averaged.
+/// Absent: nothing is left that any source would explain.
+std::optional<MissingSource> locate_missing(const BodyModel& model, const Problem& problem, const Refit& fit,
+                                            int threads);
+
+/// The same of a diagnosis, from what its baseline leaves; where single readings are all that is wrong, those.
+std::optional<MissingSource> where_missing(const BodyModel& model, const MeasurementSet& set,
+                                           const Diagnosis& diagnosis, int threads);
+
+}  // namespace palpate::identify

@@ -1,0 +1,101 @@
+#include "identify/diagnosis/locate/source_laws.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+namespace palpate::identify {
+namespace {
+
+double norm_of_known(const Vec3& v) { return v.array().isNaN().select(0, v.array()).matrix().norm(); }
+
+double contact_load(const Action& action) {
+    double sum = 0;
+    for (const mesh::Contact& contact : action.contacts) sum += contact.force.norm();
+    return sum;
+}
+
+double motion_load(const Action& action) {
+    double sum = 0;
+    for (const mesh::ToolMotion& motion : action.motions) sum += norm_of_known(motion.translation);
+    return sum;
+}
+
+double setting_load(const Action& action) {
+    double sum = 0;
+    for (const mesh::ActuatorSetting& setting : action.settings) sum += std::abs(setting.value);
+    return sum;
+}
+
+Eigen::VectorXd over_largest(Eigen::VectorXd values) {
+    const double most = values.cwiseAbs().maxCoeff();
+    if (most > 0) values /= most;
+    return values;
+}
+
+/// Do two laws differ in some state by more than rounding of tables does?
+bool differ(const Eigen::VectorXd& a, const Eigen::VectorXd& b) { return (a - b).cwiseAbs().maxCoeff() > 0.01; }
+
+}  // namespace
+
+Eigen::VectorXd relative_loads(const Problem& problem) {
+    const auto count = std::ssize(problem.stages);
+    Eigen::MatrixXd kinds(count, 3);
+    for (Eigen::Index s = 0; s < count; ++s) {
+        const Action& action = problem.stages[s].action;
+        kinds.row(s) << contact_load(action), motion_load(action), setting_load(action);
+    }
+    // Newtons and millimetres do not add up: each kind counts by its own largest.
+    Eigen::VectorXd sum = Eigen::VectorXd::Zero(count);
+    for (int c = 0; c < 3; ++c) sum += over_largest(kinds.col(c));
+    return over_largest(sum);
+}
+
+std::vector<std::pair<SourceLaw, Eigen::VectorXd>> common_laws(const Problem& problem) {
+    const auto count = std::ssize(problem.stages);
+    const Eigen::VectorXd load = relative_loads(problem);
+    Eigen::VectorXd time(count), before(count);
+    std::map<int, double> begun, largest;
+    for (Eigen::Index s = 0; s < count; ++s) {
+        const Stage& stage = problem.stages[s];
+        const int life = problem.continuous ? 0 : stage.probe;  // of one body
+        time[s] = stage.time - begun.try_emplace(stage.probe, stage.time).first->second;
+        double& most = largest.try_emplace(life, 0).first->second;
+        most = std::max(most, load[s]);
+        before[s] = most;
+    }
+    // As creep goes: fast at first, in decades of the time.
+    const double end = time.maxCoeff();
+    constexpr double first = 0.05;  // of the longest time: where it has begun to count
+    if (end > 0) time = (1 + time.array() / (first * end)).log();
+
+    std::vector<std::pair<SourceLaw, Eigen::VectorXd>> laws{{SourceLaw::constant, Eigen::VectorXd::Ones(count)}};
+    const auto add = [&](SourceLaw law, Eigen::VectorXd strength) {
+        strength = over_largest(std::move(strength));
+        if (strength.isZero(0)) return;
+        if (std::ranges::all_of(laws, [&](const auto& one) { return differ(one.second, strength); }))
+            laws.emplace_back(law, std::move(strength));
+    };
+    add(SourceLaw::proportional, load);
+    add(SourceLaw::quadratic, load.cwiseAbs2());
+    add(SourceLaw::with_time, time);
+    add(SourceLaw::with_history, before);
+    return laws;
+}
+
+std::vector<std::pair<int, Eigen::VectorXd>> probes_alone(const Problem& problem) {
+    std::vector<std::pair<int, Eigen::VectorXd>> probes;
+    for (std::size_t s = 0; s < problem.stages.size(); ++s) {
+        const Stage& stage = problem.stages[s];
+        if (!is_loaded(stage.action)) continue;
+        auto own = std::ranges::find(probes, stage.probe, &std::pair<int, Eigen::VectorXd>::first);
+        if (own == probes.end()) {
+            probes.emplace_back(stage.probe, Eigen::VectorXd::Zero(std::ssize(problem.stages)));
+            own = probes.end() - 1;
+        }
+        own->second[static_cast<Eigen::Index>(s)] = 1;
+    }
+    return probes;
+}
+
+}  // namespace palpate::identify
