@@ -10,6 +10,8 @@
 #include <thread>
 #include <vector>
 
+#include "mesh/system/interruption.h"
+
 namespace palpate::identify {
 
 void for_each_in_parallel(int count, int threads, const std::function<void(int)>& task) {
@@ -24,6 +26,7 @@ void for_each_in_parallel(int count, int threads, const std::function<void(int)>
     const auto work = [&] {
         for (int i = next++; i < count; i = next++) {
             try {
+                Interruption::ask();
                 share(i);
             } catch (...) {
                 const std::scoped_lock lock(failure_mutex);

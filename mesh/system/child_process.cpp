@@ -20,6 +20,7 @@
 #include <new>
 
 #include "mesh/errors.h"
+#include "mesh/system/interruption.h"
 
 namespace palpate::mesh {
 namespace {
@@ -29,6 +30,8 @@ using Clock = std::chrono::steady_clock;
 constexpr std::uint64_t magic = 0x70616c7061746531;  // before the answer, with its size: half an answer is none
 constexpr int memory_code = 75;
 constexpr int exception_code = 76;
+
+constexpr long long asked_every = 100;  // whether the work is to go on [ms]
 
 bool is_child = false;
 
@@ -101,15 +104,18 @@ void cling_to(pid_t parent, int pipe) {
 
 enum class Reading { Whole, Broken, Late };
 
-/// Reads up to `size` bytes, or until the other end closes, or until the deadline.
+/// Reads up to `size` bytes, or until the other end closes, or until the deadline. @throws what an interruption throws.
 Reading read_all(int pipe, char* at, std::size_t size, Clock::time_point deadline) {
     while (size > 0) {
         const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(deadline - Clock::now()).count();
         if (left <= 0) return Reading::Late;
         pollfd waiting{pipe, POLLIN, 0};
-        const int ready = poll(&waiting, 1, static_cast<int>(std::min<long long>(left, 60'000)));
+        const int ready = poll(&waiting, 1, static_cast<int>(std::min<long long>(left, asked_every)));
         if (ready < 0 && errno != EINTR) return Reading::Broken;
-        if (ready <= 0) continue;
+        if (ready <= 0) {
+            Interruption::ask();
+            continue;
+        }
         const ssize_t got = read(pipe, at, size);
         if (got < 0 && (errno == EINTR || errno == EAGAIN)) continue;
         if (got <= 0) return Reading::Broken;

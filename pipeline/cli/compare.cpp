@@ -4,6 +4,7 @@
 #include "identify/diagnosis/diagnose.h"
 #include "mesh/errors.h"
 #include "mesh/text/atomic_file.h"
+#include "pipeline/cli/objects.h"
 #include "pipeline/command_line/flags.h"
 #include "pipeline/command_line/subcommands.h"
 #include "pipeline/output/identification.h"
@@ -42,19 +43,24 @@ void compare_reference(nlohmann::json& result, const CompareOptions& options, co
 
 }  // namespace
 
+Compared compare(const ModelAndSet& given, const CompareOptions& options, const Common& common) {
+    Compared result{.set = without_measurement_faults(given.set, given.model.effects), .comparison = {}, .json = {}};
+    result.comparison = identify::compare(given.model, result.set, common.threads);
+    result.json = to_json(result.comparison, result.set);
+    compare_reference(result.json, options, common, given, result.comparison);
+    return result;
+}
+
 Outcome compare(const CompareOptions& options, const Common& common) {
     const ModelAndSet given = read_model_and_set(options.model, options.set);
-    const skeleton::Model& model = given.model;
-    const identify::MeasurementSet set = without_measurement_faults(given.set, model.effects);
-    const identify::Comparison comparison = identify::compare(model, set, common.threads);
+    const auto [set, comparison, json] = compare(given, options, common);
 
     Outcome outcome;
-    outcome.json = to_json(comparison, set);
-    compare_reference(outcome.json, options, common, given, comparison);
+    outcome.json = json;
     outcome.text = compare_in_words(outcome.json) + "\n" + worst_table(outcome.json);
     if (!options.output.empty()) {
         refuse_to_overwrite(options.output, common.force);
-        write_played_series(options.output, model, set, comparison);
+        write_played_series(options.output, given.model, set, comparison);
         mesh::write_text(options.output / "compare.json", outcome.json.dump(2) + "\n");
         outcome.text += fmt::format("Written: {}\n", options.output.string());
     }

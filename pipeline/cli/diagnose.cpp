@@ -4,6 +4,7 @@
 
 #include "identify/effects/catalogue.h"
 #include "mesh/text/atomic_file.h"
+#include "pipeline/cli/objects.h"
 #include "pipeline/command_line/flags.h"
 #include "pipeline/command_line/subcommands.h"
 #include "pipeline/output/json/diagnosis.h"
@@ -13,19 +14,23 @@
 
 namespace palpate::pipeline::commands {
 
-Outcome diagnose(const DiagnoseCommandOptions& options, const Common& common) {
-    if (!options.output.empty()) refuse_to_overwrite(options.output, common.force);
-    for (const std::string& name : options.without) identify::find_effect(name);
-    const ModelAndSet given = read_model_and_set(options.model, options.set);
+Diagnosed diagnose(const ModelAndSet& given, const DiagnoseCommandOptions& options, const Common& common) {
     RunDiagnosisOptions wanted = options.overrides.on_defaults().diagnose;
     wanted.without = options.without;
     const identify::DiagnoseOptions how = diagnose_options(wanted, given.set.density.has_value(), given.model, common);
     const auto body = body_to_diagnose(options.body, given, options.overrides.on_defaults().edge_length);
     const identify::Diagnosis found = identify::diagnose(*body, given.set, how, Console::progress());
+    const std::string field = options.output.empty() ? "" : write_missing_series(options.output, given.set, found);
+    return {to_json(found, *body, given.set, field), found.explanation, found.notes};
+}
+
+Outcome diagnose(const DiagnoseCommandOptions& options, const Common& common) {
+    if (!options.output.empty()) refuse_to_overwrite(options.output, common.force);
+    for (const std::string& name : options.without) identify::find_effect(name);
+    const Diagnosed found = diagnose(read_model_and_set(options.model, options.set), options, common);
 
     Outcome outcome;
-    const std::string field = options.output.empty() ? "" : write_missing_series(options.output, given.set, found);
-    outcome.json = to_json(found, *body, given.set, field);
+    outcome.json = found.json;
     outcome.text = diagnosis_in_words(outcome.json) + "\n";
     for (const std::string& note : found.notes) outcome.text += "  " + note + "\n";
     if (!options.output.empty()) {

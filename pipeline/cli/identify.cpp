@@ -3,6 +3,7 @@
 #include "identify/identify.h"
 #include "mesh/errors.h"
 #include "mesh/text/atomic_file.h"
+#include "pipeline/cli/objects.h"
 #include "pipeline/command_line/flags.h"
 #include "pipeline/command_line/subcommands.h"
 #include "pipeline/output/identification.h"
@@ -16,16 +17,20 @@ namespace palpate::pipeline::commands {
 
 namespace fs = std::filesystem;
 
+identify::IdentifyResult identify(const ModelAndSet& given, const CaseOverrides& overrides, const Common& common) {
+    identify::IdentifyOptions how = overrides.on_defaults().identify;
+    how.seed = common.seed.value_or(how.seed);
+    how.threads = common.threads;
+    identify::IdentifyResult found = identify::identify(given.model, given.set, how, Console::progress());
+    found.damping = damping_of(found.model, given.set, how.seed, common);
+    return found;
+}
+
 Outcome identify(const IdentifyCommandOptions& options, const Common& common) {
     const fs::path output = options.output.empty() ? fs::path("identified") : options.output;
     refuse_to_overwrite(output, common.force);
-    const auto [model, set] = read_model_and_set(options.model, options.set);
-
-    identify::IdentifyOptions how = options.overrides.on_defaults().identify;
-    how.seed = common.seed.value_or(how.seed);
-    how.threads = common.threads;
-    identify::IdentifyResult found = identify::identify(model, set, how, Console::progress());
-    found.damping = damping_of(found.model, set, how.seed, common);
+    const identify::IdentifyResult found =
+        identify(read_model_and_set(options.model, options.set), options.overrides, common);
     write_identification(output, found);
 
     Outcome outcome;

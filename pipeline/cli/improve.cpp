@@ -8,6 +8,7 @@
 #include "identify/effects/catalogue.h"
 #include "mesh/errors.h"
 #include "mesh/text/words.h"
+#include "pipeline/cli/objects.h"
 #include "pipeline/command_line/flags.h"
 #include "pipeline/command_line/subcommands.h"
 #include "pipeline/output/json/diagnosis.h"
@@ -77,26 +78,30 @@ std::string judged_on(const ImproveCommandOptions& options, const std::vector<st
 
 }  // namespace
 
-Outcome improve(const ImproveCommandOptions& options, const Common& common) {
-    const fs::path output = options.output.empty() ? fs::path("improved") : options.output;
-    refuse_to_overwrite(output, common.force);
+Improved improve(const ModelAndSet& given, const ImproveCommandOptions& options, const Common& common) {
     const std::vector<skeleton::EffectRecord> starts = starts_of(options.add);
     const std::vector<std::string> asked = names_of(starts);
-    const std::string kind = judged_on(options, asked);
-    const ModelAndSet given = read_model_and_set(options.model, options.set);
     const identify::LadderOptions how{.identify = identify_options(options.overrides, common),
                                       .diagnose = diagnose_options(options.overrides.on_defaults().diagnose,
                                                                    given.set.density.has_value(), given.model, common),
                                       .only_better = options.automatic,
                                       .start = starts};
     how.identify.validate();
-    const auto body = body_to_diagnose(kind, given, options.overrides.on_defaults().edge_length);
+    auto body = body_to_diagnose(judged_on(options, asked), given, options.overrides.on_defaults().edge_length);
     std::optional<identify::Diagnosis> found;
     if (options.automatic) found = diagnose_aloud(*body, given.set, how.diagnose);
     const std::vector<std::string>& effects = found ? found->explanation : asked;
     identify::Ladder ladder = identify::build_ladder(given.model, *body, given.set, effects, how,
                                                      found ? &*found : nullptr, Console::progress());
     ladder.identified.damping = damping_of(ladder.steps.back().model, given.set, how.identify.seed, common);
+    return {std::move(ladder), std::move(body)};
+}
+
+Outcome improve(const ImproveCommandOptions& options, const Common& common) {
+    const fs::path output = options.output.empty() ? fs::path("improved") : options.output;
+    refuse_to_overwrite(output, common.force);
+    starts_of(options.add);  // refuses what is no effect before anything is read
+    const auto [ladder, body] = improve(read_model_and_set(options.model, options.set), options, common);
     write_ladder(output, ladder, *body);
 
     Outcome outcome;

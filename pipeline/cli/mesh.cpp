@@ -10,6 +10,7 @@
 #include "pipeline/body/subject_body.h"
 #include "pipeline/case/read_case.h"
 #include "pipeline/case/subject.h"
+#include "pipeline/cli/objects.h"
 #include "pipeline/command_line/commands.h"
 #include "pipeline/command_line/flags.h"
 #include "pipeline/command_line/subcommands.h"
@@ -47,16 +48,21 @@ void write_body(const fs::path& output, const std::string& format, const mesh::V
 
 }  // namespace
 
+BuiltBody build_body(const fs::path& input, const CaseOverrides& overrides) {
+    Subject subject = read_subject(read_case(input, overrides));
+    Console::notices(subject.notes);
+    Console::notices(subject.assumptions);
+    MeshedBody body =
+        make_body(subject, {subject.settings.edge_length, subject.settings.linear_elements}, Console::progress());
+    Console::notices(body.notes);
+    return {std::move(subject), std::move(body)};
+}
+
 Outcome mesh_body(const MeshOptions& options, const Common& common) {
     const fs::path output = options.output.empty() ? fs::path("body" + extension_of(options.format)) : options.output;
     const std::string format = options.format.empty() ? format_named(output) : options.format;
     refuse_to_overwrite(output, common.force);
-    const Subject subject = read_subject(read_case(options.input, options.overrides));
-    Console::notices(subject.notes);
-    Console::notices(subject.assumptions);
-    const MeshedBody body =
-        make_body(subject, {subject.settings.edge_length, subject.settings.linear_elements}, Console::progress());
-    Console::notices(body.notes);
+    const auto [subject, body] = build_body(options.input, options.overrides);
     write_body(output, format, body.volume, subject);
     Outcome outcome;
     const double volume = mesh::element_volumes(body.volume).sum();

@@ -10,6 +10,7 @@
 #include "pipeline/body/subject_body.h"
 #include "pipeline/case/read_case.h"
 #include "pipeline/case/subject.h"
+#include "pipeline/cli/objects.h"
 #include "pipeline/command_line/commands.h"
 #include "pipeline/command_line/flags.h"
 #include "pipeline/command_line/subcommands.h"
@@ -43,6 +44,15 @@ void add_quality(const Subject& subject, const MeshedBody& body, const skeleton:
 
 }  // namespace
 
+BuiltSkeleton build_skeleton(const BuiltBody& from) {
+    BuiltSkeleton built;
+    built.model = skeleton::build_skeleton(from.body.surface, from.body.volume, from.subject.material,
+                                           from.subject.supports, from.subject.settings.skeleton, &built.report);
+    built.model.name = from.subject.settings.name;
+    Console::notices(built.report.notes);
+    return built;
+}
+
 Outcome skeleton(const SkeletonOptions& options, const Common& common) {
     const fs::path output = options.output.empty() ? fs::path("model.json") : options.output;
     if (output.extension() != ".json") {
@@ -55,17 +65,9 @@ Outcome skeleton(const SkeletonOptions& options, const Common& common) {
             refuse_to_overwrite(quality_file(output, extension), common.force);
         }
     }
-    const Subject subject = read_subject(read_case(options.input, options.overrides));
-    Console::notices(subject.notes);
-    Console::notices(subject.assumptions);
-    const MeshedBody body =
-        make_body(subject, {subject.settings.edge_length, subject.settings.linear_elements}, Console::progress());
-    Console::notices(body.notes);
-    skeleton::BuildReport report;
-    skeleton::Model model = skeleton::build_skeleton(body.surface, body.volume, subject.material, subject.supports,
-                                                     subject.settings.skeleton, &report);
-    model.name = subject.settings.name;
-    Console::notices(report.notes);
+    const BuiltBody built = build_body(options.input, options.overrides);
+    const auto& [subject, body] = built;
+    const auto [model, report] = build_skeleton(built);
     skeleton::write_model_vtp(fs::path(output).replace_extension(".vtp"), model);
     skeleton::write_model(output, model);
     const auto held = std::count_if(model.spheres.begin(), model.spheres.end(), [](auto& s) { return s.held; });

@@ -14,6 +14,8 @@
 #include <mutex>
 #include <thread>
 
+#include "pipeline/command_line/listener.h"
+
 namespace palpate::pipeline {
 namespace {
 
@@ -144,8 +146,18 @@ private:
     Clock::time_point last_ = Clock::now();
 };
 
+/// Of this thread; null: standard error.
+const Listener*& listener() {
+    static thread_local const Listener* in_this_thread = nullptr;
+    return in_this_thread;
+}
+
 template <typename Print>
-void aloud(Print&& print) {
+void aloud(Importance importance, const std::string& text, Print&& print) {
+    if (listener()) {
+        listener()->message(importance, text);
+        return;
+    }
     if (on_terminal())
         bar().give_way(print);
     else
@@ -153,6 +165,9 @@ void aloud(Print&& print) {
 }
 
 }  // namespace
+
+Listening::Listening(const Listener& to) : before_(listener()) { listener() = &to; }
+Listening::~Listening() { listener() = before_; }
 
 void Console::set_up(Verbosity verbosity) {
     const bool colours = on_terminal() && std::getenv("NO_COLOR") == nullptr;
@@ -166,22 +181,23 @@ void Console::set_up(Verbosity verbosity) {
 }
 
 void Console::notice(const std::string& text) {
-    aloud([&] { spdlog::info("{}", text); });
+    aloud(Importance::notice, text, [&] { spdlog::info("{}", text); });
 }
 void Console::notices(const std::vector<std::string>& texts) {
     for (const std::string& text : texts) notice(text);
 }
 void Console::warning(const std::string& text) {
-    aloud([&] { spdlog::warn("warning: {}", text); });
+    aloud(Importance::warning, text, [&] { spdlog::warn("warning: {}", text); });
 }
 void Console::error(const std::string& text) {
-    aloud([&] { spdlog::error("error: {}", text); });
+    aloud(Importance::error, text, [&] { spdlog::error("error: {}", text); });
 }
 void Console::detail(const std::string& text) {
-    aloud([&] { spdlog::debug("{}", text); });
+    aloud(Importance::detail, text, [&] { spdlog::debug("{}", text); });
 }
 
 Progress Console::progress() {
+    if (listener()) return listener()->progress;
     if (!spdlog::should_log(spdlog::level::info)) return {};
     if (on_terminal()) return [](std::string_view what, double fraction) { bar().tell(what, fraction); };
     auto lines = std::make_shared<ProgressLines>();

@@ -19,8 +19,14 @@ namespace palpate::pipeline::commands {
 
 ModelAndSet read_model_and_set(const std::filesystem::path& model, const std::filesystem::path& set) {
     std::vector<std::string> notes;
-    ModelAndSet read{skeleton::read_model(model), read_measurements(set, notes)};
+    skeleton::Model read = skeleton::read_model(model);
+    identify::MeasurementSet measured = read_measurements(set, notes);
     Console::notices(notes);
+    return put_together(std::move(read), std::move(measured), set.string());
+}
+
+ModelAndSet put_together(skeleton::Model model, identify::MeasurementSet set, const std::string& set_name) {
+    ModelAndSet read{std::move(model), std::move(set)};
     identify::require_fittable(read.set);
     if (mesh::regions_to_yaml(read.model.supports) != mesh::regions_to_yaml(read.set.supports)) {
         Console::notice("The model and the set give different supports: the set's are taken.");
@@ -32,7 +38,7 @@ ModelAndSet read_model_and_set(const std::filesystem::path& model, const std::fi
             throw InvalidInput(
                 fmt::format("{}: the supports hold all {} spheres of the model, nothing is left to move. Give "
                             "'supports' the part that is held, in the set's own unit.",
-                            set.string(), read.model.spheres.size()));
+                            set_name, read.model.spheres.size()));
         }
     }
     return read;

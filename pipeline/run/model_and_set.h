@@ -22,6 +22,9 @@ struct ModelAndSet {
 /// @throws InvalidInput where the set has parts that cannot be fitted yet.
 ModelAndSet read_model_and_set(const std::filesystem::path& model, const std::filesystem::path& set);
 
+/// The same of what is read already. `set_name`: of the set in messages.
+ModelAndSet put_together(skeleton::Model model, identify::MeasurementSet set, const std::string& set_name);
+
 /// The set as a model understands it: without the faults of the measurement that the model records.
 identify::MeasurementSet without_measurement_faults(const identify::MeasurementSet& set,
                                                     const std::vector<skeleton::EffectRecord>& effects);

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "mesh/system/interruption.h"
+
 namespace palpate::fem {
 
 namespace {
@@ -141,6 +143,7 @@ bool Newton::minimise(const LoadedBody& body, const NewtonTolerance& tolerance, 
     predicted_decrease_ = INFINITY;
     secants_.clear();
     for (int k = 0;; ++k) {
+        Interruption::ask();
         u = here.u;
         residual_ = here.r.norm();
         const double enough = tolerance.absolute + tolerance.of_grip * here.potential.grip;
