@@ -29,6 +29,19 @@ TEST(Dice, IsInPixelsAndDropsWhatFailed) {
     EXPECT_TRUE(notes_tell(read_sample(dice_sample), "'unit: pixel'"));  // without a size, it is said
 }
 
+TEST(Dice, OfVersion1IsInPixelsToo) {
+    const std::string columns = "COORDINATE_X,COORDINATE_Y,DISPLACEMENT_X,DISPLACEMENT_Y,VSG_STRAIN_XX,GAMMA,MATCH\n";
+    const std::string rows =
+        "6.1E+01,9.71E+02,-1.5E-01,-2.5E+00,-1E-03,3.4E-03,0\n6.1E+01,9.36E+02,0,-2.5E+00,0,4E-03,0\n";
+    for (const std::string& head :
+         {std::string(), std::string("***\n*** Digital Image Correlation Engine (DICe)\n***\n")}) {
+        const Recording frame = read_sample(head + columns + rows);
+        EXPECT_EQ(frame.format, "DICe, image correlation");
+        EXPECT_TRUE(notes_tell(frame, "'unit: pixel'"));
+        expect_point(frame.points[0], {61, 971, 0}, {-0.15, -2.5, 0});
+    }
+}
+
 TEST(Aramis, HasNamesInAComment) {
     const Recording frame = read_sample(aramis_sample);
     EXPECT_EQ(frame.format, "GOM Aramis, image correlation");

@@ -91,7 +91,10 @@ std::array<int, 3> displacements_in(const NumberTable& table) {
 }
 
 std::string program_of(const NumberTable& table) {
-    const bool is_dice = find_any(table, {"subset_id", "status_flag"}) >= 0 && find_any(table, {"gamma"}) >= 0;
+    // Version 1 has neither names of subsets nor flags.
+    const bool is_dice =
+        (find_any(table, {"subset_id", "status_flag", "match"}) >= 0 && find_any(table, {"gamma"}) >= 0) ||
+        table.preamble.find("digital image correlation engine") != std::string::npos;
     if (is_dice) return "DICe, image correlation";
     const bool is_gom = table.preamble.find("gom") != std::string::npos ||
                         table.preamble.find("aramis") != std::string::npos || find_any(table, {"x_undef"}) >= 0;
