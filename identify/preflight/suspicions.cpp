@@ -1,6 +1,9 @@
 #include "identify/preflight/suspicions.h"
 
+#include <Eigen/QR>
+
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 
@@ -40,11 +43,48 @@ double median(std::vector<double> values) {
     return *middle;
 }
 
+/// Products of the coordinates up to a degree (n x 1, 4, 10 or 20), of places about their mean, in their spread.
+Eigen::MatrixXd products(const Points& places, int degree) {
+    const Points about = places.rowwise() - places.colwise().mean();
+    const Points x = about / std::max(about.cwiseAbs().maxCoeff(), 1e-12);
+    std::vector<Eigen::VectorXd> columns;
+    for (int a = 0; a <= degree; ++a)
+        for (int b = 0; a + b <= degree; ++b)
+            for (int c = 0; a + b + c <= degree; ++c)
+                columns.emplace_back(x.col(0).array().pow(a) * x.col(1).array().pow(b) * x.col(2).array().pow(c));
+    Eigen::MatrixXd all(x.rows(), std::ssize(columns));
+    for (std::size_t i = 0; i < columns.size(); ++i) all.col(static_cast<Eigen::Index>(i)) = columns[i];
+    return all;
+}
+
+/// Errors without what is smooth over a state, as large as that may be: up to the third degree, with two readings a
+/// coefficient and more. At the body's ends, where neighbours lie on one side, a slope would look like an error.
+Eigen::VectorXd without_trend(const Problem& problem, const Eigen::VectorXd& error_mm) {
+    std::map<std::pair<int, int>, std::vector<Eigen::Index>> rows;  // of an axis in a state
+    for (Eigen::Index n = 0; n < problem.rows(); ++n)
+        if (problem.is_position(n)) rows[{problem.state[n], problem.coordinate[n] % 3}].push_back(n);
+    Eigen::VectorXd result = error_mm;
+    for (const auto& [of, own] : rows) {
+        constexpr std::array coefficients{1, 4, 10, 20};
+        int degree = 0;
+        while (degree < 3 && 2 * coefficients[static_cast<std::size_t>(degree) + 1] <= std::ssize(own)) ++degree;
+        if (degree == 0) continue;
+        Points places(std::ssize(own), 3);
+        for (std::size_t i = 0; i < own.size(); ++i)
+            places.row(static_cast<Eigen::Index>(i)) = problem.rest.row(problem.channel(own[i]));
+        const Eigen::MatrixXd A = products(places, degree);
+        const Eigen::VectorXd y = error_mm(own);
+        const Eigen::VectorXd smooth = A * A.completeOrthogonalDecomposition().solve(y);
+        result(own) = y - smooth;
+    }
+    return result;
+}
+
 /// Readings unlike their neighbours', where a state has enough of them to tell.
 std::vector<Suspicion> rough_readings(const Problem& problem, const Eigen::VectorXd& error_mm,
                                       const std::vector<ReadingOf>& readings) {
     constexpr int least_readings = 8;  // as `roughness` asks for
-    const Roughness found = roughness(problem, error_mm);
+    const Roughness found = roughness(problem, without_trend(problem, error_mm));
     std::map<int, int> in_state;
     std::map<int, int> of_marker;
     for (const ReadingOf& one : readings) {

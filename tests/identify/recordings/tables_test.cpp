@@ -164,6 +164,17 @@ TEST(Tables, BluehillInQuotesHasDecimalCommasBetweenCommas) {
     }
 }
 
+TEST(Tables, RemarksBesideTheTableAreNoNames) {
+    const Recording run = read_sample(
+        "Time,Extension,Load,,10 mm/min\n(s),(mm),(N),,20 N preload\n0,0.5,20,,\n0.1,0.6,21.5,,\n0.2,0.7,22,,\n");
+    EXPECT_EQ(run.format, "testing machine, Instron Bluehill");
+    ASSERT_TRUE(run.has_clock);
+    EXPECT_NEAR(run.times[2], 0.2, 1e-12);
+    ASSERT_EQ(run.channels.size(), 2u);
+    EXPECT_EQ(run.channels[1].name, "Load");
+    EXPECT_EQ(run.channels[1].unit, "N");
+}
+
 TEST(Tables, GroupsOfThousandsInQuotesAreNoDecimals) {
     const Recording run = read_sample("time,force\n0,\"1,234\"\n1,\"2,345\"\n");
     EXPECT_NEAR(run.channels.at(0).values[1], 2345, 1e-9);
