@@ -275,7 +275,7 @@ std::vector<ExperimentProspect> experiment_prospects(const BodyModel& model, con
     const auto try_out = [&](const Experiment& experiment) {
         const MeasurementSet more = with_states(set, experiment);
         Problem problem = make_problem(more, noise);
-        const LinearPoint point = linearise(model, problem, guess, options.refit.threads);
+        const LinearPoint point = linearise(model, problem, guess, options.mesh_error, options.refit.threads);
         const auto first = static_cast<int>(set.states.size());
         const Eigen::VectorXd answered = problem.pick(point.forward.markers);
         for (Eigen::Index n = 0; n < problem.rows(); ++n)

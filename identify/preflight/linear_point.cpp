@@ -1,5 +1,8 @@
 #include "identify/preflight/linear_point.h"
 
+#include <cmath>
+#include <map>
+
 #include "identify/diagnosis/search/screen.h"
 #include "identify/diagnosis/search/screen_plan.h"
 
@@ -15,6 +18,27 @@ Whitening with_columns(const Eigen::VectorXd& weights, const Nuisances& nuisance
     return {weights, all, precisions};
 }
 
+/// Weights of the readings (N) by what the model is off by: sigma^2 -> sigma^2 + (share u)^2, u the rms of what
+/// the model shows of that kind in the state.
+Eigen::VectorXd weights_of_mesh(const Problem& problem, const ForwardSolution& forward, double share) {
+    Eigen::VectorXd read = problem.pick(forward.markers);
+    for (Eigen::Index n = 0; n < read.size(); ++n) read[n] -= problem.origin(n);
+    // Of a state's positions, or of its reactions: their sum, and how many there are.
+    std::map<std::pair<int, bool>, std::pair<double, int>> squares;
+    for (Eigen::Index n = 0; n < problem.rows(); ++n) {
+        auto& [sum, count] = squares[{problem.state[n], problem.is_position(n)}];
+        sum += read[n] * read[n];
+        ++count;
+    }
+    Eigen::VectorXd weights(problem.rows());
+    for (Eigen::Index n = 0; n < problem.rows(); ++n) {
+        const auto& [sum, count] = squares[{problem.state[n], problem.is_position(n)}];
+        const double off = share * std::sqrt(sum / count);
+        weights[n] = problem.sigma[n] / std::hypot(problem.sigma[n], off);
+    }
+    return weights;
+}
+
 /// The point in a problem that tells all stages apart.
 ForwardSolution forward_in_stages(const BodyModel& model, const LinearPoint& point, const Problem& merged,
                                   const Problem& stages) {
@@ -26,7 +50,8 @@ ForwardSolution forward_in_stages(const BodyModel& model, const LinearPoint& poi
 
 }  // namespace
 
-LinearPoint linearise(const BodyModel& model, const Problem& problem, const Explanation& explanation, int threads) {
+LinearPoint linearise(const BodyModel& model, const Problem& problem, const Explanation& explanation, double mesh_error,
+                      int threads) {
     ForwardSolution forward = solve_forward(model, problem, explanation, threads);
     Eigen::MatrixXd columns = sensitivities(model, problem, explanation, forward,
                                             {own_signatures(model, problem, explanation, forward)}, threads)
@@ -35,7 +60,8 @@ LinearPoint linearise(const BodyModel& model, const Problem& problem, const Expl
     Eigen::VectorXd prior_sd(std::ssize(model.parameters()));
     for (Eigen::Index p = 0; p < prior_sd.size(); ++p) prior_sd[p] = model.parameters()[p].prior_sd;
     Nuisances nuisances = make_nuisances(model, problem, explanation, forward, threads);
-    const Eigen::VectorXd weights = reading_weights(model, problem, explanation, forward);
+    const Eigen::VectorXd weights = reading_weights(model, problem, explanation, forward)
+                                        .cwiseProduct(weights_of_mesh(problem, forward, mesh_error));
     Whitening rig(weights, nuisances.columns, nuisances.precisions);
     Whitening all = with_columns(weights, nuisances, columns, prior_sd);
     return {explanation,          std::move(forward), std::move(columns), std::move(prior_sd),

@@ -27,17 +27,24 @@ Explanation guess_of(const BodyModel& model, const MeasurementSet& set, const Pr
     return is_sets ? told : scaled;
 }
 
-/// Of the laws of large deformation the last is the best behaved; where a load has no equilibrium under it, as where
-/// the guess is too soft, small strain does.
-LinearPoint point_of(const BodyModel& model, const MeasurementSet& set, const Problem& problem, int threads,
-                     bool& is_sets) {
+/// Of the laws of large deformation the last is the best behaved. Where a load has no equilibrium under it the guess is
+/// too soft: it is made stiffer, in steps; where that does not help, small strain has one.
+LinearPoint point_of(const BodyModel& model, const MeasurementSet& set, const Problem& problem,
+                     const DiagnoseOptions& options, bool& is_sets) {
+    const int threads = options.refit.threads;
     const int last = static_cast<int>(model.laws().size()) - 1;
-    try {
-        return linearise(model, problem, guess_of(model, set, problem, last, threads, is_sets), threads);
-    } catch (const SolverFailure&) {
-        if (last == 0) throw;
-        return linearise(model, problem, guess_of(model, set, problem, 0, threads, is_sets), threads);
+    Explanation guess = guess_of(model, set, problem, last, threads, is_sets);
+    constexpr int attempts = 4;  // up to e^0.9 = 2.5 times as stiff
+    for (int attempt = 0; attempt < attempts && last > 0; ++attempt) {
+        try {
+            return linearise(model, problem, guess, options.mesh_error, threads);
+        } catch (const SolverFailure&) {
+            is_sets = false;
+            for (Eigen::Index p = 0; p < guess.theta.size(); ++p)
+                if (model.parameters()[static_cast<std::size_t>(p)].stiffens) guess.theta[p] += 0.3;
+        }
     }
+    return linearise(model, problem, guess_of(model, set, problem, 0, threads, is_sets), options.mesh_error, threads);
 }
 
 std::vector<Suspicion> exchanged_markers(const Problem& problem, const Whitening& V, const Eigen::VectorXd& d) {
@@ -80,7 +87,7 @@ Preflight assess(const BodyModel& model, const MeasurementSet& set, const Prefli
     result.tells_a_force = tells_a_force(set);
 
     report(progress, "the body under its loads", 0.1);
-    const LinearPoint point = point_of(model, set, problem, threads, result.guess_is_sets);
+    const LinearPoint point = point_of(model, set, problem, options.diagnose, result.guess_is_sets);
     result.guess = point.explanation;
     result.nuisance_mm = problem.rms_mm(point.rig.nuisance_sd().cwiseProduct(problem.sigma));
     result.parameters = parameter_prospects(model, problem, point, threads);

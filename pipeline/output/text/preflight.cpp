@@ -99,6 +99,10 @@ std::vector<std::string> parameter_sentences(const json& preflight) {
                 fmt::format("{} is hardly told by these readings: {:.3g} to {:.3g}{} (95 %).", what, low, high, unit));
         }
     }
+    if (preflight["guess"]["law"] == "linear")
+        result.emplace_back(
+            "No equilibrium was found in large deformation: all is judged in small strain, and strengths are orders of "
+            "magnitude where the body moves far.");
     const json& parts = preflight["parts"];
     const auto informed = std::ranges::count_if(parts, [](const json& part) { return part["informed"].get<bool>(); });
     result.push_back(

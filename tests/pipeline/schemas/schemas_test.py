@@ -56,7 +56,7 @@ for drawn in sorted(source.glob("samples/import/*/map.yaml")):
     check("map", drawn)
 
 # A bar's four corners, filmed while its end is pulled: a rig's files in their smallest form.
-points = [(0, 0, 0), (100, 0, 0), (100, 20, 0), (100, 0, 20)]
+points = [(0, 0, 0), (80, 0, 0), (80, 16, 0), (80, 0, 16)]
 frames = ["time [s]," + ",".join(f"{name}_{axis} [mm]" for name in "abcd" for axis in "xyz") + ",load [N]"]
 for frame in range(41):
     pulled = 0.0 if frame < 20 else 1.0
@@ -64,10 +64,10 @@ for frame in range(41):
     frames.append(f"{frame / 10}," + ",".join(f"{value}" for place in places for value in place) + f",{2 * pulled}")
 mapped = """name: bar
 mesh: body.stl
-supports: [{box: {min: [-1, -1, -1], max: [1, 21, 21]}}]
+supports: [{box: {min: [-1, -1, -1], max: [1, 20, 20]}}]
 files: [{file: run.csv}]
 register: none
-forces: [{at: [100, 10, 10], radius: 5, along: [1, 0, 0], channel: load}]
+forces: [{at: [80, 8, 8], radius: 4, along: [1, 0, 0], channel: load}]
 """
 
 with tempfile.TemporaryDirectory() as scratch:
