@@ -19,7 +19,11 @@ std::vector<std::string> effects_that(const json& preflight, const char* can_be_
     return names;
 }
 
-std::string cell(const json& value) { return value.is_number() ? fmt::format("{:.2g}", value.get<double>()) : "-"; }
+std::string cell(const json& value) {
+    constexpr double large = 100;  // two digits suffice, without a power of ten
+    if (!value.is_number()) return "-";
+    return fmt::format(fmt::runtime(value.get<double>() < large ? "{:.2g}" : "{:.0f}"), value.get<double>());
+}
 
 constexpr std::size_t most_listed = 6;  // lines of a kind; the page and the JSON have all
 
