@@ -2,10 +2,13 @@
 
 #include <gmock/gmock.h>
 
+#include <memory>
+
 #include "mesh/text/atomic_file.h"
 #include "pipeline/command_line/commands.h"
 #include "pipeline/output/text/preflight.h"
 #include "tests/messages.h"
+#include "tests/temporary_folder.h"
 
 namespace palpate::pipeline {
 namespace {
@@ -18,19 +21,26 @@ using ::testing::Not;
 class CheckedSet : public testing::Test {
 protected:
     static void SetUpTestSuite() {
+        folder_ = std::make_unique<TemporaryFolder>();
         const commands::NewOptions made{.folder = folder() / "new"};
         commands::new_case(made, {});
         commands::ProbeCommandOptions probed{
             .input = folder() / "new/body.stl", .output = folder() / "set", .overrides = {}};
         probed.synthesis.hide = {"none"};
+        probed.overrides.set("volume.edge_length", 12);
+        probed.overrides.set("probing.probes", 4);
+        probed.overrides.set("probing.markers", 20);
         commands::probe(probed, {});
     }
-    static void TearDownTestSuite() { std::filesystem::remove_all(folder()); }
-    static std::filesystem::path folder() { return std::filesystem::temp_directory_path() / "palpate-check-test"; }
+    static void TearDownTestSuite() { folder_.reset(); }
+    static std::filesystem::path folder() { return folder_->path(); }
     static commands::Outcome check(const commands::CheckOptions& options) { return commands::check(options, {}); }
     static commands::CheckOptions of_set(std::vector<std::string> expected = {}) {
         return {.input = folder() / "set", .expected = std::move(expected), .overrides = {}};
     }
+
+private:
+    static inline std::unique_ptr<TemporaryFolder> folder_;
 };
 
 TEST_F(CheckedSet, TellsWhatItCouldName) {
