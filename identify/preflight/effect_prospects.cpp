@@ -29,9 +29,12 @@ double largest_mm(const Problem& problem, const Eigen::VectorXd& mm) {
     return std::sqrt(largest);
 }
 
-void tell_trace(const Problem& problem, const Eigen::VectorXd& sigmas, double factor, EffectProspect& prospect) {
+/// `weights` (N): below 1 where more than noise is unsure, as where a force sensor is finer than any mesh.
+void tell_trace(const Problem& problem, const Eigen::VectorXd& weights, const Eigen::VectorXd& sigmas, double factor,
+                EffectProspect& prospect) {
     const Eigen::VectorXd mm = sigmas.cwiseProduct(problem.sigma);
-    prospect.rms_sigma = factor * std::sqrt(sigmas.squaredNorm() / static_cast<double>(sigmas.size()));
+    prospect.rms_sigma =
+        factor * std::sqrt(weights.cwiseProduct(sigmas).squaredNorm() / static_cast<double>(sigmas.size()));
     prospect.rms_mm = factor * problem.rms_mm(mm);
     prospect.max_mm = factor * largest_mm(problem, mm);
     prospect.prior_rms_mm = problem.rms_mm(mm);
@@ -73,7 +76,7 @@ std::vector<EffectProspect> effect_prospects(const BodyModel& model, const Probl
 
         const double told = std::isfinite(prospect.least) ? prospect.least : factors.seen[median];
         const auto at = static_cast<Eigen::Index>(median);
-        tell_trace(problem, cases.readings.col(at), std::isfinite(told) ? told : 1, prospect);
+        tell_trace(problem, V.weights(), cases.readings.col(at), std::isfinite(told) ? told : 1, prospect);
         const std::vector<EffectNumber> numbers = effect.numbers(model, problem);
         if (std::isfinite(told)) prospect.own = own_number(effect, numbers, cases.values.col(at), told);
         if (std::isfinite(prospect.easiest))
