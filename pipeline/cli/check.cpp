@@ -6,17 +6,22 @@
 #include <map>
 
 #include "identify/diagnosis/statistics/independent_readings.h"
+#include "identify/effects/catalogue.h"
 #include "identify/measurements/rig/fittable.h"
+#include "mesh/errors.h"
 #include "mesh/formats/vtk/vtk_files.h"
 #include "mesh/supports/held_parts.h"
 #include "mesh/text/atomic_file.h"
+#include "pipeline/analysis/preflight.h"
 #include "pipeline/case/read_case.h"
 #include "pipeline/case/subject.h"
 #include "pipeline/command_line/commands.h"
 #include "pipeline/command_line/flags.h"
 #include "pipeline/command_line/subcommands.h"
+#include "pipeline/output/html/check/check_page.h"
 #include "pipeline/output/json/comparison.h"
 #include "pipeline/output/text/describe/describe_rig.h"
+#include "pipeline/output/text/preflight.h"
 
 namespace palpate::pipeline::commands {
 namespace {
@@ -59,8 +64,8 @@ std::string describe_information(const identify::Problem& problem, int independe
            ": too few for most effects, whatever the noise. Read more markers, or load other places and directions.\n";
 }
 
-/// Before a fit: what the readings are good for. Nothing where none is labelled.
-void add_preflight(const identify::MeasurementSet& set, Outcome& outcome) {
+/// How many data the readings are. Nothing where none is labelled.
+void add_information(const identify::MeasurementSet& set, Outcome& outcome) {
     if (std::ranges::none_of(set.states, [](const auto& state) { return !state.readings.empty(); })) return;
     // Where the noise is not specified: a hundredth of how far the markers move.
     const identify::Problem raw = identify::make_problem(set, 1);
@@ -70,6 +75,34 @@ void add_preflight(const identify::MeasurementSet& set, Outcome& outcome) {
     const int independent = identify::independent_readings(problem);
     outcome.text += describe_information(problem, independent) + describe_numbering(problem);
     outcome.json["independent_readings"] = independent;
+}
+
+/// Before a fit: what the set could show, which readings look off, and what to measure next.
+void add_preflight(const Subject& subject, const Common& common, Outcome& outcome) {
+    identify::MeasurementSet set = *subject.set;
+    set.supports = subject.supports;
+    const PreflightOfSet judged = judge(set, common.threads, Console::progress());
+    outcome.json["preflight"] = judged.preflight;
+    if (judged.preflight.is_null()) {
+        outcome.json["no_preflight"] = judged.why_none;
+        outcome.text += "What the set could show was not judged: " + judged.why_none + ".\n";
+    } else {
+        outcome.text += preflight_in_words(judged.preflight);
+    }
+}
+
+/// Effects that the set has to be able to show. @throws InvalidInput without a set.
+void judge_expectations(const CheckOptions& options, Outcome& outcome) {
+    for (const std::string& effect : options.expected) {
+        const bool is_judged = outcome.json.contains("preflight") && !outcome.json["preflight"].is_null();
+        const std::string why = is_judged ? why_not_shown(outcome.json["preflight"], effect)
+                                          : fmt::format("The set cannot be asked for {}: {}.", effect,
+                                                        outcome.json.value("no_preflight", "its body cannot be run"));
+        outcome.json["expected"].push_back({{"effect", effect}, {"shown", why.empty()}, {"words", why}});
+        if (why.empty()) continue;
+        outcome.text += "Not as expected: " + why + "\n";
+        if (outcome.code == done) outcome.code = not_met;
+    }
 }
 
 /// Where faults of each kind are, the first few of them.
@@ -171,11 +204,18 @@ void add_grips(const Subject& subject, Outcome& outcome) {
     }
 }
 
+bool is_page(const std::filesystem::path& output) { return output.extension() == ".html"; }
+
 }  // namespace
 
 Outcome check(const CheckOptions& options, const Common& common) {
     if (!options.output.empty()) refuse_to_overwrite(options.output, common.force);
+    for (const std::string& effect : options.expected) identify::find_effect(effect);
     const Subject subject = read_subject_as_it_is(read_case(options.input, options.overrides));
+    if (!subject.set && !options.expected.empty())
+        throw InvalidInput(
+            fmt::format("{}: --expect asks what measurements can show, and this is a mesh; give a measurement set",
+                        options.input.string()));
     std::vector<mesh::FaultPlace> places;
     const mesh::SurfaceReport surface = mesh::check_surface(subject.surface, &places);
     const std::vector<std::string> faults = mesh::describe_faults(surface);
@@ -215,12 +255,19 @@ Outcome check(const CheckOptions& options, const Common& common) {
     add_supports(subject, outcome);
     if (subject.set) add_grips(subject, outcome);
     const bool is_fittable = !subject.set || identify::parts_not_fitted_yet(*subject.set).empty();
-    if (subject.set && is_fittable) add_preflight(*subject.set, outcome);
-    if (!options.output.empty()) {
+    if (subject.set && is_fittable) add_information(*subject.set, outcome);
+    if (subject.set && subject.refusal.empty()) add_preflight(subject, common, outcome);
+    judge_expectations(options, outcome);
+    if (is_page(options.output)) {
+        write_check_page(options.output, subject, outcome.json);
+        outcome.text += fmt::format("Written: {}\n", options.output.string());
+    } else if (!options.output.empty()) {
         write_faults(options.output, subject.surface, places);
         mesh::write_text(options.output / "check.json", outcome.json.dump(2) + "\n");
+        write_check_page(options.output / "check.html", subject, outcome.json);
         outcome.text += fmt::format(
-            "Written to {}: check.json; surface.vtp and faults.vtp, coloured by 'fault', show where (ParaView).\n",
+            "Written to {}: check.html, check.json; surface.vtp and faults.vtp, coloured by 'fault', show where "
+            "(ParaView).\n",
             options.output.string());
     }
     if (is_fittable && subject.refusal.empty())
@@ -234,12 +281,22 @@ Outcome check(const CheckOptions& options, const Common& common) {
 namespace palpate::pipeline {
 
 void Subcommands::add_check(CLI::App& app) {
-    auto* sub = subcommand(app, "check", "Reads everything, repairs nothing, says what is wrong.",
-                           "  palpate check liver.stl\n  palpate check liver.stl -o liver-check\n  palpate check "
-                           "my-measurements/ --json\n",
-                           [this] { return commands::check(check, common); });
+    auto* sub = subcommand(
+        app, "check", "Reads everything, repairs nothing, says what is wrong, and what measurements could show.",
+        "  palpate check liver.stl\n"
+        "  palpate check liver.stl -o liver-check          # a folder that shows where faults are\n"
+        "  palpate check my-measurements/ -o check.html    # one page: what could be named, what to measure next\n"
+        "  palpate check my-measurements/ --expect gravity # exit code 5 where they cannot show it\n",
+        [this] { return commands::check(check, common); });
     sub->add_option("INPUT", check.input, "A case.yaml, a measurement set, or a mesh")->required();
-    sub->add_option("-o,--output", check.output, "A folder for the report, and for files that show where faults are");
+    sub->add_option("-o,--output", check.output,
+                    "A page (.html); or a folder for it, for check.json, and for files that show where faults are");
+    sub->add_option(
+           "--expect", check.expected,
+           "An effect that the set has to be able to show at the strength of its prior, else the exit code is 5; "
+           "repeatable, or separated by commas")
+        ->delimiter(',')
+        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
     add_flags_of(sub, check.overrides, "Body");
 }
 

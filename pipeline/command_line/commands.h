@@ -41,7 +41,8 @@ Outcome run(const RunOptions& options, const Common& common);
 
 struct CheckOptions {
     std::filesystem::path input;
-    std::filesystem::path output = {};  // a folder; none: nothing is written
+    std::filesystem::path output = {};       // a folder, or a page (.html); none: nothing is written
+    std::vector<std::string> expected = {};  // effects that the set has to be able to show
     CaseOverrides overrides;
 };
 Outcome check(const CheckOptions& options, const Common& common);

@@ -175,6 +175,31 @@ TEST(Compare, ASetWithoutReadingsIsToldToTheUser) {
     }
 }
 
+TEST(Compare, ASetThatReadsMomentsAloneIsToldToTheUser) {
+    const SmallBody body;
+    MeasurementSet set = body.set({});
+    set.markers.clear();
+    set.tools = {{.name = "grip",
+                  .shape = mesh::GripShape{{mesh::BoxRegion{Vec3(34, -1, -1), Vec3(41, 11, 11)}}},
+                  .bonded = true,
+                  .origin = Vec3(40, 5, 5)}};
+    LoadState turned{.probe = 1, .time = 1};
+    turned.motions = {{.tool = 0, .rotation = Vec3(0.05, 0, 0)}};
+    turned.reactions = {{.tool = 0, .moment = Vec3(0.5, 0, 0)}};
+    set.states = {turned};
+    try {
+        compare(body.chain(), set);
+        FAIL() << "no exception";
+    } catch (const InvalidInput& error) {
+        const std::string words = error.what();
+        for (const char* word : {"'bar' tells neither a position nor a force", "positions.csv", "reactions.csv forces"})
+            EXPECT_NE(words.find(word), std::string::npos) << words;
+    }
+    // With one component of the force it is compared.
+    set.states[0].reactions[0].force.x() = 0;
+    EXPECT_TRUE(compare(body.chain(), set).reactions.has_value());
+}
+
 /// States whose error is a + b load^p, with a little noise taken off.
 std::vector<ErrorUnderLoad> errors(double p, bool unloaded) {
     std::vector<ErrorUnderLoad> states;

@@ -76,6 +76,21 @@ TEST(C3dFile, FirstFrameSetsTheClock) {
     EXPECT_NEAR(recordings[1].times[0], 0.5, 1e-12);
 }
 
+TEST(C3dFile, ParametersEndWithTheirSection) {
+    // As in files from SGI's machines: the last record's offset leads far beyond what the section's length says.
+    for (const auto processor : {C3dSample::Processor::intel, C3dSample::Processor::mips}) {
+        const C3dSample sample(processor);
+        std::string bytes = sample.bytes();
+        const std::size_t last = bytes.find("TIMES") + 5;
+        bytes.replace(last, 2, sample.integer(16129));
+        bytes.append(20000, '\x7F');  // so that there is something to run into
+        const TemporaryFolder folder;
+        const auto recordings = read_recordings(folder.write("run.c3d", bytes));
+        ASSERT_EQ(recordings[0].points.size(), 2u);
+        EXPECT_EQ(recordings[0].points[0].name, "Base");
+    }
+}
+
 TEST(C3dFile, MapTellsUnitRateAndNames) {
     FileMap map;
     map.unit = "mm";

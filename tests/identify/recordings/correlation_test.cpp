@@ -1,3 +1,4 @@
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -29,6 +30,19 @@ TEST(Dice, IsInPixelsAndDropsWhatFailed) {
     EXPECT_TRUE(notes_tell(read_sample(dice_sample), "'unit: pixel'"));  // without a size, it is said
 }
 
+TEST(Dice, OfVersion1IsInPixelsToo) {
+    const std::string columns = "COORDINATE_X,COORDINATE_Y,DISPLACEMENT_X,DISPLACEMENT_Y,VSG_STRAIN_XX,GAMMA,MATCH\n";
+    const std::string rows =
+        "6.1E+01,9.71E+02,-1.5E-01,-2.5E+00,-1E-03,3.4E-03,0\n6.1E+01,9.36E+02,0,-2.5E+00,0,4E-03,0\n";
+    for (const std::string& head :
+         {std::string(), std::string("***\n*** Digital Image Correlation Engine (DICe)\n***\n")}) {
+        const Recording frame = read_sample(head + columns + rows);
+        EXPECT_EQ(frame.format, "DICe, image correlation");
+        EXPECT_TRUE(notes_tell(frame, "'unit: pixel'"));
+        expect_point(frame.points[0], {61, 971, 0}, {-0.15, -2.5, 0});
+    }
+}
+
 TEST(Aramis, HasNamesInAComment) {
     const Recording frame = read_sample(aramis_sample);
     EXPECT_EQ(frame.format, "GOM Aramis, image correlation");
@@ -36,6 +50,37 @@ TEST(Aramis, HasNamesInAComment) {
     EXPECT_EQ(frame.points[0].name, "7");
     expect_point(frame.points[0], {1.5, 2, 3}, {0.1, 0.2, 0.3});
     EXPECT_TRUE(frame.points[1].at.array().isNaN().all());
+}
+
+/// A stage: where points stand in it, and how far that is from the first.
+std::string gom_stage(double time, double moved) {
+    return fmt::format(
+        "# Units: length:mm angle:deg time:s \r\n# Stage: Stufe 2\r\nstage;index;relative_time;date\r\n\"Stufe "
+        "2\";2;{};\"2023-02-10T13:54:18.404\"\r\n# Name : Facet\r\nid;x;y;z;displacement_x;displacement_y;"
+        "displacement_z\r\n0;{};2;3;{};0;0\r\n1;{};5;6;{};0;0\r\n",
+        time, 1 + moved, moved, 4 + moved, moved);
+}
+
+TEST(Gom, StagesTellWherePointsStandAndWhen) {
+    const Recording frame = read_sample(gom_stage(21.5551, 0.25));
+    EXPECT_EQ(frame.format, "GOM, image correlation");
+    ASSERT_EQ(frame.points.size(), 2u);
+    EXPECT_EQ(frame.points[0].name, "0");
+    expect_point(frame.points[0], {1, 2, 3}, {0.25, 0, 0});
+    ASSERT_TRUE(frame.has_clock);
+    EXPECT_NEAR(frame.times[0], 21.5551, 1e-12);
+    EXPECT_TRUE(notes_tell(frame, "of the stage"));
+}
+
+TEST(Gom, StagesInAFolderAreARecording) {
+    const TemporaryFolder folder;
+    folder.write("stages/Facet 1_0.000 s.csv", gom_stage(0, 0));
+    folder.write("stages/Facet 1_21.555 s.csv", gom_stage(21.5551, 0.25));
+    folder.write("stages/Facet 1_9.500 s.csv", gom_stage(9.5, 0.125));
+    const Recording run = read_recordings(folder / "stages").at(0);
+    EXPECT_TRUE(run.has_clock);
+    EXPECT_TRUE(run.times.isApprox(Eigen::Vector3d(0, 9.5, 21.5551), 1e-12)) << run.times.transpose();
+    EXPECT_NEAR(run.points.at(1).at(0, 2), 4.25, 1e-9);
 }
 
 TEST(Vic3d, TellsLargeLettersFromSmallOnes) {

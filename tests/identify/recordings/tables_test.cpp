@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "tests/identify/recordings/read_sample.h"
 #include "tests/identify/recordings/text_samples.h"
@@ -144,6 +145,47 @@ TEST(Tables, BluehillHasPreambleQuotesAndARowOfUnits) {
     EXPECT_EQ(run.channels[1].unit, "N");
     EXPECT_NEAR(run.channels[1].values[2], 2.1, 1e-12);
     EXPECT_NEAR(run.times[1], 0.1, 1e-12);
+}
+
+TEST(Tables, BluehillInQuotesHasDecimalCommasBetweenCommas) {
+    const std::string text =
+        "Specimen properties : Final anvil height,\"2,22\",mm\nSpecimen properties : Specimen label,\"\"\n\n"
+        "Time,Extension,Load,Compressive strain (Extension),Cycle count\n(s),(mm),(kN),(mm/mm),\n"
+        "\"0,0\",\"0,0\",\"0,0\",\"0,0\",\"0\"\n\"0,1\",\"-0,02\",\"-0,02\",\"-0,01\",\"1\"\n";
+    for (const std::optional<char> decimal : {std::optional<char>(), std::optional(',')}) {
+        FileMap map;
+        map.decimal = decimal;
+        const Recording run = read_sample(text, map);
+        ASSERT_EQ(run.times.size(), 2);
+        EXPECT_NEAR(run.times[1], 0.1, 1e-12);
+        ASSERT_GE(run.channels.size(), 2u);
+        EXPECT_EQ(run.channels[1].name, "Load");
+        EXPECT_NEAR(run.channels[1].values[1], -20, 1e-9);
+    }
+}
+
+TEST(Tables, RemarksBesideTheTableAreNoNames) {
+    const Recording run = read_sample(
+        "Time,Extension,Load,,10 mm/min\n(s),(mm),(N),,20 N preload\n0,0.5,20,,\n0.1,0.6,21.5,,\n0.2,0.7,22,,\n");
+    EXPECT_EQ(run.format, "testing machine, Instron Bluehill");
+    ASSERT_TRUE(run.has_clock);
+    EXPECT_NEAR(run.times[2], 0.2, 1e-12);
+    ASSERT_EQ(run.channels.size(), 2u);
+    EXPECT_EQ(run.channels[1].name, "Load");
+    EXPECT_EQ(run.channels[1].unit, "N");
+}
+
+TEST(Tables, GroupsOfThousandsInQuotesAreNoDecimals) {
+    const Recording run = read_sample("time,force\n0,\"1,234\"\n1,\"2,345\"\n");
+    EXPECT_NEAR(run.channels.at(0).values[1], 2345, 1e-9);
+}
+
+TEST(Tables, PosesAreNamedByPositionAndQuaternion) {
+    const Recording run =
+        read_sample("time\ttip-px\ttip-py\ttip-pz\ttip-qx\ttip-qy\ttip-qz\n0\t1\t2\t3\t0\t0\t1\n1\t4\t5\t6\t0\t0\t1\n");
+    ASSERT_EQ(run.points.size(), 1u);
+    EXPECT_EQ(run.points[0].name, "tip");
+    EXPECT_EQ(run.points[0].at.col(1), Eigen::Vector3d(4, 5, 6));
 }
 
 TEST(Tables, ZwickHasLatinLettersAndDecimalCommas) {

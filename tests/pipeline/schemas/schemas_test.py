@@ -52,8 +52,38 @@ for case in sorted(source.glob("samples/*/case.yaml")):
 for described in sorted(source.glob("samples/**/set.yaml")):
     check("set", described)
 
+for drawn in sorted(source.glob("samples/import/*/map.yaml")):
+    check("map", drawn)
+
+# A bar's four corners, filmed while its end is pulled: a rig's files in their smallest form.
+points = [(0, 0, 0), (80, 0, 0), (80, 16, 0), (80, 0, 16)]
+frames = ["time [s]," + ",".join(f"{name}_{axis} [mm]" for name in "abcd" for axis in "xyz") + ",load [N]"]
+for frame in range(41):
+    pulled = 0.0 if frame < 20 else 1.0
+    places = [(x + 0.02 * pulled * x / 2, y, z) for x, y, z in points]
+    frames.append(f"{frame / 10}," + ",".join(f"{value}" for place in places for value in place) + f",{2 * pulled}")
+mapped = """name: bar
+mesh: body.stl
+supports: [{box: {min: [-1, -1, -1], max: [1, 20, 20]}}]
+files: [{file: run.csv}]
+register: none
+forces: [{at: [80, 8, 8], radius: 4, along: [1, 0, 0], channel: load}]
+"""
+
 with tempfile.TemporaryDirectory() as scratch:
     at = pathlib.Path(scratch)
+    palpate("new", at / "rig")
+    (at / "rig/run.csv").write_text("\n".join(frames) + "\n")
+    (at / "rig/map.yaml").write_text(mapped)
+    check("map", at / "rig/map.yaml")
+    palpate("import", at / "rig/run.csv", "--map", at / "rig/map.yaml", "-o", at / "imported")
+    check("import", at / "imported/import.json")
+    check("set", at / "imported/set.yaml")
+    palpate("import", at / "rig/run.csv", "--describe", "-o", at / "drafted.yaml")
+    check("map", at / "drafted.yaml")
+    palpate("check", at / "imported", "-o", at / "checked")
+    check("check", at / "checked/check.json")
+
     palpate("new", at / "case")
     check("case", at / "case/case.yaml")
 

@@ -61,6 +61,10 @@ C3dParameters::C3dParameters(const C3dBytes& bytes) {
     std::map<int, std::string> groups;
     std::vector<std::pair<int, std::pair<std::string, C3dParameter>>> found;
     std::size_t at = bytes.parameters_at() + 4;
+    // How long the section is stands before it, in blocks; in some files the last record's offset leads out of it.
+    constexpr std::size_t block = 512;
+    const auto blocks = static_cast<std::size_t>(bytes.byte(bytes.parameters_at() + 2));
+    const std::size_t end = blocks > 0 ? bytes.parameters_at() + blocks * block : bytes.size();
     while (true) {
         // A record: length of the name (negative where it is locked), group (negative where it is one itself), name,
         // offset of the next record from here.
@@ -81,6 +85,7 @@ C3dParameters::C3dParameters(const C3dBytes& bytes) {
                             "it again.",
                             bytes.name(), mesh::cited(name), next));
         at = after + static_cast<std::size_t>(next);
+        if (at >= end && end <= bytes.size()) break;
         if (at >= bytes.size()) bytes.require(at, 1);
     }
     for (auto& [id, named] : found)

@@ -183,6 +183,11 @@ CoordinateName coordinate_in(const std::string& name) {
     if (name.empty()) return {};
     if (name.size() == 1) return {"", axis_of(name[0])};
     const char before = name[name.size() - 2];
+    // "tip-px" beside "tip-qx", of a pose
+    const bool is_of_position =
+        name.size() > 3 && (before == 'p' || before == 'P') && is_separator(name[name.size() - 3]);
+    if (axis_of(name.back()) >= 0 && is_of_position)
+        return {without_separators(name.substr(0, name.size() - 2)), axis_of(name.back())};
     if (axis_of(name.back()) >= 0 && (is_separator(before) || is_digit(before)))
         return {without_separators(name.substr(0, name.size() - 1)), axis_of(name.back())};
     // "M1X" above, "tipX" here: a change of case separates too

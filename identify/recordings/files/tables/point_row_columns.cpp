@@ -3,6 +3,8 @@
 
 #include "identify/recordings/files/tables/column_roles.h"
 #include "identify/recordings/files/tables/table_recording.h"
+#include "identify/recordings/files/text/cell.h"
+#include "mesh/text/words.h"
 
 namespace palpate::identify {
 namespace {
@@ -91,7 +93,10 @@ std::array<int, 3> displacements_in(const NumberTable& table) {
 }
 
 std::string program_of(const NumberTable& table) {
-    const bool is_dice = find_any(table, {"subset_id", "status_flag"}) >= 0 && find_any(table, {"gamma"}) >= 0;
+    // Version 1 has neither names of subsets nor flags.
+    const bool is_dice =
+        (find_any(table, {"subset_id", "status_flag", "match"}) >= 0 && find_any(table, {"gamma"}) >= 0) ||
+        table.preamble.find("digital image correlation engine") != std::string::npos;
     if (is_dice) return "DICe, image correlation";
     const bool is_gom = table.preamble.find("gom") != std::string::npos ||
                         table.preamble.find("aramis") != std::string::npos || find_any(table, {"x_undef"}) >= 0;
@@ -100,6 +105,27 @@ std::string program_of(const NumberTable& table) {
                         (find_column(table, "X", false) >= 0 || table.preamble.find("vic-3d") != std::string::npos);
     if (is_vic) return "VIC-3D, image correlation";
     return "image correlation, a row for each point";
+}
+
+/// "# Units: length:mm angle:deg time:s", "# Stage: Stufe 2", then "stage;index;relative_time;date" and its values: a
+/// stage as GOM Correlate and ZEISS Inspect write it, with the places of the stage and the ways to them.
+void take_stage(const NumberTable& table, PointRowColumns& columns) {
+    const std::string& above = table.preamble;
+    const bool is_stage = above.find("stage") != above.npos && above.find("units: length:") != above.npos;
+    if (!is_stage || columns.displacement[0] < 0) return;
+    columns.format = "GOM, image correlation";
+    columns.are_moved = find_column(table, "x", true) == columns.at[0];
+    const std::size_t unit = above.find("length:") + std::string_view("length:").size();
+    columns.unit = above.substr(unit, above.find_first_of(" \t\r\n;", unit) - unit);
+    std::size_t line = above.find("relative_time");
+    if (line == above.npos) return;
+    line = above.rfind('\n', line) + 1;  // npos + 1: it is the first
+    const std::size_t end = above.find('\n', line), next_end = above.find('\n', end + 1);
+    const char delimiter = above.find(';', line) < end ? ';' : ',';
+    const auto names = cells_of(std::string_view(above).substr(line, end - line), delimiter);
+    const auto values = cells_of(std::string_view(above).substr(end + 1, next_end - end - 1), delimiter);
+    for (std::size_t c = 0; c < names.size() && c < values.size(); ++c)
+        if (trimmed(names[c]) == "relative_time") columns.instant = mesh::parse_number(std::string(trimmed(values[c])));
 }
 
 PointRowColumns told_by_map(const NumberTable& table, const std::string& file, const FileMap& map) {
@@ -118,6 +144,7 @@ PointRowColumns told_by_map(const NumberTable& table, const std::string& file, c
     columns.displacement = displacements_in(table);
     columns.quality = find_any(table, {"sigma"});
     if (columns.displacement[0] >= 0) columns.format = program_of(table);
+    take_stage(table, columns);
     return columns;
 }
 
@@ -142,6 +169,7 @@ std::optional<PointRowColumns> point_rows_in(const NumberTable& table, const Tex
     // With instants and without names it is one point that moves.
     if (is_moving && columns.point < 0) return std::nullopt;
     columns.format = has_displacement ? program_of(table) : "table, a row for each point";
+    take_stage(table, columns);
     return columns;
 }
 

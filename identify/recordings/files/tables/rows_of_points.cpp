@@ -103,6 +103,11 @@ void set_frame_clock(const NumberTable& table, const PointRowColumns& columns, c
                 recording);
         }
     }
+    if (columns.instant && frames == 1) {
+        recording.times = Eigen::VectorXd::Constant(1, *columns.instant);
+        recording.has_clock = true;
+        return;
+    }
     set_no_clock(frames, recording);
     if (columns.frame >= 0) recording.times = Eigen::Map<const Eigen::VectorXd>(places.frames.data(), frames);
     recording.notes.emplace_back("no clock is found: 'rate' in a map tells it");
@@ -131,7 +136,7 @@ Recording rows_of_points(const NumberTable& table, const PointRowColumns& column
     const bool has_displacement = columns.displacement[0] >= 0;
     std::string told = table.columns[static_cast<std::size_t>(columns.at[0])].unit;
     const bool is_in_pixels = columns.format.starts_with("DICe") && columns.at[2] < 0;
-    if (told.empty() && is_in_pixels) told = "pixel";
+    if (told.empty()) told = is_in_pixels ? "pixel" : columns.unit;
     const double factor = position_factor(map, told, file, recording);
     set_frame_clock(table, columns, places, map, text, recording);
 
@@ -156,11 +161,14 @@ Recording rows_of_points(const NumberTable& table, const PointRowColumns& column
         lost += is_lost;
         const Vec3 at = triple(table, columns.at, r), moved = triple(table, columns.displacement, r);
         if (is_lost || !at.allFinite() || !moved.allFinite()) continue;
-        recording.points[p].at.col(static_cast<Eigen::Index>(f)) = factor * (at + moved);
+        const Vec3 now = columns.are_moved ? at : Vec3(at + moved);
+        recording.points[p].at.col(static_cast<Eigen::Index>(f)) = factor * now;
         if (has_displacement) recording.points[p].displacement.col(static_cast<Eigen::Index>(f)) = factor * moved;
     }
     if (has_displacement)
-        recording.notes.emplace_back("coordinates are those at rest: positions are these and the displacements");
+        recording.notes.emplace_back(columns.are_moved
+                                         ? "coordinates are those of the stage: displacements lead to them"
+                                         : "coordinates are those at rest: positions are these and the displacements");
     if (lost > 0) recording.notes.push_back(fmt::format("{} rows of a negative sigma: not found there", lost));
     if (columns.point < 0) recording.notes.emplace_back("points are named by the order of their rows");
     name_points(map, file, recording);

@@ -23,8 +23,11 @@ struct PointRowColumns {
     int point = -1, frame = -1, time = -1;  // -1: there is none
     std::array<int, 3> at{-1, -1, -1};
     std::array<int, 3> displacement{-1, -1, -1};
-    int quality = -1;    // negative where a point was not found
-    std::string format;  // whose names these are, in words
+    int quality = -1;                    // negative where a point was not found
+    std::string format;                  // whose names these are, in words
+    bool are_moved = false;              // coordinates are where points stand now, not where they rest
+    std::string unit = {};               // of coordinates, as the lines above tell it
+    std::optional<double> instant = {};  // of the only instant, likewise [s]
 };
 
 /// None where the table has a row for each instant.

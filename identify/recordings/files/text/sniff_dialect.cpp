@@ -70,7 +70,9 @@ Dialect decided(char delimiter, const SignEvidence& evidence, const FileMap& map
                            ? evidence.comma_decimal > evidence.point_decimal
                            : evidence.comma_undecided > 0 && evidence.point_decimal + evidence.point_undecided == 0 &&
                                  evidence.comma_grouped == 0;
-    dialect.decimal = map.decimal.value_or(comma && delimiter != ',' ? ',' : '.');
+    // Between commas a number with one stands in quotes, where only groups of thousands are usual, too.
+    const bool is_between_commas = delimiter == ',' && evidence.comma_decimal == 0;
+    dialect.decimal = map.decimal.value_or(comma && !is_between_commas ? ',' : '.');
     const bool is_comma = dialect.decimal == ',';
     const int grouped = is_comma ? evidence.point_grouped + evidence.point_undecided
                                  : evidence.comma_grouped + evidence.comma_undecided;
@@ -141,7 +143,6 @@ Dialect sniff_dialect(const std::vector<std::string_view>& lines, const FileMap&
     };
     Judged best = judged(sample, '\t', map);
     for (const char delimiter : {';', ',', ' '}) {
-        if (delimiter == ',' && map.decimal == ',') continue;
         const Judged other = judged(sample, delimiter, map);
         const bool is_as_good = other.score == best.score && occurs(delimiter) && !occurs(best.dialect.delimiter);
         if (other.score > best.score || is_as_good) best = other;

@@ -94,6 +94,7 @@ bool is_unit_row(const TextFile& text, int line, int width) {
     const auto cells = header_cells(text, line, width);
     int told = 0;
     for (const std::string_view cell : cells) {
+        if (cell.empty() && told > 1) break;  // what stands beyond a gap may be a remark
         if (cell.empty() || cell == "-") continue;
         if (!is_unit_cell(cell)) return false;
         ++told;

@@ -1,0 +1,191 @@
+#include "pipeline/output/html/check/check_picture.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "pipeline/output/base64.h"
+
+namespace palpate::pipeline {
+namespace {
+
+using nlohmann::json;
+
+template <class Number, class Matrix>
+json packed_rows(const char* type, const Matrix& matrix) {
+    std::vector<Number> numbers;
+    numbers.reserve(static_cast<std::size_t>(matrix.size()));
+    for (Eigen::Index i = 0; i < matrix.rows(); ++i)
+        for (Eigen::Index c = 0; c < matrix.cols(); ++c) numbers.push_back(static_cast<Number>(matrix(i, c)));
+    return {{"type", type},
+            {"data", base64({reinterpret_cast<const char*>(numbers.data()), numbers.size() * sizeof(Number)})}};
+}
+
+json place_json(const Vec3& at) { return {at.x(), at.y(), at.z()}; }
+
+Vec3 without_missing(const Vec3& v) { return v.array().isNaN().select(Vec3::Zero(), v); }
+
+/// Vertices that lie in regions.
+std::vector<int> inside(const std::vector<mesh::Region>& regions, const Points& vertices) {
+    std::vector<int> list;
+    if (regions.empty()) return list;
+    const auto flags = mesh::contains(regions, vertices);
+    for (Eigen::Index v = 0; v < vertices.rows(); ++v)
+        if (flags[static_cast<std::size_t>(v)] != 0) list.push_back(static_cast<int>(v));
+    return list;
+}
+
+/// The part whose middle lies nearest to each vertex.
+json parts_of(const Points& vertices, const json& preflight) {
+    json list = json::array();
+    if (preflight.is_null() || preflight["parts"].empty()) return list;
+    for (Eigen::Index v = 0; v < vertices.rows(); ++v) {
+        int nearest = 0;
+        double least = INFINITY;
+        for (std::size_t p = 0; p < preflight["parts"].size(); ++p) {
+            const json& at = preflight["parts"][p]["at"];
+            const double distance = (vertices.row(v) - Eigen::RowVector3d(at[0], at[1], at[2])).squaredNorm();
+            if (distance >= least) continue;
+            least = distance;
+            nearest = static_cast<int>(p);
+        }
+        list.push_back(nearest);
+    }
+    return list;
+}
+
+json tools_json(const identify::MeasurementSet& set) {
+    json list = json::array();
+    for (const mesh::Tool& tool : set.tools) {
+        const auto* ball = std::get_if<mesh::SphereShape>(&tool.shape);
+        const auto* flat = std::get_if<mesh::FlatShape>(&tool.shape);
+        list.push_back({{"name", tool.name},
+                        {"at", place_json(tool.origin)},
+                        {"radius", ball   ? ball->radius
+                                   : flat ? flat->radius
+                                          : 0.0},
+                        {"flat", flat != nullptr},
+                        {"axis", place_json(flat ? flat->axis : Vec3(0, 0, -1))}});
+    }
+    return list;
+}
+
+json tendons_json(const identify::MeasurementSet& set) {
+    json list = json::array();
+    for (const mesh::Actuator& actuator : set.actuators) {
+        const auto* tendon = std::get_if<mesh::TendonActuator>(&actuator.kind);
+        if (!tendon) continue;
+        json path = json::array();
+        for (Eigen::Index p = 0; p < tendon->path.rows(); ++p) path.push_back(place_json(tendon->path.row(p)));
+        list.push_back(path);
+    }
+    return list;
+}
+
+std::string words_of(const identify::MeasurementSet& set, const identify::LoadState& state) {
+    std::string words;
+    const auto add = [&](const std::string& more) { words += (words.empty() ? "" : ", ") + more; };
+    for (const mesh::Contact& contact : state.contacts)
+        if (!contact.force.isZero(0)) add(fmt::format("{:.3g} N", contact.force.norm()));
+    for (const mesh::ToolMotion& motion : state.motions)
+        add(fmt::format("{} moved by {:.3g} mm", set.tools[static_cast<std::size_t>(motion.tool)].name,
+                        without_missing(motion.translation).norm()));
+    for (const identify::Actuation& one : state.actuations)
+        add(fmt::format("{} at {:.3g}", set.actuators[static_cast<std::size_t>(one.actuator)].name, one.value));
+    if (words.empty()) words = "nothing acts that the set tells of";
+    const std::size_t read = state.readings.size();
+    words += fmt::format("; {} marker{} read", read, read == 1 ? "" : "s");
+    if (!state.reactions.empty()) words += fmt::format(", {} reactions", state.reactions.size());
+    return words + ".";
+}
+
+/// Markers by name, of suspicions in a state or of all.
+json odd_markers(const std::map<std::string, int>& by_name, const json& preflight, const identify::LoadState* state) {
+    json list = json::array();
+    if (preflight.is_null()) return list;
+    for (const json& one : preflight["suspicions"]) {
+        const json& where = one["state"];
+        const bool is_here = state ? !where.is_null() && where["probe"] == state->probe && where["time"] == state->time
+                                   : where.is_null();
+        if (!is_here) continue;
+        for (const char* key : {"marker", "other"})
+            if (one.contains(key)) list.push_back(by_name.at(one[key].get<std::string>()));
+    }
+    return list;
+}
+
+json picture_of_state(const identify::MeasurementSet& set, const identify::LoadState& state,
+                      const std::map<std::string, int>& by_name, const json& preflight) {
+    Points moved = Points::Constant(std::ssize(set.markers), 3, identify::missing);
+    for (const identify::Reading& reading : state.readings) {
+        if (reading.marker < 0 || reading.position.array().isNaN().all()) continue;
+        const Vec3 rest = set.markers[static_cast<std::size_t>(reading.marker)].rest;
+        moved.row(reading.marker) = without_missing(reading.position - rest);
+    }
+    json loads = json::array(), motions = json::array();
+    for (const mesh::Contact& contact : state.contacts) {
+        if (contact.force.isZero(0)) continue;
+        loads.push_back({contact.point.x(), contact.point.y(), contact.point.z(), contact.force.x(), contact.force.y(),
+                         contact.force.z()});
+    }
+    for (const mesh::ToolMotion& motion : state.motions) {
+        const mesh::Tool& tool = set.tools[static_cast<std::size_t>(motion.tool)];
+        motions.push_back({{"tool", tool.name},
+                           {"from", place_json(tool.origin)},
+                           {"to", place_json(tool.origin + without_missing(motion.translation))}});
+    }
+    return {{"name", fmt::format("Probe {} at {:g} s", state.probe, state.time)},
+            {"words", words_of(set, state)},
+            {"loads", loads},
+            {"motions", motions},
+            {"moved", packed_rows<float>("f32", moved)},
+            {"odd", odd_markers(by_name, preflight, &state)}};
+}
+
+}  // namespace
+
+json check_picture(const Subject& subject, const json& preflight) {
+    const Points& vertices = subject.surface.vertices;
+    json data{{"surface",
+               {{"points", packed_rows<float>("f32", vertices)},
+                {"triangles", packed_rows<std::int32_t>("i32", subject.surface.triangles)},
+                {"held", inside(subject.supports, vertices)},
+                {"gripped", json::array()},
+                {"part", parts_of(vertices, preflight)}}},
+              {"parts", json::array()},
+              {"markers",
+               {{"rest", packed_rows<float>("f32", Points(0, 3))}, {"names", json::array()}, {"odd", json::array()}}},
+              {"tools", json::array()},
+              {"tendons", json::array()},
+              {"states", json::array()}};
+    if (!preflight.is_null())
+        for (const json& part : preflight["parts"]) data["parts"].push_back({{"sd", part["sd_of_log_stiffness"]}});
+    if (!subject.set) return data;
+
+    const identify::MeasurementSet& set = *subject.set;
+    Points rest(std::ssize(set.markers), 3);
+    std::map<std::string, int> by_name;
+    for (std::size_t m = 0; m < set.markers.size(); ++m) {
+        rest.row(static_cast<Eigen::Index>(m)) = set.markers[m].rest;
+        by_name[label_of(set.markers[m])] = static_cast<int>(m);
+        data["markers"]["names"].push_back(label_of(set.markers[m]));
+    }
+    data["markers"]["rest"] = packed_rows<float>("f32", rest);
+    data["markers"]["odd"] = odd_markers(by_name, preflight, nullptr);
+    data["tools"] = tools_json(set);
+    data["tendons"] = tendons_json(set);
+    for (const mesh::Tool& tool : set.tools) {
+        const auto* grip = std::get_if<mesh::GripShape>(&tool.shape);
+        if (!grip) continue;
+        for (const int v : inside(grip->regions, vertices)) data["surface"]["gripped"].push_back(v);
+    }
+    constexpr std::size_t most_states = 400;  // 1 MB of a hundred markers
+    const std::size_t step = 1 + set.states.size() / most_states;
+    for (std::size_t s = 0; s < set.states.size(); s += step)
+        data["states"].push_back(picture_of_state(set, set.states[s], by_name, preflight));
+    return data;
+}
+
+}  // namespace palpate::pipeline

@@ -1,0 +1,165 @@
+// The picture that a check opens with: mesh, supports, markers, loads.
+'use strict';
+
+const heldColour = [0.2, 0.55, 0.45], gripColour = [0.48, 0.37, 0.66], bodyColour = [0.72, 0.75, 0.78], toolColour = [0.16, 0.44, 0.59];
+
+function readCheck(json) {
+  const data = JSON.parse(json);
+  for (const key of ['points', 'triangles']) data.surface[key] = decoded(data.surface[key]);
+  data.markers.rest = decoded(data.markers.rest);
+  for (const state of data.states) state.moved = decoded(state.moved);
+  return data;
+}
+
+function startCheck() {
+  const at = (id) => document.getElementById(id);
+  const data = readCheck(at('check-data').textContent);
+  const points = data.surface.points, markers = data.markers, states = data.states;
+  const room = new Box().hold(points), size = room.size(), middle = room.middle();
+  let scene;
+  try {
+    scene = new Scene(at('canvas'), data.surface.triangles);
+  } catch (error) {
+    at('canvas').hidden = at('controls').hidden = true;
+    at('no-view').hidden = false;
+    return;
+  }
+  const largest = (values) => values.reduce((a, b) => Math.max(a, b), 0);
+  const strongest = largest(states.flatMap((s) => s.loads.map((l) => Math.hypot(...l.slice(3))))) || 1;
+  const furthest = largest(states.map((s) => largest(Array.from({length: s.moved.length / 3}, (_, i) => norm3(s.moved, i) || 0))));
+
+  const colours = ['supports', ...(data.parts.length ? ['how well its stiffness would be told'] : []), 'one colour'];
+  const fill = (select, texts) => select.replaceChildren(...texts.map((t, i) => new Option(t, i)));
+  fill(at('colour'), colours);
+  fill(at('state'), states.length ? states.map((s) => s.name) : ['at rest']);
+  at('frame').max = Math.max(states.length - 1, 0);
+  at('magnify').value = furthest > 0 && furthest < 0.03 * size ? +(0.1 * size / furthest).toPrecision(2) : 1;
+  at('key-grip').hidden = !data.surface.gripped.length;
+  at('key-tool').hidden = !data.tools.length && !data.tendons.length;
+  at('key-odd').hidden = !markers.odd.length && !states.some((s) => s.odd.length);
+
+  /// A load's arrow: it ends at the body where it pushes, and begins there where it pulls.
+  const arrowOf = ([x, y, z, ...force]) => {
+    const length = 0.22 * size * Math.hypot(...force) / strongest, unit = force.map((f) => f / (Math.hypot(...force) || 1));
+    const tip = [x, y, z], pushes = unit.reduce((sum, u, i) => sum + u * (tip[i] - middle[i]), 0) < 0;
+    const other = tip.map((v, i) => v + (pushes ? -1 : 1) * length * unit[i]);
+    return pushes ? {start: other, end: tip} : {start: tip, end: other};
+  };
+  const box = new Box().hold(points).hold(markers.rest);
+  for (const state of states) for (const load of state.loads) { const {start, end} = arrowOf(load); box.hold(start).hold(end); }
+  for (const tool of data.tools) box.hold(tool.at.map((v) => v - tool.radius)).hold(tool.at.map((v) => v + tool.radius));
+  for (const state of states) for (const move of state.motions) box.hold(move.to);
+  const camera = new Camera(box, at('canvas').clientWidth / at('canvas').clientHeight || 1);
+
+  const colourOfVertex = new Float32Array(points.length);
+  function colourSkin() {
+    const by = colours[+at('colour').value], sds = data.parts.map((p) => p.sd);
+    const high = largest(sds) || 1;
+    for (let v = 0; v < points.length / 3; ++v) {
+      const part = data.surface.part[v];
+      colourOfVertex.set(by === 'supports' ? bodyColour : by === 'one colour' || part === undefined ? unknownColour
+        : colourOf(1 - sds[part] / high), 3 * v);
+    }
+    if (by === 'supports') {
+      for (const v of data.surface.held) colourOfVertex.set(heldColour, 3 * v);
+      for (const v of data.surface.gripped) colourOfVertex.set(gripColour, 3 * v);
+    }
+    at('legend').hidden = !by.startsWith('how');
+    at('gradient').style.background = gradient;
+    at('low').textContent = `not told (sd of ln ${high.toPrecision(2)})`;
+    at('high').textContent = 'well told';
+  }
+
+  const isDark = matchMedia('(prefers-color-scheme: dark)');
+  let shown = Math.max(0, states.findIndex((s) => s.loads.length || s.motions.length)), playing = 0, drawn = {glyphs: []};
+  isDark.addEventListener('change', () => requestDraw());
+  const ball = (c, radius, colour) => ({start: [c[0], c[1], c[2] - radius], end: [c[0], c[1], c[2] + radius], radius, colour});
+
+  function draw() {
+    const area = at('canvas').getBoundingClientRect(), dots = Math.min(devicePixelRatio || 1, 2);
+    const dark = isDark.matches, ink = dark ? [0.9, 0.92, 0.94] : measuredColour;
+    scene.paper = dark ? [0.078, 0.094, 0.114] : [1, 1, 1];
+    scene.begin(camera, Math.round(area.width * dots), Math.round(area.height * dots));
+    drawn = {glyphs: []};
+    const state = states[shown], magnify = +at('magnify').value || 0, count = markers.rest.length / 3;
+    const radius = Math.min(0.009, 0.12 / Math.sqrt(count + 1)) * size;
+    const isOdd = (m) => markers.odd.includes(m) || (state && state.odd.includes(m));
+    if (at('show-markers').checked) {
+      scene.glyphs('ball', Array.from({length: count}, (_, m) => ball(point3(markers.rest, m), isOdd(m) ? 1.7 * radius : radius, isOdd(m) ? foundColour : ink)));
+    }
+    for (let m = 0; m < count; ++m) drawn.glyphs.push({at: point3(markers.rest, m), text: `marker ${markers.names[m]}${isOdd(m) ? ', looks off' : ''}`});
+    if (state && at('show-positions').checked) {
+      const arrows = [], balls = [];
+      for (let m = 0; m < count; ++m) {
+        const moved = point3(state.moved, m);
+        if (moved.some((v) => !Number.isFinite(v))) continue;
+        const start = point3(markers.rest, m), end = start.map((v, i) => v + magnify * moved[i]);
+        const length = Math.hypot(...moved) * magnify;
+        if (length > 0.006 * size) arrows.push({start, end, radius: Math.min(0.35 * radius, 0.06 * length), colour: isOdd(m) ? foundColour : ink});
+        else balls.push(ball(end, 0.6 * radius, ink));
+      }
+      scene.glyphs('arrow', arrows);
+      scene.glyphs('ball', balls);
+    }
+    const all = at('show-all').checked;
+    if (at('show-loads').checked || all) {
+      const acting = all ? states : state ? [state] : [];
+      scene.glyphs('arrow', acting.flatMap((s) => s.loads.map((load) => {
+        const arrow = arrowOf(load);
+        drawn.glyphs.push({at: load.slice(0, 3), text: `${Math.hypot(...load.slice(3)).toPrecision(3)} N, ${s.name}`});
+        return {...arrow, radius: 0.009 * size, colour: loadColour};
+      })));
+      scene.glyphs('arrow', acting.flatMap((s) => s.motions.map((m) => {
+        drawn.glyphs.push({at: m.to, text: `${m.tool} moved by ${Math.hypot(...m.to.map((v, i) => v - m.from[i])).toPrecision(3)} mm, ${s.name}`});
+        return {start: m.from, end: m.to, radius: 0.007 * size, colour: toolColour};
+      })).filter((m) => Math.hypot(...m.end.map((v, i) => v - m.start[i])) > 0.004 * size));
+      scene.glyphs('tube', data.tendons.flatMap((path) => path.slice(1).map((end, i) => ({start: path[i], end, radius: 0.005 * size, colour: toolColour}))));
+      for (const tool of data.tools) {
+        drawn.glyphs.push({at: tool.at, text: tool.name});
+        if (tool.radius > 0) scene.glyphs(tool.flat ? 'tube' : 'ball', [tool.flat
+          ? {start: tool.at, end: tool.at.map((v, i) => v - 0.03 * size * tool.axis[i]), radius: tool.radius, colour: toolColour}
+          : ball(tool.at, tool.radius, toolColour)], 0.35);
+      }
+    }
+    if (at('show-edges').checked) scene.wires(points, wireColour);
+    scene.surface(points, colourOfVertex, +at('opacity').value);
+    at('told').textContent = state ? `${state.name}: ${state.words}` : 'The body at rest.';
+    at('frame').value = at('state').value = shown;
+  }
+  let asked = false;
+  function requestDraw() {
+    if (asked) return;
+    asked = true;
+    requestAnimationFrame(() => { asked = false; draw(); });
+  }
+  const show = (s) => { const n = Math.max(states.length, 1); shown = ((s % n) + n) % n; requestDraw(); };
+  function play(on) {
+    clearInterval(playing);
+    playing = on ? setInterval(() => show(shown + 1), 900) : 0;
+    at('play').textContent = on ? '⏸ Pause' : '▶ Play';
+    at('play').setAttribute('aria-pressed', String(on));
+  }
+  at('controls').addEventListener('submit', (e) => e.preventDefault());
+  at('controls').addEventListener('input', () => { colourSkin(); requestDraw(); });
+  at('state').addEventListener('change', () => show(+at('state').value));
+  at('frame').addEventListener('input', () => show(+at('frame').value));
+  at('play').addEventListener('click', () => play(!playing));
+  steer(at('canvas'), camera, {draw: requestDraw, move: (by) => show(shown + by), play: () => play(!playing), hint: (x, y) => {
+    let best = 14, found = null;
+    for (const glyph of drawn.glyphs) {
+      const [px, py] = camera.project(glyph.at, at('canvas').clientWidth, at('canvas').clientHeight);
+      const distance = Math.hypot(px - x, py - y);
+      if (distance < best) { best = distance; found = glyph; }
+    }
+    at('hint').hidden = !found;
+    if (!found) return;
+    at('hint').textContent = found.text;
+    at('hint').style.left = `${Math.min(x + 12, at('canvas').clientWidth - 150)}px`;
+    at('hint').style.top = `${y + 12}px`;
+  }});
+  new ResizeObserver(requestDraw).observe(at('canvas'));
+  colourSkin();
+  requestDraw();
+}
+
+document.addEventListener('DOMContentLoaded', startCheck);

@@ -1,0 +1,112 @@
+// `palpate check` of a measurement set: what it could show, on one page, before any fit.
+
+#include <gmock/gmock.h>
+
+#include <memory>
+
+#include "mesh/text/atomic_file.h"
+#include "pipeline/command_line/commands.h"
+#include "pipeline/output/text/preflight.h"
+#include "tests/messages.h"
+#include "tests/temporary_folder.h"
+
+namespace palpate::pipeline {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+/// A bar of 100 x 20 x 20 mm that is pressed at three places, read to 0.05 mm, unloaded too.
+class CheckedSet : public testing::Test {
+protected:
+    static void SetUpTestSuite() {
+        folder_ = std::make_unique<TemporaryFolder>();
+        const commands::NewOptions made{.folder = folder() / "new"};
+        commands::new_case(made, {});
+        commands::ProbeCommandOptions probed{
+            .input = folder() / "new/body.stl", .output = folder() / "set", .overrides = {}};
+        probed.synthesis.hide = {"none"};
+        probed.overrides.set("volume.edge_length", 12);
+        probed.overrides.set("probing.probes", 4);
+        probed.overrides.set("probing.markers", 20);
+        commands::probe(probed, {});
+    }
+    static void TearDownTestSuite() { folder_.reset(); }
+    static std::filesystem::path folder() { return folder_->path(); }
+    static commands::Outcome check(const commands::CheckOptions& options) { return commands::check(options, {}); }
+    static commands::CheckOptions of_set(std::vector<std::string> expected = {}) {
+        return {.input = folder() / "set", .expected = std::move(expected), .overrides = {}};
+    }
+
+private:
+    static inline std::unique_ptr<TemporaryFolder> folder_;
+};
+
+TEST_F(CheckedSet, TellsWhatItCouldName) {
+    const commands::Outcome outcome = check(of_set());
+    EXPECT_EQ(outcome.code, commands::done);
+    const nlohmann::json& preflight = outcome.json["preflight"];
+    ASSERT_TRUE(preflight.is_object());
+    EXPECT_THAT(outcome.text, AllOf(HasSubstr("Before any fit"), HasSubstr("gravity"), HasSubstr("Young's modulus")));
+    for (const nlohmann::json& effect : preflight["effects"]) {
+        if (effect["effect"] != "pressure") continue;
+        EXPECT_EQ(effect["can_be_named"], "no");
+        EXPECT_EQ(effect["why_not"], "the body has no closed cavity");
+    }
+}
+
+TEST_F(CheckedSet, HasExitCode5WhereWhatIsExpectedCannotBeShown) {
+    EXPECT_EQ(check(of_set({"gravity"})).code, commands::done);
+    const commands::Outcome outcome = check(of_set({"gravity", "pressure"}));
+    EXPECT_EQ(outcome.code, commands::not_met);
+    EXPECT_THAT(outcome.text, AllOf(HasSubstr("Not as expected: The set cannot show pressure"),
+                                    HasSubstr("the body has no closed cavity"), Not(HasSubstr("cannot show gravity"))));
+    EXPECT_EQ(outcome.json["expected"][1]["shown"], false);
+}
+
+TEST_F(CheckedSet, WritesOnePage) {
+    commands::CheckOptions options = of_set();
+    options.output = folder() / "check.html";
+    const commands::Outcome outcome = check(options);
+    EXPECT_THAT(outcome.text, HasSubstr("Written: "));
+    const std::string page = mesh::read_text(options.output);
+    EXPECT_THAT(page, AllOf(HasSubstr("<canvas id=\"canvas\""), HasSubstr("What could be named"),
+                            HasSubstr("next hour in the lab"), HasSubstr("Which readings look off"),
+                            HasSubstr("Which states repeat"), HasSubstr("name=\"generator\" content=\"palpate\"")));
+    // nothing is fetched from anywhere
+    EXPECT_THAT(page, AllOf(Not(HasSubstr("src=\"http")), Not(HasSubstr("<link rel=\"stylesheet\""))));
+    // the picture comes first
+    EXPECT_LT(page.find("<canvas"), page.find("class=\"lead\""));
+    check(options);  // a page of its own is replaced
+}
+
+TEST_F(CheckedSet, WritesThePageOfAMeshToo) {
+    commands::CheckOptions options{.input = folder() / "new/body.stl", .overrides = {}};
+    options.output = folder() / "mesh.html";
+    check(options);
+    EXPECT_THAT(mesh::read_text(options.output),
+                AllOf(HasSubstr("The surface is sound"), Not(HasSubstr("What could be named"))));
+}
+
+TEST_F(CheckedSet, RefusesToExpectWhatNobodyKnowsOrMeasured) {
+    EXPECT_THAT(message_of([] { check(of_set({"gravitty"})); }), AllOf(HasSubstr("gravitty"), HasSubstr("gravity")));
+    EXPECT_THAT(
+        message_of([] { check({.input = folder() / "new/body.stl", .expected = {"gravity"}, .overrides = {}}); }),
+        AllOf(HasSubstr("--expect"), HasSubstr("this is a mesh")));
+}
+
+TEST(Preflight, SaysHowMuchStrongerAnEffectWouldHaveToBe) {
+    const nlohmann::json own{{"name", "gravity"}, {"value", 9810.0}, {"unit", "mm/s^2"}, {"at_most", false}};
+    const nlohmann::json effect{{"effect", "gravity"},
+                                {"share", 0.1},
+                                {"why_not", "it would have to be 3 times as strong as its prior expects"},
+                                {"prior", {{"own", own}}}};
+    const std::string why = why_not_shown({{"effects", {effect}}}, "gravity");
+    EXPECT_EQ(why,
+              "The set cannot show gravity at the strength of its prior, 9810 mm/s^2: it would have to be 3 times as "
+              "strong as its prior expects.");
+}
+
+}  // namespace
+}  // namespace palpate::pipeline
