@@ -178,7 +178,8 @@ SectionLaw law_of(const Model& model, const Link& link, const fem::Effects& effe
 bool acts_in_sections(const fem::MaterialEffect& effect, const Vec3& X) {
     if (effect.is_scale()) return true;
     const fem::MaterialTerms terms = effect.terms(X, Mat3::Identity(), true);
-    return terms.first.isZero(0) && !terms.second.isZero(0);
+    constexpr double rounding = 1e-12;  // of directions of unit length, and what is made of them
+    return terms.first.norm() < rounding * terms.second.norm();
 }
 
 std::vector<SectionLaw> section_laws(const Model& model, const fem::Effects& effects) {
