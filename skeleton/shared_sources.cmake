@@ -19,6 +19,7 @@ set(shared_skeleton_sources
   links/fibres/uniaxial.cpp
   links/placed/placed_links.cpp
   links/placed/placed_volumes.cpp
+  links/sections/section_law.cpp
   loads/cavities.cpp
   loads/dent.cpp
   loads/load.cpp

@@ -55,7 +55,14 @@ FullLink::FullLink(const LinkSection& section, double length, const Vec3& X_a, c
     }
 }
 
-void FullLink::add_curvature(const Strains& factors, Mat12& H) const {
+void FullLink::couple(const Eigen::Matrix<double, 6, 6>& C) {
+    coupling_ = C;
+    strains_ = C.triangularView<Eigen::UnitUpper>() * strains_;
+    gradients_ = (gradients_ * C.transpose()).eval();
+}
+
+void FullLink::add_curvature(const Strains& of_coupled, Mat12& H) const {
+    const Strains factors = coupling_ ? Strains(coupling_->transpose() * of_coupled) : of_coupled;
     // All is linear in the axes.
     Vec3 f_a = Vec3::Zero(), f_b = Vec3::Zero();
     for (const auto& [kind, axis] : partings) {

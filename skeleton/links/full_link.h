@@ -1,5 +1,7 @@
 #pragma once
 
+#include <optional>
+
 #include "skeleton/links/link_energy.h"
 #include "skeleton/model/state.h"
 
@@ -29,6 +31,10 @@ public:
     FullLink(const LinkSection& section, double length, const Vec3& X_a, const Vec3& X_b, const Vec3& x_a,
              const Mat3& R_a, const Vec3& x_b, const Mat3& R_b);
 
+    /// Makes of its strains s the strains C s, so that the energy of each is 1/2 k (C s)^2: a section whose material
+    /// couples them (SectionLaw). @pre C has ones on its diagonal and nothing below.
+    void couple(const Eigen::Matrix<double, 6, 6>& C);
+
     /// s, ordered as Stiffness.
     const Strains& strains() const { return strains_; }
     /// d s / d step of the link's two ends, a column each.
@@ -39,10 +45,11 @@ public:
     void add_hessian(const Strains& k, Mat12& H) const;
 
 private:
-    Vec3 arm_a_, arm_b_, gap_;  // R_a (at - X_a), R_b (at - X_b), d
-    Mat3 axes_a_, axes_b_;      // columns R_a f_i, R_b f_i
-    Mat3 turns_;                // columns: how 2 v . R_a f_i changes with w_b - w_a
-    Vec3 halves_;               // v . R_a f_i
+    Vec3 arm_a_, arm_b_, gap_;                             // R_a (at - X_a), R_b (at - X_b), d
+    Mat3 axes_a_, axes_b_;                                 // columns R_a f_i, R_b f_i
+    Mat3 turns_;                                           // columns: how 2 v . R_a f_i changes with w_b - w_a
+    Vec3 halves_;                                          // v . R_a f_i
+    std::optional<Eigen::Matrix<double, 6, 6>> coupling_;  // C
     Strains strains_;
     Eigen::Matrix<double, 12, 6> gradients_;
 };

@@ -30,6 +30,8 @@ PlacedLinks::PlacedLinks(const Model& model, const fem::Effects& effects)
     if (plain_) return;
     std::ranges::copy_if(effects.material, std::back_inserter(material_),
                          [](const auto& effect) { return !effect->is_scale(); });
+    laws_ = section_laws(model, effects);
+    for (const auto& effect : material_) in_sections_.push_back(acts_in_sections(*effect, Vec3(rest_.x.row(0))));
     const bool has_fibres = !material_.empty() || plasticity_;
     for (size_t l = 0; l < links_.size(); ++l) {
         const FibreOffsets offsets = fibre_offsets(links_[l], directions_[l]);
@@ -67,9 +69,10 @@ LinkFibre PlacedLinks::fibre(size_t link, int j, const State& state) const {
 StretchTerms PlacedLinks::fibre_terms(size_t link, int j, double stretch, bool with_second,
                                       const FibreStates& before) const {
     StretchTerms sum;
-    for (const auto& effect : material_) {
+    for (std::size_t e = 0; e < material_.size(); ++e) {
+        if (has_law(link) && in_sections_[e]) continue;
         const Vec3 X = middle(links_[link], rest_);
-        sum += (1.0 / 3) * uniaxial(*effect, X, directions_[link], stretch, with_second);
+        sum += (1.0 / 3) * uniaxial(*material_[e], X, directions_[link], stretch, with_second);
     }
     if (plasticity_) {
         const FibreState had = before.empty() ? FibreState() : before[fibres_per_link * link + j];
@@ -78,9 +81,23 @@ StretchTerms PlacedLinks::fibre_terms(size_t link, int j, double stretch, bool w
     return links_[link].length * links_[link].length * sum;
 }
 
+FullLink PlacedLinks::coupled(size_t l, const State& state) const {
+    FullLink now = full_link(links_[l], rest_, state);
+    if (has_law(l)) now.couple(laws_[l].coupling);
+    return now;
+}
+
 void PlacedLinks::add_effects(size_t l, const State& state, const FibreStates& before, bool with_hessian,
                               LinkTerms& terms) const {
     const Link& link = links_[l];
+    if (has_law(l)) {
+        for (int s = 0; s < 6; ++s) {
+            const double factor = laws_[l].factors[s] / scales_[l];
+            terms.energy[s] *= factor;
+            terms.gradient.col(s) *= factor;
+            if (with_hessian) terms.hessian[s] *= factor;
+        }
+    }
     if (torsion_ != 0) {
         terms.energy[1] += torsion_ * terms.energy[2];
         terms.gradient.col(1) += torsion_ * terms.gradient.col(2);
@@ -118,7 +135,7 @@ void PlacedLinks::add_effects(size_t l, const State& state, const FibreStates& b
 LinkTerms PlacedLinks::terms(size_t l, const State& state, bool with_hessian, const FibreStates& before) const {
     const Link& link = links_[l];
     LinkTerms terms = link.section
-                          ? full_link_terms(full_link(link, rest_, state), with_hessian)
+                          ? full_link_terms(coupled(l, state), with_hessian)
                           : link_terms(link.length, directions_[l], state.x.row(link.a).transpose(), state.R[link.a],
                                        state.x.row(link.b).transpose(), state.R[link.b], with_hessian);
     if (!plain_) add_effects(l, state, before, with_hessian, terms);
@@ -130,9 +147,10 @@ Mat12 PlacedLinks::hessian(size_t l, const Stiffnesses& k, const State& state, c
     const Vec3 x_a = state.x.row(link.a).transpose(), x_b = state.x.row(link.b).transpose();
     Stiffnesses with_torsion = k;
     if (!plain_) with_torsion[2] += torsion_ * k[1];
+    if (has_law(l)) with_torsion = with_torsion.cwiseProduct(laws_[l].factors) / scales_[l];
     Mat12 H = Mat12::Zero();
     if (link.section)
-        full_link(link, rest_, state).add_hessian(with_torsion, H);
+        coupled(l, state).add_hessian(with_torsion, H);
     else
         H = link_hessian(with_torsion, link.length, directions_[l], x_a, state.R[link.a], x_b, state.R[link.b]);
     if (plain_) return H;
@@ -244,7 +262,9 @@ Stiffnesses PlacedLinks::rest_stiffness(size_t l, const Stiffnesses& k) const {
         stiffer += std::max(0.0, on_axis.second / (links_[l].length * links_[l].length));
     }
     Stiffnesses own = k;
-    own.head<3>() << (stiffer + shear_) * k[0], stiffer * k[1], k[2] + torsion_ * k[1];
+    own[2] += torsion_ * k[1];
+    if (has_law(l)) own = own.cwiseProduct(laws_[l].factors) / scales_[l];
+    own.head<2>() << stiffer * own[0] + shear_ * k[0], stiffer * own[1];
     return scales_[l] * own;
 }
 

@@ -6,6 +6,7 @@
 #include "skeleton/links/fibres/plastic_fibre.h"
 #include "skeleton/links/full_link.h"
 #include "skeleton/links/placed/placed_volumes.h"
+#include "skeleton/links/sections/section_law.h"
 #include "skeleton/model/stiffness_order.h"
 
 namespace palpate::skeleton {
@@ -26,7 +27,8 @@ struct FlowDerivatives {
 /// e_S of Shear, and over the fibres, of stiffnesses K_j (fibre_shares), w of the material
 /// effects at the link's middle (uniaxial) and p of yielding (plastic_terms). The factor of w is mu V = kE L^2 / 3 for
 /// kE = E A / L, and E = 3 mu as the material keeps its volume. s is the material's scale: the mean over the fibres in
-/// each slice of the link, whose softnesses add up. So all is linear in the stiffnesses, conservative, and the same
+/// each slice of the link, whose softnesses add up. Where effects make a section's law (SectionLaw) of a link, that is
+/// its law for what they do, with no fibres of theirs. So all is linear in the stiffnesses, conservative, and the same
 /// after any rigid motion. Full links come with what keeps their spheres' volumes (PlacedVolumes).
 class PlacedLinks {
 public:
@@ -40,6 +42,8 @@ public:
 
     const StiffnessOrder& order() const { return order_; }
     const PlacedVolumes& volumes() const { return volumes_; }
+    /// s of each link; empty where no effect is in force.
+    const std::vector<double>& scales() const { return scales_; }
 
     /// d net force / d k in a state (6N x stiffnesses, in their order): each column the force at unit stiffness.
     Eigen::SparseMatrix<double> forces(const State& state, const FibreStates& before = {}) const;
@@ -59,6 +63,8 @@ public:
 
 private:
     double scale_of(const Link& link, const FibreOffsets& offsets, const fem::Effects& effects) const;
+    bool has_law(size_t link) const { return !laws_.empty() && laws_[link].in_force; }
+    FullLink coupled(size_t link, const State& state) const;
     LinkFibre fibre(size_t link, int j, const State& state) const;
     StretchTerms fibre_terms(size_t link, int j, double stretch, bool with_second, const FibreStates& before) const;
     void add_effects(size_t link, const State& state, const FibreStates& before, bool with_hessian,
@@ -77,6 +83,8 @@ private:
     double torsion_, shear_;
     bool plain_;                         // no effect is in force
     std::vector<double> scales_;         // s (L); empty when plain
+    std::vector<SectionLaw> laws_;       // (L); empty where no effect acts in sections
+    std::vector<char> in_sections_;      // of each effect in material_
     std::vector<FibreOffsets> offsets_;  // (L); empty when no fibre has an energy
     std::vector<FibreShares> shares_;    // the same
 };

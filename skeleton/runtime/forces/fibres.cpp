@@ -10,10 +10,13 @@
 
 namespace palpate::runtime {
 
-Fibres::Fibres(const skeleton::Model& model, const fem::Effects& effects, const std::vector<skeleton::Stiffnesses>& k)
+Fibres::Fibres(const skeleton::Model& model, const fem::Effects& effects, const std::vector<skeleton::Stiffnesses>& k,
+               const std::vector<skeleton::SectionLaw>& laws)
     : plasticity_(effects.plasticity) {
     std::ranges::copy_if(effects.material, std::back_inserter(material_),
                          [](const auto& effect) { return !effect->is_scale(); });
+    for (const auto& effect : material_)
+        in_sections_.push_back(skeleton::acts_in_sections(*effect, model.spheres.front().center));
     const double shear = skeleton::link_effects(effects).shear;
     for (std::size_t l = 0; l < model.links.size(); ++l) {
         const skeleton::Link& link = model.links[l];
@@ -22,6 +25,7 @@ Fibres::Fibres(const skeleton::Model& model, const fem::Effects& effects, const 
         own.b = link.b;
         own.length = link.length;
         own.shear = shear * k[l][0];
+        own.by_law = !laws.empty() && laws[l].in_force;
         own.direction = skeleton::rest_direction(model, link);
         own.middle = 0.5 * (model.spheres[link.a].center + model.spheres[link.b].center);
         own.offsets = skeleton::fibre_offsets(link, own.direction);
@@ -31,9 +35,14 @@ Fibres::Fibres(const skeleton::Model& model, const fem::Effects& effects, const 
     if (plasticity_) flowed_.resize(skeleton::fibres_per_link * links_.size());
 }
 
-bool Fibres::needed(const fem::Effects& effects) {
+bool Fibres::needed(const skeleton::Model& model, const fem::Effects& effects,
+                    const std::vector<skeleton::SectionLaw>& laws) {
+    const bool all_by_law = !laws.empty() && std::ranges::all_of(laws, &skeleton::SectionLaw::in_force);
     return skeleton::link_effects(effects).shear != 0 || effects.plasticity ||
-           std::ranges::any_of(effects.material, [](const auto& effect) { return !effect->is_scale(); });
+           std::ranges::any_of(effects.material, [&](const auto& effect) {
+               return !effect->is_scale() &&
+                      !(all_by_law && skeleton::acts_in_sections(*effect, model.spheres.front().center));
+           });
 }
 
 skeleton::LinkFibre Fibres::fibre(const OfLink& link, int j, const Poses& poses) const {
@@ -45,8 +54,9 @@ skeleton::StretchTerms Fibres::terms(std::size_t l, int j, double stretch, bool 
     const OfLink& link = links_[l];
     const double share = link.strengths[j] * link.length * link.length;
     skeleton::StretchTerms sum;
-    for (const auto& effect : material_) {
-        sum += (share / 3) * skeleton::uniaxial(*effect, link.middle, link.direction, stretch, with_second);
+    for (std::size_t e = 0; e < material_.size(); ++e) {
+        if (link.by_law && in_sections_[e]) continue;
+        sum += (share / 3) * skeleton::uniaxial(*material_[e], link.middle, link.direction, stretch, with_second);
     }
     if (plasticity_) {
         sum += share * skeleton::plastic_terms(*plasticity_, flowed_[skeleton::fibres_per_link * l + j], stretch);

@@ -9,10 +9,13 @@ namespace palpate::runtime {
 /// are those of PlacedLinks.
 class Fibres {
 public:
-    /// `k`: in force, of each link.
-    Fibres(const skeleton::Model& model, const fem::Effects& effects, const std::vector<skeleton::Stiffnesses>& k);
+    /// `k`: of each link, scaled; `laws`: of each, or none. What acts by a link's law is not in its fibres.
+    Fibres(const skeleton::Model& model, const fem::Effects& effects, const std::vector<skeleton::Stiffnesses>& k,
+           const std::vector<skeleton::SectionLaw>& laws);
 
-    static bool needed(const fem::Effects& effects);
+    /// Does one of the effects act in a link beside its stiffnesses and its law?
+    static bool needed(const skeleton::Model& model, const fem::Effects& effects,
+                       const std::vector<skeleton::SectionLaw>& laws);
 
     /// Adds their forces to the spheres' rows; returns their energy [N mm].
     double add_forces(const Poses& poses, double* force) const;
@@ -27,6 +30,7 @@ private:
     struct OfLink {
         int a = 0, b = 0;
         double length = 0, shear = 0;  // [mm], [N/mm]
+        bool by_law = false;           // its section has a law
         Vec3 direction, middle;        // at rest
         skeleton::FibreOffsets offsets;
         Eigen::Matrix<double, skeleton::fibres_per_link, 1> strengths;  // [N/mm]
@@ -35,6 +39,7 @@ private:
     skeleton::StretchTerms terms(std::size_t link, int j, double stretch, bool with_second) const;
 
     std::vector<std::shared_ptr<const fem::MaterialEffect>> material_;
+    std::vector<char> in_sections_;  // of each: it acts by the law of a section that has one
     std::optional<fem::Plasticity> plasticity_;
     std::vector<OfLink> links_;
     skeleton::FibreStates flowed_;

@@ -13,19 +13,27 @@ constexpr int elongation = static_cast<int>(skeleton::Stiffness::elongation);
 constexpr int flexion = static_cast<int>(skeleton::Stiffness::flexion);
 constexpr int torsion = static_cast<int>(skeleton::Stiffness::torsion);
 
-// Stiffnesses with what effects make of them: a link's scale, and its twist.
-std::vector<skeleton::Stiffnesses> stiffnesses_in_force(const skeleton::Model& model, const fem::Effects& effects) {
-    const skeleton::PlacedLinks placed(model, effects);
+// Stiffnesses with what effects make of them, but for fibres: a link's twist, and its scale or its section's law.
+std::vector<skeleton::Stiffnesses> stiffnesses_in_force(const skeleton::Model& model, const fem::Effects& effects,
+                                                        const std::vector<skeleton::SectionLaw>& laws,
+                                                        const std::vector<double>& scales) {
     const double twist = skeleton::link_effects(effects).torsion;
     std::vector<skeleton::Stiffnesses> all;
     for (std::size_t l = 0; l < model.links.size(); ++l) {
         skeleton::Stiffnesses k = model.links[l].stiffness;
-        skeleton::Stiffnesses one = skeleton::Stiffnesses::Zero(k.size());
-        one[torsion] = 1;
-        const double scale = placed.rest_stiffness(l, one)[torsion];
         k[torsion] += twist * k[flexion];
-        all.push_back(scale * k);
+        const bool by_law = !laws.empty() && laws[l].in_force;
+        const skeleton::Stiffnesses factors =
+            by_law ? skeleton::Stiffnesses(laws[l].factors) : skeleton::Stiffnesses::Constant(k.size(), scales[l]);
+        all.emplace_back(k.cwiseProduct(factors));
     }
+    return all;
+}
+
+// The links' own, each scaled.
+std::vector<skeleton::Stiffnesses> scaled_stiffnesses(const skeleton::Model& model, const std::vector<double>& scales) {
+    std::vector<skeleton::Stiffnesses> all;
+    for (std::size_t l = 0; l < model.links.size(); ++l) all.push_back(scales[l] * model.links[l].stiffness);
     return all;
 }
 
@@ -34,8 +42,12 @@ std::vector<skeleton::Stiffnesses> stiffnesses_in_force(const skeleton::Model& m
 ForceField::ForceField(const skeleton::Model& model)
     : model_(model), moves_(model.spheres.size(), 1), poses_(model.spheres.size()) {
     const fem::Effects effects = skeleton::physics_of(model.effects);
-    k_ = stiffnesses_in_force(model, effects);
-    if (Fibres::needed(effects)) fibres_ = std::make_unique<Fibres>(model, effects, k_);
+    laws_ = skeleton::section_laws(model, effects);
+    std::vector<double> scales = skeleton::PlacedLinks(model, effects).scales();
+    if (scales.empty()) scales.assign(model.links.size(), 1);
+    k_ = stiffnesses_in_force(model, effects, laws_, scales);
+    if (Fibres::needed(model, effects, laws_))
+        fibres_ = std::make_unique<Fibres>(model, effects, scaled_stiffnesses(model, scales), laws_);
     if (!effects.points.empty() || !effects.surface.empty() || effects.pressure != 0)
         effects_ = std::make_unique<PointEffects>(model, effects);
 
@@ -67,6 +79,7 @@ ForceField::ForceField(const skeleton::Model& model)
     for (const Cell& cell : cells_) kept[cell.sphere] = 1;
     paper_ = paper_table(model, k_);
     full_ = full_table(model, k_, kept);
+    couplings_ = coupling_table(laws_);
     if (effects_) effects_->for_each_pair([&](int a, int b) { pair_of_effect_.push_back(pair(a, b)); });
     blocks_.resize(pairs_.size());
 }
@@ -123,7 +136,7 @@ double ForceField::evaluate(const double* pose, const Rates& rates, double* forc
     if (!full_.empty()) {
         const bool kept = !cells_.empty();
         if (kept) energy += set_pressure(pose, rates);
-        energy += add_full_links(full_, pose, rates, kept ? pressure_.data() : nullptr, force);
+        energy += add_full_links(full_, couplings_, pose, rates, kept ? pressure_.data() : nullptr, force);
     }
     if (!gravity_.isZero(0)) {
         for (std::size_t i = 0; i < model_.spheres.size(); ++i) {
@@ -161,7 +174,8 @@ void ForceField::add_link_curvature() {
         const Vec3 &X_a = model_.spheres[link.a].center, &X_b = model_.spheres[link.b].center;
         skeleton::Mat12 H;
         if (link.section) {
-            const skeleton::FullLink now(*link.section, link.length, X_a, X_b, x_a, R_a, x_b, R_b);
+            skeleton::FullLink now(*link.section, link.length, X_a, X_b, x_a, R_a, x_b, R_b);
+            if (!laws_.empty() && laws_[l].in_force) now.couple(laws_[l].coupling);
             skeleton::FullLink::Strains factors = k_[l].cwiseProduct(now.strains());
             if (!cells_.empty()) {
                 const double half = 0.5 * link.section->area;

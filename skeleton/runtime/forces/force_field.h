@@ -57,9 +57,11 @@ private:
     skeleton::Model model_;
     std::vector<char> moves_;
     Vec3 gravity_ = Vec3::Zero();
-    std::vector<skeleton::Stiffnesses> k_;  // in force, of each link
+    std::vector<skeleton::SectionLaw> laws_;  // of each link; empty: none has one
+    std::vector<skeleton::Stiffnesses> k_;    // in force, of each link
     PaperTable paper_;
     FullTable full_;
+    CouplingTable couplings_;         // empty where no link has a law
     std::unique_ptr<Fibres> fibres_;  // null: no effect is in the links but by their stiffnesses
     std::vector<Cell> cells_;
     std::vector<double> swelling_, pressure_;  // of each sphere [mm^3], [MPa]

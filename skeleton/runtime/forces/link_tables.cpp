@@ -66,6 +66,17 @@ FullTable full_table(const skeleton::Model& model, const std::vector<skeleton::S
     return table;
 }
 
+CouplingTable coupling_table(const std::vector<skeleton::SectionLaw>& laws) {
+    CouplingTable table(batches_of(laws.size()), SectionCouplings{});
+    for (std::size_t l = 0; l < laws.size(); ++l) {
+        int place = 0;
+        for (int j = 0; j < 6; ++j) {
+            for (int i = j + 1; i < 6; ++i) table[l / 4].c[place++][l % 4] = laws[l].coupling(j, i);
+        }
+    }
+    return table;
+}
+
 MassTable mass_table(const skeleton::Model& model, const std::vector<char>& moves) {
     MassTable table(batches_of(model.spheres.size()), Masses{});
     for (Masses& batch : table) std::fill(std::begin(batch.q_axes[3]), std::end(batch.q_axes[3]), 1);

@@ -8,6 +8,7 @@ namespace palpate::runtime {
 
 using PaperTable = std::vector<PaperLinks, Aligned<PaperLinks>>;
 using FullTable = std::vector<FullLinks, Aligned<FullLinks>>;
+using CouplingTable = std::vector<SectionCouplings, Aligned<SectionCouplings>>;
 using MassTable = std::vector<Masses, Aligned<Masses>>;
 
 /// Rows of a model's spheres, filled up to whole batches, and the two that lanes without a link take.
@@ -20,6 +21,9 @@ inline int row_count(const skeleton::Model& model) { return first_idle_row(model
 PaperTable paper_table(const skeleton::Model& model, const std::vector<skeleton::Stiffnesses>& k);
 FullTable full_table(const skeleton::Model& model, const std::vector<skeleton::Stiffnesses>& k,
                      const std::vector<char>& kept);
+
+/// How their strains depend on one another, four by four; empty where no link has a law.
+CouplingTable coupling_table(const std::vector<skeleton::SectionLaw>& laws);
 
 /// Masses and inertias; of held spheres, and where `moves` is not set, none.
 MassTable mass_table(const skeleton::Model& model, const std::vector<char>& moves);

@@ -65,9 +65,23 @@ PALPATE_INLINE Lanes parting_rate(const Lanes3& f_a, const Lanes3& f_b, const La
     return 0.5 * (dot(f_a + f_b, m.parting) + dot(cross(m.w_a, f_a) + cross(m.w_b, f_b), gap));
 }
 
-template <bool damped>
-PALPATE_INLINE Lanes add_batch(const FullLinks& links, const double* pose, const Rates& rates, const double* pressure,
-                               double* force) {
+// C s in place: no strain depends on those before it.
+PALPATE_INLINE void couple(const SectionCouplings& by, Lanes (&s)[6]) {
+    int place = 0;
+    for (int j = 0; j < 6; ++j)
+        for (int i = j + 1; i < 6; ++i) s[j] += at(by.c[place++]) * s[i];
+}
+// C^T p in place, from the last on.
+PALPATE_INLINE void couple_back(const SectionCouplings& by, Lanes (&p)[6]) {
+    int place = 15;
+    for (int j = 5; j >= 0; --j)
+        for (int i = 5; i > j; --i) p[i] += at(by.c[--place]) * p[j];
+}
+
+// `by`: of coupled links.
+template <bool damped, bool coupled>
+PALPATE_INLINE Lanes add_batch(const FullLinks& links, const SectionCouplings* by, const double* pose,
+                               const Rates& rates, const double* pressure, double* force) {
     const Halves h = halves_of(links, pose);
     const Lanes4 turn = upright(product(h.q_b, conjugate(h.q_a)));
     const Lanes3 v = turn.vector();
@@ -79,6 +93,7 @@ PALPATE_INLINE Lanes add_batch(const FullLinks& links, const double* pose, const
                   2 * dot(v, h.a.f1),
                   parting(h.a.f1, h.b.f1, h.gap),
                   parting(h.a.f2, h.b.f2, h.gap)};
+    if constexpr (coupled) couple(*by, s);
     Lanes energy = all(0);
     for (int i = 0; i < 6; ++i) energy += at(links.k[i]) * s[i] * s[i];
     if constexpr (damped) {
@@ -87,14 +102,17 @@ PALPATE_INLINE Lanes add_batch(const FullLinks& links, const double* pose, const
         const auto turning_rate = [&](const Lanes3& f) __attribute__((always_inline)) {
             return dot(turn.w * f + cross(v, f), w);
         };
-        s[0] += rates.beta * parting_rate(h.a.f0, h.b.f0, h.gap, m);
-        s[1] += rates.beta * turning_rate(h.a.f2);
-        s[2] += rates.beta * turning_rate(h.a.f0);
-        s[3] += rates.beta * turning_rate(h.a.f1);
-        s[4] += rates.beta * parting_rate(h.a.f1, h.b.f1, h.gap, m);
-        s[5] += rates.beta * parting_rate(h.a.f2, h.b.f2, h.gap, m);
+        Lanes rate[6] = {parting_rate(h.a.f0, h.b.f0, h.gap, m),
+                         turning_rate(h.a.f2),
+                         turning_rate(h.a.f0),
+                         turning_rate(h.a.f1),
+                         parting_rate(h.a.f1, h.b.f1, h.gap, m),
+                         parting_rate(h.a.f2, h.b.f2, h.gap, m)};
+        if constexpr (coupled) couple(*by, rate);
+        for (int i = 0; i < 6; ++i) s[i] += rates.beta * rate[i];
     }
     for (int i = 0; i < 6; ++i) s[i] *= at(links.k[i]);
+    if constexpr (coupled) couple_back(*by, s);
     if (pressure) {
         Lanes both;
         for (int i = 0; i < lanes; ++i) both[i] = pressure[links.a[i]] + pressure[links.b[i]];
@@ -131,13 +149,27 @@ PALPATE_INLINE void swell(const FullLinks& links, const double* pose, const Rate
 PALPATE_CLONES double add_undamped(const FullLinks* links, std::size_t n, const double* pose, const double* pressure,
                                    double* force) {
     Lanes energy = all(0);
-    for (std::size_t i = 0; i < n; ++i) energy += add_batch<false>(links[i], pose, {}, pressure, force);
+    for (std::size_t i = 0; i < n; ++i) energy += add_batch<false, false>(links[i], nullptr, pose, {}, pressure, force);
     return energy[0] + energy[1] + energy[2] + energy[3];
 }
 PALPATE_CLONES double add_damped(const FullLinks* links, std::size_t n, const double* pose, const Rates& rates,
                                  const double* pressure, double* force) {
     Lanes energy = all(0);
-    for (std::size_t i = 0; i < n; ++i) energy += add_batch<true>(links[i], pose, rates, pressure, force);
+    for (std::size_t i = 0; i < n; ++i)
+        energy += add_batch<true, false>(links[i], nullptr, pose, rates, pressure, force);
+    return energy[0] + energy[1] + energy[2] + energy[3];
+}
+PALPATE_CLONES double add_coupled(const FullLinks* links, const SectionCouplings* by, std::size_t n, const double* pose,
+                                  const double* pressure, double* force) {
+    Lanes energy = all(0);
+    for (std::size_t i = 0; i < n; ++i) energy += add_batch<false, true>(links[i], by + i, pose, {}, pressure, force);
+    return energy[0] + energy[1] + energy[2] + energy[3];
+}
+PALPATE_CLONES double add_coupled_damped(const FullLinks* links, const SectionCouplings* by, std::size_t n,
+                                         const double* pose, const Rates& rates, const double* pressure,
+                                         double* force) {
+    Lanes energy = all(0);
+    for (std::size_t i = 0; i < n; ++i) energy += add_batch<true, true>(links[i], by + i, pose, rates, pressure, force);
     return energy[0] + energy[1] + energy[2] + energy[3];
 }
 PALPATE_CLONES void swell_undamped(const FullLinks* links, std::size_t n, const double* pose, double* swelling) {
@@ -150,9 +182,15 @@ PALPATE_CLONES void swell_damped(const FullLinks* links, std::size_t n, const do
 
 }  // namespace
 
-double add_full_links(std::span<const FullLinks> links, const double* pose, const Rates& rates, const double* pressure,
-                      double* force) {
-    if (rates.velocity && rates.beta > 0) return add_damped(links.data(), links.size(), pose, rates, pressure, force);
+double add_full_links(std::span<const FullLinks> links, std::span<const SectionCouplings> couplings, const double* pose,
+                      const Rates& rates, const double* pressure, double* force) {
+    const bool damped = rates.velocity && rates.beta > 0;
+    if (!couplings.empty()) {
+        const SectionCouplings* by = couplings.data();
+        return damped ? add_coupled_damped(links.data(), by, links.size(), pose, rates, pressure, force)
+                      : add_coupled(links.data(), by, links.size(), pose, pressure, force);
+    }
+    if (damped) return add_damped(links.data(), links.size(), pose, rates, pressure, force);
     return add_undamped(links.data(), links.size(), pose, pressure, force);
 }
 

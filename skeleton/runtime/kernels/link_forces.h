@@ -18,9 +18,10 @@ struct Rates {
 double add_paper_links(std::span<const PaperLinks> links, const double* pose, const Rates& rates, double* force);
 
 /// Adds the forces of full links; returns their energy, without that of volumes. The laws are those of FullLink in
-/// skeleton/links/full_link.h. `pressure` [MPa], one a sphere, presses the links' sections apart; null: none.
-double add_full_links(std::span<const FullLinks> links, const double* pose, const Rates& rates, const double* pressure,
-                      double* force);
+/// skeleton/links/full_link.h. `couplings`: of as many links, or none. `pressure` [MPa], one a sphere, presses the
+/// links' sections apart; null: none.
+double add_full_links(std::span<const FullLinks> links, std::span<const SectionCouplings> couplings, const double* pose,
+                      const Rates& rates, const double* pressure, double* force);
 
 /// Adds what the spheres' cells swell by, 1/2 A s of each link, to `swelling` [mm^3], one a sphere; with rates 1/2 A (s
 /// + beta ds/dt), which is what resists.

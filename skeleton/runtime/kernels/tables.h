@@ -51,6 +51,11 @@ struct alignas(64) FullLinks {
     double k[6][4];                   // as Stiffness orders them
 };
 
+/// Of four full links, how a strain depends on those behind it, as Stiffness orders them: (0, 1), (0, 2) ... (4, 5).
+struct alignas(64) SectionCouplings {
+    double c[15][4];
+};
+
 /// Four spheres as bodies that move. The principal axes of inertia stand at rest as q_axes turns the coordinate axes.
 struct alignas(64) Masses {
     double q_axes[4][4];

@@ -88,6 +88,26 @@ TEST(ForceField, PlaysTheEffectsOfTheLinksAndPoints) {
     }
 }
 
+TEST(ForceField, CouplesWhatSectionsCouple) {
+    // A frame of full links that keeps no volumes: fibres at an angle and a lump make the laws of its sections.
+    skeleton::Model frame = make_full_lattice({3, 3, 2});
+    for (skeleton::Sphere& sphere : frame.spheres) sphere.volume = 0;
+    const skeleton::EffectRecord fibres{"anisotropy",
+                                        {{"k", 3, "1"}, {"nx", 1, "1"}, {"ny", 1, "1"}, {"nz", -0.5, "1"}}};
+    const skeleton::EffectRecord lump{
+        "inclusion", {{"cx", 12, "mm"}, {"cy", 8, "mm"}, {"cz", 3, "mm"}, {"radius", 6, "mm"}, {"ratio", 8, "1"}}};
+    const skeleton::EffectRecord stiffening{"stiffening", {{"c2", 3, "1"}, {"c3", 30, "1"}}};
+    for (const auto& effects : {std::vector{fibres}, std::vector{lump}, std::vector{fibres, lump, stiffening}}) {
+        frame.effects = effects;
+        for (const double turn : {0.1, 1.0}) {
+            const Mismatch by = mismatch(frame, 1, turn);
+            EXPECT_LT(by.force, 10 * rounding) << effects.front().name << turn;
+            EXPECT_LT(by.energy, 1e-9);
+            EXPECT_LT(by.tangent, 10 * rounding);
+        }
+    }
+}
+
 TEST(ForceField, ACavityUnderPressurePushesAsItDoesInTheModel) {
     skeleton::Model model = make_full_lattice({3, 3, 2});
     give_skin(model);
@@ -111,7 +131,10 @@ TEST(ForceField, TheSkinsAreaPullsAsItDoesInTheModel) {
 }
 
 TEST(ForceField, DampingTakesEnergyAndKeepsMomenta) {
-    for (const skeleton::Model& model : {make_lattice({3, 2, 2}), make_full_lattice({3, 2, 2})}) {
+    skeleton::Model coupled = make_full_lattice({3, 2, 2});
+    for (skeleton::Sphere& sphere : coupled.spheres) sphere.volume = 0;
+    coupled.effects = {{"anisotropy", {{"k", 3, "1"}, {"nx", 1, "1"}, {"ny", 1, "1"}, {"nz", -0.5, "1"}}}};
+    for (const skeleton::Model& model : {make_lattice({3, 2, 2}), make_full_lattice({3, 2, 2}), coupled}) {
         std::mt19937_64 engine(5);
         const ReorderedModel reordered = in_cuthill_mckee_order(model);
         ForceField field(reordered.model);
