@@ -43,7 +43,7 @@ Model make_bar_chain(int links) {
     return model;
 }
 
-fem::Effects fibres(double k, const Vec3& n) {
+fem::Effects fibres_along(double k, const Vec3& n) {
     return {.material = {std::make_shared<fem::Anisotropy>(std::vector<fem::Fibre>{{k, n}})}};
 }
 fem::Effects lump(const Vec3& centre, double radius, double ratio) {
@@ -61,7 +61,7 @@ TEST(SectionLaw, NoneWithoutWhatActsInSections) {
     EXPECT_TRUE(section_laws(bar, {}).empty());
     // a law that is the plain one at rest is the fibres'
     EXPECT_TRUE(section_laws(bar, {.material = {std::make_shared<fem::Stiffening>(3, 30)}}).empty());
-    EXPECT_TRUE(section_laws(testing::make_chain(2), fibres(2, Vec3::UnitX())).empty())
+    EXPECT_TRUE(section_laws(testing::make_chain(2), fibres_along(2, Vec3::UnitX())).empty())
         << "paper's links have no section";
 }
 
@@ -69,7 +69,7 @@ TEST(SectionLaw, NoneOfALumpsLinks) {
     Model bar = make_bar_chain(2);
     bar.spheres[2].cell = 500;
     bar.spheres[2].volume = 0.3;
-    const std::vector<SectionLaw> laws = section_laws(bar, fibres(2, Vec3::UnitX()));
+    const std::vector<SectionLaw> laws = section_laws(bar, fibres_along(2, Vec3::UnitX()));
     ASSERT_EQ(laws.size(), 2u);
     EXPECT_TRUE(laws[0].in_force);
     EXPECT_FALSE(laws[1].in_force);
@@ -85,7 +85,7 @@ TEST(SectionLaw, WhatScalesAllScalesAStiffness) {
 
 TEST(SectionLaw, FibresAlongABarAddTheirModulusToItsOwn) {
     constexpr double k = 2;
-    const SectionLaw law = section_laws(make_bar_chain(1), fibres(k, Vec3::UnitX())).front();
+    const SectionLaw law = section_laws(make_bar_chain(1), fibres_along(k, Vec3::UnitX())).front();
     for (const int s : {elongation, flexion, flexion_2}) EXPECT_NEAR(law.factors[s], 1 + k * mu / young, 1e-9) << s;
     EXPECT_NEAR(law.factors[torsion], 1, 1e-9);
     // What bends under shear is stiffer, what shears is not.
@@ -98,8 +98,8 @@ TEST(SectionLaw, FibresAlongABarAddTheirModulusToItsOwn) {
 
 TEST(SectionLaw, FibresAtAnAngleTurnWhatIsBentAndShearWhatIsPulled) {
     const Model bar = make_bar_chain(1);
-    const Mat6 there = stiffness_of(bar, 0, section_laws(bar, fibres(4, {1, 1, 0})).front());
-    const Mat6 mirrored = stiffness_of(bar, 0, section_laws(bar, fibres(4, {1, -1, 0})).front());
+    const Mat6 there = stiffness_of(bar, 0, section_laws(bar, fibres_along(4, {1, 1, 0})).front());
+    const Mat6 mirrored = stiffness_of(bar, 0, section_laws(bar, fibres_along(4, {1, -1, 0})).front());
     const auto coupling = [](const Mat6& K, int i, int j) { return K(i, j) / std::sqrt(K(i, i) * K(j, j)); };
     EXPECT_GT(coupling(there, elongation, shear), 0.1);
     EXPECT_LT(coupling(there, torsion, flexion_2), -0.05);  // out of the fibres' plane
@@ -137,8 +137,8 @@ TEST(SectionLaw, TurnsWithTheBody) {
     const auto both = [](const fem::Effects& a, const fem::Effects& b) {
         return fem::Effects{.material = {a.material.front(), b.material.front()}};
     };
-    const SectionLaw law = section_laws(bar, both(fibres(3, n), lump(centre, 4, 5))).front();
-    const SectionLaw then = section_laws(turned, both(fibres(3, R * n), lump(R * centre, 4, 5))).front();
+    const SectionLaw law = section_laws(bar, both(fibres_along(3, n), lump(centre, 4, 5))).front();
+    const SectionLaw then = section_laws(turned, both(fibres_along(3, R * n), lump(R * centre, 4, 5))).front();
     EXPECT_LT((law.factors - then.factors).cwiseAbs().maxCoeff(), 1e-9);
     EXPECT_LT((law.coupling - then.coupling).cwiseAbs().maxCoeff(), 1e-9);
     EXPECT_GT(law.factors.minCoeff(), 0);
@@ -148,9 +148,9 @@ TEST(SectionLaw, TurnsWithTheBody) {
 TEST(SectionLaw, IsTheSameHoweverStiffTheLinkIs) {
     // Couplings are geometry, so that a fit of the stiffnesses is linear in them.
     Model bar = make_bar_chain(1);
-    const SectionLaw before = section_laws(bar, fibres(4, {1, 1, 0})).front();
+    const SectionLaw before = section_laws(bar, fibres_along(4, {1, 1, 0})).front();
     bar.links.front().stiffness.array() *= Eigen::Array<double, 6, 1>(2, 0.5, 3, 0.5, 0.7, 0.7);
-    const SectionLaw after = section_laws(bar, fibres(4, {1, 1, 0})).front();
+    const SectionLaw after = section_laws(bar, fibres_along(4, {1, 1, 0})).front();
     EXPECT_EQ(before.factors, after.factors);
     EXPECT_EQ(before.coupling, after.coupling);
 }
@@ -158,9 +158,9 @@ TEST(SectionLaw, IsTheSameHoweverStiffTheLinkIs) {
 TEST(SectionLaw, LimbsAndPlatesTellTheirSectionsEachInTheirWay) {
     // A limb's radius of gyration is that of the mean of its moments, a plate's that of the smaller.
     Model bar = make_bar_chain(1);
-    const SectionLaw limb = section_laws(bar, fibres(4, {1, 1, 0})).front();
+    const SectionLaw limb = section_laws(bar, fibres_along(4, {1, 1, 0})).front();
     bar.links.front().gyration = thick / std::sqrt(12.0);
-    const SectionLaw plate = section_laws(bar, fibres(4, {1, 1, 0})).front();
+    const SectionLaw plate = section_laws(bar, fibres_along(4, {1, 1, 0})).front();
     EXPECT_LT((limb.factors - plate.factors).cwiseAbs().maxCoeff(), 1e-9);
     EXPECT_LT((limb.coupling - plate.coupling).cwiseAbs().maxCoeff(), 1e-9);
 }
