@@ -69,8 +69,9 @@ void bind_commands(py::module_& module) {
         const commands::RunOptions options{input, output, overrides_of(settings, call)};
         return told(at_work(call, [&] { return commands::run(options, call.common); }));
     });
-    module.def("check", [](const fs::path& input, const fs::path& output, const Overrides& settings, const Call& call) {
-        const commands::CheckOptions options{input, output, overrides_of(settings, call)};
+    module.def("check", [](const fs::path& input, const fs::path& output, const std::vector<std::string>& expect,
+                           const Overrides& settings, const Call& call) {
+        const commands::CheckOptions options{input, output, expect, overrides_of(settings, call)};
         return told(at_work(call, [&] { return commands::check(options, call.common); }));
     });
     module.def("probe", [](const fs::path& input, const fs::path& output, const Overrides& settings,

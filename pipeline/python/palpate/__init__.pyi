@@ -325,7 +325,13 @@ def run(
     **settings: Any,
 ) -> Run: ...
 def check(
-    input: _Input, output: _Path | None = ..., *, threads: int | None = ..., force: bool = ..., **settings: Any
+    input: _Input,
+    output: _Path | None = ...,
+    *,
+    expect: Sequence[str] = ...,
+    threads: int | None = ...,
+    force: bool = ...,
+    **settings: Any,
 ) -> Check: ...
 def mesh(input: _Input, *, threads: int | None = ..., progress: _Progress = ..., **settings: Any) -> Mesh: ...
 def skeleton(input: _Input, *, threads: int | None = ..., progress: _Progress = ..., **settings: Any) -> Model: ...

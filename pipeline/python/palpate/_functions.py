@@ -54,11 +54,15 @@ def run(input, output=None, *, threads=None, seed=None, force=False, progress=No
     return Run(output, result, text, code)
 
 
-def check(input, output=None, *, threads=None, force=False, **settings):
-    """Reads everything, repairs nothing, says what is wrong and how to mend it. `output`: a folder for the faults."""
+def check(input, output=None, *, expect=(), threads=None, force=False, **settings):
+    """Reads everything, repairs nothing, says what is wrong and how to mend it, and what a set could show.
+
+    `output`: a folder, or a page (.html). `expect`: names of effects that the set has to be able to show; the answer is
+    false where it cannot.
+    """
     pairs = settings_of(("Body",), settings)
     with calling(threads, None, force) as call, as_path(input, _INPUTS) as path:
-        text, result, code = _core.check(path, output or "", pairs, call)
+        text, result, code = _core.check(path, output or "", list(expect), pairs, call)
     return Check(text, result, code == 0)
 
 

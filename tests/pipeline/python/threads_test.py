@@ -89,7 +89,8 @@ class Threads(unittest.TestCase):
         m, s = model(), measured()
         with ThreadPoolExecutor(3) as pool:
             errors = list(pool.map(lambda _: palpate.compare(m, s, reference=False).rms, range(6)))
-        self.assertEqual(len(set(errors)), 1)
+        # Equilibria end where rounding leaves them, which may differ in the last digits.
+        self.assertLess(max(errors) - min(errors), 1e-12 * max(errors))
 
 
 if __name__ == "__main__":
