@@ -37,8 +37,7 @@ Fibres::Fibres(const skeleton::Model& model, const fem::Effects& effects, const 
 
 bool Fibres::needed(const skeleton::Model& model, const fem::Effects& effects,
                     const std::vector<skeleton::SectionLaw>& laws) {
-    const bool all_by_law =
-        !laws.empty() && !std::ranges::any_of(laws, [](const auto& law) { return !law.in_force; });
+    const bool all_by_law = !laws.empty() && !std::ranges::any_of(laws, [](const auto& law) { return !law.in_force; });
     return skeleton::link_effects(effects).shear != 0 || effects.plasticity ||
            std::ranges::any_of(effects.material, [&](const auto& effect) {
                return !effect->is_scale() &&
