@@ -72,6 +72,7 @@ std::vector<EffectSignature> signatures_at(const BodyModel& model, const Problem
                                            const std::vector<std::shared_ptr<const EffectHypothesis>>& effects,
                                            int threads) {
     std::vector<EffectSignature> result;
+    result.reserve(effects.size());
     for (const auto& effect : effects) result.push_back({effect, {}});
     // Effects with a memory ask stage by stage.
     const Problem stages = problem.by_stage ? problem : problem.stage_by_stage();

@@ -256,7 +256,12 @@ Outcome check(const CheckOptions& options, const Common& common) {
     if (subject.set) add_grips(subject, outcome);
     const bool is_fittable = !subject.set || identify::parts_not_fitted_yet(*subject.set).empty();
     if (subject.set && is_fittable) add_information(*subject.set, outcome);
-    if (subject.set && subject.refusal.empty()) add_preflight(subject, common, outcome);
+    // It takes as long as a first fit: only where somebody wants to read it.
+    const bool is_asked = !options.output.empty() || !options.expected.empty();
+    if (subject.set && subject.refusal.empty() && is_asked) add_preflight(subject, common, outcome);
+    if (subject.set && subject.refusal.empty() && !is_asked)
+        outcome.text += fmt::format("What it could show, and what to measure next: palpate check {} -o check.html\n",
+                                    options.input.string());
     judge_expectations(options, outcome);
     if (is_page(options.output)) {
         write_check_page(options.output, subject, outcome.json);

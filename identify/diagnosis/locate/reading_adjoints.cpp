@@ -59,6 +59,7 @@ private:
 
 std::vector<ReadingEntry> reading_entries(const Problem& problem) {
     std::vector<ReadingEntry> entries;
+    entries.reserve(static_cast<std::size_t>(problem.rows()));
     for (Eigen::Index n = 0; n < problem.rows(); ++n) {
         entries.push_back({n, problem.action[n], problem.state[n], 1});
         if (problem.is_difference(n)) entries.push_back({n, problem.since[n], problem.since_state[n], -1});
@@ -74,17 +75,18 @@ void for_each_adjoint(const BodyModel& model, const Problem& problem, const Expl
     std::shared_ptr<const Tangent> linear;
     if (!model.is_nonlinear(setting)) linear = model.tangent(model.rest(setting), setting, {});
     for_each_in_parallel(static_cast<int>(problem.actions.size()), threads, [&](int k) {
-        const auto own = std::ranges::equal_range(entries, k, {}, &ReadingEntry::action);
-        if (own.empty()) return;
-        ActionAdjoint adjoint{.action = k, .first = own.begin() - entries.begin()};
-        adjoint.scale.resize(std::ssize(own));
+        const auto begin = std::ranges::lower_bound(entries, k, {}, &ReadingEntry::action);
+        const auto end = std::ranges::upper_bound(entries, k, {}, &ReadingEntry::action);
+        if (begin == end) return;
+        ActionAdjoint adjoint{.action = k, .first = begin - entries.begin()};
+        adjoint.scale.resize(end - begin);
         std::vector<int> coordinates;
         std::map<int, Eigen::Index> column_of;
-        for (const ReadingEntry& entry : own) {
-            const int coordinate = problem.coordinate[entry.row];
+        for (auto entry = begin; entry != end; ++entry) {
+            const int coordinate = problem.coordinate[entry->row];
             const auto [at, is_new] = column_of.try_emplace(coordinate, std::ssize(coordinates));
             if (is_new) coordinates.push_back(coordinate);
-            adjoint.scale[std::ssize(adjoint.columns)] = 1 / problem.sigma[entry.row];
+            adjoint.scale[entry - begin] = 1 / problem.sigma[entry->row];
             adjoint.columns.push_back(at->second);
         }
         const ChannelRows rows(model, problem, explanation, forward, k);

@@ -170,6 +170,7 @@ public:
     std::vector<SourceBasis> take() {
         const Eigen::MatrixXd columns = plan_.columns(fibres_).columns;
         SourceBasis fibres{.kind = SourceKind::stiffness, .form = SourceForm::fibres, .columns = columns};
+        fibres.places.reserve(static_cast<std::size_t>(columns.cols()));
         for (Eigen::Index c = 0; c < columns.cols(); ++c) {
             SourcePlace place = pieces_.places.back();  // everywhere
             place.axis = plan_.start(c, Eigen::VectorXd::Ones(1)).tail<3>();
@@ -285,6 +286,7 @@ bool is_of_marker(const Problem& problem, const ReadingEntry& entry) { return pr
 SourceBasis markers_off(const Problem& problem, const std::vector<ReadingEntry>& entries) {
     SourceBasis basis{.kind = SourceKind::sensor, .form = SourceForm::marker, .width = 3};
     basis.columns = Eigen::MatrixXd::Zero(std::ssize(entries), 3 * Eigen::Index{problem.markers});
+    basis.places.reserve(static_cast<std::size_t>(problem.markers));
     for (int m = 0; m < problem.markers; ++m) {
         basis.places.push_back(
             {.centre = problem.rest.row(m), .log_prior = -std::log(static_cast<double>(problem.markers)), .number = m});

@@ -6,7 +6,7 @@ namespace palpate::pipeline {
 
 identify::LoadState LoadCourse::state(std::size_t row) const {
     identify::LoadState state{.probe = probe, .time = rows[row].time};
-    if (drive) {
+    if (drive.drives()) {
         state.motions = motions(rows[row].force);
         for (const mesh::ActuatorSetting& one : settings(rows[row].force))
             state.actuations.push_back({one.actuator, one.value});
@@ -18,13 +18,13 @@ identify::LoadState LoadCourse::state(std::size_t row) const {
 }
 
 std::vector<mesh::ToolMotion> LoadCourse::motions(double amount) const {
-    if (!drive || drive->tool < 0 || amount == 0) return {};
-    return {{.tool = drive->tool, .translation = drive->from + amount * drive->along}};
+    if (drive.tool < 0 || amount == 0) return {};
+    return {{.tool = drive.tool, .translation = drive.from + amount * drive.along}};
 }
 
 std::vector<mesh::ActuatorSetting> LoadCourse::settings(double amount) const {
-    if (!drive || drive->actuator < 0 || amount == 0) return {};
-    return {{drive->actuator, amount}};
+    if (drive.actuator < 0 || amount == 0) return {};
+    return {{drive.actuator, amount}};
 }
 
 double LoadCourse::effective_force(std::size_t row, const std::optional<fem::CreepLaw>& creep) const {

@@ -24,6 +24,7 @@ struct RigDrive {
     Vec3 from = Vec3::Zero();   // its translation where it just touches [mm]
     Vec3 along = Vec3::Zero();  // unit direction that it is moved in from there, by so many mm
     int actuator = -1;          // that is set to so much; -1: none
+    bool drives() const { return tool >= 0 || actuator >= 0; }
 };
 
 /// What one probe does: its contact, and row after row how hard it presses. The force of a row acts since the row
@@ -32,7 +33,7 @@ struct LoadCourse {
     int probe = 0;
     mesh::Contact contact;  // with 1 N
     std::vector<Row> rows;
-    std::optional<RigDrive> drive = {};  // in place of the contact
+    RigDrive drive = {};  // in place of the contact, where it drives anything
 
     /// A tool's motion and an actuator's setting at an amount; none where it is 0: it is away, or off.
     std::vector<mesh::ToolMotion> motions(double amount) const;

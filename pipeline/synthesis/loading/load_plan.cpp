@@ -134,6 +134,7 @@ Plan make_plan(const Specimen& specimen, const BlindSetOptions& options, const L
     if (!specimen.driven.empty()) {
         for (LoadCourse course : specimen.driven) {
             std::vector<double> amounts;
+            amounts.reserve(course.rows.size());
             for (const Row& row : course.rows) amounts.push_back(row.force);
             course.rows = rows_of(amounts, timing);
             plan.histories.push_back(std::move(course));

@@ -38,7 +38,7 @@ public:
         const double gain = history.probe > 0 && history.probe % 2 == 0 ? conditions_.gain : 1;
         const double force = gain * history.effective_force(row, conditions_.setting.effects.creep);
         Action action;
-        if (history.drive) {
+        if (history.drive.drives()) {
             action.motions = history.motions(history.rows[row].force);
             action.settings = history.settings(force);
         } else if (force != 0) {

@@ -115,9 +115,9 @@ void add_tool(const mesh::Surface& surface, const std::vector<mesh::Region>& sup
     if (spec.is_flat) tool.shape = mesh::FlatShape{spec.radius, axis};
     for (std::size_t p = 0; p < places.size(); ++p) {
         LoadCourse course{.probe = static_cast<int>(p) + 1, .contact = {}, .rows = rows_of(options.depth, {})};
-        course.drive = RigDrive{.tool = static_cast<int>(result.rig.tools.size()),
-                                .from = touching(places[p]) - tool.origin,
-                                .along = spec.is_flat ? axis : Vec3(-places[p].normal)};
+        course.drive = {.tool = static_cast<int>(result.rig.tools.size()),
+                        .from = touching(places[p]) - tool.origin,
+                        .along = spec.is_flat ? axis : Vec3(-places[p].normal)};
         result.courses.push_back(std::move(course));
     }
     result.rig.tools.push_back(std::move(tool));
@@ -130,7 +130,7 @@ void add_actuator(const std::string& name, decltype(mesh::Actuator::kind) kind, 
     for (const double value : values) {
         LoadCourse course{
             .probe = static_cast<int>(result.courses.size()) + 1, .contact = {}, .rows = rows_of({value}, {})};
-        course.drive = RigDrive{.actuator = number};
+        course.drive.actuator = number;
         result.courses.push_back(std::move(course));
     }
 }
@@ -143,6 +143,7 @@ RigProbes rig_probes(const mesh::Surface& surface, const std::vector<mesh::Regio
     if (!options.tool.empty()) add_tool(surface, supports, options, probing, seed, result);
     if (!options.pressure.empty()) {
         std::vector<Vec3> near;
+        near.reserve(options.cavity.size() + 1);
         for (const std::string& text : options.cavity) near.push_back(point_of(text, "--cavity"));
         if (near.empty())
             near.emplace_back(

@@ -43,8 +43,14 @@ private:
     static inline std::unique_ptr<TemporaryFolder> folder_;
 };
 
-TEST_F(CheckedSet, TellsWhatItCouldName) {
+TEST_F(CheckedSet, IsNotJudgedUnlessItIsAsked) {
     const commands::Outcome outcome = check(of_set());
+    EXPECT_FALSE(outcome.json.contains("preflight"));
+    EXPECT_THAT(outcome.text, HasSubstr("-o check.html"));
+}
+
+TEST_F(CheckedSet, TellsWhatItCouldName) {
+    const commands::Outcome outcome = check(of_set({"gravity"}));
     EXPECT_EQ(outcome.code, commands::done);
     const nlohmann::json& preflight = outcome.json["preflight"];
     ASSERT_TRUE(preflight.is_object());

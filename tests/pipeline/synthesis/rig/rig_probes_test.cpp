@@ -26,17 +26,17 @@ TEST(RigProbes, StartWhereTheToolJustTouches) {
     ASSERT_EQ(made.courses.size(), 5U);
     const mesh::SurfaceTree tree(block());
     for (const LoadCourse& course : made.courses) {
-        ASSERT_TRUE(course.drive);
-        const Vec3 centre = made.rig.tools[0].origin + course.drive->from;
+        ASSERT_TRUE(course.drive.drives());
+        const Vec3 centre = made.rig.tools[0].origin + course.drive.from;
         EXPECT_NEAR(tree.closest(centre).distance, 6,
                     0.006 * 6);  // it may lie that much deeper, by rounding of a place
         EXPECT_FALSE(tree.inside(centre));
-        EXPECT_NEAR(course.drive->along.norm(), 1, 1e-12);
+        EXPECT_NEAR(course.drive.along.norm(), 1, 1e-12);
         // Pressed in by so much it is so much nearer.
-        EXPECT_NEAR(tree.closest(centre + course.drive->along).distance, 5, 0.01);
+        EXPECT_NEAR(tree.closest(centre + course.drive.along).distance, 5, 0.01);
         const identify::LoadState state = course.state(1);
         ASSERT_EQ(state.motions.size(), 1U);
-        EXPECT_NEAR((state.motions[0].translation - course.drive->from).norm(), 1, 1e-12);
+        EXPECT_NEAR((state.motions[0].translation - course.drive.from).norm(), 1, 1e-12);
         EXPECT_TRUE(state.contacts.empty());
     }
 }
@@ -44,7 +44,7 @@ TEST(RigProbes, StartWhereTheToolJustTouches) {
 TEST(RigProbes, PressAPunchAlongItsAxisAlone) {
     const RigProbes made = probes_of({.tool = "flat:radius=3", .depth = {0.5}}, 3);
     const auto& punch = std::get<mesh::FlatShape>(made.rig.tools[0].shape);
-    for (const LoadCourse& course : made.courses) EXPECT_GT(course.drive->along.dot(punch.axis), 0.999);
+    for (const LoadCourse& course : made.courses) EXPECT_GT(course.drive.along.dot(punch.axis), 0.999);
 }
 
 TEST(RigProbes, SetEachActuatorToEachValue) {
