@@ -314,12 +314,12 @@ MissingSource source_of_outliers(const MeasurementSet& set, const Diagnosis& dia
 
 std::optional<MissingSource> where_missing(const BodyModel& model, const MeasurementSet& set,
                                            const Diagnosis& diagnosis, int threads) {
-    std::optional<MissingSource> source = locate_missing(model, diagnosis.problem, diagnosis.baseline, threads);
-    const Outliers& outliers = diagnosis.outliers;
-    if (outliers.readings.empty()) return source;
+    const bool has_outliers = !diagnosis.outliers.readings.empty();
     const bool is_all = diagnosis.explanation.size() == 1 && !diagnosis.explained;
-    if (source && !is_all) return source;
-    return source_of_outliers(set, diagnosis);
+    if (has_outliers && is_all) return source_of_outliers(set, diagnosis);
+    std::optional<MissingSource> source = locate_missing(model, diagnosis.problem, diagnosis.baseline, threads);
+    if (!source && has_outliers) return source_of_outliers(set, diagnosis);
+    return source;
 }
 
 }  // namespace palpate::identify

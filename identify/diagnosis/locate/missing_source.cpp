@@ -112,8 +112,9 @@ std::string MissingSource::sentence() const {
             return fmt::format("A force of {} acts within the material, {}, {}.", vector_in_short(*this, term, "N"),
                                place, law);
         case SourceForm::eigenstrain:
-            return fmt::format("The material {} by {} % {}, {}.", value > 0 ? "swells" : "shrinks",
-                               with_sd(100 * std::abs(value), 100 * sd), place, law);
+            return fmt::format(
+                "The material would {} if it could: it is under a stress of {} of its shear modulus, {}, {}.",
+                value > 0 ? "swell" : "shrink", with_sd(std::abs(value), sd), place, law);
         case SourceForm::softening: {
             const bool is_everywhere = term.law == SourceLaw::constant;
             return fmt::format("The material is {:.2g} times as stiff (from {:.2g} to {:.2g}) {}{}.", std::exp(value),

@@ -38,7 +38,7 @@ inline constexpr std::array<const char*, 10> source_law_names{"constant",  "prop
 /// What a source's numbers are.
 enum class SourceForm {
     force,        // a force in the material [N] (3)
-    eigenstrain,  // the material swells, over its shear modulus as a prestress is told [-] (1)
+    eigenstrain,  // a stress at rest that makes the material swell, over its shear modulus [-] (1)
     softening,    // ln of the stiffness over the model's [-] (1)
     fibres,       // stiffness along a direction, a share of the shear modulus [-] (1)
     set,          // share of earlier loads that the body keeps the shape of, linear and quadratic [-] (2)

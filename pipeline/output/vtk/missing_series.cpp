@@ -40,7 +40,7 @@ Density density_of(const identify::SourceTerm& term, const mesh::Surface& surfac
                 return {"missing springs [N/mm^3]", area_of(surface)};
             return {"missing pressure [N/mm^2]", area_of(surface)};
         case SourceForm::eigenstrain:
-            return {"missing strain [-]"};
+            return {"missing stress over the shear modulus [-]"};
         case SourceForm::softening:
             return {"missing ln stiffness [-]"};
         case SourceForm::fibres:
@@ -68,6 +68,9 @@ Points off_by_sensor(const identify::SourceTerm& term, const Points& rest, std::
 
 std::string write_missing_series(const fs::path& folder, const identify::MeasurementSet& set,
                                  const identify::Diagnosis& diagnosis) {
+    // What an earlier diagnosis located there.
+    fs::remove_all(folder / "missing");
+    fs::remove(folder / "missing.pvd");
     if (!diagnosis.missing) return {};
     const identify::MissingSource& source = *diagnosis.missing;
     const identify::SourceTerm& term = source.likeliest();
