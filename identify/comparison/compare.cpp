@@ -28,7 +28,7 @@ double square(double x) { return x * x; }
 std::vector<Points> predict(const skeleton::Model& model, const std::vector<StateReadings>& states, int threads,
                             std::vector<char>& bears_full_load) {
     std::vector<Points> predicted(states.size());
-    SolverPool solvers(model);
+    SolverPool solvers(model, states);
     const Eigen::VectorXd k = stiffness_vector(model);
     std::vector<skeleton::Equilibrium> equilibria(states.size());
     for_each_in_parallel(static_cast<int>(states.size()), is_history_dependent(states) ? 1 : threads, [&](int s) {

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <nlohmann/json.hpp>
 
 #include "identify/inference/domains/position/solver_pool.h"
@@ -192,7 +193,9 @@ std::vector<Forecast> forecast(const skeleton::Model& model, const std::vector<i
                                const std::optional<ModelUncertainty>& uncertainty, int threads) {
     const std::vector<LoadSequence> sequences = load_sequences(model, states);
     std::vector<std::vector<Forecast>> of_sequences(sequences.size());
-    identify::SolverPool solvers(model);
+    std::vector<skeleton::Load> loads;
+    for (const LoadSequence& sequence : sequences) std::ranges::copy(sequence, std::back_inserter(loads));
+    identify::SolverPool solvers(model, std::move(loads));
     const Eigen::VectorXd k = skeleton::stiffness_vector(model);
     identify::for_each_in_parallel(static_cast<int>(sequences.size()), threads, [&](int l) {
         const identify::SolverPool::Loan solver(solvers);

@@ -71,6 +71,10 @@ public:
     StaticsSolver(StaticsSolver&&) noexcept;
     StaticsSolver& operator=(StaticsSolver&&) noexcept;
 
+    /// Loads that will come. The order of elimination, and with it the rounding of every answer, then no longer
+    /// depends on which of them came first.
+    void expect(const std::vector<Load>& loads);
+
     /// As the free function, which wraps it; leaves the tangent factored, as factor_tangent does. `start` matters to
     /// the large-rotation law only.
     Equilibrium solve(const Eigen::VectorXd& k, const Load& load, const EquilibriumOptions& options = {},

@@ -54,6 +54,8 @@ public:
     /// A state after a share of a step; along branches where there are some.
     State advance(const State& state, const Eigen::VectorXd& step, double share) const;
 
+    /// Makes room for the couplings of a load's points and of the cavities that it presses apart.
+    void prepare(const Load& load);
     /// Assembles the tangent; without a load the links' and effects' alone.
     void assemble(const Eigen::VectorXd& k, const State& state, const Load* load = nullptr);
     /// Factors tangent + shift [N/mm] * metric, which makes turning and moving comparable.
@@ -68,8 +70,6 @@ public:
 
 private:
     int coupling(int a, int b);
-    /// Makes room for the couplings of a load's points and of the cavities that it presses apart.
-    void prepare(const Load& load);
     void add_pairs(const std::vector<std::array<int, 2>>& pairs, const std::vector<int>& couplings,
                    const std::vector<BlockCholesky::Block>& blocks);
 

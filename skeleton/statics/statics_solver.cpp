@@ -112,6 +112,10 @@ StaticsSolver::~StaticsSolver() = default;
 StaticsSolver::StaticsSolver(StaticsSolver&&) noexcept = default;
 StaticsSolver& StaticsSolver::operator=(StaticsSolver&&) noexcept = default;
 
+void StaticsSolver::expect(const std::vector<Load>& loads) {
+    for (const Load& load : loads) impl_->system.prepare(load);
+}
+
 Equilibrium StaticsSolver::solve(const Eigen::VectorXd& k, const Load& load, const EquilibriumOptions& options,
                                  const State* start, const FibreStates& before) {
     options.validate();

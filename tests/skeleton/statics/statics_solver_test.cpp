@@ -1,5 +1,7 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "skeleton/statics/equilibrium.h"
 #include "skeleton/statics/statics.h"
 #include "tests/skeleton/test_models.h"
@@ -24,6 +26,29 @@ TEST(StaticsSolver, AnswersAsTheFreeFunctionWhateverItSolvedBefore) {
         set_stiffness(model, 0.5 * k);
         EXPECT_EQ(soft.step, equilibrium(model, load).step);
     }
+}
+
+TEST(StaticsSolver, AnswersToTheLastBitWhicheverExpectedLoadComesFirst) {
+    const Model model = with_law(make_lattice({12, 1, 1}), EquilibriumLaw::large_rotation);
+    const auto between = [&](int a, int b, const Vec3& force) {
+        Load load = force_at(model, a, force);
+        load.forces.front().at.shares = {{.sphere = std::min(a, b), .weight = 0.5},
+                                         {.sphere = std::max(a, b), .weight = 0.5}};
+        return load;
+    };
+    const int last = static_cast<int>(model.spheres.size()) - 1;
+    const std::vector<Load> loads = {between(last, 3, {0, 1e-3, -3e-3}), between(last, 6, {2e-3, 0, 1e-3}),
+                                     between(last - 2, 2, {-1e-3, 2e-3, 0})};
+    const Eigen::VectorXd k = stiffness_vector(model);
+    std::vector<Eigen::VectorXd> found;
+    for (std::size_t first = 0; first < loads.size(); ++first) {
+        StaticsSolver solver(model);
+        solver.expect(loads);
+        solver.solve(k, loads[first]);
+        found.push_back(solver.solve(k, loads[0]).step);
+    }
+    EXPECT_EQ(found[1], found[0]);
+    EXPECT_EQ(found[2], found[0]);
 }
 
 TEST(StaticsSolver, LinearStepsSolveTheTangentAtRest) {

@@ -72,7 +72,7 @@ PositionDomain::PositionDomain(const skeleton::Model& model, skeleton::Equilibri
 
 /// What the model's law is solved with.
 void PositionDomain::take_law() {
-    solvers_ = std::make_shared<SolverPool>(*model_);
+    solvers_ = std::make_shared<SolverPool>(*model_, states_);
     if (law() == skeleton::EquilibriumLaw::linear) {
         linear_statics_ = std::make_shared<LinearStatics>(*model_);
         links_ = linear_statics_->links();

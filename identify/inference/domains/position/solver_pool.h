@@ -2,16 +2,25 @@
 
 #include <memory>
 #include <mutex>
+#include <utility>
 #include <vector>
 
+#include "identify/loading/readings.h"
 #include "skeleton/statics/equilibrium.h"
 
 namespace palpate::identify {
 
-/// Static solvers of one model for several threads: each borrows one and gives it back.
+/// Static solvers of one model for several threads: each borrows one and gives it back. They answer alike, whichever
+/// loads each of them has borne before.
 class SolverPool {
 public:
-    explicit SolverPool(const skeleton::Model& model) : model_(model) { idle_.push_back(make()); }
+    /// Keeps a reference to the model. `loads`: all that the solvers will bear.
+    SolverPool(const skeleton::Model& model, std::vector<skeleton::Load> loads)
+        : model_(model), loads_(std::move(loads)) {
+        idle_.push_back(make());
+    }
+    SolverPool(const skeleton::Model& model, const std::vector<StateReadings>& states)
+        : SolverPool(model, loads_of(states)) {}
 
     /// A solver on loan, until it goes out of scope.
     class Loan {
@@ -31,7 +40,17 @@ public:
 private:
     using Solver = std::unique_ptr<skeleton::StaticsSolver>;
 
-    Solver make() const { return std::make_unique<skeleton::StaticsSolver>(model_); }
+    static std::vector<skeleton::Load> loads_of(const std::vector<StateReadings>& states) {
+        std::vector<skeleton::Load> loads;
+        for (const StateReadings& state : states) loads.push_back(state.load);
+        return loads;
+    }
+
+    Solver make() const {
+        auto solver = std::make_unique<skeleton::StaticsSolver>(model_);
+        solver->expect(loads_);
+        return solver;
+    }
 
     Solver take() {
         {
@@ -51,6 +70,7 @@ private:
     }
 
     const skeleton::Model& model_;
+    std::vector<skeleton::Load> loads_;
     std::mutex mutex_;
     std::vector<Solver> idle_;
 };
