@@ -50,10 +50,10 @@ KnownEffect fault(std::string name) { return {std::move(name), {}, {}, EffectKin
 
 std::vector<KnownEffect> built_in_effects() {
     return {
-        known_gravity(),   known_compliant_support(), known_stiffening(),  known_anisotropy(), known_inclusion(),
-        known_contact(),   known_pressure(),          known_prestress(),   known_viscosity(),  known_plasticity(),
-        known_volume(),    fault("misalignment"),     fault("force-gain"), fault("slip"),      fault("actuation-gain"),
-        fault("outliers"),
+        known_gravity(), known_compliant_support(), known_stiffening(),  known_anisotropy(), known_inclusion(),
+        known_contact(), known_pressure(),          known_prestress(),   known_viscosity(),  known_plasticity(),
+        known_volume(),  fault("misalignment"),     fault("force-gain"), fault("slip"),      fault("actuation-gain"),
+        fault("clock"),  fault("outliers"),
     };
 }
 

@@ -10,16 +10,7 @@
 #include "mesh/errors.h"
 
 namespace palpate::identify {
-namespace {
-
-std::vector<mesh::Contact> acting(const LoadState& state) {
-    std::vector<mesh::Contact> contacts;
-    std::ranges::copy_if(state.contacts, std::back_inserter(contacts),
-                         [](const mesh::Contact& c) { return !c.force.isZero(0); });
-    return contacts;
-}
-
-bool same(const Action& a, const Action& b) {
+bool is_same(const Action& a, const Action& b) {
     const auto same_contact = [](const mesh::Contact& x, const mesh::Contact& y) {
         return x.point == y.point && x.force == y.force && x.radius == y.radius;
     };
@@ -38,13 +29,22 @@ bool same(const Action& a, const Action& b) {
            std::ranges::equal(a.settings, b.settings, same_setting);
 }
 
+namespace {
+
+std::vector<mesh::Contact> acting(const LoadState& state) {
+    std::vector<mesh::Contact> contacts;
+    std::ranges::copy_if(state.contacts, std::back_inserter(contacts),
+                         [](const mesh::Contact& c) { return !c.force.isZero(0); });
+    return contacts;
+}
+
 bool counts(const Reading& reading) { return reading.marker >= 0 && !reading.position.array().isNaN().all(); }
 
 /// The action of a state: one that is there already, or a new one.
 int action_of(Problem& problem, const Stage& stage) {
     const int probe = is_loaded(stage.action) ? stage.probe : -1;
     for (std::size_t k = 0; k < problem.actions.size(); ++k) {
-        if (problem.probe[k] == probe && same(problem.actions[k], stage.action)) return static_cast<int>(k);
+        if (problem.probe[k] == probe && is_same(problem.actions[k], stage.action)) return static_cast<int>(k);
     }
     problem.actions.push_back(stage.action);
     problem.probe.push_back(probe);
@@ -328,7 +328,7 @@ Problem Problem::stage_by_stage() const {
 int Problem::action_in(const Problem& other, int k) const {
     int like = -1, most_similar = -1;
     for (std::size_t j = 0; j < other.actions.size(); ++j) {
-        if (!same(other.actions[j], actions[k])) continue;
+        if (!is_same(other.actions[j], actions[k])) continue;
         int alike = 0;
         if (other.probe[j] == probe[k]) ++alike;
         if (by_stage && other.by_stage && other.stages[j].probe == stages[k].probe) {

@@ -17,6 +17,9 @@ struct Stage {
 /// Does anything press at the body, or move or pull at it: a contact, a tool, an actuator?
 bool is_loaded(const Action& action);
 
+/// Do the same loads act, at the same gravity and pressure?
+bool is_same(const Action& a, const Action& b);
+
 /// A set's readings as one long vector of numbers, and what acted behind them. N rows: the numbers that were
 /// measured; K actions: those that differ. States without load share one action; others do within a probe, when
 /// nothing else acts on the body (creep, repeats). For a body with a memory `stage_by_stage` tells all states apart.

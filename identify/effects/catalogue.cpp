@@ -27,6 +27,7 @@ std::shared_ptr<const EffectHypothesis> misalignment_effect();
 std::shared_ptr<const EffectHypothesis> force_gain_effect();
 std::shared_ptr<const EffectHypothesis> slip_effect();
 std::shared_ptr<const EffectHypothesis> actuation_gain_effect();
+std::shared_ptr<const EffectHypothesis> clock_effect();
 std::shared_ptr<const EffectHypothesis> outliers_effect();
 
 namespace {
@@ -53,7 +54,7 @@ std::vector<std::shared_ptr<const EffectHypothesis>>& registry() {
         volume_effect(),         torsion_effect(),      shear_effect(),      compliant_support_effect(),
         contact_effect(),        pressure_effect(),     prestress_effect(),  viscosity_effect(),
         plasticity_effect(),     misalignment_effect(), force_gain_effect(), slip_effect(),
-        actuation_gain_effect(), outliers_effect()};
+        actuation_gain_effect(), clock_effect(),        outliers_effect()};
     return all;
 }
 

@@ -20,6 +20,7 @@ struct TrueConditions {
     double gain = 1;            // every second probe (2, 4, ...) presses so many times as hard as it reports
     Vec3 shift = Vec3::Zero();  // of the readings' frame [mm]
     Vec3 turn = Vec3::Zero();   // of it about the centre of the markers at rest, a rotation vector [rad]
+    double lag = 0;             // readings answer to loads of so long before [s]
     double outlier_share = 0;   // of the readings, that are off by themselves
     double outlier_width = 0;   // by so many sigmas of the noise
 
@@ -32,6 +33,7 @@ struct TrueConditions {
 /// Requirements on the load histories of a synthetic set for an effect to be observable.
 struct SynthesisNeeds {
     bool release = false;            // one body goes through all probes, let go after each: it shows in what stays
+    bool changing_loads = false;     // a probe presses more and less hard, one state after the other
     bool dwells = false;             // loads are read at several times after they were put on
     bool noise = false;              // its numbers are told in sigmas
     bool specified_poisson = false;  // the set tells a Poisson's ratio, which it belies

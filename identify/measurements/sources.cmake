@@ -21,5 +21,6 @@ set(measurements_sources
   measurements/labels/label_readings.cpp
   measurements/rig/actuator_places.cpp
   measurements/rig/cavities.cpp
+  measurements/rig/chambers.cpp
   measurements/rig/fittable.cpp
   measurements/rig/tool_places.cpp)

@@ -186,12 +186,12 @@ ReferenceBody::ReferenceBody(const mesh::VolumeMesh& mesh, const std::vector<mes
     i.material_points = mesh.nodes(material.nodes, Eigen::all);
     i.material_shares = material.weights / material.weights.sum();
     const double start = std::log(options.young.value_or(0.1));
-    // Young's modulus to a factor of twenty. A ratio that is told is taken at its word; else nu = .45, from about .13
-    // to .49.
+    // Young's modulus to a factor of twenty. A ratio that is told is taken at its word, so that a fit which explains
+    // little does not bend it (the effect `volume` contradicts it); else nu = .45, from about .13 to .49.
     const double compressibility = std::log(1 - 2 * options.poisson.value_or(0.45));
     constexpr double least_ratio = -0.5, most_ratio = 0.4999;
     i.parameters = {{"young", start, start, 3},
-                    {"compressibility", compressibility, compressibility, options.poisson ? 0.02 : 1, false,
+                    {"compressibility", compressibility, compressibility, options.poisson ? 1e-6 : 1, false,
                      std::log(1 - 2 * most_ratio), std::log(1 - 2 * least_ratio)}};
 }
 

@@ -13,6 +13,7 @@ std::string why_unshown(const EffectHypothesis& effect) {
         {"plasticity", "no state without load follows a load on the same body"},
         {"compliant-support", "no loaded marker tells how stiff the body is as a whole"},
         {"force-gain", "fewer than two probes have forces of their own, and one gain is a stiffness"},
+        {"clock", "no load changes from state to state of a probe"},
         {"slip", "no tool is moved"},
         {"actuation-gain", "no actuator acts, or its gain is the body's stiffness"}};
     const auto found = known.find(effect.name());

@@ -119,8 +119,8 @@ Outcome probe_to(const ProbeCommandOptions& options, const Common& common) {
     const Probing probing = probing_of_body(options);
     const Specimen& specimen = probing.specimen;
     const double largest = specimen.model->size() * probing.how.largest_displacement(specimen.in_small_strain());
-    const Plan plan = make_plan(specimen, options.synthesis, sequence_of(options.synthesis, {}).timing, largest,
-                                common.threads, Console::progress());
+    const Plan plan =
+        make_plan(specimen, sequence_of(options.synthesis, {}), largest, common.threads, Console::progress());
     Console::notices(plan.notes);
     const int states = write_deck(output, specimen, plan);
 

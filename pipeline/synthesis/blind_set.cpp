@@ -49,8 +49,8 @@ public:
         blind_set_.is_blind = !options_.hide.empty();
         blind_set_.notes = sequence_.notes;
         const double size = specimen_.model->size();
-        plan_ = make_plan(specimen_, options_, sequence_.timing,
-                          size * probing_.largest_displacement(specimen_.in_small_strain()), play_.threads, progress_);
+        plan_ = make_plan(specimen_, sequence_, size * probing_.largest_displacement(specimen_.in_small_strain()),
+                          play_.threads, progress_);
         choose_noise();
         hide_all();
         play_together();
@@ -187,7 +187,7 @@ private:
             for (std::size_t row = 0; row < plan_.histories[c].rows.size(); ++row, ++s) {
                 identify::LoadState state = plan_.histories[c].state(row);
                 state.readings = read_markers(state, hidden[s], faults(), seed_);
-                state.reactions = reactions_of(state, paths_[c][row]);
+                state.reactions = reactions_of(plan_.histories[c], row, paths_[c][row]);
                 set.states.push_back(std::move(state));
                 blind_set_.configurations.push_back(paths_[c][row]);
             }
@@ -198,17 +198,17 @@ private:
     }
 
     /// Without noise.
-    std::vector<identify::ReactionReading> reactions_of(const identify::LoadState& state,
+    std::vector<identify::ReactionReading> reactions_of(const LoadCourse& history, std::size_t row,
                                                         const Eigen::VectorXd& q) const {
-        if (state.motions.empty()) return {};
         identify::Action action;
-        action.motions = state.motions;
+        action.motions = history.motions(history.lagged_force(row, conditions_.lag, {}));
+        if (action.motions.empty()) return {};
         const Eigen::VectorXd all = specimen_.model->reactions(q, conditions_.setting, action);
         std::vector<identify::ReactionReading> readings;
-        readings.reserve(state.motions.size());
-        for (std::size_t m = 0; m < state.motions.size(); ++m) {
+        readings.reserve(action.motions.size());
+        for (std::size_t m = 0; m < action.motions.size(); ++m) {
             readings.push_back(
-                {.tool = state.motions[m].tool, .force = all.segment<3>(6 * static_cast<Eigen::Index>(m))});
+                {.tool = action.motions[m].tool, .force = all.segment<3>(6 * static_cast<Eigen::Index>(m))});
         }
         return readings;
     }

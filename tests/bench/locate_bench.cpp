@@ -37,7 +37,8 @@ struct LocateOptions {
 identify::SourceKind kind_of(const std::string& effect) {
     static const std::set<std::string> forces{"gravity", "prestress", "swelling"};
     static const std::set<std::string> boundary{"contact", "pressure", "compliant-support", "friction"};
-    static const std::set<std::string> sensor{"misalignment", "outliers", "force-gain", "slip", "actuation-gain"};
+    static const std::set<std::string> sensor{"misalignment", "outliers",       "force-gain",
+                                              "slip",         "actuation-gain", "clock"};
     if (forces.contains(effect)) return identify::SourceKind::body_force;
     if (boundary.contains(effect)) return identify::SourceKind::boundary;
     return sensor.contains(effect) ? identify::SourceKind::sensor : identify::SourceKind::stiffness;

@@ -131,6 +131,22 @@ struct SmallBody {
         return states;
     }
 
+    /// Pushes, each put on in two steps and taken off again, read right after each change and some time later.
+    static std::vector<LoadState> steps(double force = 0.1, int count = 4) {
+        std::vector<LoadState> states{LoadState{.probe = 0}};
+        for (LoadState state : probes(force, count)) {
+            if (state.contacts.empty()) continue;
+            const Vec3 whole = state.contacts.front().force;
+            for (const auto& [time, share] :
+                 {std::pair{1.0, 0.5}, {5.0, 0.5}, {6.0, 1.0}, {10.0, 1.0}, {11.0, 0.0}, {15.0, 0.0}}) {
+                state.time = time;
+                state.contacts.front().force = share * whole;
+                states.push_back(state);
+            }
+        }
+        return states;
+    }
+
     /// States with a reading of every marker, each at rest.
     MeasurementSet set(std::vector<LoadState> states) const {
         MeasurementSet set;

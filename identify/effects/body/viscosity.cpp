@@ -33,7 +33,7 @@ public:
             .parameters = {"creep [-]: how much the compliance grows in the end, over that at once",
                            "tau [s]: time in which it does"},
             .reveals = "an error that grows with the time that a load is held, or fades after it is taken off",
-            .confused_with = {"force-gain", "plasticity"},
+            .confused_with = {"force-gain", "plasticity", "clock"},
             .separating_probe = "hold the same load for two different times",
             .next_probe = "dwell"};
         return text;

@@ -6,6 +6,7 @@
 
 #include "identify/measurements/rest_body.h"
 #include "identify/measurements/rig/cavities.h"
+#include "identify/measurements/rig/chambers.h"
 #include "identify/measurements/rig/rig_places.h"
 #include "mesh/errors.h"
 
@@ -36,6 +37,26 @@ void check_tendon(const mesh::TendonActuator& tendon, const RestBody& body, cons
                         "allowed. A tendon runs through the body; give its path where it enters, bends and ends, in "
                         "the unit and frame of the set.",
                         i + 1, name, place_in_words(point), distance, allowed));
+    }
+}
+
+/// A tendon is straight between its points, whatever the body does: one whose points are far apart leaves a body that
+/// bends as the string leaves a bow.
+void note_bowstring(const mesh::TendonActuator& tendon, const RestBody& body, const std::string& name,
+                    std::vector<std::string>& notes) {
+    // Where material next to it is strained by a tenth, a line of length L at depth d arches by L^2 / (80 d): from here
+    // on by twice its depth, out of the body.
+    constexpr double most = 13;  // times its depth
+    for (Eigen::Index i = 1; i < tendon.path.rows(); ++i) {
+        const Vec3 from = tendon.path.row(i - 1).transpose(), to = tendon.path.row(i).transpose();
+        const double length = (to - from).norm(), depth = body.depth((from + to) / 2);
+        if (!(depth > 0) || length <= most * depth) continue;
+        notes.push_back(
+            fmt::format("Tendon '{}' runs straight for {:.3g} mm from point {} to the next, {:.0f} times as far as it "
+                        "lies deep: it "
+                        "leaves a body that bends, as a bowstring does. If it is guided, give the points where.",
+                        name, length, i, length / depth));
+        return;
     }
 }
 
@@ -72,18 +93,23 @@ void note_unused(MeasurementSet& set) {
 
 void check_actuators(MeasurementSet& set) {
     if (set.actuators.empty()) return;
+    const RestBody outside(set.rest_surface);
+    for (const mesh::Actuator& actuator : set.actuators) {
+        const auto* pressure = std::get_if<mesh::PressureActuator>(&actuator.kind);
+        const auto* chamber = pressure ? std::get_if<mesh::Surface>(&pressure->cavity) : nullptr;
+        if (chamber) check_chamber(*chamber, outside, actuator.name);
+    }
+    carve_chambers(set);
     const RestBody body(set.rest_surface);
     std::map<std::vector<int>, std::string> actuator_of;  // of each cavity, by its triangles
     for (const mesh::Actuator& actuator : set.actuators) {
         if (const auto* tendon = std::get_if<mesh::TendonActuator>(&actuator.kind)) {
             check_tendon(*tendon, body, actuator.name);
+            note_bowstring(*tendon, body, actuator.name, set.notes);
             continue;
         }
         const auto& cavity = std::get<mesh::PressureActuator>(actuator.kind).cavity;
-        if (const auto* chamber = std::get_if<mesh::Surface>(&cavity)) {
-            check_chamber(*chamber, body, actuator.name);
-            continue;
-        }
+        if (std::holds_alternative<mesh::Surface>(cavity)) continue;
         const mesh::Shell shell = nearest_cavity(set.rest_surface, std::get<Vec3>(cavity),
                                                  fmt::format("set.yaml: actuator '{}'", actuator.name));
         const auto [other, is_new] = actuator_of.try_emplace(shell.triangles, actuator.name);

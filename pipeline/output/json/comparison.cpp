@@ -1,5 +1,8 @@
 #include "pipeline/output/json/comparison.h"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <algorithm>
 #include <cmath>
 #include <iterator>
@@ -19,6 +22,28 @@ json pressed_at(const identify::MeasurementSet& set, int probe, double time) {
     for (const mesh::Contact& contact : state->contacts)
         if (!contact.force.isZero(0)) return numbers(contact.point);
     return nullptr;
+}
+
+std::string unit_of(const mesh::Actuator& actuator) {
+    const auto* tendon = std::get_if<mesh::TendonActuator>(&actuator.kind);
+    return !tendon ? "MPa" : tendon->by_length ? "mm" : "N";
+}
+
+/// What moves or drives the body in a state, besides forces: "pad by 3.2 mm, t1 at 6 N"; null where nothing does.
+json driven_by(const identify::MeasurementSet& set, int probe, double time) {
+    const identify::LoadState* state = identify::find_state(set, {probe, time});
+    if (!state) return nullptr;
+    std::vector<std::string> drives;
+    for (const mesh::ToolMotion& motion : state->motions) {
+        const Vec3 moved = motion.translation.array().isNaN().select(0, motion.translation);
+        drives.push_back(fmt::format("{} by {:.3g} mm", set.tools[motion.tool].name, moved.norm()));
+    }
+    for (const identify::Actuation& one : state->actuations) {
+        if (one.value == 0) continue;
+        const mesh::Actuator& actuator = set.actuators[one.actuator];
+        drives.push_back(fmt::format("{} at {:.3g} {}", actuator.name, one.value, unit_of(actuator)));
+    }
+    return drives.empty() ? json() : json(fmt::format("{}", fmt::join(drives, ", ")));
 }
 
 /// Rms error of each marker over all states, with its place at rest.
@@ -73,7 +98,8 @@ json to_json(const identify::Comparison& c, const identify::MeasurementSet& set)
                                     {"rms_mm", p.rms},
                                     {"max_mm", p.max},
                                     {"relative", known(p.relative)},
-                                    {"at", pressed_at(set, p.probe, p.time)}});
+                                    {"at", pressed_at(set, p.probe, p.time)},
+                                    {"driven_by", driven_by(set, p.probe, p.time)}});
     }
     result["worst"] = json::array();
     for (const auto& w : c.worst) {

@@ -31,6 +31,13 @@ std::string where(const json& at, const json& compare) {
     return part.empty() ? place(at) + " mm" : fmt::format("{} mm, {}", place(at), part);
 }
 
+/// What acts in a state: where it is pressed, else what drives it.
+std::string what_acts(const json& probe, const json& compare) {
+    const json driven = probe.value("driven_by", json());
+    return probe.value("at", json()).is_null() && driven.is_string() ? driven.get<std::string>()
+                                                                     : where(probe.value("at", json()), compare);
+}
+
 std::string marker_name(const json& marker) { return marker.value("name", marker["marker"].dump()); }
 
 }  // namespace
@@ -64,13 +71,13 @@ std::string worst_table(const json& compare) {
     const std::vector<json> probes = worst_of(compare["probes"]), markers = worst_of(compare["markers"]);
     if (probes.empty() || markers.empty()) return {};
     std::string text = fmt::format("  {:<24} {:>10} {:>10} {:>9}  {}\n", "Worst probes", "rms mm", "most mm",
-                                   "of moved", "pressed at");
+                                   "of moved", "pressed at, or driven by");
     for (const json& p : probes) {
-        text += fmt::format("  {:<24} {:>10.3g} {:>10.3g} {:>9}  {}\n",
-                            fmt::format("probe {}, {:g} s", p["probe"].get<int>(), p["time"].get<double>()),
-                            p["rms_mm"].get<double>(), p["max_mm"].get<double>(),
-                            p["relative"].is_number() ? percent(p["relative"].get<double>()) : "-",
-                            where(p.value("at", json()), compare));
+        text +=
+            fmt::format("  {:<24} {:>10.3g} {:>10.3g} {:>9}  {}\n",
+                        fmt::format("probe {}, {:g} s", p["probe"].get<int>(), p["time"].get<double>()),
+                        p["rms_mm"].get<double>(), p["max_mm"].get<double>(),
+                        p["relative"].is_number() ? percent(p["relative"].get<double>()) : "-", what_acts(p, compare));
     }
     text += fmt::format("  {:<24} {:>10} {:>20}  {}\n", "Worst markers", "rms mm", "", "at rest at");
     for (const json& m : markers) {

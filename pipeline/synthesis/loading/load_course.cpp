@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "identify/loading/lagged_load.h"
+
 namespace palpate::pipeline {
 
 identify::LoadState LoadCourse::state(std::size_t row) const {
@@ -38,6 +40,16 @@ double LoadCourse::effective_force(std::size_t row, const std::optional<fem::Cre
         since = rows[j].time;
     }
     return force;
+}
+
+double LoadCourse::lagged_force(std::size_t row, double lag, const std::optional<fem::CreepLaw>& creep) const {
+    if (lag == 0) return effective_force(row, creep);
+    std::vector<double> times;
+    times.reserve(rows.size());
+    for (const Row& one : rows) times.push_back(one.time);
+    const identify::InstantBetween at = identify::place_among(times, rows[row].time - lag);
+    const double before = at.before < 0 ? 0 : effective_force(static_cast<std::size_t>(at.before), creep);
+    return (1 - at.share) * before + at.share * effective_force(static_cast<std::size_t>(at.after), creep);
 }
 
 LoadCourse unloaded_history() { return {.probe = 0, .contact = {}, .rows = {{}}}; }

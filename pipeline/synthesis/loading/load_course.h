@@ -43,6 +43,8 @@ struct LoadCourse {
     /// The force that an elastic body would have to bear to stand as a creeping one does under what has acted so far:
     /// sum over j <= row of (f_j - f_j-1) J(t_row - t_j-1), J(t) = 1 + creep (1 - exp(-t / tau)). [Boltzmann 1876]
     double effective_force(std::size_t row, const std::optional<fem::CreepLaw>& creep) const;
+    /// The same a while before [s], if it changes evenly from row to row; 0 at time 0.
+    double lagged_force(std::size_t row, double lag, const std::optional<fem::CreepLaw>& creep) const;
 };
 
 /// Probe 0: nothing touches the body.

@@ -121,8 +121,8 @@ void leave_out_failed(Plan& plan) {
 
 }  // namespace
 
-Plan make_plan(const Specimen& specimen, const BlindSetOptions& options, const LoadTiming& timing, double largest,
-               int threads, const Progress& progress) {
+Plan make_plan(const Specimen& specimen, const Sequence& sequence, double largest, int threads,
+               const Progress& progress) {
     report(progress, "finding the loads", 0.0);
     Plan plan{{unloaded_history()}, {}, {}};
     plan.baseline = simulate(specimen, {.setting = specimen.setting}, plan.histories, {});
@@ -136,7 +136,7 @@ Plan make_plan(const Specimen& specimen, const BlindSetOptions& options, const L
             std::vector<double> amounts;
             amounts.reserve(course.rows.size());
             for (const Row& row : course.rows) amounts.push_back(row.force);
-            course.rows = rows_of(amounts, timing);
+            course.rows = rows_of(amounts, sequence.timing);
             plan.histories.push_back(std::move(course));
         }
         plan.baseline = simulate(specimen, {.setting = specimen.setting}, plan.histories, {.threads = threads});
@@ -154,13 +154,13 @@ Plan make_plan(const Specimen& specimen, const BlindSetOptions& options, const L
         const mesh::Contact& contact = specimen.contacts[p];
         std::vector<Pressed> pressed;
         std::vector<double> forces;
-        for (const double level : levels_of(p, options.levels)) {
+        for (const double level : levels_of(p, sequence.levels)) {
             const Pressed before = pressed.empty() ? Pressed{0, scaling.unloaded()} : pressed.back();
             pressed.push_back(scaling.press(contact, unit_steps[p], level * largest, before));
             forces.push_back(pressed.back().force);
             if (pressed.back().q.size() == 0) break;
         }
-        plan.histories[p + 1] = {.probe = p + 1, .contact = contact, .rows = rows_of(forces, timing)};
+        plan.histories[p + 1] = {.probe = p + 1, .contact = contact, .rows = rows_of(forces, sequence.timing)};
         if (pressed.back().q.size() > 0) {
             plan.baseline[p + 1] = path_of(plan.histories[p + 1], pressed, scaling.unloaded());
         }

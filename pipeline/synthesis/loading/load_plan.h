@@ -1,6 +1,7 @@
 #pragma once
 
 #include "mesh/progress.h"
+#include "pipeline/synthesis/loading/load_sequence.h"
 #include "pipeline/synthesis/loading/simulation.h"
 
 namespace palpate::pipeline {
@@ -19,8 +20,8 @@ struct Plan {
 /// A probe that finds no equilibrium presses less, and is left out when that does not help.
 /// Where a rig drives the specimen its probes are as they were asked for.
 /// @throws SolverFailure when no probe is left.
-Plan make_plan(const Specimen& specimen, const BlindSetOptions& options, const LoadTiming& timing, double largest,
-               int threads, const Progress& progress = {});
+Plan make_plan(const Specimen& specimen, const Sequence& sequence, double largest, int threads,
+               const Progress& progress = {});
 
 /// The same histories with the forces of some (flags) reduced, their bare paths found anew; those that find no
 /// equilibrium are left out.

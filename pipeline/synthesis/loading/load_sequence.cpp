@@ -18,13 +18,24 @@ std::string as_first_word(std::string name) {
 Sequence sequence_of(const BlindSetOptions& options, const std::vector<EffectSpec>& specs) {
     const EffectSpec* stays = first_with(&identify::SynthesisNeeds::release, specs);
     const EffectSpec* creeps = first_with(&identify::SynthesisNeeds::dwells, specs);
+    const EffectSpec* changes = first_with(&identify::SynthesisNeeds::changing_loads, specs);
     const bool released = stays != nullptr;
-    Sequence sequence{{options.unload.value_or(released), options.dwell}, options.continuous.value_or(released), {}};
+    Sequence sequence{{.unload = options.unload.value_or(released || changes != nullptr), .dwell = options.dwell},
+                      options.levels,
+                      options.continuous.value_or(released),
+                      {}};
     if (stays && !(options.unload && options.continuous)) {
         sequence.notes.push_back(
             fmt::format("{} shows in what stays: one body goes through all probes, let go after each (--no-unload, "
                         "--no-continuous say otherwise).",
                         as_first_word(stays->effect)));
+    }
+    if (changes && options.levels == 0) {
+        sequence.levels = 3;
+        sequence.notes.push_back(
+            fmt::format("{} shows where loads change: each probe presses at three levels, let go after each (--levels "
+                        "and --no-unload say otherwise).",
+                        as_first_word(changes->effect)));
     }
     if (creeps && options.dwell.empty()) {
         sequence.timing.dwell = {0.1, 4, 20};

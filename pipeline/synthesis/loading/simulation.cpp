@@ -36,10 +36,10 @@ public:
 
     Action action(const LoadCourse& history, std::size_t row) const {
         const double gain = history.probe > 0 && history.probe % 2 == 0 ? conditions_.gain : 1;
-        const double force = gain * history.effective_force(row, conditions_.setting.effects.creep);
+        const double force = gain * history.lagged_force(row, conditions_.lag, conditions_.setting.effects.creep);
         Action action;
         if (history.drive.drives()) {
-            action.motions = history.motions(history.rows[row].force);
+            action.motions = history.motions(history.lagged_force(row, conditions_.lag, {}));
             action.settings = history.settings(force);
         } else if (force != 0) {
             action.contacts = {history.contact};

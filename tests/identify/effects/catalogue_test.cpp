@@ -20,10 +20,25 @@ namespace {
 using testing::HasSubstr;
 
 /// Names that users may rely on.
-const std::set<std::string> promised{
-    "gravity",    "stiffening", "anisotropy",     "inclusion",         "volume",    "torsion",    "shear",
-    "contact",    "pressure",   "prestress",      "compliant-support", "viscosity", "plasticity", "misalignment",
-    "force-gain", "slip",       "actuation-gain", "outliers"};
+const std::set<std::string> promised{"gravity",
+                                     "stiffening",
+                                     "anisotropy",
+                                     "inclusion",
+                                     "volume",
+                                     "torsion",
+                                     "shear",
+                                     "contact",
+                                     "pressure",
+                                     "prestress",
+                                     "compliant-support",
+                                     "viscosity",
+                                     "plasticity",
+                                     "misalignment",
+                                     "force-gain",
+                                     "slip",
+                                     "actuation-gain",
+                                     "clock",
+                                     "outliers"};
 const std::set<std::string> probe_kinds{"load", "orientation", "pressure", "dwell", "unload", "repeat", "fiducials"};
 
 class EveryEffect : public testing::TestWithParam<std::shared_ptr<const EffectHypothesis>> {
@@ -34,6 +49,7 @@ protected:
     EveryEffect() {
         if (effect().name() == "pressure") body_ = SmallBody::hollow();
         set_ = body_.set(SmallBody::dwells(0.01, 3));
+        if (effect().name() == "clock") set_ = body_.set(SmallBody::steps());
         if (effect().is_of_links()) {
             model_ = body_.skeleton();
         } else if (effect().name() == "slip" || effect().name() == "actuation-gain") {

@@ -96,6 +96,31 @@ TEST(LoadCourse, CreepSuperposes) {
     EXPECT_DOUBLE_EQ(history.effective_force(4, std::nullopt), 5);
 }
 
+/// Loads change evenly from row to row, the first from time 0 on; the last one stays.
+TEST(LoadCourse, LagsByInterpolation) {
+    const LoadCourse history{1, {}, rows_of({2.0, 5.0}, {.unload = true, .dwell = {}})};
+    // rows at 1 (2 N), 2 (0), 3 (5 N), 4 (0)
+    EXPECT_DOUBLE_EQ(history.lagged_force(0, 0.25, {}), 1.5);
+    EXPECT_DOUBLE_EQ(history.lagged_force(1, 0.25, {}), 0.5);
+    EXPECT_DOUBLE_EQ(history.lagged_force(2, 1.5, {}), 1);
+    EXPECT_DOUBLE_EQ(history.lagged_force(3, -0.5, {}), 0);
+    EXPECT_DOUBLE_EQ(history.lagged_force(0, 3, {}), 0);
+    EXPECT_DOUBLE_EQ(history.lagged_force(2, 0, {}), 5);
+}
+
+TEST(Sequence, AnErrorOfClocksIsGivenLoadsThatChange) {
+    const Sequence clock = sequence_of({}, read_specs({"clock"}));
+    EXPECT_EQ(clock.levels, 3);
+    EXPECT_TRUE(clock.timing.unload);
+    EXPECT_FALSE(clock.continuous);
+    EXPECT_EQ(sequence_of({}, read_specs({"gravity"})).levels, 0);
+    BlindSetOptions told;
+    told.levels = 5;
+    told.unload = false;
+    EXPECT_EQ(sequence_of(told, read_specs({"clock"})).levels, 5);
+    EXPECT_FALSE(sequence_of(told, read_specs({"clock"})).timing.unload);
+}
+
 TEST(Sequence, EffectsThatRememberAreGivenTime) {
     const auto of = [](const char* spec, const BlindSetOptions& options = {}) {
         return sequence_of(options, read_specs({spec}));

@@ -72,7 +72,7 @@ TEST(EffectMessages, NothingToActOn) {
 }
 
 TEST(EffectsOfAMeasurement, AreNotPlayed) {
-    for (const char* name : {"misalignment", "force-gain", "slip", "actuation-gain", "outliers"})
+    for (const char* name : {"misalignment", "force-gain", "slip", "actuation-gain", "clock", "outliers"})
         EXPECT_FALSE(is_body_effect(name));
     EXPECT_TRUE(is_body_effect("gravity"));
     const Model model = make_lattice({4, 2, 2});

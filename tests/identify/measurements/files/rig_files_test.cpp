@@ -138,6 +138,40 @@ void expect_same_rig(const LoadState& a, const LoadState& b) {
     }
 }
 
+TEST_F(RigFiles, AChamberOfItsOwnIsCarvedOutOfTheBodyOnce) {
+    const double before = mesh::signed_volume(read().rest_surface);
+    folder.write("set.yaml", with("actuators:\n",
+                                  "actuators:\n  - {name: tube, kind: pressure, cavity: {surface: chamber.stl}}\n"));
+    const mesh::Surface outward = mesh::make_box({50, 6, 10}, {70, 14, 16}, {2, 2, 2});
+    mesh::Surface inward = outward;
+    inward.triangles = outward.triangles.rowwise().reverse();
+    for (const mesh::Surface& tube : {outward, inward}) {
+        mesh::write_surface(folder / "chamber.stl", tube);
+        const MeasurementSet set = read();
+        EXPECT_NEAR(mesh::signed_volume(set.rest_surface), before - 960, 1e-6);
+        EXPECT_TRUE(says(set.notes.front(), {"'tube'", "960 mm^3", "carved out"}));
+
+        write_measurement_set(folder / "copy", set);
+        const MeasurementSet copy = read_measurement_set(folder / "copy");
+        EXPECT_EQ(copy.rest_surface.triangles.rows(), set.rest_surface.triangles.rows());
+        std::filesystem::remove_all(folder / "copy");
+    }
+}
+
+TEST_F(RigFiles, AChamberThatTheRestSurfaceShowsIsLeftAsItIs) {
+    const Eigen::Index triangles = read().rest_surface.triangles.rows();
+    folder.write("set.yaml", with("near: [30, 10, 6]", "surface: chamber.stl"));
+    mesh::write_surface(folder / "chamber.stl", mesh::make_box({20, 6, 3}, {40, 14, 9}, {5, 3, 1}));
+    EXPECT_EQ(read().rest_surface.triangles.rows(), triangles);
+}
+
+TEST_F(RigFiles, ATendonThatIsNotGuidedForLongIsNoted) {
+    folder.write("set.yaml", with("[[0, 10, 15], [50, 10, 15], [80, 10, 12]]", "[[0, 10, 17], [80, 10, 17]]"));
+    const MeasurementSet set = read();
+    ASSERT_EQ(set.notes.size(), 1U);
+    EXPECT_TRUE(says(set.notes.front(), {"'cable'", "80 mm from point 1", "27 times", "guided"}));
+}
+
 TEST_F(RigFiles, AreReadBackEqual) {
     mesh::write_surface(folder / "punch.stl", mesh::make_box({58, 8, -9}, {66, 12, -1}, {1, 1, 1}));
     mesh::write_surface(folder / "chamber.stl", mesh::make_box({50, 6, 12}, {70, 14, 18}, {2, 2, 2}));

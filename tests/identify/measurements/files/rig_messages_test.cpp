@@ -245,6 +245,9 @@ TEST_F(RigFiles, WithChambersOffTheBodyAreRefused) {
     mesh::write_surface(folder / "chamber.stl", chamber);
     EXPECT_TRUE(says(refusal_of_yaml("near: [30, 10, 6]", "surface: chamber.stl"),
                      {"chamber of actuator 'chamber'", "[20, 60, 3]", "out of the body", "unit"}));
+    mesh::write_surface(folder / "chamber.stl", mesh::make_box({50, 6, 12}, {70, 14, 22}, {1, 1, 1}));
+    EXPECT_TRUE(says(refusal_of_yaml("near: [30, 10, 6]", "surface: chamber.stl"),
+                     {"chamber of actuator 'chamber'", "cannot be carved out", "22] mm", "2 mm outside"}));
     chamber.triangles.conservativeResize(chamber.triangles.rows() - 1, 3);
     mesh::write_surface(folder / "chamber.stl", chamber);
     EXPECT_TRUE(says(refusal_of_yaml("near: [30, 10, 6]", "surface: chamber.stl"), {"'chamber.stl' is not closed"}));

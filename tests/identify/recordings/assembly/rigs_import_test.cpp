@@ -62,6 +62,9 @@ TEST_F(Rigs, APneumaticArmIsFourProbesOfRisingPressure) {
     }
     EXPECT_NEAR(before, 36, 3);  // mm at 400 mbar
     EXPECT_TRUE(is_noted("plateaus drift")) << "the segment creeps";
+    EXPECT_TRUE(std::ranges::any_of(set.notes, [](const std::string& note) {
+        return note.find("carved out of the body") != std::string::npos;
+    })) << "the chamber is in a file of its own";
 }
 
 TEST_F(Rigs, ATentaclesMarkersAreFoundInEveryFile) {

@@ -1,0 +1,65 @@
+#include "identify/loading/lagged_load.h"
+
+#include <algorithm>
+
+namespace palpate::identify {
+
+InstantBetween place_among(const std::vector<double>& times, double instant) {
+    const auto last = static_cast<int>(times.size()) - 1;
+    const auto later = static_cast<int>(std::ranges::upper_bound(times, instant) - times.begin());
+    if (later > last) return {last, last, 1};
+    if (later > 0) return {later - 1, later, (instant - times[later - 1]) / (times[later] - times[later - 1])};
+    if (!(times.front() > 0)) return {0, 0, 1};
+    return {-1, 0, std::max(0.0, instant) / times.front()};
+}
+
+std::vector<mesh::Contact> between(const std::vector<mesh::Contact>& before, const std::vector<mesh::Contact>& after,
+                                   double share) {
+    std::vector<mesh::Contact> result;
+    const auto add = [&](const mesh::Contact& contact, double factor) {
+        if (factor == 0) return;
+        const auto there = std::ranges::find_if(result, [&](const mesh::Contact& other) {
+            return other.point == contact.point && other.radius == contact.radius;
+        });
+        if (there != result.end()) {
+            there->force += factor * contact.force;
+            return;
+        }
+        result.push_back(contact);
+        result.back().force *= factor;
+    };
+    for (const mesh::Contact& contact : before) add(contact, 1 - share);
+    for (const mesh::Contact& contact : after) add(contact, share);
+    return result;
+}
+
+std::vector<mesh::ActuatorSetting> between(const std::vector<mesh::ActuatorSetting>& before,
+                                           const std::vector<mesh::ActuatorSetting>& after, double share) {
+    std::vector<mesh::ActuatorSetting> result;
+    const auto add = [&](const mesh::ActuatorSetting& setting, double factor) {
+        const auto there = std::ranges::find(result, setting.actuator, &mesh::ActuatorSetting::actuator);
+        if (there == result.end()) {
+            result.push_back({setting.actuator, factor * setting.value});
+        } else {
+            there->value += factor * setting.value;
+        }
+    };
+    for (const mesh::ActuatorSetting& setting : before) add(setting, 1 - share);
+    for (const mesh::ActuatorSetting& setting : after) add(setting, share);
+    return result;
+}
+
+std::vector<mesh::ToolMotion> between(const std::vector<mesh::ToolMotion>& before,
+                                      const std::vector<mesh::ToolMotion>& after, double share,
+                                      std::vector<mesh::ToolMotion> now) {
+    for (mesh::ToolMotion& motion : now) {
+        const auto from = std::ranges::find(before, motion.tool, &mesh::ToolMotion::tool);
+        const auto to = std::ranges::find(after, motion.tool, &mesh::ToolMotion::tool);
+        if (from == before.end() || to == after.end()) continue;
+        motion.translation = (1 - share) * from->translation + share * to->translation;
+        motion.rotation = (1 - share) * from->rotation + share * to->rotation;
+    }
+    return now;
+}
+
+}  // namespace palpate::identify
