@@ -43,8 +43,9 @@ std::string in_sigmas(const json& whitened_rms) {
 
 std::string material_in_words(const json& material) {
     if (!material["young_mpa"].is_number()) return {};
-    std::string text = fmt::format(
-        "E = {} MPa", mesh::with_sd(material["young_mpa"].get<double>(), number_or_nothing(material, "young_sd_mpa")));
+    const double young = material["young_mpa"].get<double>(), sd = number_or_nothing(material, "young_sd_mpa");
+    std::string text = sd < young ? fmt::format("E = {} MPa", mesh::with_sd(young, sd))
+                                  : fmt::format("E = {:.2g} MPa, hardly known (± {:.1g})", young, sd);
     if (material["poisson"].is_number()) text += ", " + poisson_in_words(material);
     return text;
 }

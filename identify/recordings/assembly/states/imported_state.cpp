@@ -76,6 +76,15 @@ std::vector<Plateau> every_so_often(const Eigen::VectorXd& times, double every) 
         parts.push_back({first, last});
         first = last;
     }
+    // A few frames that are left over tell little of their noise: they belong to the part before.
+    if (const std::size_t n = parts.size(); n > 1) {
+        const Plateau rest = parts.back();
+        Plateau& before = parts[n - 2];
+        if (2 * (rest.last - rest.first) < before.last - before.first) {
+            before.last = rest.last;
+            parts.pop_back();
+        }
+    }
     return parts;
 }
 
@@ -88,6 +97,7 @@ SteadyPoint steady_point(const RecordedPoint& point, const Plateau& part, double
             steady_value(point.at.row(axis).segment(part.first, part.last - part.first).transpose());
         if (value.samples == 0) continue;
         steady.at[axis] = value.mean;
+        steady.samples = std::max(steady.samples, value.samples);
         squares += value.sigma * value.sigma;
         drift_squares += value.drift * value.drift;
         ++seen;
@@ -160,6 +170,22 @@ double common_range(const std::vector<ProbeRecording>& probes) {
     return range;
 }
 
+void moderate_sigmas(std::vector<SteadyPoint>& points) {
+    constexpr double shared = 4;  // degrees of freedom: those of a line through six frames
+    std::vector<double> variances;
+    for (const SteadyPoint& point : points)
+        if (point.sigma > 0) variances.push_back(point.sigma * point.sigma);
+    if (variances.empty()) return;
+    const auto middle = variances.begin() + std::ssize(variances) / 2;
+    std::ranges::nth_element(variances, middle);
+    for (SteadyPoint& point : points) {
+        if (point.samples == 0) continue;
+        const double own = std::isnan(point.sigma) ? 0 : point.sigma * point.sigma,
+                     freedom = std::max(0, point.samples - 2);
+        point.sigma = std::sqrt(std::max(own, (freedom * own + shared * *middle) / (freedom + shared)));
+    }
+}
+
 std::vector<ImportedState> find_states(const ImportMap& map, const ProbeRecording& probe, double range,
                                        std::vector<std::string>& notes) {
     const Eigen::VectorXd& times = probe.times;
@@ -199,6 +225,7 @@ std::vector<ImportedState> find_states(const ImportMap& map, const ProbeRecordin
         state.time = std::round((times[part.first] + times[part.last - 1]) / 2 * per_second) / per_second;
         double squares = 0;
         for (const RecordedPoint& point : probe.points) state.points.push_back(steady_point(point, part, squares));
+        moderate_sigmas(state.points);
         if (!probe.points.empty()) state.drift = std::sqrt(squares / (3.0 * static_cast<double>(probe.points.size())));
         for (const MappedUse& use : map.uses) state.values.push_back(value_of(use, probe, state.from, state.to));
         if (is_plateau && part.first != whole.first) {

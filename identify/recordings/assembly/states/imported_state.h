@@ -11,7 +11,13 @@ namespace palpate::identify {
 struct SteadyPoint {
     Vec3 at = Vec3::Constant(missing);  // [mm]; NaN where it was not seen
     double sigma = missing;             // of a coordinate, rms [mm]
+    int samples = 0;                    // frames that it was seen in
 };
+
+/// Raises sigmas that are small by chance, as over few frames, or nothing, where a track froze: the variance of each
+/// point's mean is averaged with the median one of all points, which counts as four degrees of freedom. [moderated
+/// variance: Smyth 2004]
+void moderate_sigmas(std::vector<SteadyPoint>& points);
 
 /// What one state of a probe shows, before it has the mesh's frame.
 struct ImportedState {

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "identify/numerics/random.h"
+#include "identify/recordings/assembly/states/imported_state.h"
 #include "identify/recordings/assembly/states/plateaus.h"
 
 namespace palpate::identify {
@@ -117,6 +118,28 @@ TEST(SteadyValues, SkipGapsAndSayHowManyTheyAre) {
     EXPECT_EQ(steady_value(samples).samples, 6);
     EXPECT_EQ(steady_value(samples).mean, 2);
     EXPECT_EQ(steady_value(Eigen::VectorXd::Constant(3, std::nan(""))).samples, 0);
+}
+
+TEST(ModeratedSigmas, OfFewFramesAreNotSmallByChance) {
+    std::vector<SteadyPoint> points(5);
+    for (SteadyPoint& point : points) point = {.at = Vec3::Zero(), .sigma = 0.02, .samples = 7};
+    points[1].sigma = 1e-9;
+    points[2].sigma = missing;  // a track that froze
+    points[3].sigma = 0.5;
+    points[4] = {};  // not seen
+    moderate_sigmas(points);
+    EXPECT_NEAR(points[0].sigma, 0.02, 1e-12);
+    EXPECT_NEAR(points[1].sigma, 0.02 * std::sqrt(4.0 / 9), 1e-9);
+    EXPECT_NEAR(points[2].sigma, 0.02 * std::sqrt(4.0 / 9), 1e-9);
+    EXPECT_EQ(points[3].sigma, 0.5);
+    EXPECT_TRUE(std::isnan(points[4].sigma));
+}
+
+TEST(ModeratedSigmas, OfManyFramesAreTheirOwn) {
+    std::vector<SteadyPoint> points(3, {.at = Vec3::Zero(), .sigma = 0.02, .samples = 2000});
+    points[0].sigma = 0.005;
+    moderate_sigmas(points);
+    EXPECT_NEAR(points[0].sigma, 0.005, 1e-4);
 }
 
 }  // namespace
