@@ -3,7 +3,7 @@
 Units everywhere: mm, N, MPa, N/mm, N*mm/rad, s, tonne; densities in kg/m^3. Functions do what the program's commands of
 their names do, with the same numbers to the last digit; they take paths or objects. Arrays of objects are views of
 their own memory and cannot be written to. What you can mend is an `InvalidInput`, a computation without a result a
-`SolverFailure`. Messages go to `logging.getLogger("palpate")`.
+`SolverFailure`. Messages go to `logging.getLogger("palpate")`. ::
 
     import palpate
     run = palpate.run("samples/dragonskin-beam/case.yaml")

@@ -272,7 +272,7 @@ def effects(name=None):
 
 
 def effect(name, parameters, *, acts_on="surface", meaning="An effect of one's own."):
-    """Makes a function an effect of the catalogue, for this process: to be diagnosed, added and played.
+    """Makes a function an effect of the catalogue, for this process: to be diagnosed, added and played::
 
         @palpate.effect("bed", {"stiffness": ("N/mm^3", 1e-4)})
         def bed(X, x, stiffness):

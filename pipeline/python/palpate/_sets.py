@@ -41,20 +41,23 @@ def from_arrays(
     poisson=None,
     name="measurements",
 ):
-    """Measurements out of arrays; n states, m markers. They are copied.
+    """Measurements out of arrays, which are copied; n states, m markers::
 
-    surface:   of the body at rest [mm]; a Mesh is used as it is
-    supports:  where it is held: {'box': {'min': [..], 'max': [..]}}, {'sphere': {'center', 'radius'}} or {'plane':
-               {'point', 'normal', 'within'}} [mm]; one or several
-    markers:   at rest (m, 3) [mm]
-    positions: measured (n, m, 3) [mm]; NaN is a missing reading
-    points:    where the force of each state acts (n, 3) [mm]
-    forces:    on the body (n, 3) [N]; 0: an unloaded state
-    radius:    over which the force is spread [mm]; one, or (n,)
-    anchors:   surface points that markers which stand off are rigidly attached to (m, 3) [mm]; None: none stands off
-    probes, times: of states (n,) [-, s]; None: a probe each, of time 0
-    sigma:     1 sigma of the readings [mm], (n, m) or what becomes that; noise: the same of all
-    density [kg/m^3], gravity (3) [mm/s^2] known to act on every state, young [MPa] and poisson as first guesses
+        surface:   of the body at rest [mm]; a Mesh is used as it is
+        supports:  where it is held: {'box': {'min': [..], 'max': [..]}}, {'sphere': {'center', 'radius'}} or {'plane':
+                   {'point', 'normal', 'within'}} [mm]; one or several
+        markers:   at rest (m, 3) [mm]
+        positions: measured (n, m, 3) [mm]; NaN is a missing reading
+        points:    where the force of each state acts (n, 3) [mm]
+        forces:    on the body (n, 3) [N]; 0: an unloaded state
+        radius:    over which the force is spread [mm]; one, or (n,)
+        anchors:   surface points that markers which stand off are rigidly attached to (m, 3) [mm]; None: none does
+        probes, times: of states (n,) [-, s]; None: a probe each, of time 0
+        sigma:     1 sigma of the readings [mm], (n, m) or what becomes that; noise: the same of all
+        density, gravity: [kg/m^3], known to act on every state (3) [mm/s^2]
+        young, poisson:   first guesses [MPa, -]
+
+    Wrong shapes and what is not finite are refused by name (InvalidInput).
     """
     markers = _table(markers, "markers", (None, 3))
     anchors = None if anchors is None else _table(anchors, "anchors", (len(markers), 3))
