@@ -42,6 +42,7 @@ for _kind in (Surface, Mesh):
 Surface.from_meshio = staticmethod(_exchange.surface_from_meshio)
 Surface.from_pyvista = staticmethod(_exchange.surface_from_pyvista)
 Mesh.from_meshio = staticmethod(_exchange.mesh_from_meshio)
+Mesh.from_pyvista = staticmethod(_exchange.mesh_from_pyvista)
 Surface.__repr__ = lambda self: f"<palpate.Surface: {len(self.vertices)} vertices, {len(self.triangles)} triangles>"
 Mesh.__repr__ = lambda self: f"<palpate.Mesh: {len(self.nodes)} nodes, {len(self.tetrahedra)} tetrahedra>"
 for _kind in (Body, Identification, Mesh, Model, Posterior, Set, Surface):
