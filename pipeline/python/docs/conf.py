@@ -1,5 +1,5 @@
 # The package as pages, made of its docstrings; with the package in PYTHONPATH:
-#   python3 -m sphinx -W -b html pipeline/python/docs build/python/docs
+#   python3 -m sphinx -W -b html pipeline/python/docs build/docs
 import palpate
 
 project = "palpate for Python"

@@ -82,6 +82,7 @@ py::array positions(const py::object& object) {
 }
 
 void step(OpenBody& self, double h, bool is_explicit, int steps) {
+    if (steps < 0) throw InvalidInput("steps: is " + std::to_string(steps) + ", must be at least 0");
     const OpenBody::Use body(self);
     const py::gil_scoped_release released;
     if (is_explicit) {

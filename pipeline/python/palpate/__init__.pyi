@@ -330,7 +330,7 @@ def check(
     input: _Input,
     output: _Path | None = ...,
     *,
-    expect: Sequence[str] = ...,
+    expect: str | Sequence[str] = ...,
     threads: int | None = ...,
     force: bool = ...,
     **settings: Any,

@@ -7,6 +7,7 @@ import importlib
 import numpy as np
 
 from . import _core
+from ._call import whole
 from .errors import InvalidInput
 
 _SOURCES = {
@@ -85,6 +86,7 @@ def resampled(posterior, draws=1000, seed=1):
     """Draws of equal weight (draws, parameters): systematic resampling, the same ones each time."""
     if posterior.draws.shape[0] == 0:
         raise InvalidInput("posterior: has no draws; identify with particles")
+    draws = whole(draws, "draws", 1, 1_000_000)
     places = (np.random.default_rng(seed).random() + np.arange(draws)) / draws
     sums = np.cumsum(posterior.weights)
     return posterior.draws[np.searchsorted(sums / sums[-1], places)]

@@ -49,6 +49,8 @@ class Exchange(unittest.TestCase):
         self.assertTrue((np.abs(drawn.mean(axis=0) - mean) < 4 * sd / np.sqrt(4000)).all())
         np.testing.assert_array_equal(drawn, posterior.resampled(4000, seed=3))
         self.assertAlmostEqual(posterior.weights.sum(), 1, places=12)
+        with self.assertRaisesRegex(palpate.InvalidInput, "draws: is 0, must be a whole number"):
+            posterior.resampled(0)
 
     @needs("xarray")
     def test_xarray(self):
