@@ -1,8 +1,8 @@
-"""A ROS 2 node that keeps a model alive: /hand (PointStamped [m]) in, /force (WrenchStamped [N]) out, at 1 kHz.
+"""A node of ROS 2 that keeps a model alive: hand (PointStamped [m]) in, force (WrenchStamped [N]) out, at 1 kHz.
 
-    python3 ros2_node.py --ros-args -p model:=model.json          # after `source /opt/ros/<distribution>/setup.bash`
+    python3 ros2_node.py --ros-args -p model:=model.json
 
-Positions are in the frame of the model. It has been written by rclpy's documentation and not been run.
+Positions are in the frame of the model. Written after rclpy's documentation, and not run.
 """
 
 import palpate
@@ -15,28 +15,25 @@ class PalpateNode(Node):
     def __init__(self):
         super().__init__("palpate")
         self._body = palpate.Body(self.declare_parameter("model", "model.json").value, damping_ratio=0.5)
-        self._contact = None
+        self._contact, self._felt = None, WrenchStamped()
         self._forces = self.create_publisher(WrenchStamped, "force", 1)
         self.create_subscription(PointStamped, "hand", self._drag, 1)
         self.create_timer(1e-3, self._step)
 
     def _drag(self, message):
-        point = [1000.0 * x for x in (message.point.x, message.point.y, message.point.z)]  # m to mm
+        place = [1000 * x for x in (message.point.x, message.point.y, message.point.z)]  # [mm]
         if self._contact is None:
-            self._contact = self._body.touch(point, 2.0)
-        self._body.drag(self._contact, point, 0.5)
-        self._frame = message.header.frame_id
+            self._contact, self._felt.header.frame_id = self._body.touch(place, 2.0), message.header.frame_id
+        self._body.drag(self._contact, place, 0.5)
 
     def _step(self):
         self._body.step(1e-3)
-        if self._contact is None:
-            return
-        felt = WrenchStamped()
-        felt.header.stamp, felt.header.frame_id = self.get_clock().now().to_msg(), self._frame
-        felt.wrench.force.x, felt.wrench.force.y, felt.wrench.force.z = map(float, -self._body.force(self._contact))
-        self._forces.publish(felt)
+        if self._contact is not None:
+            force = self._felt.wrench.force
+            force.x, force.y, force.z = (-self._body.force(self._contact)).tolist()
+            self._felt.header.stamp = self.get_clock().now().to_msg()
+            self._forces.publish(self._felt)
 
 
-if __name__ == "__main__":
-    rclpy.init()
-    rclpy.spin(PalpateNode())
+rclpy.init()
+rclpy.spin(PalpateNode())

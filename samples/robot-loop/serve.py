@@ -1,8 +1,6 @@
 """Keeps a model alive at 1 kHz behind a UNIX datagram socket: where hands are comes in, what they feel goes out.
 
-    python3 samples/robot-loop/serve.py runs/organ/identify/model.json /tmp/organ.sock
-
-Other processes speak to it by hand.py. A hand that is silent for half a second is let go. Ctrl-C ends it.
+    python3 samples/robot-loop/serve.py runs/organ/identify/model.json /tmp/organ.sock     # Ctrl-C ends it
 """
 
 import os
@@ -50,6 +48,8 @@ def answer(door, body, hands, tick):
     try:
         question, address = door.recvfrom(ASK.size)
         number, *place = ASK.unpack(question)
+        if not address:
+            raise OSError("a hand without a name cannot be answered; bind its socket")
         contact = hands[address][0] if address in hands else body.touch(place, RADIUS)
         hands[address] = contact, tick
         if number > 0:  # the first one only takes hold
