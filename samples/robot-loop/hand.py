@@ -19,7 +19,7 @@ class Hand:
 
     def __init__(self, path, point):
         self._line, self._number = socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM), -1
-        self._line.settimeout(1.0)
+        self._line.settimeout(5.0)
         self._line.bind("")  # a name of Linux's choice, to be answered to
         self._line.connect(path)
         self.start, _ = self.go(point)
