@@ -7,7 +7,9 @@ version = release = palpate.__version__
 extensions = ["sphinx.ext.autodoc"]
 default_role = "code"
 html_theme = "alabaster"
+html_theme_options = {"page_width": "75em", "body_max_width": "none"}  # room for tables of parameters
 html_show_copyright = False
+highlight_language = "none"
 add_module_names = False
 autoclass_content = "both"
 autodoc_member_order = "groupwise"
