@@ -23,24 +23,25 @@ public:
               model, runtime::BodyOptions{.damping_ratio = damping_ratio, .contacts = contacts})),
           centers_(body_->sphere_count(), 3) {}
 
-    /// The body, for one call of one thread. Arrays keep it alive after it is closed.
+    /// The body, for one call of one thread. Closing it meanwhile, by another thread, does not take it away.
     class Use {
     public:
-        explicit Use(OpenBody& body) : body_(body) {
-            if (!body.body_) throw py::value_error("the body is closed; make another one of the model");
+        explicit Use(OpenBody& body) : body_(body), held_(body.body_) {
+            if (!held_) throw py::value_error("the body is closed; make another one of the model");
             if (body.busy_.exchange(true, std::memory_order_acquire))
                 throw std::runtime_error("the body is in use by another thread; give each thread a body of its own");
         }
         ~Use() { body_.busy_.store(false, std::memory_order_release); }
         Use(const Use&) = delete;
         Use& operator=(const Use&) = delete;
-        runtime::Body* operator->() const { return body_.body_.get(); }
-        runtime::Body& operator*() const { return *body_.body_; }
+        runtime::Body* operator->() const { return held_.get(); }
 
     private:
         OpenBody& body_;
+        const std::shared_ptr<runtime::Body> held_;
     };
 
+    /// Arrays keep its memory alive.
     void close() { body_.reset(); }
     bool closed() const { return body_ == nullptr; }
     const std::shared_ptr<runtime::Body>& shared() const { return body_; }
@@ -81,6 +82,7 @@ py::array positions(const py::object& object) {
 }
 
 void step(OpenBody& self, double h, bool is_explicit, int steps) {
+    if (steps < 0) throw InvalidInput("steps: is " + std::to_string(steps) + ", must be at least 0");
     const OpenBody::Use body(self);
     const py::gil_scoped_release released;
     if (is_explicit) {

@@ -129,14 +129,14 @@ void bind_models(py::module_& module) {
                 return std::vector<std::string>(skeleton::stiffness_names.begin(),
                                                 skeleton::stiffness_names.begin() + kinds_of(m));
             },
-            "(k)")
+            "of a link's stiffnesses (k,)")
         .def_property_readonly(
             "stiffness_units",
             [](const Model& m) {
                 return std::vector<std::string>(skeleton::stiffness_units.begin(),
                                                 skeleton::stiffness_units.begin() + kinds_of(m));
             },
-            "(k)")
+            "of a link's stiffnesses (k,)")
         .def_property_readonly(
             "surface", [](const Model& m) { return std::make_shared<mesh::Surface>(m.surface); },
             "the skin at rest, a copy")

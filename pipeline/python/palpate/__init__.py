@@ -3,7 +3,7 @@
 Units everywhere: mm, N, MPa, N/mm, N*mm/rad, s, tonne; densities in kg/m^3. Functions do what the program's commands of
 their names do, with the same numbers to the last digit; they take paths or objects. Arrays of objects are views of
 their own memory and cannot be written to. What you can mend is an `InvalidInput`, a computation without a result a
-`SolverFailure`. Messages go to `logging.getLogger("palpate")`.
+`SolverFailure`. Messages go to `logging.getLogger("palpate")`. ::
 
     import palpate
     run = palpate.run("samples/dragonskin-beam/case.yaml")
@@ -42,6 +42,7 @@ for _kind in (Surface, Mesh):
 Surface.from_meshio = staticmethod(_exchange.surface_from_meshio)
 Surface.from_pyvista = staticmethod(_exchange.surface_from_pyvista)
 Mesh.from_meshio = staticmethod(_exchange.mesh_from_meshio)
+Mesh.from_pyvista = staticmethod(_exchange.mesh_from_pyvista)
 Surface.__repr__ = lambda self: f"<palpate.Surface: {len(self.vertices)} vertices, {len(self.triangles)} triangles>"
 Mesh.__repr__ = lambda self: f"<palpate.Mesh: {len(self.nodes)} nodes, {len(self.tetrahedra)} tetrahedra>"
 for _kind in (Body, Identification, Mesh, Model, Posterior, Set, Surface):

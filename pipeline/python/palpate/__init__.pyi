@@ -62,6 +62,8 @@ class Mesh:
     def to_pyvista(self) -> Any: ...
     @staticmethod
     def from_meshio(mesh: Any) -> Mesh: ...
+    @staticmethod
+    def from_pyvista(data: Any) -> Mesh: ...
 
 class Set:
     @staticmethod
@@ -328,7 +330,7 @@ def check(
     input: _Input,
     output: _Path | None = ...,
     *,
-    expect: Sequence[str] = ...,
+    expect: str | Sequence[str] = ...,
     threads: int | None = ...,
     force: bool = ...,
     **settings: Any,

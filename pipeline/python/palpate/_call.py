@@ -7,6 +7,7 @@ import difflib
 import functools
 import json
 import logging
+import numbers
 import os
 import tempfile
 from pathlib import Path
@@ -20,6 +21,28 @@ _LEVELS = (logging.DEBUG, logging.INFO, logging.WARNING, logging.ERROR)
 
 def _tell(importance: int, text: str) -> None:
     _log.log(_LEVELS[importance], "%s", text)
+
+
+def whole(given, name, low, high, remedy=""):
+    """A whole number of Python's or numpy's, within bounds."""
+    if isinstance(given, bool) or not isinstance(given, numbers.Integral) or not low <= given <= high:
+        raise InvalidInput(f"{name}: is {given!r}, must be a whole number in [{low}, {high}]{remedy}")
+    return int(given)
+
+
+def real(given, name):
+    try:
+        return float(given)
+    except (TypeError, ValueError):
+        raise InvalidInput(f"{name}: is {given!r}, must be a real number") from None
+
+
+def words_of(given, name):
+    """A name, or several."""
+    told = [given] if isinstance(given, str) else given
+    if not isinstance(told, (list, tuple, set, frozenset)) or not all(isinstance(word, str) for word in told):
+        raise TypeError(f"{name}: is {given!r}, must be a name or a list of names")
+    return list(told)
 
 
 class _Bar:
@@ -52,11 +75,8 @@ def calling(threads=None, seed=None, force=False, progress=None):
             progress = None
     if progress is not None and not callable(progress):
         raise TypeError(f"progress: is {progress!r}, must be a function of (what, fraction), True or None")
-    threads = (os.cpu_count() or 1) if threads is None else threads
-    if isinstance(threads, bool) or not isinstance(threads, int) or not 1 <= threads <= 1024:
-        raise InvalidInput(f"threads: is {threads!r}, must be a whole number in [1, 1024]; None takes all cores")
-    if seed is not None and (isinstance(seed, bool) or not isinstance(seed, int) or not 0 <= seed < 2**64):
-        raise InvalidInput(f"seed: is {seed!r}, must be a whole number in [0, 2^64); None takes the case's, or 1")
+    threads = whole((os.cpu_count() or 1) if threads is None else threads, "threads", 1, 1024, "; None takes all cores")
+    seed = None if seed is None else whole(seed, "seed", 0, 2**64 - 1, "; None takes the case's, or 1")
     try:
         yield _core.Call(threads, seed, bool(force), progress, _tell)
     finally:

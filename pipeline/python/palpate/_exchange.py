@@ -7,6 +7,7 @@ import importlib
 import numpy as np
 
 from . import _core
+from ._call import whole
 from .errors import InvalidInput
 
 _SOURCES = {
@@ -85,25 +86,32 @@ def resampled(posterior, draws=1000, seed=1):
     """Draws of equal weight (draws, parameters): systematic resampling, the same ones each time."""
     if posterior.draws.shape[0] == 0:
         raise InvalidInput("posterior: has no draws; identify with particles")
+    draws = whole(draws, "draws", 1, 1_000_000)
     places = (np.random.default_rng(seed).random() + np.arange(draws)) / draws
     sums = np.cumsum(posterior.weights)
     return posterior.draws[np.searchsorted(sums / sums[-1], places)]
 
 
 def inference_data(posterior, draws=1000, seed=1):
-    """An arviz.InferenceData (a DataTree by arviz 1) with one chain of equally likely draws, a variable a parameter."""
+    """An arviz.InferenceData (a DataTree by arviz 1) of equally likely draws, a variable a parameter. They are in one chain
+    and are none: ArviZ's ess and r_hat say nothing of them."""
     arviz = imported("arviz")
     drawn = resampled(posterior, draws, seed)
     values = {name: drawn[None, :, i] for i, name in enumerate(posterior.parameters)}
     if int(arviz.__version__.split(".")[0]) >= 1:
-        return arviz.from_dict({"posterior": values})
-    return arviz.from_dict(posterior=values)
+        data = arviz.from_dict({"posterior": values})
+    else:
+        data = arviz.from_dict(posterior=values)
+    for name, unit in zip(posterior.parameters, posterior.units):
+        data.posterior[name].attrs["units"] = unit
+    return data
 
 
 # --- Meshes ----------------------------------------------------------------------------------------------------------
 
 # meshio's quadratic tetrahedra number their midsides as VTK does, and so do ours.
 _CELLS = {3: "triangle", 4: "tetra", 10: "tetra10"}
+_VTK = {4: 10, 10: 24}  # VTK's numbers of them
 
 
 def to_meshio(body):
@@ -136,8 +144,7 @@ def to_pyvista(body):
     """A pyvista.PolyData of a Surface, an UnstructuredGrid of a Mesh [mm]."""
     pyvista = imported("pyvista")
     if isinstance(body, _core.Mesh):
-        kind = {4: 10, 10: 24}[body.tetrahedra.shape[1]]  # VTK's numbers of these cells
-        return pyvista.UnstructuredGrid({kind: np.array(body.tetrahedra)}, np.array(body.nodes))
+        return pyvista.UnstructuredGrid({_VTK[body.tetrahedra.shape[1]]: np.array(body.tetrahedra)}, np.array(body.nodes))
     return pyvista.PolyData(np.array(body.vertices), _faces(body.triangles))
 
 
@@ -147,5 +154,16 @@ def _faces(triangles):
 
 def surface_from_pyvista(data):
     """A pyvista.PolyData as a palpate.Surface; polygons are cut into triangles."""
+    if not hasattr(data, "faces"):
+        raise InvalidInput(f"data: is a {type(data).__name__}, must be a PolyData; take its extract_surface()")
     surface = data.triangulate()
     return _core.Surface(np.asarray(surface.points, float), np.asarray(surface.faces).reshape(-1, 4)[:, 1:])
+
+
+def mesh_from_pyvista(data):
+    """Tetrahedra of a pyvista.UnstructuredGrid as a palpate.Mesh."""
+    cells = getattr(data, "cells_dict", {})
+    kind = _VTK[10] if _VTK[10] in cells else _VTK[4]
+    if kind not in cells:
+        raise InvalidInput(f"data: is a {type(data).__name__} without tetrahedra, must be an UnstructuredGrid that has them")
+    return _core.Mesh(np.asarray(data.points, float), cells[kind])

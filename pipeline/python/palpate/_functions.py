@@ -7,13 +7,14 @@ import tempfile
 from pathlib import Path
 
 from . import _core
-from ._call import as_path, calling, settings_of
+from ._call import as_path, calling, real, settings_of, whole, words_of
 from ._results import Check, Comparison, Diagnosis, Ladder, Simulation
 from ._run import Run
 from .errors import InvalidInput
 
 _INPUTS = ((_core.Surface, "surface.vtp"), (_core.Mesh, "body.vtu"), (_core.Set, "set"))
 _MODEL = ((_core.Model, "model.json"),)
+_MOST_DRAWS = 1_000_000  # each is an equilibrium for each state
 _FITS = ("Body", "Skeleton", "Sphere curve", "Probing", "Identification", "Diagnosis")
 
 
@@ -60,9 +61,9 @@ def check(input, output=None, *, expect=(), threads=None, force=False, **setting
     `output`: a folder, or a page (.html). `expect`: names of effects that the set has to be able to show; the answer is
     false where it cannot.
     """
-    pairs = settings_of(("Body",), settings)
+    pairs, expect = settings_of(("Body",), settings), words_of(expect, "expect")
     with calling(threads, None, force) as call, as_path(input, _INPUTS) as path:
-        text, result, code = _core.check(path, output or "", list(expect), pairs, call)
+        text, result, code = _core.check(path, output or "", expect, pairs, call)
     return Check(text, result, code == 0)
 
 
@@ -126,7 +127,7 @@ def probe(
     """
     pairs = settings_of(("Body", "Probing"), settings)
     synthesis = {
-        "hide": [hide] if isinstance(hide, str) else hide,
+        "hide": None if hide is None else words_of(hide, "hide"),
         "law": law,
         "levels": levels,
         "dwell": dwell,
@@ -189,7 +190,7 @@ def diagnose(
     their last name, in its units; palpate.effects and `palpate run --help` tell more.
     """
     pairs = settings_of((), settings, ("volume.edge_length", "diagnose.gravity", "diagnose.false_claims"))
-    without = [without] if isinstance(without, str) else list(without)
+    without = words_of(without, "without")
     for name in without:
         effects(name)
     _require_body(body, ("reference", "skeleton"))
@@ -216,7 +217,7 @@ def improve(
         ("Identification",), settings, ("volume.edge_length", "diagnose.gravity", "diagnose.false_claims")
     )
     automatic = add == "auto"
-    names = [] if automatic else [add] if isinstance(add, str) else list(add)
+    names = [] if automatic else words_of(add, "add")
     if not automatic and not names:
         raise InvalidInput("add: names no effect; give effects as 'gravity' or 'gravity:gz=-9810', or 'auto'")
     _require_body(body, ("", "reference", "skeleton"))
@@ -239,6 +240,7 @@ def simulate(model, probes, *, posterior=None, draws=32, threads=None, progress=
     Identification or lies beside it. The result's `displacement` is (states, vertices, 3) [mm], `sd` of a coordinate
     (states, vertices) [mm] or None, `largest` (states,) [mm] with its 95 % `interval` (states, 2) [mm].
     """
+    draws = whole(draws, "draws", 0, _MOST_DRAWS)
     with calling(threads, None, False, progress) as call, tempfile.TemporaryDirectory(prefix="palpate-") as folder:
         own = model
         if posterior is None and isinstance(model, (str, os.PathLike)) and draws > 0:
@@ -261,7 +263,9 @@ def simulate(model, probes, *, posterior=None, draws=32, threads=None, progress=
 
 def with_effect(model, name, **numbers):
     """Another model with an effect of the catalogue in force, by its numbers in our units: gravity, gx=0, gy=0, gz=-9810."""
-    return model._with_effect(name, numbers)
+    if not isinstance(name, str):
+        raise TypeError(f"name: is a {type(name).__name__}, must be the name of an effect; palpate.effects() lists them")
+    return model._with_effect(name, {key: real(value, f"effect '{name}': {key}") for key, value in numbers.items()})
 
 
 def effects(name=None):
@@ -272,7 +276,7 @@ def effects(name=None):
 
 
 def effect(name, parameters, *, acts_on="surface", meaning="An effect of one's own."):
-    """Makes a function an effect of the catalogue, for this process: to be diagnosed, added and played.
+    """Makes a function an effect of the catalogue, for this process: to be diagnosed, added and played::
 
         @palpate.effect("bed", {"stiffness": ("N/mm^3", 1e-4)})
         def bed(X, x, stiffness):

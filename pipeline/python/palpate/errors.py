@@ -10,13 +10,8 @@ _PLACE = re.compile(r"(?P<file>[^'\"\n,]*?[/.][^'\"\n:,]*?)(?:, line (?P<line>\d
 
 
 class Error(Exception):
-    """Any of the package's own.
-
-    Attributes, as far as the message tells them, else None:
-        file:   the file that is wrong, as it was named
-        line:   the line of it, from 1
-        remedy: what to do
-    """
+    """Any of the package's own. As far as its message tells them, else None: `file` that is wrong, as it was named;
+    `line` of it, from 1; `remedy`, what to do."""
 
     file: str | None = None
     line: int | None = None

@@ -186,10 +186,21 @@ class Sets(unittest.TestCase):
             ({"positions": np.full((2, 2, 3), np.inf)}, "positions: inf at .*NaN is a missing reading"),
             ({"positions": "here"}, "positions: must be real numbers"),
             ({"marker_names": ["a"]}, "marker_names: has 1 names"),
+            ({"positions": np.full((2, 2, 3), np.nan)}, "^positions.csv: the set has no readings"),
             ({"supports": {"ball": {}}}, "set.yaml"),
+            ({"supports": None}, "supports: is None, must be a box"),
+            ({"supports": {"box": {"min": object()}}}, "supports: a object stands in it"),
+            ({"radius": [1, 2, 3]}, r"radius: must be a real number, or real numbers of shape \(2,\)"),
+            ({"sigma": 1j}, r"sigma: must be a real number, or real numbers of shape \(2, 2\)"),
+            ({"sigma": "thin"}, "sigma: must be a real number"),
+            ({"noise": "low"}, "noise: is 'low', must be a real number"),
+            ({"gravity": [0, -9810]}, r"gravity: has the shape \(2,\)"),
+            ({"probes": [1, 1.5]}, "probes: 1.5 is no whole number"),
         ):
             with self.assertRaisesRegex(palpate.InvalidInput, words):
                 palpate.Set.from_arrays(**self.given(**changed))
+        with self.assertRaisesRegex(TypeError, "surface: is a str, must be a Surface or a Mesh"):
+            palpate.Set.from_arrays(**self.given(surface="organ.stl"))
 
 
 if __name__ == "__main__":

@@ -101,6 +101,7 @@ class Bodies(unittest.TestCase):
             (lambda: body.push(7, (0, 0, 1)), "contact 7 is not in use"),
             (lambda: body.drag(hand, TIP, 0.0), "must be above 0"),
             (lambda: body.step(0.0), "must be above 0"),
+            (lambda: body.step(1e-3, -1), "steps: is -1, must be at least 0"),
             (lambda: body.step(float("nan")), "must be above 0"),
             (lambda: palpate.Body(model(), contacts=65), "0 to 64"),
             (lambda: palpate.Body(model(), damping_ratio=-1.0), "damping_ratio"),

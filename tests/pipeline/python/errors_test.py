@@ -4,6 +4,7 @@ import tempfile
 import unittest
 from pathlib import Path
 
+import numpy as np
 import palpate
 from bodies import bar_file, measured, model, set_folder
 
@@ -62,9 +63,18 @@ class Errors(unittest.TestCase):
             (lambda: palpate.probe(bar_file(), law="hard"), palpate.InvalidInput, "law: is 'hard'"),
             (lambda: palpate.export(model(), "a.xyz"), palpate.InvalidInput, "tells no format"),
             (lambda: palpate.Run(self.folder), palpate.FileError, "run.json"),
+            (lambda: palpate.diagnose(model(), measured(), without=5), TypeError, "without: is 5"),
+            (lambda: palpate.check(set_folder(), expect="ghost"), palpate.InvalidInput, "no effect 'ghost'"),
+            (lambda: palpate.check(set_folder(), expect=[1]), TypeError, "expect: is .1., must be a name"),
+            (lambda: palpate.simulate(model(), measured(), draws=-5), palpate.InvalidInput, "draws: is -5"),
+            (lambda: model().with_effect("gravity", gx="up"), palpate.InvalidInput, "gx: is 'up', must be a real"),
+            (lambda: model().with_effect(None), TypeError, "name: is a NoneType"),
         ):
             with self.assertRaisesRegex(kind, words):
                 call()
+
+    def test_counts_of_numpy_are_counts(self):
+        self.assertTrue(palpate.check(set_folder(), threads=np.int64(1)).usable)
 
     def test_nothing_of_yours_is_overwritten(self):
         (self.folder / "mine.json").write_text("mine")

@@ -49,6 +49,8 @@ class Exchange(unittest.TestCase):
         self.assertTrue((np.abs(drawn.mean(axis=0) - mean) < 4 * sd / np.sqrt(4000)).all())
         np.testing.assert_array_equal(drawn, posterior.resampled(4000, seed=3))
         self.assertAlmostEqual(posterior.weights.sum(), 1, places=12)
+        with self.assertRaisesRegex(palpate.InvalidInput, "draws: is 0, must be a whole number"):
+            posterior.resampled(0)
 
     @needs("xarray")
     def test_xarray(self):
@@ -58,8 +60,15 @@ class Exchange(unittest.TestCase):
 
     @needs("arviz")
     def test_arviz(self):
-        data = self.found.posterior.to_arviz(draws=50)
-        self.assertEqual(data.posterior.sizes["draw"], 50)
+        import arviz
+
+        posterior = self.found.posterior
+        data = posterior.to_arviz(draws=50, seed=3)
+        self.assertEqual(dict(data.posterior.sizes), {"chain": 1, "draw": 50})
+        for i, (name, unit) in enumerate(zip(posterior.parameters, posterior.units)):
+            np.testing.assert_array_equal(data.posterior[name][0], posterior.resampled(50, seed=3)[:, i])
+            self.assertEqual(data.posterior[name].attrs["units"], unit)
+        self.assertEqual(list(arviz.summary(data, kind="stats").index), posterior.parameters)
 
     @needs("meshio")
     def test_meshio(self):
@@ -74,9 +83,24 @@ class Exchange(unittest.TestCase):
 
     @needs("pyvista")
     def test_pyvista(self):
+        import pyvista
+
         surface = palpate.Surface.from_pyvista(bar().to_pyvista())
         np.testing.assert_array_equal(surface.triangles, bar().triangles)
-        self.assertAlmostEqual(palpate.mesh(bar(), edge_length=14.0).to_pyvista().volume, 24000, delta=24)
+        np.testing.assert_array_equal(surface.vertices, bar().vertices)
+        self.assertAlmostEqual(palpate.Surface.from_pyvista(pyvista.Cube()).volume, 1, places=12)  # of quadrilaterals
+        for linear in (False, True):
+            body = palpate.mesh(bar(), edge_length=14.0, linear_elements=linear)
+            grid = body.to_pyvista()
+            self.assertEqual(grid.n_cells, len(body.tetrahedra))
+            self.assertAlmostEqual(grid.volume, body.volume, delta=1e-9 * body.volume)
+            back = palpate.Mesh.from_pyvista(grid)
+            np.testing.assert_array_equal(back.nodes, body.nodes)
+            np.testing.assert_array_equal(back.tetrahedra, body.tetrahedra)
+        with self.assertRaisesRegex(palpate.InvalidInput, "is a UnstructuredGrid, must be a PolyData"):
+            palpate.Surface.from_pyvista(grid)
+        with self.assertRaisesRegex(palpate.InvalidInput, "is a PolyData without tetrahedra"):
+            palpate.Mesh.from_pyvista(bar().to_pyvista())
 
     def test_notebooks_see_a_model(self):
         page = model()._repr_html_()
