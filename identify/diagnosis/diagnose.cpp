@@ -243,13 +243,16 @@ private:
                                  ? least_next_to_noise(*single_readings_, result_.problem, options_)
                                  : 0;
         if (!set_outliers_aside(baseline(), least)) return;
-        baselines_.refit(result_.problem, true);
-        if (!options_.screen || leaves_only_noise(baseline(), options_)) {
-            baselines_.refit(result_.problem);
-        } else {
-            result_ = before;
-            baselines_ = baselines;
+        try {
+            baselines_.refit(result_.problem, true);
+            if (!options_.screen || leaves_only_noise(baseline(), options_)) {
+                baselines_.refit(result_.problem);
+                return;
+            }
+        } catch (const SolverFailure&) {  // to what is left nothing can be fitted
         }
+        result_ = before;
+        baselines_ = baselines;
     }
 
     /// Once an effect explains the rest, or nothing does, the same; only where noise is left then. True where some were
@@ -272,14 +275,19 @@ private:
 
     bool set_outliers_aside_next_to(const Refit& fit, double least) {
         const Diagnosis before = result_;
+        const Baselines baselines = baselines_;
         const Refit at = fit;
         if (!set_outliers_aside(at, least)) return false;
-        if (!leaves_only_noise(without_them(at), options_)) {
-            result_ = before;
-            return false;
+        try {
+            if (leaves_only_noise(without_them(at), options_)) {
+                baselines_.refit(result_.problem);
+                return true;
+            }
+        } catch (const SolverFailure&) {  // to what is left nothing can be fitted
+            baselines_ = baselines;
         }
-        baselines_.refit(result_.problem);
-        return true;
+        result_ = before;
+        return false;
     }
 
     /// A fit once more, to the readings that are left.

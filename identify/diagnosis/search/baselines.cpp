@@ -86,16 +86,20 @@ void Baselines::fit(const Problem& problem, std::vector<std::string>& notes, con
 
 void Baselines::refit(const Problem& problem, bool best_only) {
     const Refit* leading = &best();
+    std::string failure;
     for (std::optional<Refit>& found : fits_) {
         if (!found || (best_only && &*found != leading)) continue;
         try {
             // from where it stands; the nuisances are made anew
             found->V.reset();
             found = identify::refit(*model_, problem, found->explanation, options_->refit, &*found);
-        } catch (const SolverFailure&) {
+        } catch (const SolverFailure& e) {
+            failure = e.what();
             found.reset();
         }
     }
+    if (std::ranges::none_of(fits_, [](const auto& found) { return found.has_value(); }))
+        throw SolverFailure("no law can be fitted once more: " + failure);
 }
 
 const Refit& Baselines::best() const {
