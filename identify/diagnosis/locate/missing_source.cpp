@@ -117,6 +117,12 @@ std::string MissingSource::sentence() const {
                 value > 0 ? "swell" : "shrink", with_sd(std::abs(value), sd), place, law);
         case SourceForm::softening: {
             const bool is_everywhere = term.law == SourceLaw::constant;
+            // A model to first order in the logarithm of the stiffness says that it changes by more, not by how much.
+            const double told = std::log(5.0);
+            if (std::abs(value) > told) {
+                return fmt::format("The material is {} by more than five times, as a first-order model has it, {}{}.",
+                                   value > 0 ? "stiffer" : "softer", place, is_everywhere ? "" : ", growing " + law);
+            }
             return fmt::format("The material is {:.2g} times as stiff (from {:.2g} to {:.2g}) {}{}.", std::exp(value),
                                std::exp(value - 2 * sd), std::exp(value + 2 * sd), place,
                                is_everywhere ? "" : " at the most, growing " + law);

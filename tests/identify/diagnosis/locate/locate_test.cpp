@@ -154,5 +154,19 @@ TEST(SourceScore, FindsTheSizeOfWhatIsThere) {
     EXPECT_GT(found.log_bayes_factor, DiagnoseOptions{}.least_evidence());
 }
 
+TEST(MissingSource, SaysOfAStiffnessWhatAFirstOrderModelCanTell) {
+    MissingSource source{.kind = SourceKind::stiffness, .at = Vec3(1, 2, 3), .spread = 4};
+    SourceTerm term{.form = SourceForm::softening, .radius = 5};
+    const auto sentence_of = [&](double ln_stiffness) {
+        term.mean = Eigen::VectorXd::Constant(1, ln_stiffness);
+        term.sd = Eigen::VectorXd::Constant(1, 0.1);
+        source.terms = {term};
+        return source.sentence();
+    };
+    EXPECT_THAT(sentence_of(std::log(2.0)), testing::HasSubstr("2 times as stiff (from 1.6 to 2.4) around (1.0, 2.0"));
+    EXPECT_THAT(sentence_of(-50), testing::HasSubstr("softer by more than five times"));
+    EXPECT_THAT(sentence_of(3), testing::HasSubstr("stiffer by more than five times"));
+}
+
 }  // namespace
 }  // namespace palpate::identify
