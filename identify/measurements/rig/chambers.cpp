@@ -16,7 +16,8 @@ bool is_shown(const mesh::Surface& chamber, const RestBody& body) {
     const mesh::Box box = mesh::bounding_box(chamber.vertices);
     int enclosed = 0, material = 0;
     for (int i = 0; i < points * points * points; ++i) {
-        const Eigen::Array3d cell(i % points, i / points % points, i / (points * points));
+        const int row = i / points, layer = row / points;
+        const Eigen::Array3d cell = Eigen::Array3i(i % points, row % points, layer).cast<double>();
         const Vec3 point = box.min.array() + (cell + 0.5) / points * box.extent().array();
         if (!walls.inside(point)) continue;
         ++enclosed;

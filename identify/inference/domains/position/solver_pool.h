@@ -42,6 +42,7 @@ private:
 
     static std::vector<skeleton::Load> loads_of(const std::vector<StateReadings>& states) {
         std::vector<skeleton::Load> loads;
+        loads.reserve(states.size());
         for (const StateReadings& state : states) loads.push_back(state.load);
         return loads;
     }
