@@ -95,6 +95,7 @@ EvidenceOfSignatures::EvidenceOfSignatures(const Whitening& V, const std::vector
 
 Eigen::MatrixXd EvidenceOfSignatures::growth(const Whitened& effect, const Eigen::MatrixXd& readings) {
     const Eigen::Index alternatives = effect.occam.size();
+    if (alternatives == 0) return Eigen::MatrixXd(0, readings.cols());  // it cannot show here
     const Eigen::MatrixXd s = effect.over_prior.transpose() * readings;
     Eigen::MatrixXd result(alternatives, readings.cols());
     for (Eigen::Index i = 0; i < alternatives; ++i) {
