@@ -1,7 +1,8 @@
 #include "identify/loading/creep.h"
 
-#include <algorithm>
 #include <cmath>
+
+#include "identify/loading/contact_sum.h"
 
 namespace palpate::identify {
 namespace {
@@ -13,23 +14,12 @@ double compliance(const fem::CreepLaw& creep, double t) { return 1 + creep.creep
 
 std::vector<mesh::Contact> creep_equivalent_load(const std::vector<HeldLoad>& history, const fem::CreepLaw& creep) {
     std::vector<mesh::Contact> result;
-    const auto add = [&](const mesh::Contact& contact, double factor) {
-        const auto there = std::ranges::find_if(result, [&](const mesh::Contact& other) {
-            return other.point == contact.point && other.radius == contact.radius;
-        });
-        if (there == result.end()) {
-            result.push_back(contact);
-            result.back().force *= factor;
-        } else {
-            there->force += factor * contact.force;
-        }
-    };
     const double t = history.back().time;
     for (std::size_t i = 0; i < history.size(); ++i) {
         // on since the stage before, off again when the next one came
         const double on = compliance(creep, t - (i > 0 ? history[i - 1].time : 0));
         const double off = i + 1 < history.size() ? compliance(creep, t - history[i].time) : 0;
-        for (const mesh::Contact& contact : history[i].contacts) add(contact, on - off);
+        for (const mesh::Contact& contact : history[i].contacts) add_contact(result, contact, on - off);
     }
     return result;
 }

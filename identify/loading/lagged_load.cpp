@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "identify/loading/contact_sum.h"
+
 namespace palpate::identify {
 
 InstantBetween place_among(const std::vector<double>& times, double instant) {
@@ -16,20 +18,12 @@ InstantBetween place_among(const std::vector<double>& times, double instant) {
 std::vector<mesh::Contact> between(const std::vector<mesh::Contact>& before, const std::vector<mesh::Contact>& after,
                                    double share) {
     std::vector<mesh::Contact> result;
-    const auto add = [&](const mesh::Contact& contact, double factor) {
+    const auto add = [&](const std::vector<mesh::Contact>& contacts, double factor) {
         if (factor == 0) return;
-        const auto there = std::ranges::find_if(result, [&](const mesh::Contact& other) {
-            return other.point == contact.point && other.radius == contact.radius;
-        });
-        if (there != result.end()) {
-            there->force += factor * contact.force;
-            return;
-        }
-        result.push_back(contact);
-        result.back().force *= factor;
+        for (const mesh::Contact& contact : contacts) add_contact(result, contact, factor);
     };
-    for (const mesh::Contact& contact : before) add(contact, 1 - share);
-    for (const mesh::Contact& contact : after) add(contact, share);
+    add(before, 1 - share);
+    add(after, share);
     return result;
 }
 

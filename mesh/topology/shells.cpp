@@ -6,6 +6,7 @@
 #include <cmath>
 #include <map>
 #include <numeric>
+#include <utility>
 
 #include "mesh/errors.h"
 #include "mesh/geometry/surface_tree.h"
@@ -123,6 +124,20 @@ Surface turn_outward(const Surface& surface) {
         for (const int t : shell.triangles) std::swap(result.triangles(t, 1), result.triangles(t, 2));
     }
     return result;
+}
+
+Surface with_cavity(Surface body, const Surface& wall) {
+    const Eigen::Index vertices = body.vertices.rows(), triangles = body.triangles.rows();
+    body.vertices.conservativeResize(vertices + wall.vertices.rows(), 3);
+    body.vertices.bottomRows(wall.vertices.rows()) = wall.vertices;
+    body.triangles.conservativeResize(triangles + wall.triangles.rows(), 3);
+    const bool looks_outward = signed_volume(wall) > 0;
+    for (Eigen::Index t = 0; t < wall.triangles.rows(); ++t) {
+        Eigen::RowVector3i corners = wall.triangles.row(t).array() + static_cast<int>(vertices);
+        if (looks_outward) std::swap(corners[0], corners[2]);
+        body.triangles.row(triangles + t) = corners;
+    }
+    return body;
 }
 
 double enclosed_volume(const std::vector<Shell>& shells) {

@@ -28,6 +28,9 @@ std::vector<Shell> find_shells(const Surface& surface);
 /// @pre as for `find_shells`.
 Surface turn_outward(const Surface& surface);
 
+/// A body with a closed surface, whichever way it is turned, as the wall of a cavity in it.
+Surface with_cavity(Surface body, const Surface& wall);
+
 /// What the shells enclose: bodies less cavities, whichever way they are turned [mm^3].
 double enclosed_volume(const std::vector<Shell>& shells);
 

@@ -124,8 +124,10 @@ public:
     std::vector<skeleton::KnownParameter> numbers_to_hide() const override { return {{"lag", "s"}}; }
     std::optional<std::uint64_t> stream() const override { return 16; }
 
-    std::vector<EffectSampler> samplers(SamplingContext&, const SpecifiedNumbers& specified) const override {
-        const auto at = [=](double x) { return specified.effect({{"lag", x}}); };
+    /// In shares of the time between loads, which is a second unless told.
+    std::vector<EffectSampler> samplers(SamplingContext& context, const SpecifiedNumbers& specified) const override {
+        const double interval = context.dwell.empty() ? 1 : context.dwell.front();
+        const auto at = [=](double x) { return specified.effect({{"lag", x * interval}}); };
         return {{.at = at, .start = 0.2, .most = 0.9, .is_specified = specified.has("lag")}};
     }
 

@@ -13,19 +13,6 @@
 namespace palpate::identify {
 namespace {
 
-void check_chamber(const mesh::Surface& chamber, const RestBody& body, const std::string& name) {
-    const mesh::Box box = mesh::bounding_box(chamber.vertices);
-    const double allowed = 0.05 * body.box.longest_side();
-    if ((box.min.array() >= body.box.min.array() - allowed).all() &&
-        (box.max.array() <= body.box.max.array() + allowed).all())
-        return;
-    throw InvalidInput(fmt::format(
-        "set.yaml: the chamber of actuator '{}' reaches from [{:.4g}] to [{:.4g}] mm, out of the body, which reaches "
-        "from [{:.4g}] to [{:.4g}] mm. Are unit and frame of both files the same?",
-        name, fmt::join(box.min, ", "), fmt::join(box.max, ", "), fmt::join(body.box.min, ", "),
-        fmt::join(body.box.max, ", ")));
-}
-
 void check_tendon(const mesh::TendonActuator& tendon, const RestBody& body, const std::string& name) {
     const double allowed = 0.01 * body.box.longest_side();
     for (Eigen::Index i = 0; i < tendon.path.rows(); ++i) {
@@ -51,11 +38,10 @@ void note_bowstring(const mesh::TendonActuator& tendon, const RestBody& body, co
         const Vec3 from = tendon.path.row(i - 1).transpose(), to = tendon.path.row(i).transpose();
         const double length = (to - from).norm(), depth = body.depth((from + to) / 2);
         if (!(depth > 0) || length <= most * depth) continue;
-        notes.push_back(
-            fmt::format("Tendon '{}' runs straight for {:.3g} mm from point {} to the next, {:.0f} times as far as it "
-                        "lies deep: it "
-                        "leaves a body that bends, as a bowstring does. If it is guided, give the points where.",
-                        name, length, i, length / depth));
+        notes.push_back(fmt::format(
+            "Tendon '{}' runs straight for {:.3g} mm from point {} to the next, {:.0f} times as far as it "
+            "lies deep: it leaves a body that bends, as a bowstring does. If it is guided, give the points where.",
+            name, length, i, length / depth));
         return;
     }
 }
@@ -93,12 +79,6 @@ void note_unused(MeasurementSet& set) {
 
 void check_actuators(MeasurementSet& set) {
     if (set.actuators.empty()) return;
-    const RestBody outside(set.rest_surface);
-    for (const mesh::Actuator& actuator : set.actuators) {
-        const auto* pressure = std::get_if<mesh::PressureActuator>(&actuator.kind);
-        const auto* chamber = pressure ? std::get_if<mesh::Surface>(&pressure->cavity) : nullptr;
-        if (chamber) check_chamber(*chamber, outside, actuator.name);
-    }
     carve_chambers(set);
     const RestBody body(set.rest_surface);
     std::map<std::vector<int>, std::string> actuator_of;  // of each cavity, by its triangles

@@ -1,13 +1,30 @@
 #include "identify/measurements/rig/chambers.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <utility>
 
 #include "identify/measurements/rest_body.h"
 #include "mesh/errors.h"
 #include "mesh/geometry/surface_tree.h"
+#include "mesh/topology/shells.h"
 
 namespace palpate::identify {
 namespace {
+
+void check_chamber(const mesh::Surface& chamber, const RestBody& body, const std::string& name) {
+    const mesh::Box box = mesh::bounding_box(chamber.vertices);
+    const double allowed = 0.05 * body.box.longest_side();
+    if ((box.min.array() >= body.box.min.array() - allowed).all() &&
+        (box.max.array() <= body.box.max.array() + allowed).all())
+        return;
+    throw InvalidInput(fmt::format(
+        "set.yaml: the chamber of actuator '{}' reaches from [{:.4g}] to [{:.4g}] mm, out of the body, which reaches "
+        "from [{:.4g}] to [{:.4g}] mm. Are unit and frame of both files the same?",
+        name, fmt::join(box.min, ", "), fmt::join(box.max, ", "), fmt::join(body.box.min, ", "),
+        fmt::join(body.box.max, ", ")));
+}
 
 /// Does the rest surface show the chamber already? Then what it encloses is no material.
 bool is_shown(const mesh::Surface& chamber, const RestBody& body) {
@@ -38,20 +55,6 @@ void require_inside(const mesh::Surface& chamber, const RestBody& body, const st
     }
 }
 
-/// Adds a closed surface as the wall of a cavity, which looks into it.
-void add_cavity(const mesh::Surface& chamber, mesh::Surface& body) {
-    const Eigen::Index vertices = body.vertices.rows(), triangles = body.triangles.rows();
-    body.vertices.conservativeResize(vertices + chamber.vertices.rows(), 3);
-    body.vertices.bottomRows(chamber.vertices.rows()) = chamber.vertices;
-    body.triangles.conservativeResize(triangles + chamber.triangles.rows(), 3);
-    const bool looks_outward = mesh::signed_volume(chamber) > 0;
-    for (Eigen::Index t = 0; t < chamber.triangles.rows(); ++t) {
-        Eigen::RowVector3i corners = chamber.triangles.row(t).array() + static_cast<int>(vertices);
-        if (looks_outward) std::swap(corners[1], corners[2]);
-        body.triangles.row(triangles + t) = corners;
-    }
-}
-
 }  // namespace
 
 void carve_chambers(MeasurementSet& set) {
@@ -60,9 +63,10 @@ void carve_chambers(MeasurementSet& set) {
         const auto* chamber = pressure ? std::get_if<mesh::Surface>(&pressure->cavity) : nullptr;
         if (!chamber) continue;
         const RestBody body(set.rest_surface);
+        check_chamber(*chamber, body, actuator.name);
         if (!body.is_closed || is_shown(*chamber, body)) continue;
         require_inside(*chamber, body, actuator.name);
-        add_cavity(*chamber, set.rest_surface);
+        set.rest_surface = mesh::with_cavity(std::move(set.rest_surface), *chamber);
         set.notes.push_back(fmt::format(
             "The chamber of actuator '{}', {:.4g} mm^3, is not in the rest surface: it is carved out of the body.",
             actuator.name, std::abs(mesh::signed_volume(*chamber))));

@@ -8,6 +8,7 @@
 
 #include "mesh/formats/surface/read_surface.h"
 #include "mesh/text/atomic_file.h"
+#include "mesh/topology/shells.h"
 #include "pipeline/cli/shell/templates.h"
 
 namespace palpate::pipeline::commands {
@@ -17,15 +18,8 @@ namespace fs = std::filesystem;
 
 /// A box with another one, hollow, in it.
 mesh::Surface hollow_finger() {
-    mesh::Surface outside = mesh::make_box({0, 0, 0}, {80, 16, 16}, {20, 4, 4});
-    const mesh::Surface chamber = mesh::make_box({8, 3, 9}, {74, 13, 13}, {16, 3, 2});
-    const Eigen::Index vertices = outside.vertices.rows(), triangles = outside.triangles.rows();
-    outside.vertices.conservativeResize(vertices + chamber.vertices.rows(), 3);
-    outside.vertices.bottomRows(chamber.vertices.rows()) = chamber.vertices;
-    outside.triangles.conservativeResize(triangles + chamber.triangles.rows(), 3);
-    for (Eigen::Index t = 0; t < chamber.triangles.rows(); ++t)  // looks into the hollow
-        outside.triangles.row(triangles + t) = chamber.triangles.row(t).reverse().array() + static_cast<int>(vertices);
-    return outside;
+    return mesh::with_cavity(mesh::make_box({0, 0, 0}, {80, 16, 16}, {20, 4, 4}),
+                             mesh::make_box({8, 3, 9}, {74, 13, 13}, {16, 3, 2}));
 }
 
 struct Rig {

@@ -104,6 +104,9 @@ TEST_F(Rigs, SkinIsASheetWhosePadMovesAndAnswers) {
         EXPECT_TRUE(std::isnan(state.readings[0].position.z())) << "one camera sees two coordinates";
     }
     EXPECT_NEAR(before, -3.6, 0.4);
+    for (const LoadState& state : set.states)
+        for (const Reading& reading : state.readings)
+            EXPECT_GT(reading.sigma, 1e-4) << "a track that froze, or one frame";
     const LoadState& last = set.states.back();
     ASSERT_EQ(last.reactions.size(), 1U);
     EXPECT_LT(last.reactions[0].force.x(), -0.05);

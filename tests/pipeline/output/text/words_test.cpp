@@ -201,6 +201,8 @@ TEST(Words, ACertaintyIsToldAsABound) {
     EXPECT_EQ(in_sigmas(nullptr), "an unknown multiple of the noise");
     EXPECT_EQ(material_in_words({{"young_mpa", 1.0}, {"poisson", 0.4993}, {"poisson_sd", 0.001}}),
               "E = 1 MPa, ν above 0.497");
+    EXPECT_EQ(material_in_words({{"young_mpa", 0.0148}, {"young_sd_mpa", 0.44}, {"poisson", nullptr}}),
+              "E = 0.015 MPa, hardly known (± 0.4)");
 }
 
 TEST(WorstTable, NamesProbesMarkersAndThePartOfTheBody) {
@@ -208,14 +210,21 @@ TEST(WorstTable, NamesProbesMarkersAndThePartOfTheBody) {
         {"box", {{"min", {0, 0, 0}}, {"max", {80, 20, 20}}}},
         {"probes",
          {{{"probe", 1}, {"time", 0.0}, {"rms_mm", 0.5}, {"max_mm", 1.0}, {"relative", nullptr}, {"at", nullptr}},
-          {{"probe", 3}, {"time", 2.0}, {"rms_mm", 2.1}, {"max_mm", 5.0}, {"relative", 0.5}, {"at", {80, 10, 20}}}}},
+          {{"probe", 3}, {"time", 2.0}, {"rms_mm", 2.1}, {"max_mm", 5.0}, {"relative", 0.5}, {"at", {80, 10, 20}}},
+          {{"probe", 5},
+           {"time", 1.0},
+           {"rms_mm", 0.7},
+           {"max_mm", 1.0},
+           {"relative", 0.1},
+           {"at", nullptr},
+           {"driven_by", "t1 at 3.08 N"}}}},
         {"markers",
          {{{"marker", 4}, {"rms_mm", 0.1}, {"at", {40, 10, 10}}},
           {{"marker", 1}, {"name", "tip_top"}, {"rms_mm", 3.0}, {"at", {79, 0, 20}}}}}};
     const std::string table = worst_table(compare);
     EXPECT_THAT(table, AllOf(HasSubstr("probe 3, 2 s"), HasSubstr("50.0 %"), HasSubstr("(80, 10, 20) mm, +x end, top"),
-                             HasSubstr("no load"), HasSubstr("marker tip_top"), HasSubstr("+x end, -y side, top"),
-                             HasSubstr("marker 4"), HasSubstr("middle")));
+                             HasSubstr("no load"), HasSubstr("t1 at 3.08 N"), HasSubstr("marker tip_top"),
+                             HasSubstr("+x end, -y side, top"), HasSubstr("marker 4"), HasSubstr("middle")));
     EXPECT_LT(table.find("probe 3"), table.find("probe 1")) << "the worst first";
     EXPECT_LT(table.find("tip_top"), table.find("marker 4"));
 }
