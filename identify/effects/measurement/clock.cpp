@@ -6,6 +6,7 @@
 #include "identify/diagnosis/fit/explanation.h"
 #include "identify/effects/effect.h"
 #include "identify/loading/lagged_load.h"
+#include "mesh/text/words.h"
 
 namespace palpate::identify {
 namespace {
@@ -81,9 +82,8 @@ public:
     }
 
     std::string sentence_with(const skeleton::EffectRecord& record, const Eigen::MatrixXd& covariance) const override {
-        const double lag = record.parameters[0].value, sd = std::sqrt(covariance(0, 0));
-        const std::string size =
-            sd > 0 ? fmt::format("{:.2g} +- {:.1g} s", std::abs(lag), sd) : fmt::format("{:.2g} s", std::abs(lag));
+        const double lag = record.parameters[0].value;
+        const std::string size = mesh::with_sd(std::abs(lag), std::sqrt(covariance(0, 0))) + " s";
         return lag >= 0 ? fmt::format("The readings lag behind the loads by {}.", size)
                         : fmt::format("The readings are stamped {} before the loads that they answer to.", size);
     }
