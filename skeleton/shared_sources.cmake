@@ -25,6 +25,7 @@ set(shared_skeleton_sources
   loads/load.cpp
   model/attach.cpp
   model/carried_point.cpp
+  model/growth.cpp
   model/observation.cpp
   model/state.cpp
   model/io/json_fields.cpp

@@ -20,6 +20,12 @@ KnownEffect known_pressure() {
             }};
 }
 
+KnownEffect known_swelling() {
+    return {"swelling", {{"growth", "1", Range::above_minus_one}}, [](const EffectNumbers& numbers) -> Effects {
+                return {.growth = numbers["growth"]};
+            }};
+}
+
 KnownEffect known_viscosity() {
     return {"viscosity",
             {{"creep", "1", Range::not_negative}, {"tau", "s", Range::positive}},
@@ -50,10 +56,11 @@ KnownEffect fault(std::string name) { return {std::move(name), {}, {}, EffectKin
 
 std::vector<KnownEffect> built_in_effects() {
     return {
-        known_gravity(), known_compliant_support(), known_stiffening(),  known_anisotropy(), known_inclusion(),
-        known_contact(), known_pressure(),          known_prestress(),   known_viscosity(),  known_plasticity(),
-        known_volume(),  fault("misalignment"),     fault("force-gain"), fault("slip"),      fault("actuation-gain"),
-        fault("clock"),  fault("outliers"),
+        known_gravity(),       known_compliant_support(), known_stiffening(), known_anisotropy(),
+        known_inclusion(),     known_contact(),           known_pressure(),   known_prestress(),
+        known_swelling(),      known_viscosity(),         known_plasticity(), known_volume(),
+        fault("misalignment"), fault("force-gain"),       fault("slip"),      fault("actuation-gain"),
+        fault("clock"),        fault("outliers"),
     };
 }
 

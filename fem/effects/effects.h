@@ -42,6 +42,7 @@ struct Effects {
     std::vector<std::shared_ptr<const MaterialEffect>> material{};
     SurfaceEnergies surface{};
     double pressure = 0;  // in closed cavities, above that outside [MPa]
+    double growth = 0;    // of every free length of the material since its rest shape was taken [-], > -1
     std::optional<Plasticity> plasticity{};
     std::optional<CreepLaw> creep{};  // used where loads are applied in time; ignored by an equilibrium
     std::vector<std::shared_ptr<const ModelSpecificEffect>> of_model{};
@@ -51,7 +52,7 @@ struct Effects {
 
     bool empty() const {
         const auto is_nothing = [](const auto& effect) { return effect->is_nothing(); };
-        return points.empty() && material.empty() && surface.empty() && pressure == 0 && !plasticity && !creep &&
+        return points.empty() && material.empty() && surface.empty() && pressure == 0 && growth == 0 && !plasticity && !creep &&
                tools.empty() && cavities.empty() && tendons.empty() &&
                std::all_of(of_model.begin(), of_model.end(), is_nothing);
     }
@@ -61,6 +62,7 @@ struct Effects {
         material.insert(material.end(), more.material.begin(), more.material.end());
         surface.insert(surface.end(), more.surface.begin(), more.surface.end());
         pressure += more.pressure;
+        growth += more.growth;
         if (more.plasticity) plasticity = more.plasticity;
         if (more.creep) creep = more.creep;
         of_model.insert(of_model.end(), more.of_model.begin(), more.of_model.end());

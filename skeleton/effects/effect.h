@@ -14,7 +14,7 @@ using EffectRecord = fem::EffectRecord;
 using fem::EffectKind, fem::EffectNumbers, fem::EffectParameter, fem::KnownEffect, fem::KnownParameter, fem::Range;
 
 /// Makes an effect known, to all models of this program: a static object of any source file may do so,
-///   const bool known = register_effect({"swelling", {{"strain", "1"}}, make_swelling});
+///   const bool known = register_effect({"surface-tension", {{"gamma", "N/mm"}}, make_surface_tension});
 /// Safe from several threads. Always true. @throws InvalidInput when the name is known already.
 bool register_effect(KnownEffect effect);
 

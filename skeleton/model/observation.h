@@ -7,7 +7,7 @@
 
 namespace palpate::skeleton {
 
-/// Positions of attached points (m x 3) [mm].
+/// Positions of attached points (m x 3) [mm], as far out as the model says that they have grown.
 Points observe(const Model& model, const State& state, const std::vector<Attachment>& points);
 
 /// P = d observe / d step (3m x 6N).

@@ -8,6 +8,7 @@
 
 #include "mesh/errors.h"
 #include "skeleton/effects/effect.h"
+#include "skeleton/model/growth.h"
 #include "skeleton/model/io/model_io.h"
 #include "skeleton/runtime/contacts/creep.h"
 #include "skeleton/runtime/kernels/motion.h"
@@ -31,6 +32,24 @@ std::vector<std::string> what_is_not_played(const skeleton::Model& model) {
         if (!known->not_played.empty()) words.push_back(fmt::format("effect '{}' {}", effect.name, known->not_played));
     }
     return words;
+}
+
+/// Its skin as far out as the material has grown, to be shown. Contacts and effects act on it as it hangs in the model.
+skeleton::Model with_grown_skin(skeleton::Model model) {
+    const double growth = skeleton::physics_of(model.effects).growth;
+    const skeleton::State rest = skeleton::rest_state(model);
+    for (skeleton::Attachment& point : model.skin) point = skeleton::grown(std::move(point), rest, growth);
+    return model;
+}
+
+/// Where it begins: at rest, or as large as the material has grown.
+SphereRows start_rows(const skeleton::Model& model) {
+    SphereRows rows = rest_rows(model);
+    const skeleton::State start = skeleton::grown_start(model, skeleton::physics_of(model.effects).growth);
+    for (std::size_t i = 0; i < model.spheres.size(); ++i) {
+        for (int c = 0; c < 3; ++c) rows[row_length * i + c] = start.x(static_cast<Eigen::Index>(i), c);
+    }
+    return rows;
 }
 
 void require_above(const char* what, double value, double least) {
@@ -72,10 +91,10 @@ struct Body::Impl {
           reordered(in_cuthill_mckee_order(model)),
           field(reordered.model),
           solver(field, options.contacts),
-          skinning(reordered.model),
+          skinning(with_grown_skin(reordered.model)),
           masses(mass_table(reordered.model, field.moves())),
           notices(what_is_not_played(model)),
-          rest(rest_rows(reordered.model)),
+          rest(start_rows(reordered.model)),
           contacts(options.contacts),
           creep(skeleton::physics_of(model.effects).creep) {
         pose = start = rest;

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "mesh/errors.h"
+#include "skeleton/model/growth.h"
 #include "skeleton/statics/statics.h"
 
 namespace palpate::skeleton {
@@ -66,6 +67,7 @@ SkeletonSystem::SkeletonSystem(const Model& model, const fem::Effects& effects)
     body_.spheres = model.spheres;
     body_.links = model.links;
     release(effects_, body_);
+    start_ = grown_start(body_, effects.growth);
 
     for (const Sphere& sphere : body_.spheres) {
         reach_ = std::max(reach_, sphere.center.cwiseAbs().maxCoeff());
@@ -207,16 +209,17 @@ void SkeletonSystem::assemble(const Eigen::VectorXd& k, const State& state, cons
     if (load) prepare(*load);
     if (!matrix_) matrix_ = make_tangent_matrix(static_cast<int>(free_.size()), couplings_);
     matrix_->set_zero();
+    const State& of_links = body_.law == EquilibriumLaw::linear ? links_.natural() : state;
     for (size_t l = 0; l < body_.links.size(); ++l) {
         const Link& link = body_.links[l];
-        const Mat12 H = links_.hessian(l, links_.order().link(k, static_cast<Eigen::Index>(l)), state, before_);
+        const Mat12 H = links_.hessian(l, links_.order().link(k, static_cast<Eigen::Index>(l)), of_links, before_);
         const int i = block_of_[link.a], j = block_of_[link.b];
         if (i >= 0) matrix_->add_diagonal(i, H.topLeftCorner<6, 6>());
         if (j >= 0) matrix_->add_diagonal(j, H.bottomRightCorner<6, 6>());
         if (coupling_of_[l] >= 0) matrix_->add_coupling(coupling_of_[l], H.topRightCorner<6, 6>());
     }
     if (!links_.volumes().empty())
-        add_pairs(links_.volumes().pairs(), coupling_of_cell_, links_.volumes().curvature(k, state));
+        add_pairs(links_.volumes().pairs(), coupling_of_cell_, links_.volumes().curvature(k, of_links));
     add_pairs(effects_.pairs(), coupling_of_pair_, effects_.curvature(state, effect_share_));
     if (!load) return;
     for (const auto& [a, b, block] : external_curvature(body_, state, *load)) {

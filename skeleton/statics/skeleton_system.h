@@ -30,6 +30,8 @@ public:
 
     const Model& body() const { return body_; }  // spheres, links and law; held are those that nothing releases
     const PlacedEffects& effects() const { return effects_; }
+    /// Where a search for an equilibrium begins: at rest, or grown from there.
+    const State& start() const { return start_; }
     const PlacedLinks& links() const { return links_; }
     double length() const { return length_; }  // mean of the links [mm]
 
@@ -56,7 +58,8 @@ public:
 
     /// Makes room for the couplings of a load's points and of the cavities that it presses apart.
     void prepare(const Load& load);
-    /// Assembles the tangent; without a load the links' and effects' alone.
+    /// Assembles the tangent; without a load the links' and effects' alone. By the linear law links change as where
+    /// they are not strained, whatever the state.
     void assemble(const Eigen::VectorXd& k, const State& state, const Load* load = nullptr);
     /// Factors tangent + shift [N/mm] * metric, which makes turning and moving comparable.
     std::optional<BlockCholesky::BadPivot> factor(double shift);
@@ -76,6 +79,7 @@ private:
     Model body_;
     PlacedEffects effects_;
     PlacedLinks links_;
+    State start_;
     FibreStates before_;
     double effect_share_ = 1;
     double effect_load_ = 0, effect_stiffness_ = 0;        // largest at rest [N, N/mm]

@@ -61,13 +61,13 @@ private:
     SkeletonSystem& system_;
 };
 
-// From rest, a quarter of load and effects at a time, less where that fails. `result` comes from a try with the whole
-// load.
+// From the start, a quarter of load and effects at a time, less where that fails. `result` comes from a try with the
+// whole load.
 void step_load(SkeletonSystem& system, const Eigen::VectorXd& k, const Load& load, const EquilibriumOptions& options,
                Equilibrium& result) {
     const double left = result.residual;
     Equilibrium reached = result;
-    reached.state = rest_state(system.body());
+    reached.state = system.start();
     ScaledEffects effects(system);
     for (double share = 0, more = 0.25; share < 1;) {
         result = reached;
@@ -125,7 +125,7 @@ Equilibrium StaticsSolver::solve(const Eigen::VectorXd& k, const Load& load, con
     if (system.body().law == EquilibriumLaw::linear) {
         result = solve_linear(system, k, load);
     } else {
-        result.state = start ? *start : rest_state(system.body());
+        result.state = start ? *start : system.start();
         if (failure_of_newton(system, k, load, options, result)) step_load(system, k, load, options, result);
         result.step = step_to(system.body(), result.state);
     }
@@ -135,7 +135,7 @@ Equilibrium StaticsSolver::solve(const Eigen::VectorXd& k, const Load& load, con
 
 Eigen::MatrixXd StaticsSolver::linear_steps(const Eigen::VectorXd& k, const Eigen::MatrixXd& F) {
     impl_->system.remember({});
-    impl_->system.assemble(k, rest_state(impl_->system.body()));
+    impl_->system.assemble(k, impl_->system.start());
     impl_->system.factor_stable(k);
     return impl_->system.solve(F);
 }

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 
+#include "fem/elements/shape.h"
 #include "mesh/errors.h"
 
 namespace palpate::fem {
@@ -33,10 +34,12 @@ Mat3 gradient_at(const ElementShape& shape, const NodeVectors& u, int q) {
 BodyMaterial::BodyMaterial(const BodyShape& body, const BodySetting& setting, const PlasticState* before, bool flows)
     : body_(body),
       model_(setting, body.dilatation),
+      growth_(setting.effects.growth),
       plasticity_(setting.effects.plasticity),
       before_(before),
       flows_(flows) {
     if (plasticity_) validate(*plasticity_);
+    if (const double g = 1 + growth_; setting.law != MaterialLaw::linear) scale_ = {g * g * g, g * g, g};
     assert(!before || (before->law == setting.law && before->points.size() == element_points * body.elements.size()));
     const auto& all = setting.effects.material;
     if (all.empty() && !plasticity_) return;
@@ -62,8 +65,24 @@ BodyMaterial::BodyMaterial(const BodyShape& body, const BodySetting& setting, co
     }
 }
 
+NodeVectors BodyMaterial::elastic_displacements(const Eigen::VectorXd& u, std::size_t element) const {
+    NodeVectors moved = body_.displacements(u, element);
+    if (growth_ == 0) return moved;
+    // From its first node, as only differences count: (X + u) / g - X.
+    NodeVectors X =
+        node_positions<element_nodes>(body_.mesh.nodes, body_.mesh.tetrahedra.row(static_cast<Eigen::Index>(element)))
+            .transpose();
+    X.colwise() -= X.col(0).eval();
+    if (model_.law == MaterialLaw::linear) return moved - growth_ * X;
+    return (moved - growth_ * X) / (1 + growth_);
+}
+
 double BodyMaterial::force(const Eigen::VectorXd& u, std::size_t element, NodeVectors& f) const {
-    return element_force(body_.elements[element], model_, effects(element), body_.displacements(u, element), f);
+    const double energy =
+        element_force(body_.elements[element], model_, effects(element), elastic_displacements(u, element), f);
+    if (growth_ == 0) return energy;
+    f *= scale_.force;
+    return scale_.energy * energy;
 }
 
 NodeVectors BodyMaterial::force(const Eigen::VectorXd& u, std::size_t element) const {
@@ -78,7 +97,9 @@ NodeVectors BodyMaterial::force(const Eigen::VectorXd& u, std::size_t element) c
 }
 
 void BodyMaterial::tangent(const Eigen::VectorXd& u, std::size_t element, ElementTangent& K) const {
-    element_tangent(body_.elements[element], model_, effects(element), body_.displacements(u, element), K);
+    element_tangent(body_.elements[element], model_, effects(element), elastic_displacements(u, element), K);
+    if (growth_ == 0) return;
+    for (ElementTangent::NodePairs& block : K.blocks) block *= scale_.tangent;
 }
 
 PlasticState BodyMaterial::after(const Eigen::VectorXd& u) const {
@@ -86,7 +107,7 @@ PlasticState BodyMaterial::after(const Eigen::VectorXd& u) const {
     PlasticState result{model_.law, std::vector<PlasticPoint>(element_points * body_.elements.size())};
     for (std::size_t e = 0; e < body_.elements.size(); ++e) {
         force(u, e);  // refuses elements that are inside out
-        const NodeVectors moved = body_.displacements(u, e);
+        const NodeVectors moved = elastic_displacements(u, e);
         for (int q = 0; q < element_points; ++q) {
             const std::size_t k = element_points * e + static_cast<std::size_t>(q);
             result.points[k] = plastic_point(model_.law, *plasticity_, before_ ? before_->points[k] : PlasticPoint{},

@@ -15,6 +15,10 @@ struct PlasticState {
 };
 
 /// What a body is made of: how each of its elements answers, with the effects in its material.
+///
+/// Material that has grown by a factor g in every free length has the energy g^3 W(F / g) per volume of the rest shape:
+/// an element answers as it does without growth to nodes at x / g, with forces g^2 as large. In small strain its strain
+/// is less by g - 1. [Rodriguez, Hoger, McCulloch 1994]
 class BodyMaterial {
 public:
     /// `before`: nullptr: virgin; of no account without plasticity. `flows`: does plastic strain change from there?
@@ -50,8 +54,15 @@ private:
         return place_.empty() || place_[element] < 0 ? nullptr : &effects_[place_[element]];
     }
 
+    /// Displacements of an element's nodes from the shape that it would have by itself, scaled to that of its rest.
+    NodeVectors elastic_displacements(const Eigen::VectorXd& u, std::size_t element) const;
     const BodyShape& body_;
     ElementModel model_;
+    double growth_;  // g - 1
+    /// What an element's answer without growth is multiplied by: g^3, g^2 and g; in small strain 1.
+    struct {
+        double energy = 1, force = 1, tangent = 1;
+    } scale_;
     std::vector<const MaterialEffect*> energies_;
     std::optional<Plasticity> plasticity_;
     const PlasticState* before_;

@@ -7,17 +7,17 @@
 namespace palpate::identify {
 namespace {
 
-/// A uniform stress in the body that was measured as its rest shape: it has not shrunk or swollen freely.
+/// A uniform stress in the body that was measured as its rest shape, whatever brought it about.
 class PrestressEffect : public EffectHypothesis {
 public:
     const EffectDescription& description() const override {
         static const EffectDescription text{
             .name = "prestress",
             .kind = EffectKind::body,
-            .meaning = "The rest shape is not free of stress: the material wants to shrink or swell, all of it alike.",
+            .meaning = "The rest shape is not free of stress: the material pulls or pushes along its axes, all of it alike.",
             .parameters = {"sxx, syy, szz, sxy, syz, sxz [-]: stress at rest over the shear modulus"},
             .reveals = "an error without any load that is largest where the body is free to change its size",
-            .confused_with = {"gravity", "misalignment", "pressure"},
+            .confused_with = {"swelling", "gravity", "misalignment", "pressure"},
             .separating_probe = "read the unloaded pose with the body turned: prestress turns with it, weight does not",
             .next_probe = "orientation"};
         return text;

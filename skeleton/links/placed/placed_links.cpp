@@ -7,6 +7,7 @@
 #include "skeleton/links/fibres/uniaxial.h"
 #include "skeleton/links/rest_direction.h"
 #include "skeleton/links/shear.h"
+#include "skeleton/model/growth.h"
 
 namespace palpate::skeleton {
 
@@ -19,8 +20,9 @@ Vec3 middle(const Link& link, const State& rest) { return 0.5 * (rest.x.row(link
 PlacedLinks::PlacedLinks(const Model& model, const fem::Effects& effects)
     : order_(model),
       volumes_(model, effects),
-      links_(model.links),
+      links_(grown(model.links, effects.growth)),
       rest_(rest_state(model)),
+      natural_(grown(rest_, effects.growth)),
       plasticity_(effects.plasticity),
       torsion_(link_effects(effects).torsion),
       shear_(link_effects(effects).shear),
@@ -188,17 +190,17 @@ Eigen::SparseMatrix<double> PlacedLinks::forces(const State& state, const FibreS
                      std::move(of_volumes));
 }
 
-// Linearised at rest: the force of a link at unit stiffness s is -(gradient + Hessian * step).
+// The force of a link at unit stiffness s is -(gradient + Hessian * step), the gradient at rest.
 Eigen::SparseMatrix<double> PlacedLinks::linear_forces(const Eigen::VectorXd& step, const FibreStates& before) const {
     std::vector<Eigen::Triplet<double>> of_volumes;
     volumes_.add_linear_forces(step, of_volumes);
     return assembled(
         [&](size_t l) {
-            const LinkTerms at_rest = terms(l, rest_, true, before);
+            const LinkTerms at_rest = terms(l, rest_, false, before), natural = terms(l, natural_, true, before);
             Vec12 own;
             own << step.segment<6>(Eigen::Index{6} * links_[l].a), step.segment<6>(Eigen::Index{6} * links_[l].b);
             Eigen::Matrix<double, 12, Eigen::Dynamic, 0, 12, 6> forces = -at_rest.gradient;
-            for (int s = 0; s < order_.per_link(); ++s) forces.col(s) -= at_rest.hessian[s] * own;
+            for (int s = 0; s < order_.per_link(); ++s) forces.col(s) -= natural.hessian[s] * own;
             return forces;
         },
         std::move(of_volumes));

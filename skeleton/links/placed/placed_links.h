@@ -42,12 +42,14 @@ public:
 
     const StiffnessOrder& order() const { return order_; }
     const PlacedVolumes& volumes() const { return volumes_; }
+    /// Where no link is strained: at rest, or as large as the material has grown.
+    const State& natural() const { return natural_; }
     /// s of each link; empty where no effect is in force.
     const std::vector<double>& scales() const { return scales_; }
 
     /// d net force / d k in a state (6N x stiffnesses, in their order): each column the force at unit stiffness.
     Eigen::SparseMatrix<double> forces(const State& state, const FibreStates& before = {}) const;
-    /// The same after a step from rest (6N), to first order.
+    /// The same after a step from rest (6N), to first order; how forces change is that of `natural`.
     Eigen::SparseMatrix<double> linear_forces(const Eigen::VectorXd& step, const FibreStates& before = {}) const;
 
     /// How far the fibres have flowed once they stood in a state (12L); empty when nothing yields.
@@ -77,7 +79,7 @@ private:
     PlacedVolumes volumes_;
     std::vector<Link> links_;
     std::vector<Vec3> directions_;  // at rest (L)
-    State rest_;
+    State rest_, natural_;
     std::vector<std::shared_ptr<const fem::MaterialEffect>> material_;  // those with an energy of their own
     std::optional<fem::Plasticity> plasticity_;
     double torsion_, shear_;

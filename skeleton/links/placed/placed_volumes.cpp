@@ -4,6 +4,7 @@
 #include <map>
 
 #include "skeleton/links/full_link.h"
+#include "skeleton/model/growth.h"
 #include "skeleton/model/stiffness_order.h"
 
 namespace palpate::skeleton {
@@ -15,7 +16,10 @@ constexpr int elongation = static_cast<int>(Stiffness::elongation);
 }  // namespace
 
 PlacedVolumes::PlacedVolumes(const Model& model, const fem::Effects& effects)
-    : links_(model.links), rest_(rest_state(model)), pair_of_link_(3 * model.links.size(), -1) {
+    : links_(grown(model.links, effects.growth)),
+      rest_(rest_state(model)),
+      natural_(grown(rest_, effects.growth)),
+      pair_of_link_(3 * model.links.size(), -1) {
     const StiffnessOrder order(model);
     if (!order.full()) return;
     std::vector<std::vector<int>> links_of(model.spheres.size());
@@ -145,12 +149,13 @@ void PlacedVolumes::add_forces(const State& state, std::vector<Eigen::Triplet<do
 
 void PlacedVolumes::add_linear_forces(const Eigen::VectorXd& step, std::vector<Eigen::Triplet<double>>& entries) const {
     // At rest nothing has swollen but by links that rest at another length than their spheres' distance.
-    const std::vector<Swelling> all = swellings(rest_);
+    const std::vector<Swelling> all = swellings(natural_), at_rest = swellings(rest_);
     for (const Cell& cell : cells_) {
         double change = 0;
         const Gradient gradient = gradient_of(cell, all, change);
         Eigen::VectorXd force = Eigen::VectorXd::Zero(step.size());
-        double swollen = change;
+        double swollen = 0;
+        for (const int l : cell.links) swollen += at_rest[l].volume;
         for (const auto& [sphere, own] : gradient) swollen += own.dot(step.segment<6>(Eigen::Index{6} * sphere));
         for (const auto& [sphere, own] : gradient) force.segment<6>(Eigen::Index{6} * sphere) -= swollen * own;
         for (const int l : cell.links) {
@@ -158,7 +163,7 @@ void PlacedVolumes::add_linear_forces(const Eigen::VectorXd& step, std::vector<E
             FullLink::Strains factors = FullLink::Strains::Zero();
             factors[elongation] = 0.5 * links_[l].section->area * change;
             Mat12 H = Mat12::Zero();
-            full_link(links_[l], rest_, rest_).add_curvature(factors, H);
+            full_link(links_[l], rest_, natural_).add_curvature(factors, H);
             Vec12 own;
             own << step.segment<6>(Eigen::Index{6} * links_[l].a), step.segment<6>(Eigen::Index{6} * links_[l].b);
             const Vec12 more = H * own;

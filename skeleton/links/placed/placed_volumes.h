@@ -55,7 +55,7 @@ private:
     Gradient gradient_of(const Cell& cell, const std::vector<Swelling>& swellings, double& change) const;
 
     std::vector<Link> links_;
-    State rest_;
+    State rest_, natural_;  // natural: where no link is strained, see growth.h
     std::vector<Cell> cells_;
     std::vector<std::array<int, 2>> pairs_;
     std::vector<std::vector<int>> pair_of_;  // of each cell: of each pair of its spheres, in the order of Gradient

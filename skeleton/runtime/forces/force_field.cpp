@@ -4,6 +4,7 @@
 
 #include "skeleton/effects/link_effects.h"
 #include "skeleton/links/full_link.h"
+#include "skeleton/model/growth.h"
 
 namespace palpate::runtime {
 
@@ -39,11 +40,13 @@ std::vector<skeleton::Stiffnesses> scaled_stiffnesses(const skeleton::Model& mod
 
 }  // namespace
 
-ForceField::ForceField(const skeleton::Model& model)
-    : model_(model), moves_(model.spheres.size(), 1), poses_(model.spheres.size()) {
-    const fem::Effects effects = skeleton::physics_of(model.effects);
-    laws_ = skeleton::section_laws(model, effects);
-    std::vector<double> scales = skeleton::PlacedLinks(model, effects).scales();
+ForceField::ForceField(const skeleton::Model& given)
+    : model_(given), moves_(given.spheres.size(), 1), poses_(given.spheres.size()) {
+    const fem::Effects effects = skeleton::physics_of(given.effects);
+    model_.links = skeleton::grown(given.links, effects.growth);
+    const skeleton::Model& model = model_;
+    laws_ = skeleton::section_laws(given, effects);
+    std::vector<double> scales = skeleton::PlacedLinks(given, effects).scales();
     if (scales.empty()) scales.assign(model.links.size(), 1);
     k_ = stiffnesses_in_force(model, effects, laws_, scales);
     if (Fibres::needed(model, effects, laws_))

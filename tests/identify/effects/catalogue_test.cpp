@@ -20,25 +20,11 @@ namespace {
 using testing::HasSubstr;
 
 /// Names that users may rely on.
-const std::set<std::string> promised{"gravity",
-                                     "stiffening",
-                                     "anisotropy",
-                                     "inclusion",
-                                     "volume",
-                                     "torsion",
-                                     "shear",
-                                     "contact",
-                                     "pressure",
-                                     "prestress",
-                                     "compliant-support",
-                                     "viscosity",
-                                     "plasticity",
-                                     "misalignment",
-                                     "force-gain",
-                                     "slip",
-                                     "actuation-gain",
-                                     "clock",
-                                     "outliers"};
+const std::set<std::string> promised{"gravity",   "stiffening",     "anisotropy",   "inclusion",
+                                     "volume",    "torsion",        "shear",        "contact",
+                                     "pressure",  "prestress",      "swelling",     "compliant-support",
+                                     "viscosity", "plasticity",     "misalignment", "force-gain",
+                                     "slip",      "actuation-gain", "clock",        "outliers"};
 const std::set<std::string> probe_kinds{"load", "orientation", "pressure", "dwell", "unload", "repeat", "fiducials"};
 
 class EveryEffect : public testing::TestWithParam<std::shared_ptr<const EffectHypothesis>> {
@@ -363,7 +349,8 @@ TEST(Catalogue, EachEffectDrawsFromTheStreamThatItAlwaysDid) {  // digits of a s
         {"gravity", 0},    {"compliant-support", 1}, {"pressure", 2},    {"prestress", 3},
         {"volume", 4},     {"torsion", 5},           {"shear", 6},       {"stiffening", 7},
         {"anisotropy", 8}, {"viscosity", 9},         {"plasticity", 10}, {"inclusion", 11},
-        {"contact", 12},   {"misalignment", 13},     {"force-gain", 14}, {"outliers", 15}};
+        {"contact", 12},   {"misalignment", 13},     {"force-gain", 14}, {"outliers", 15},
+        {"clock", 16},     {"swelling", 17}};
     for (const auto& [name, stream] : streams) EXPECT_EQ(find_effect(name)->stream(), stream) << name;
 }
 

@@ -26,7 +26,7 @@ TEST(EffectMessages, EveryFaultIsNamed) {
     EXPECT_EQ(complaint({"gravitty", {}})
                   .rfind("effect 'gravitty' is not known (did you mean 'gravity'?); known are 'gravity', "
                          "'compliant-support', 'stiffening', 'anisotropy', 'inclusion', 'contact', 'pressure', "
-                         "'prestress', 'viscosity', 'plasticity', 'volume', 'torsion', 'shear', ",
+                         "'prestress', 'swelling', 'viscosity', 'plasticity', 'volume', 'torsion', 'shear', ",
                          0),
               0u);
     EXPECT_EQ(complaint({"outliers", {}}),

@@ -26,6 +26,7 @@ const std::vector<EffectRecord> all_effects{
     {"pressure", {{"pressure", 0.01, "MPa"}}},
     {"prestress",
      {{"sxx", 0.1, "1"}, {"syy", 0.2, "1"}, {"szz", 0, "1"}, {"sxy", 0.3, "1"}, {"syz", 0, "1"}, {"sxz", 0, "1"}}},
+    {"swelling", {{"growth", -0.02, "1"}}},
     {"viscosity", {{"creep", 0.7, "1"}, {"tau", 20, "s"}}},
     {"plasticity", {{"yield", 0.05, "1"}, {"hardening", 0.1, "1"}}},
     {"volume", {{"poisson", 0.3, "1"}}},
@@ -46,6 +47,7 @@ TEST(KnownEffects, TellTheirNumbers) {
     EXPECT_EQ(physics.points.size(), 3u);    // gravity, support, contact
     EXPECT_EQ(physics.material.size(), 4u);  // stiffening, anisotropy, inclusion, prestress
     EXPECT_EQ(physics.pressure, 0.01);
+    EXPECT_EQ(physics.growth, -0.02);
     EXPECT_EQ(link_effects(physics).torsion, 0.5);
     EXPECT_EQ(link_effects(physics).shear, 0.5);
     EXPECT_EQ(physics.creep->creep, 0.7);

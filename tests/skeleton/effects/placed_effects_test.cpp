@@ -183,6 +183,7 @@ INSTANTIATE_TEST_SUITE_P(
         InForce{"CompliantSupport", {compliant_support(8)}, {}}, InForce{"Skin", {}, {.points = {slope}}},
         InForce{"Stiffening", {}, {.material = {stiffening}}}, InForce{"Anisotropy", {}, {.material = {fibres}}},
         InForce{"Prestress", {}, {.material = {prestress}}}, InForce{"Inclusion", {}, {.material = {inclusion}}},
+        InForce{"Swelling", {{"swelling", {{"growth", 0.04, ""}}}}, {}},
         InForce{"Plasticity", {}, {.plasticity = fem::Plasticity{0.02, 0.3}}},
         InForce{"TorsionAndShear", {}, {.of_model = {in_links({.torsion = 0.7, .shear = 0.4})}}},
         InForce{"Area", {}, {.surface = {tension, area_spring}}}, InForce{"Pressure", {}, {.pressure = 0.05}},

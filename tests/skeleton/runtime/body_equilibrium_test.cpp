@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include "mesh/errors.h"
+#include "skeleton/model/carried_point.h"
+#include "skeleton/model/growth.h"
 #include "skeleton/runtime/body.h"
 #include "skeleton/statics/equilibrium.h"
 #include "tests/messages.h"
@@ -27,7 +29,10 @@ Apart apart_under_push(const skeleton::Model& model, int vertex, const Vec3& for
     const skeleton::Equilibrium expected = skeleton::equilibrium(model, load);
 
     Body body(model);
-    const int contact = body.touch(model.surface.vertices.row(vertex).transpose());
+    // where the vertex stands at the beginning: its spheres have parted where the material has grown
+    const double growth = skeleton::physics_of(model.effects).growth;
+    const int contact = body.touch(
+        skeleton::carried_place(model.skin[vertex], skeleton::rest_state(model), skeleton::grown_start(model, growth)));
     body.push(contact, force);
     Apart apart;
     apart.report = body.equilibrium();
@@ -60,6 +65,20 @@ TEST(LiveEquilibrium, HoldsWithEffectsInForce) {
         const Apart apart = apart_under_push(model, 100, {0.2, 0.5, -1});
         EXPECT_LT(apart.most, as_good * apart.moved) << effect.name;
     }
+}
+
+TEST(LiveEquilibrium, ShowsTheSkinAsFarOutAsItHasGrown) {
+    skeleton::Model model = make_full_lattice({4, 3, 2});
+    give_skin(model);
+    const Points before = model.surface.vertices;
+    model.effects = {{"swelling", {{"growth", 0.05, ""}}}};
+    Body body(model);
+    body.equilibrium();
+    const Points expected = skeleton::observe(model, skeleton::equilibrium(model, {}), model.skin);
+    using Shown = Eigen::Matrix<float, Eigen::Dynamic, 3, Eigen::RowMajor>;
+    const Eigen::Map<const Shown> shown(body.skin().data(), expected.rows(), 3);
+    EXPECT_LT((shown.cast<double>() - expected).rowwise().norm().maxCoeff(), 1e-4);  // single precision of 30 mm
+    EXPECT_GT((expected - before).rowwise().norm().maxCoeff(), 0.5);
 }
 
 TEST(LiveEquilibrium, HoldsUnderPressure) {

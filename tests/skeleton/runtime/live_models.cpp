@@ -72,6 +72,7 @@ std::vector<skeleton::EffectRecord> playable_effects() {
         {"inclusion", {{"cx", 10, ""}, {"cy", 10, ""}, {"cz", 5, ""}, {"radius", 6, ""}, {"ratio", 8, ""}}},
         {"prestress",
          {{"sxx", 0.05, ""}, {"syy", -0.02, ""}, {"szz", 0, ""}, {"sxy", 0.03, ""}, {"syz", 0, ""}, {"sxz", 0, ""}}},
+        {"swelling", {{"growth", 0.03, ""}}},
         {"torsion", {{"torsion", 0.7, ""}}},
         {"shear", {{"shear", 0.4, ""}}},
         {"plasticity", {{"yield", 0.02, ""}, {"hardening", 0.1, ""}}},

@@ -44,12 +44,15 @@ LinksAtRest::LinksAtRest(const skeleton::Model& model)
     std::vector<Term> found;
     for (Eigen::Index l = 0; l < L; ++l) {
         ends.push_back({model.links[l].a, model.links[l].b});
-        const skeleton::LinkTerms terms = placed.terms(static_cast<std::size_t>(l), state, linear);
-        gradients.middleCols(n * l, n) = terms.gradient;
-        for (int s = 0; linear && s < n; ++s) {
-            for (const Term& term : terms_of(terms.hessian[s])) {
-                found.push_back(term);
-                kind.push_back(s);
+        const auto link = static_cast<std::size_t>(l);
+        gradients.middleCols(n * l, n) = placed.terms(link, state, false).gradient;
+        if (linear) {
+            const skeleton::LinkTerms natural = placed.terms(link, placed.natural(), true);
+            for (int s = 0; s < n; ++s) {
+                for (const Term& term : terms_of(natural.hessian[s])) {
+                    found.push_back(term);
+                    kind.push_back(s);
+                }
             }
         }
         first.push_back(std::ssize(found));

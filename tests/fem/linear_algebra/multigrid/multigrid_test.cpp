@@ -1,5 +1,6 @@
 #include "fem/linear_algebra/multigrid/multigrid.h"
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <numeric>
 

@@ -1,0 +1,312 @@
+// What the numbers of an explanation alter in the readings, to first order.
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "identify/diagnosis/fit/explanation.h"
+#include "identify/numerics/parallel.h"
+
+namespace palpate::identify {
+namespace {
+
+/// An explanation with one number of one effect moved to both sides.
+struct Sides {
+    double h;
+    Explanation ahead, behind;
+};
+
+Sides about(const Explanation& explanation, std::size_t effect, Eigen::Index number) {
+    // The residual is exact to rounding, and kinks where a plane is just touched: a small step.
+    Sides sides{1e-7 * std::max(1.0, std::abs(explanation.values[effect][number])), explanation, explanation};
+    sides.ahead.values[effect][number] += sides.h;
+    sides.behind.values[effect][number] -= sides.h;
+    return sides;
+}
+
+/// Do actions press, move and pull alike?
+bool act_alike(const Action& a, const Action& b) {
+    const auto by_bits = [](const Vec3& x, const Vec3& y) {
+        return ((x.array() == y.array()) || (x.array().isNaN() && y.array().isNaN())).all();
+    };
+    return std::ranges::equal(a.contacts, b.contacts, {}, &mesh::Contact::force, &mesh::Contact::force) &&
+           std::ranges::equal(a.motions, b.motions,
+                              [&](const mesh::ToolMotion& x, const mesh::ToolMotion& y) {
+                                  return by_bits(x.translation, y.translation) && by_bits(x.rotation, y.rotation);
+                              }) &&
+           std::ranges::equal(a.settings, b.settings, {}, &mesh::ActuatorSetting::value, &mesh::ActuatorSetting::value);
+}
+
+/// What numbers do at fixed configuration.
+struct AtOnce {
+    Eigen::MatrixXd forces;     // d net force (dofs x numbers)
+    Eigen::MatrixXd reactions;  // d reactions of the action's tools (6 motions x numbers)
+};
+
+/// Of an effect, by central differences.
+AtOnce effect_at_once(const BodyModel& model, const Problem& problem, const Explanation& explanation,
+                      std::size_t effect, const ForwardSolution& forward, int k, const Eigen::VectorXd& q) {
+    const Eigen::VectorXd& values = explanation.values[effect];
+    const auto tools = std::ssize(forward.actions[k].motions);
+    AtOnce result{Eigen::MatrixXd::Zero(model.dofs(), values.size()), Eigen::MatrixXd::Zero(6 * tools, values.size())};
+    ModelSetting setting = explanation.setting();
+    const bool enforced = explanation.effects[effect]->enforce(values, setting);
+    for (Eigen::Index j = 0; j < values.size(); ++j) {
+        const Sides sides = about(explanation, effect, j);
+        Action ahead = sides.ahead.act(problem, k), behind = sides.behind.act(problem, k);
+        if (!enforced && act_alike(ahead, behind)) continue;
+        ahead.memory = behind.memory = forward.actions[k].memory;
+        const ModelSetting more = sides.ahead.setting(), less = sides.behind.setting();
+        result.forces.col(j) = (model.residual(q, more, ahead) - model.residual(q, less, behind)) / (2 * sides.h);
+        if (tools == 0) continue;
+        result.reactions.col(j) = (model.reactions(q, more, ahead) - model.reactions(q, less, behind)) / (2 * sides.h);
+    }
+    return result;
+}
+
+std::shared_ptr<const Tangent> tangent_of(const BodyModel& model, const ModelSetting& setting,
+                                          const ForwardSolution& forward, int k) {
+    const auto make = [&] { return model.tangent(forward.q[k], setting, forward.actions[k]); };
+    return forward.tangents ? forward.tangents->get(k, make) : make();
+}
+
+/// Without the columns that are zero.
+Signatures::InAction as_signatures(const AtOnce& all) {
+    Signatures::InAction result;
+    for (int c = 0; c < all.forces.cols(); ++c) {
+        if (!all.forces.col(c).isZero(0) || !all.reactions.col(c).isZero(0)) result.columns.push_back(c);
+    }
+    result.forces = all.forces(Eigen::all, result.columns);
+    result.reactions = all.reactions(Eigen::all, result.columns);
+    return result;
+}
+
+/// What tools feel of the stiffness parameters at once (6 motions x P).
+Eigen::MatrixXd felt_of_stiffness(const BodyModel& model, const ModelSetting& setting, const Action& action,
+                                  const Eigen::VectorXd& q) {
+    if (action.motions.empty()) return Eigen::MatrixXd::Zero(0, setting.theta.size());
+    return model.reaction_slopes(q, setting, action).by_parameter;
+}
+
+/// d net force / d all numbers in every action of a body that yields (K of dofs x numbers). What it remembers depends
+/// on the numbers too: for each parameter two perturbed load histories are followed, with a slightly larger and a
+/// slightly smaller value.
+std::vector<Eigen::MatrixXd> yielding_forces(const BodyModel& model, const Problem& problem,
+                                             const Explanation& explanation, const ForwardSolution& forward) {
+    struct PerturbedHistory {
+        ModelSetting setting;
+        Explanation explanation;
+        double h;
+        std::vector<std::shared_ptr<const Memory>> after;  // each action
+    };
+    const auto count = static_cast<int>(problem.actions.size());
+    const Eigen::Index numbers = explanation.numbers();
+    const Eigen::VectorXd x = explanation.all();
+    std::vector<std::array<PerturbedHistory, 2>> histories(numbers);
+    for (Eigen::Index j = 0; j < numbers; ++j) {
+        for (int side = 0; side < 2; ++side) {
+            PerturbedHistory& history = histories[j][side];
+            history.h = (side == 0 ? 1e-4 : -1e-4) * std::max(1.0, std::abs(x[j]));
+            history.explanation = explanation;
+            history.explanation.set_all(x + history.h * Eigen::VectorXd::Unit(numbers, j));
+            history.setting = history.explanation.setting();
+            history.after.resize(count);
+        }
+    }
+    const ModelSetting setting = explanation.setting();
+    std::vector<Eigen::MatrixXd> forces(count, Eigen::MatrixXd(model.dofs(), numbers));
+    for (int k = 0; k < count; ++k) {
+        const int before = problem.before(k);
+        const auto action_of = [&](const PerturbedHistory& history) {
+            Action action = history.explanation.act(problem, k);
+            action.memory = before < 0 ? nullptr : history.after[before];
+            return action;
+        };
+        for (Eigen::Index j = 0; j < numbers; ++j) {
+            const auto& [more, less] = histories[j];
+            forces[k].col(j) = (model.residual(forward.q[k], more.setting, action_of(more)) -
+                                model.residual(forward.q[k], less.setting, action_of(less))) /
+                               (more.h - less.h);
+        }
+        const Eigen::MatrixXd steps = tangent_of(model, setting, forward, k)->solve(forces[k]);
+        for (Eigen::Index j = 0; j < numbers; ++j) {
+            for (PerturbedHistory& history : histories[j]) {
+                const Eigen::VectorXd q = model.advance(forward.q[k], history.h * steps.col(j), history.setting);
+                history.after[k] = model.remember(q, history.setting, action_of(history));
+            }
+        }
+    }
+    return forces;
+}
+
+/// Puts what concerns the reactions of an action's tools (6 motions x c) in its place among the channels.
+void add_reactions(const Problem& problem, const Action& action, const Eigen::MatrixXd& reactions,
+                   Eigen::MatrixXd& channels) {
+    for (std::size_t i = 0; i < action.motions.size(); ++i) {
+        channels.middleRows<6>(3 * (problem.markers + 2 * Eigen::Index{action.motions[i].tool})) +=
+            reactions.middleRows<6>(6 * static_cast<Eigen::Index>(i));
+    }
+}
+
+/// What steps of the configuration (dofs x c) alter in the channels (3 (m + 2t) x c). `at_once` (6 motions x c):
+/// what tools feel besides; or empty.
+Eigen::MatrixXd channels_of_steps(const BodyModel& model, const Problem& problem, const ModelSetting& setting,
+                                  const Action& action, const Eigen::VectorXd& q, const Eigen::MatrixXd& steps,
+                                  const Eigen::MatrixXd& at_once) {
+    Eigen::MatrixXd channels = Eigen::MatrixXd::Zero(problem.rest.size(), steps.cols());
+    channels.topRows(3 * Eigen::Index{problem.markers}) = model.observation(q, setting) * steps;
+    if (action.motions.empty()) return channels;
+    add_reactions(problem, action, model.reaction_slopes(q, setting, action).by_step * steps, channels);
+    if (at_once.size() > 0) add_reactions(problem, action, at_once, channels);
+    return channels;
+}
+
+/// What is read of changes of the channels (3 (m + 2t) x c): differences of an affine map.
+Eigen::MatrixXd seen_difference(const Problem& problem, const Explanation& explanation, const Points& markers,
+                                const Eigen::MatrixXd& moved) {
+    if (explanation.effects.empty()) return moved;
+    const Points base = explanation.read(problem, markers);
+    Eigen::MatrixXd result(moved.rows(), moved.cols());
+    for (Eigen::Index c = 0; c < moved.cols(); ++c) {
+        const Eigen::VectorXd column = moved.col(c);
+        const Points there = markers + Eigen::Map<const Points>(column.data(), markers.rows(), 3);
+        const Points difference = explanation.read(problem, there) - base;
+        result.col(c) = Eigen::Map<const Eigen::VectorXd>(difference.data(), difference.size());
+    }
+    return result;
+}
+
+}  // namespace
+
+std::vector<Eigen::MatrixXd> sensitivities(const BodyModel& model, const Problem& problem,
+                                           const Explanation& explanation, const ForwardSolution& forward,
+                                           const std::vector<Signatures>& signatures, int threads,
+                                           std::vector<Eigen::MatrixXd>* steps_of_first) {
+    const ModelSetting setting = explanation.setting();
+    const auto count = static_cast<int>(problem.actions.size());
+    std::vector<Eigen::MatrixXd> result;
+    result.reserve(signatures.size());
+    for (const Signatures& s : signatures) result.emplace_back(Eigen::MatrixXd::Zero(problem.rows(), s.width));
+    if (steps_of_first) steps_of_first->assign(count, {});
+    std::vector<std::vector<Eigen::Index>> rows(count);
+    // Of actions that differences count from, for each signature: they come off when all threads are done.
+    struct Counted {
+        Eigen::MatrixXd seen;
+        std::vector<int> columns;
+    };
+    std::vector<std::vector<Counted>> counted(count);
+    std::vector<char> is_counted_from(count, 0);
+    for (Eigen::Index n = 0; n < problem.rows(); ++n) {
+        rows[problem.action[n]].push_back(n);
+        if (problem.is_difference(n)) is_counted_from[problem.since[n]] = 1;
+    }
+
+    std::shared_ptr<const Tangent> linear;
+    if (!model.is_nonlinear(setting)) linear = model.tangent(model.rest(setting), setting, {});
+    for_each_in_parallel(count, threads, [&](int k) {
+        std::vector<Signatures::InAction> parts;
+        Eigen::Index columns = 0;
+        for (const Signatures& s : signatures) {
+            parts.push_back(s.in_action(k, forward.q[k]));
+            columns += parts.back().forces.cols();
+        }
+        if (columns == 0) return;
+        Eigen::MatrixXd G(model.dofs(), columns);
+        Eigen::Index at = 0;
+        for (const auto& part : parts) {
+            if (part.forces.cols() > 0) G.middleCols(at, part.forces.cols()) = part.forces;
+            at += part.forces.cols();
+        }
+        const auto tangent = linear ? linear : tangent_of(model, setting, forward, k);
+        const Eigen::MatrixXd X = tangent->solve(G);
+        at = 0;
+        for (std::size_t p = 0; p < parts.size(); ++p) {
+            Eigen::MatrixXd steps = X.middleCols(at, parts[p].forces.cols());
+            at += parts[p].forces.cols();
+            if (parts[p].steps.size() > 0) steps += parts[p].steps;
+            if (parts[p].combine) steps = parts[p].combine(steps);
+            if (p == 0 && steps_of_first) {
+                (*steps_of_first)[k] = Eigen::MatrixXd::Zero(model.dofs(), signatures.front().width);
+                (*steps_of_first)[k](Eigen::all, parts[p].columns) = steps;
+            }
+            const Eigen::MatrixXd Y = seen_difference(problem, explanation, forward.stand[k],
+                                                      channels_of_steps(model, problem, setting, forward.actions[k],
+                                                                        forward.q[k], steps, parts[p].reactions));
+            for (std::size_t c = 0; c < parts[p].columns.size(); ++c) {
+                for (const Eigen::Index n : rows[k]) {
+                    result[p](n, parts[p].columns[c]) =
+                        Y(problem.coordinate[n], static_cast<Eigen::Index>(c)) / problem.sigma[n];
+                }
+            }
+            if (is_counted_from[k]) counted[k].push_back({Y, parts[p].columns});
+        }
+    });
+    for (Eigen::Index n = 0; n < problem.rows(); ++n) {
+        if (!problem.is_difference(n)) continue;
+        const std::vector<Counted>& from = counted[problem.since[n]];
+        for (std::size_t p = 0; p < from.size(); ++p)
+            for (std::size_t c = 0; c < from[p].columns.size(); ++c)
+                result[p](n, from[p].columns[c]) -=
+                    from[p].seen(problem.coordinate[n], static_cast<Eigen::Index>(c)) / problem.sigma[n];
+    }
+    return result;
+}
+
+Signatures own_signatures(const BodyModel& model, const Problem& problem, const Explanation& explanation,
+                          const ForwardSolution& forward) {
+    const ModelSetting setting = explanation.setting();
+    std::vector<Eigen::MatrixXd> yielding;
+    if (setting.effects.plasticity) yielding = yielding_forces(model, problem, explanation, forward);
+    return {explanation.numbers(),
+            [&model, &problem, explanation, setting, &forward, yielding](int k, const Eigen::VectorXd& q) {
+                const Action& action = forward.actions[k];
+                const Eigen::Index numbers = explanation.numbers(), P = explanation.theta.size();
+                AtOnce all{Eigen::MatrixXd(model.dofs(), numbers),
+                           Eigen::MatrixXd::Zero(6 * std::ssize(action.motions), numbers)};
+                all.reactions.leftCols(P) = felt_of_stiffness(model, setting, action, q);
+                if (!yielding.empty()) {
+                    all.forces = yielding[k];
+                    return as_signatures(all);
+                }
+                all.forces.leftCols(P) = model.parameter_force(q, setting, action);
+                Eigen::Index at = P;
+                for (std::size_t e = 0; e < explanation.effects.size(); ++e) {
+                    const Eigen::Index count = explanation.values[e].size();
+                    if (count > 0) {
+                        const AtOnce own = effect_at_once(model, problem, explanation, e, forward, k, q);
+                        all.forces.middleCols(at, count) = own.forces;
+                        all.reactions.middleCols(at, count) = own.reactions;
+                    }
+                    at += count;
+                }
+                return as_signatures(all);
+            }};
+}
+
+Signatures::InAction signatures_of_last_effect(const BodyModel& model, const Problem& problem,
+                                               const Explanation& explanation, const ForwardSolution& forward, int k,
+                                               const Eigen::VectorXd& q) {
+    return as_signatures(effect_at_once(model, problem, explanation, explanation.effects.size() - 1, forward, k, q));
+}
+
+Eigen::MatrixXd seen_directly(const Problem& problem, const Explanation& explanation, const ForwardSolution& forward) {
+    Eigen::MatrixXd result = Eigen::MatrixXd::Zero(problem.rows(), explanation.numbers());
+    // By central differences of what is seen: exact to rounding for maps as smooth as a small rotation.
+    Eigen::Index column = explanation.theta.size();
+    for (std::size_t e = 0; e < explanation.effects.size(); ++e) {
+        for (Eigen::Index j = 0; j < explanation.values[e].size(); ++j, ++column) {
+            constexpr double h = 1e-5;
+            Explanation ahead = explanation, behind = explanation;
+            ahead.values[e][j] += h;
+            behind.values[e][j] -= h;
+            std::vector<Points> difference;
+            for (const Points& stand : forward.stand) {
+                difference.emplace_back((ahead.read(problem, stand) - behind.read(problem, stand)) / (2 * h));
+            }
+            result.col(column) = problem.pick(difference).cwiseQuotient(problem.sigma);
+        }
+    }
+    return result;
+}
+
+}  // namespace palpate::identify
