@@ -1,0 +1,41 @@
+# What is packaged, as it lies in the folder where CPack has collected it, is given the form that Debian asks for.
+function(run)
+  execute_process(COMMAND ${ARGN} COMMAND_ERROR_IS_FATAL ANY)
+endfunction()
+
+if(CPACK_GENERATOR STREQUAL "DEB")
+  while(CPACK_PALPATE_COMPONENTS)
+    list(POP_FRONT CPACK_PALPATE_COMPONENTS component package)
+    set(usr "${CPACK_TEMPORARY_DIRECTORY}/${component}/usr")
+    set(doc "${usr}/share/doc/${package}")
+    configure_file("${CPACK_PALPATE_DEBIAN}/copyright" "${doc}/copyright" COPYONLY)
+    configure_file("${CPACK_PALPATE_DEBIAN}/${package}/changelog.Debian" "${doc}/changelog.Debian" COPYONLY)
+    configure_file("${CPACK_PALPATE_CHANGELOG}" "${doc}/NEWS" COPYONLY)
+    file(REMOVE "${doc}/CHANGELOG.md")
+    configure_file("${CPACK_PALPATE_OVERRIDES}" "${usr}/share/lintian/overrides/${package}" COPYONLY)
+    file(GLOB compressed "${usr}/share/man/man1/*.1" "${doc}/changelog.Debian" "${doc}/NEWS")
+    run(gzip -9nf ${compressed})
+    # Debian's zsh and Python look elsewhere below /usr than below /usr/local.
+    if(EXISTS "${usr}/share/zsh/site-functions")
+      file(RENAME "${usr}/share/zsh/site-functions" "${usr}/share/zsh/vendor-completions")
+    endif()
+    file(GLOB python "${usr}/lib/python3.*")
+    if(python)
+      file(RENAME "${python}" "${usr}/lib/python3")
+    endif()
+  endwhile()
+elseif(CPACK_GENERATOR STREQUAL "TGZ")
+  # What the archive does not bring along, as packages of Debian 12.
+  set(root "${CPACK_TEMPORARY_DIRECTORY}")
+  set(scratch "${CPACK_TOPLEVEL_DIRECTORY}/needs")
+  file(WRITE "${scratch}/debian/control" "Source: palpate\n\nPackage: palpate\nArchitecture: any\n")
+  execute_process(COMMAND dpkg-shlibdeps -O "-e${root}/bin/palpate" WORKING_DIRECTORY "${scratch}"
+    OUTPUT_VARIABLE needs ERROR_QUIET COMMAND_ERROR_IS_FATAL ANY)
+  string(REGEX REPLACE "^shlibs:Depends=|\n$" "" needs "${needs}")
+  string(REGEX REPLACE " \\([^)]*\\)|," "" needs "${needs}")
+  file(WRITE "${root}/share/doc/palpate/NEEDS"
+    "bin/palpate runs from wherever this archive is unpacked, on Debian 12 with\n\n  apt install ${needs}\n")
+endif()
+
+run(find "${CPACK_TEMPORARY_DIRECTORY}" -type d -exec chmod 755 {} +)
+run(find "${CPACK_TEMPORARY_DIRECTORY}" -exec touch -hd "@${CPACK_PALPATE_EPOCH}" {} +)
