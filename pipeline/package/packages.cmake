@@ -58,7 +58,7 @@ set(CPACK_PRE_BUILD_SCRIPTS "${PROJECT_SOURCE_DIR}/pipeline/package/staged.cmake
 set(CPACK_PALPATE_EPOCH "${palpate_epoch}")
 set(CPACK_PALPATE_COMPONENTS "${palpate_components}")
 set(CPACK_PALPATE_DEBIAN "${debian_files}")
-set(CPACK_PALPATE_OVERRIDES "${PROJECT_SOURCE_DIR}/pipeline/package/debian/palpate.overrides")
+set(CPACK_PALPATE_OVERRIDES "${PROJECT_SOURCE_DIR}/pipeline/package/debian")
 set(CPACK_PALPATE_CHANGELOG "${PROJECT_SOURCE_DIR}/CHANGELOG.md")
 
 set(CPACK_DEB_COMPONENT_INSTALL ON)
@@ -78,7 +78,9 @@ set(CPACK_DEBIAN_PROGRAM_DESCRIPTION "calibrate deformable models from measureme
  measured. It says which physical effect a model lacks, adds it, and tells the
  error before and after. Models are played in real time.")
 set(CPACK_DEBIAN_RUNTIME_PACKAGE_SECTION libs)
-set(CPACK_DEBIAN_RUNTIME_PACKAGE_GENERATE_SHLIBS ON)
+set(CPACK_DEBIAN_PACKAGE_GENERATE_SHLIBS ON)
+set(CPACK_DEBIAN_PACKAGE_GENERATE_SHLIBS_POLICY ">=")
+set(CPACK_DEBIAN_RUNTIME_PACKAGE_CONTROL_EXTRA "${PROJECT_SOURCE_DIR}/pipeline/package/debian/triggers")
 set(CPACK_DEBIAN_RUNTIME_DESCRIPTION "play calibrated deformable models in real time (library)
  libpalpate_runtime plays models of spheres and links, which palpate
  calibrates, at haptic rates: forces or positions in, forces and the skin out.
