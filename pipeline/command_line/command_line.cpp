@@ -7,7 +7,7 @@
 
 #include "pipeline/command_line/subcommands.h"
 #include "pipeline/command_line/usage_error.h"
-#include "pipeline/version.h"
+#include "pipeline/command_line/version_text.h"
 
 namespace palpate::pipeline {
 
@@ -63,7 +63,7 @@ void CommandLine::Impl::add_common(CLI::App& app) {
     app.add_flag("--force", subcommands.common.force, "Replace files that palpate did not make");
     auto* quiet_flag = app.add_flag("-q,--quiet", quiet, "Errors only");
     app.add_flag("-v,--verbose", verbose, "More detail")->excludes(quiet_flag);
-    app.set_version_flag("--version", std::string("palpate ") + version);
+    app.set_version_flag("--version", [this] { return version_text(subcommands.common.json); });
 }
 
 CommandLine::CommandLine() : impl_(std::make_unique<Impl>()) {

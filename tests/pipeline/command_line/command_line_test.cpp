@@ -49,6 +49,20 @@ TEST(CommandLine, ExitCodesTellWhatWentWrong) {
     EXPECT_EQ(palpate("check " + (scratch / "none.stl").string()).code, 3);
 }
 
+TEST(CommandLine, VersionTellsWhatIsLinkedAndUnderWhichLicence) {
+    const std::string text = palpate("--version").out;
+    EXPECT_THAT(text, StartsWith("palpate "));
+    EXPECT_THAT(text, HasSubstr("TetGen"));
+    const auto told = nlohmann::json::parse(palpate("--version --json").out);
+    EXPECT_EQ(text.substr(0, text.find('\n')), "palpate " + told["version"].get<std::string>());
+    EXPECT_EQ(told["licence_of_the_program"], "GPL-3.0-or-later AND AGPL-3.0-or-later");
+    for (const auto& library : told["libraries"]) {
+        const std::string number = library["version"];
+        EXPECT_EQ(number.find_first_not_of("0123456789."), std::string::npos) << library;
+        EXPECT_NE(number.find('.'), std::string::npos) << library;
+    }
+}
+
 TEST(CommandLine, JsonStandsAloneOnStandardOutput) {
     const TemporaryFolder scratch;
     mesh::write_surface(scratch / "box.stl", mesh::make_box({0, 0, 0}, {10, 2, 2}, {5, 1, 1}));
