@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""The documentation as pages without scripts or network: docs/build.py -o FOLDER [--palpate PROGRAM]
+"""The documentation as pages without scripts or network: pipeline/docs/build.py -o FOLDER [--palpate PROGRAM]
 
 Every README.md and RESULTS.md, the pages of this folder, CHANGELOG.md, and the help of each command. Links to other
 files of the sources lead to copies of them. It ends with code 1 where a link leads nowhere.
@@ -16,13 +16,14 @@ from pathlib import Path
 
 from markdown_it import MarkdownIt
 
-root = Path(__file__).resolve().parents[1]
+root = Path(__file__).resolve().parents[2]
+pages = Path("pipeline/docs")  # of this folder
 style = """:root{color-scheme:light dark}body{font:16px/1.55 system-ui,sans-serif;max-width:62em;margin:0 auto;padding:0 1em 4em}nav{padding:1em 0;border-bottom:1px solid #8886}
 nav a{margin-right:1em;white-space:nowrap}pre{overflow-x:auto;background:#8882;padding:.8em;border-radius:6px}code{font-size:.92em}img{max-width:100%;height:auto}
 .wide{overflow-x:auto}table{border-collapse:collapse}th,td{border-bottom:1px solid #8885;padding:.3em .7em;text-align:left;vertical-align:top}
 a{color:#0b57d0}@media(prefers-color-scheme:dark){body{background:#15171a;color:#e4e6e8}a{color:#8ab4f8}}"""
-top = {"Start": "docs/start.md", "Overview": "README.md", "Verdicts": "docs/verdict.md", "Messages": "docs/troubleshooting.md",
-       "Commands": "commands.md", "Theory": "identify/README.md", "Runtime": "skeleton/runtime/README.md",
+top = {"Start": "pipeline/docs/start.md", "Overview": "README.md", "Verdicts": "pipeline/docs/verdict.md", "Messages": "pipeline/docs/troubleshooting.md",
+       "Commands": "pipeline/docs/commands.md", "Theory": "identify/README.md", "Runtime": "skeleton/runtime/README.md",
        "Python": "pipeline/python/README.md", "Challenge": "samples/challenge/README.md", "Changes": "CHANGELOG.md"}
 
 
@@ -44,8 +45,6 @@ def page(source, text, where):
     body = MarkdownIt("commonmark", {"html": True}).enable("table").render(text)
     body = re.sub(r"<h([1-4])>(.*?)</h\1>", lambda m: f'<h{m[1]} id="{anchor(m[2])}">{m[2]}</h{m[1]}>', body)
     body = body.replace("<table>", '<div class="wide"><table>').replace("</table>", "</table></div>")
-    # Pages of docs/ name files from the root, as the others name them from where they stand.
-    base = Path() if source.parts[0] == "docs" else source.parent
     wanted = []
 
     def leads(match):
@@ -53,7 +52,7 @@ def page(source, text, where):
         if re.match(r"[a-z]+:", target):
             return match[0]
         path, _, place = target.partition("#")
-        path = os.path.normpath(base / path) if path else str(source)
+        path = os.path.normpath(source.parent / path) if path else str(source)
         if (root / path).is_dir():
             path = f"{path}/README.md" if (root / path / "README.md").exists() else path
         wanted.append((path, place))
@@ -74,8 +73,8 @@ def main():
     told = parser.parse_args()
     skipped = ("build", ".git", "runs")
     files = [p.relative_to(root) for name in ("README.md", "RESULTS.md", "CHANGELOG.md") for p in root.rglob(name)]
-    files = [p for p in files + [Path("docs") / f.name for f in (root / "docs").glob("*.md")] if not p.parts[0].startswith(skipped)]
-    texts = {path: (root / path).read_text() for path in files} | {Path("commands.md"): commands(told.palpate)}
+    files = [p for p in files + [pages / f.name for f in (root / pages).glob("*.md")] if not p.parts[0].startswith(skipped)]
+    texts = {path: (root / path).read_text() for path in files} | {pages / "commands.md": commands(told.palpate)}
     headings = {str(p): {anchor(h) for h in re.findall(r"^#+ (.*)", t, re.M)} for p, t in texts.items()}
     lost = []
     for source, text in texts.items():
@@ -96,7 +95,7 @@ def main():
                 (told.output / path / "index.html").write_text("<!doctype html><pre>" + html.escape("\n".join(names)) + "</pre>\n")
             else:
                 lost.append(f"{source}: there is no '{path}'")
-    print("\n".join(lost) or f"{len(texts)} pages: {told.output}/docs/start.html", file=sys.stderr if lost else sys.stdout)
+    print("\n".join(lost) or f"{len(texts)} pages: {told.output / pages}/start.html", file=sys.stderr if lost else sys.stdout)
     return 1 if lost else 0
 
 

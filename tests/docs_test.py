@@ -1,4 +1,4 @@
-"""The pages of docs/ are made without a link that leads nowhere, and do what they show: docs_test.py PALPATE SOURCE.
+"""The pages of pipeline/docs are made without a link that leads nowhere, and do what they show: docs_test.py PALPATE SOURCE.
 
 A block marked "run" is typed into a shell, in a folder where samples/ is; "exit=3 says=..." tells how its last command ends.
 """
@@ -18,16 +18,16 @@ except ImportError:
 ran = 0
 with tempfile.TemporaryDirectory() as scratch:
     site = Path(scratch) / "site"
-    made = subprocess.run([sys.executable, source / "docs" / "build.py", "-o", site, "--palpate", palpate], capture_output=True, text=True)
+    made = subprocess.run([sys.executable, source / "pipeline" / "docs" / "build.py", "-o", site, "--palpate", palpate], capture_output=True, text=True)
     assert made.returncode == 0, made.stderr
-    assert "<script" not in (site / "docs" / "start.html").read_text()
+    assert "<script" not in (site / "pipeline" / "docs" / "start.html").read_text()
     here = Path(scratch) / "here"
     (here / "bin").mkdir(parents=True)
     (here / "bin" / "palpate").symlink_to(palpate)
     for name in "samples", "README.md":
         (here / name).symlink_to(source / name)
     environment = os.environ | {"PATH": f"{here}/bin:{os.environ['PATH']}"}
-    for page in sorted((source / "docs").glob("*.md")):
+    for page in sorted((source / "pipeline" / "docs").glob("*.md")):
         for marks, block in re.findall(r"^```sh run(.*)\n((?:.*\n)*?)```", page.read_text(), re.M):
             code = int(found[1]) if (found := re.search(r"exit=(\d)", marks)) else 0
             said = found[1] if (found := re.search(r'says="([^"]*)"', marks)) else ""
