@@ -52,8 +52,8 @@ struct Effects {
 
     bool empty() const {
         const auto is_nothing = [](const auto& effect) { return effect->is_nothing(); };
-        return points.empty() && material.empty() && surface.empty() && pressure == 0 && growth == 0 && !plasticity && !creep &&
-               tools.empty() && cavities.empty() && tendons.empty() &&
+        return points.empty() && material.empty() && surface.empty() && pressure == 0 && growth == 0 && !plasticity &&
+               !creep && tools.empty() && cavities.empty() && tendons.empty() &&
                std::all_of(of_model.begin(), of_model.end(), is_nothing);
     }
     /// Puts others in force besides; numbers add up.

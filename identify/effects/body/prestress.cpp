@@ -14,7 +14,8 @@ public:
         static const EffectDescription text{
             .name = "prestress",
             .kind = EffectKind::body,
-            .meaning = "The rest shape is not free of stress: the material pulls or pushes along its axes, all of it alike.",
+            .meaning =
+                "The rest shape is not free of stress: the material pulls or pushes along its axes, all of it alike.",
             .parameters = {"sxx, syy, szz, sxy, syz, sxz [-]: stress at rest over the shear modulus"},
             .reveals = "an error without any load that is largest where the body is free to change its size",
             .confused_with = {"swelling", "gravity", "misalignment", "pressure"},
