@@ -56,6 +56,7 @@ private:
 
     /// Displacements of an element's nodes from the shape that it would have by itself, scaled to that of its rest.
     NodeVectors elastic_displacements(const Eigen::VectorXd& u, std::size_t element) const;
+
     const BodyShape& body_;
     ElementModel model_;
     double growth_;  // g - 1
