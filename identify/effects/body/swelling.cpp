@@ -31,7 +31,7 @@ public:
     }
 
     std::vector<EffectNumber> numbers(const BodyModel&, const Problem&) const override {
-        // Elastomers swell by several per cent in oils; parts shrink by less than one as they cool.
+        // A tenth of the volume, more or less.
         return {{.name = "growth", .unit = "1", .prior_sd = 0.03, .least = least}};
     }
 
@@ -55,7 +55,7 @@ public:
     }
 
 private:
-    static constexpr double least = -0.5;  // beyond it bodies fold
+    static constexpr double least = -0.5;  // keeps trials off -1, where nothing is left of the body
 };
 
 }  // namespace

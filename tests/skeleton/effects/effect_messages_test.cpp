@@ -31,6 +31,7 @@ TEST(EffectMessages, EveryFaultIsNamed) {
               0u);
     EXPECT_EQ(complaint({"outliers", {}}),
               "effect 'outliers' is about the measurement, not the body: no model can play it");
+    EXPECT_EQ(complaint({"swelling", {{"growth", -1, ""}}}), "effect 'swelling': growth is -1, but must be above -1");
     EXPECT_EQ(complaint({"gravity", {{"gx", 0, ""}, {"gy", 0, ""}}}),
               "effect 'gravity': the parameter 'gz' [mm/s^2] is missing");
     EXPECT_EQ(
