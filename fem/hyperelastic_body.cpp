@@ -14,14 +14,22 @@ namespace palpate::fem {
 
 namespace {
 
-BodyShape shape_of(mesh::VolumeMesh mesh, std::vector<char> held, Dilatation dilatation) {
+BodyShape shape_of(mesh::VolumeMesh mesh, std::vector<char> held, Dilatation dilatation, ElementRegions regions) {
     assert(held.size() == static_cast<std::size_t>(mesh.nodes.rows()));
     std::vector<ElementShape> elements = element_shapes(mesh);
     check_restraint(mesh, held);
-    NodeIntegrals integrals = node_integrals(mesh, held);
+    NodeIntegrals integrals = node_integrals(mesh, held, regions);
     Cavities cavities(mesh);
-    return {std::move(mesh),     std::move(held),      dilatation,
-            std::move(elements), std::move(integrals), std::move(cavities)};
+    BodyShape shape{std::move(mesh),     std::move(held),      dilatation,
+                    std::move(elements), std::move(integrals), std::move(cavities)};
+    shape.regions = std::move(regions);
+    return shape;
+}
+
+/// @throws InvalidInput for a material that is none.
+void validate(const BodySetting& setting) {
+    setting.material.validate();
+    for (const Material& region : setting.regions) region.validate();
 }
 
 }  // namespace
@@ -94,8 +102,9 @@ const Unknowns& HyperelasticBody::Impl::all(const Effects& effects) const {
     });
 }
 
-HyperelasticBody::HyperelasticBody(mesh::VolumeMesh mesh, std::vector<char> held, Dilatation dilatation)
-    : impl_(std::make_unique<Impl>(shape_of(std::move(mesh), std::move(held), dilatation))) {}
+HyperelasticBody::HyperelasticBody(mesh::VolumeMesh mesh, std::vector<char> held, Dilatation dilatation,
+                                   ElementRegions regions)
+    : impl_(std::make_unique<Impl>(shape_of(std::move(mesh), std::move(held), dilatation, std::move(regions)))) {}
 
 HyperelasticBody::~HyperelasticBody() = default;
 HyperelasticBody::HyperelasticBody(HyperelasticBody&&) noexcept = default;
@@ -160,20 +169,20 @@ Eigen::VectorXd HyperelasticBody::cavity_push(const Eigen::VectorXd& u, const me
 
 double HyperelasticBody::potential(const Eigen::VectorXd& u, const BodySetting& setting, const Eigen::VectorXd& f,
                                    const PlasticState* before) const {
-    setting.material.validate();
+    validate(setting);
     Eigen::VectorXd net;
     return LoadedBody(impl_->shape, setting, f, before).potential(u, net).value;
 }
 
 Eigen::VectorXd HyperelasticBody::residual(const Eigen::VectorXd& u, const BodySetting& setting,
                                            const Eigen::VectorXd& f, const PlasticState* before) const {
-    setting.material.validate();
+    validate(setting);
     return LoadedBody(impl_->shape, setting, f, before).net_force(u);
 }
 
 LowerMatrix HyperelasticBody::Impl::tangent(const Eigen::VectorXd& u, const BodySetting& setting,
                                             const PlasticState* before, const Unknowns& unknowns) const {
-    setting.material.validate();
+    validate(setting);
     const Eigen::VectorXd none = Eigen::VectorXd::Zero(u.size());
     const LoadedBody body(shape, setting, none, before);
     body.net_force(u);  // refuses elements that are inside out
@@ -194,16 +203,17 @@ std::shared_ptr<const BodyTangent> HyperelasticBody::factor(const Eigen::VectorX
     return std::make_shared<FactoredTangent>(order, impl_->tangent(u, setting, before, order.unknowns));
 }
 
-Eigen::Matrix<double, Eigen::Dynamic, 2> HyperelasticBody::modulus_forces(const Eigen::VectorXd& u,
-                                                                          const BodySetting& setting,
-                                                                          const PlasticState* before) const {
-    setting.material.validate();
-    Eigen::Matrix<double, Eigen::Dynamic, 2> forces = Eigen::MatrixXd::Zero(u.size(), 2);
+Eigen::MatrixXd HyperelasticBody::modulus_forces(const Eigen::VectorXd& u, const BodySetting& setting,
+                                                 const PlasticState* before) const {
+    validate(setting);
+    const ElementRegions& regions = impl_->shape.regions;
+    Eigen::MatrixXd forces = Eigen::MatrixXd::Zero(u.size(), Eigen::Index{2} * (regions.count() + 1));
     BodyMaterial material(impl_->shape, setting, before);
     for (int modulus = 0; modulus < 2; ++modulus) {
         material.set_moduli(modulus == 0, modulus == 1);
         for (std::size_t e = 0; e < impl_->shape.elements.size(); ++e) {
-            impl_->shape.add(material.force(u, e), e, forces.col(modulus));
+            const auto column = static_cast<Eigen::Index>(2 * regions.group(e)) + modulus;
+            impl_->shape.add(material.force(u, e), e, forces.col(column));
         }
     }
     return forces;
@@ -212,7 +222,7 @@ Eigen::Matrix<double, Eigen::Dynamic, 2> HyperelasticBody::modulus_forces(const 
 Eigen::MatrixXd HyperelasticBody::element_forces(const Eigen::VectorXd& u, const BodySetting& setting,
                                                  const Eigen::MatrixXd& W, const PlasticState* before) const {
     assert(W.rows() == impl_->shape.mesh.tetrahedra.rows());
-    setting.material.validate();
+    validate(setting);
     const BodyMaterial material(impl_->shape, setting, before);
     Eigen::MatrixXd forces = Eigen::MatrixXd::Zero(u.size(), W.cols());
     for (std::size_t e = 0; e < impl_->shape.elements.size(); ++e) {
@@ -228,7 +238,7 @@ Eigen::MatrixXd HyperelasticBody::element_forces(const Eigen::VectorXd& u, const
 BodyEquilibrium HyperelasticBody::equilibrium(const BodySetting& setting, const Eigen::VectorXd& f,
                                               const NewtonOptions& options, const Eigen::VectorXd* start,
                                               const PlasticState* before, const BodyTangent* guide) const {
-    setting.material.validate();
+    validate(setting);
     options.validate();
     const EliminationOrder& order = impl_->order(setting.effects);
     const auto* nearby = dynamic_cast<const FactoredTangent*>(guide);
@@ -239,7 +249,7 @@ BodyEquilibrium HyperelasticBody::equilibrium(const BodySetting& setting, const 
 std::shared_ptr<const PlasticState> HyperelasticBody::plastic_state(const Eigen::VectorXd& u,
                                                                     const BodySetting& setting,
                                                                     const PlasticState* before) const {
-    setting.material.validate();
+    validate(setting);
     if (!setting.effects.plasticity) return nullptr;
     return std::make_shared<PlasticState>(BodyMaterial(impl_->shape, setting, before).after(u));
 }

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "fem/elements/dilatation.h"
+#include "fem/large_deformation/body/element_regions.h"
 #include "fem/large_deformation/body/node_weights.h"
 #include "fem/large_deformation/body_equilibrium.h"
 #include "fem/large_deformation/body_setting.h"
@@ -25,7 +26,8 @@ class HyperelasticBody {
 public:
     /// `held`: a flag per node (n). @throws InvalidInput when elements are not quadratic or turned inside out, or too
     /// little is held to stop rigid motion.
-    HyperelasticBody(mesh::VolumeMesh mesh, std::vector<char> held, Dilatation dilatation = Dilatation::mean);
+    HyperelasticBody(mesh::VolumeMesh mesh, std::vector<char> held, Dilatation dilatation = Dilatation::mean,
+                     ElementRegions regions = {});
     ~HyperelasticBody();
     HyperelasticBody(HyperelasticBody&&) noexcept;
 
@@ -54,10 +56,11 @@ public:
     std::shared_ptr<const PlasticState> plastic_state(const Eigen::VectorXd& u, const BodySetting& setting,
                                                       const PlasticState* before) const;
 
-    /// Internal forces at unit moduli (3n x 2): the internal force is mu * column 0 + K * column 1. Effects in the
-    /// material are shares of mu, and in column 0.
-    Eigen::Matrix<double, Eigen::Dynamic, 2> modulus_forces(const Eigen::VectorXd& u, const BodySetting& setting,
-                                                            const PlasticState* before = nullptr) const;
+    /// Internal forces at unit moduli (3n x 2 materials), of the body's own material and then of each region's: the
+    /// internal force is the sum of mu * column 2m + K * column 2m + 1. Effects in the material are shares of mu, and
+    /// in column 2m.
+    Eigen::MatrixXd modulus_forces(const Eigen::VectorXd& u, const BodySetting& setting,
+                                   const PlasticState* before = nullptr) const;
     /// Internal forces of weighted elements (3n x c): column j is sum_e W(e, j) f_e; W (elements x c).
     Eigen::MatrixXd element_forces(const Eigen::VectorXd& u, const BodySetting& setting, const Eigen::MatrixXd& W,
                                    const PlasticState* before = nullptr) const;

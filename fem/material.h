@@ -11,6 +11,7 @@ struct Material {
     double density = 1e-9;  // [tonne/mm^3], >= 0; 1000 kg/m^3 = 1e-9 tonne/mm^3
 
     double shear_modulus() const { return young / (2 * (1 + poisson)); }                          // mu [MPa]
+    double bulk_modulus() const { return young / (3 * (1 - 2 * poisson)); }                       // K [MPa]
     double lame_lambda() const { return young * poisson / ((1 + poisson) * (1 - 2 * poisson)); }  // [MPa]
 
     /// @throws InvalidInput naming the value and the range.

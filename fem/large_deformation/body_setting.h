@@ -1,5 +1,7 @@
 #pragma once
 
+#include <vector>
+
 #include "fem/effects/effects.h"
 #include "fem/large_deformation/material_law.h"
 #include "fem/material.h"
@@ -11,6 +13,7 @@ struct BodySetting {
     MaterialLaw law = MaterialLaw::neo_hookean;
     Material material;
     Effects effects;
+    std::vector<Material> regions = {};  // of the body's regions, in their order; none: all is of `material`
 };
 
 }  // namespace palpate::fem

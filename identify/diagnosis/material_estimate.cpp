@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "identify/models/reference_body.h"
+
 namespace palpate::identify {
 namespace {
 
@@ -27,6 +29,22 @@ Eigen::VectorXd slope_of_young(const BodyModel& model, const ModelSetting& setti
     return slope;
 }
 
+constexpr double fixed = 0.1;  // a prior of less, of the logarithm, leaves nothing to be fitted
+
+std::vector<RegionEstimate> regions_of(const BodyModel& model, const Refit& fit) {
+    std::vector<RegionEstimate> result;
+    const Eigen::VectorXd& theta = fit.explanation.theta;
+    for (Eigen::Index j = 0; j < theta.size(); ++j) {
+        const auto name = region_of_parameter(model.parameters()[static_cast<std::size_t>(j)].name);
+        if (!name) continue;
+        const double young = std::exp(theta[j]);
+        const bool is_declared = fit.prior_sd[j] < fixed;
+        const double sd = is_declared ? missing : sd_along(young * Eigen::VectorXd::Unit(theta.size(), j), fit);
+        result.push_back({*name, young, sd, is_declared});
+    }
+    return result;
+}
+
 }  // namespace
 
 MaterialEstimate material_of(const BodyModel& model, const Refit& fit) {
@@ -35,6 +53,7 @@ MaterialEstimate material_of(const BodyModel& model, const Refit& fit) {
     result.law = model.laws()[setting.law];
     result.young = model.young(setting);
     result.young_sd = sd_along(slope_of_young(model, setting), fit);
+    result.regions = regions_of(model, fit);
 
     const auto& parameters = model.parameters();
     const auto found = std::ranges::find(parameters, "compressibility", &StiffnessParameter::name);
@@ -44,7 +63,6 @@ MaterialEstimate material_of(const BodyModel& model, const Refit& fit) {
     const double ratio = std::exp(fit.explanation.theta[j]);
     result.poisson = (1 - ratio) / 2;
     result.poisson_sd = sd_along(-ratio / 2 * Eigen::VectorXd::Unit(setting.theta.size(), j), fit);
-    constexpr double fixed = 0.1;  // a prior of less, of the logarithm, leaves nothing to be fitted
     result.poisson_is_declared = fit.prior_sd[j] < fixed;
     return result;
 }

@@ -8,8 +8,8 @@ std::string label_of(const Marker& marker) { return marker.name.empty() ? std::t
 
 bool needs_second_format(const MeasurementSet& set) {
     const auto is_difference = [](const Reading& reading) { return reading.since.has_value(); };
-    return !set.tools.empty() || !set.actuators.empty() || set.reaction_noise || set.moment_noise ||
-           set.position_correlation || std::ranges::any_of(set.states, [&](const LoadState& state) {
+    return !set.tools.empty() || !set.actuators.empty() || !set.regions.empty() || set.reaction_noise ||
+           set.moment_noise || set.position_correlation || std::ranges::any_of(set.states, [&](const LoadState& state) {
                return std::ranges::any_of(state.readings, is_difference);
            });
 }

@@ -9,6 +9,7 @@
 
 #include "mesh/core/actuator.h"
 #include "mesh/core/contact.h"
+#include "mesh/core/material_region.h"
 #include "mesh/core/region.h"
 #include "mesh/core/surface.h"
 #include "mesh/core/tool.h"
@@ -118,6 +119,7 @@ struct MeasurementSet {
     std::optional<MaterialGuess> material;
     std::vector<mesh::Tool> tools;
     std::vector<mesh::Actuator> actuators;
+    std::vector<mesh::MaterialRegion> regions;  // of materials of their own
     std::vector<Marker> markers;
     std::vector<LoadState> states;      // in the order of probes.csv
     std::vector<Recording> recordings;  // of bodies in motion; mostly none

@@ -8,6 +8,7 @@ set(measurements_sources
   measurements/files/actuators_yaml.cpp
   measurements/files/path_inside.cpp
   measurements/files/read_measurement_set.cpp
+  measurements/files/regions_yaml.cpp
   measurements/files/rig_tables.cpp
   measurements/files/rig_yaml.cpp
   measurements/files/second_format.cpp

@@ -16,12 +16,14 @@
 #include "identify/models/free_tools.h"
 #include "identify/models/marker_frames.h"
 #include "mesh/errors.h"
+#include "mesh/regions/element_regions.h"
 #include "skeleton/model/state.h"
 
 namespace palpate::identify {
 namespace {
 
-constexpr int ln_young = 0, ln_compressibility = 1;  // places in theta
+constexpr int ln_young = 0, ln_compressibility = 1, first_region = 2;  // places in theta
+constexpr const char* of_region = "young:";                            // begins the name of a region's parameter
 
 /// ln(1 - 2 nu) may be tried where no material is.
 void require_material(const fem::Material& material) {
@@ -38,6 +40,47 @@ fem::Material material_of(const ModelSetting& setting, double density) {
     return {.young = std::exp(setting.theta[ln_young]),
             .poisson = 0.5 * (1 - std::exp(setting.theta[ln_compressibility])),
             .density = density};
+}
+
+/// What a region is made of.
+fem::Material material_of(const mesh::MaterialRegion& region, double log_young, const fem::Material& body) {
+    fem::Material material = body;
+    material.young = std::exp(log_young);
+    if (region.poisson) material.poisson = *region.poisson;
+    if (region.density) material.density = *region.density;
+    return material;
+}
+
+/// How the internal forces of a material grow with ln E and with ln(1 - 2 nu); `unit`: those at unit moduli (3n x 2).
+/// f = mu a + K b with mu = E / (2 (1 + nu)), K = E / (3 (1 - 2 nu)); t = ln(1 - 2 nu): d nu/dt = -(1 - 2 nu)/2,
+/// so d mu/dt = mu (1 - 2 nu) / (2 (1 + nu)) and dK/dt = -K.
+Eigen::Matrix<double, Eigen::Dynamic, 2> slopes_of(const fem::Material& m, const Eigen::MatrixXd& unit) {
+    const double mu = m.shear_modulus(), K = m.bulk_modulus();
+    Eigen::Matrix<double, Eigen::Dynamic, 2> slopes(unit.rows(), 2);
+    slopes.col(0) = mu * unit.col(0) + K * unit.col(1);
+    slopes.col(1) = mu * (1 - 2 * m.poisson) / (2 * (1 + m.poisson)) * unit.col(0) - K * unit.col(1);
+    return slopes;
+}
+
+/// The elements of each region. @throws InvalidInput where there are next to none.
+fem::ElementRegions element_regions(const mesh::VolumeMesh& mesh, const ReferenceBodyOptions& options) {
+    constexpr int least = 4;  // fewer do not show how a part bends
+    fem::ElementRegions result;
+    if (options.regions.empty()) return result;
+    std::vector<mesh::Surface> surfaces;
+    for (const mesh::MaterialRegion& region : options.regions) surfaces.push_back(region.surface);
+    result.of_element = mesh::regions_of_elements(mesh, surfaces);
+    for (std::size_t r = 0; r < surfaces.size(); ++r) {
+        const mesh::MaterialRegion& region = options.regions[r];
+        result.density.push_back(region.density && options.density > 0 ? *region.density / options.density : 1);
+        const auto own = std::ranges::count(result.of_element, static_cast<int>(r));
+        if (own < least)
+            throw InvalidInput(fmt::format(
+                "region '{}' has {} of the mesh's elements; at least {} are needed. Take the region out, or "
+                "give a mesh that is finer there, or the surface alone, which is meshed along the region.",
+                region.name, own, least));
+    }
+    return result;
 }
 
 class FemTangent : public Tangent {
@@ -106,7 +149,8 @@ struct ReferenceBody::Impl {
         : supports(the_supports),
           markers(the_markers),
           options(the_options),
-          body(mesh, mesh::contains(supports, mesh.nodes), options.dilatation),
+          regions(element_regions(mesh, options)),
+          body(mesh, mesh::contains(supports, mesh.nodes), options.dilatation, regions),
           frames(mesh, markers),
           rig(options.rig),
           density(options.density),
@@ -116,6 +160,7 @@ struct ReferenceBody::Impl {
     std::vector<Marker> markers;
     ReferenceBodyOptions options;
 
+    fem::ElementRegions regions;
     fem::HyperelasticBody body;
     MarkerFrames frames;
     PreparedRig rig;
@@ -142,8 +187,16 @@ struct ReferenceBody::Impl {
     mutable std::mutex mutex;
     mutable std::map<Place, Eigen::VectorXd> shares;  // (n)
 
+    std::vector<fem::Material> region_materials(const ModelSetting& s, const fem::Material& material) const {
+        std::vector<fem::Material> result;
+        for (std::size_t r = 0; r < options.regions.size(); ++r)
+            result.push_back(
+                material_of(options.regions[r], s.theta[first_region + static_cast<Eigen::Index>(r)], material));
+        return result;
+    }
     fem::BodySetting setting(const ModelSetting& s, const fem::Material& material, const Action& action) const {
-        fem::BodySetting result{static_cast<fem::MaterialLaw>(s.law), material, s.effects};
+        fem::BodySetting result{static_cast<fem::MaterialLaw>(s.law), material, s.effects,
+                                region_materials(s, material)};
         result.effects.pressure += action.pressure;
         result.effects.add(rig.effects(action, material.young));
         return result;
@@ -190,9 +243,16 @@ ReferenceBody::ReferenceBody(const mesh::VolumeMesh& mesh, const std::vector<mes
     // little does not bend it (the effect `volume` contradicts it); else nu = .45, from about .13 to .49.
     const double compressibility = std::log(1 - 2 * options.poisson.value_or(0.45));
     constexpr double least_ratio = -0.5, most_ratio = 0.4999;
+    constexpr double of_unknown = 4;   // tissues differ by more than bodies do, by a factor of 50
+    constexpr double of_known = 1e-6;  // leaves nothing to be fitted
     i.parameters = {{"young", start, start, 3},
                     {"compressibility", compressibility, compressibility, options.poisson ? 1e-6 : 1, false,
                      std::log(1 - 2 * most_ratio), std::log(1 - 2 * least_ratio)}};
+    for (const mesh::MaterialRegion& region : options.regions) {
+        const double own = region.young ? std::log(*region.young) : start;
+        i.parameters.push_back(
+            {region_parameter(region.name), own, own, region.young ? of_known : of_unknown, !region.young});
+    }
 }
 
 ReferenceBody::~ReferenceBody() = default;
@@ -231,6 +291,13 @@ Eigen::VectorXd ReferenceBody::Impl::load(const Action& action) const {
     return f;
 }
 
+std::string region_parameter(const std::string& region) { return of_region + region; }
+
+std::optional<std::string> region_of_parameter(const std::string& parameter) {
+    if (!parameter.starts_with(of_region)) return std::nullopt;
+    return parameter.substr(std::string_view(of_region).size());
+}
+
 int ReferenceBody::dofs() const { return static_cast<int>(impl_->body.mesh().nodes.size()); }
 const std::vector<std::string>& ReferenceBody::laws() const { return impl_->laws; }
 const std::vector<StiffnessParameter>& ReferenceBody::parameters() const { return impl_->parameters; }
@@ -247,6 +314,12 @@ const fem::HyperelasticBody& ReferenceBody::body() const { return impl_->body; }
 fem::Material ReferenceBody::material(const ModelSetting& setting) const {
     return material_of(setting, impl_->density);
 }
+
+std::vector<fem::Material> ReferenceBody::region_materials(const ModelSetting& setting) const {
+    return impl_->region_materials(setting, material(setting));
+}
+
+const std::vector<int>& ReferenceBody::region_of_element() const { return impl_->regions.of_element; }
 
 Eigen::VectorXd ReferenceBody::rest(const ModelSetting&) const { return Eigen::VectorXd::Zero(dofs()); }
 
@@ -279,16 +352,19 @@ std::shared_ptr<const Tangent> ReferenceBody::tangent(const Eigen::VectorXd& q, 
 Eigen::MatrixXd ReferenceBody::parameter_force(const Eigen::VectorXd& q, const ModelSetting& setting,
                                                const Action& action) const {
     if (has_free_coordinates(action)) return parameter_force(q, setting, posed(*this, q, setting, action));
-    // f = mu a + K b with mu = E / (2 (1 + nu)), K = E / (3 (1 - 2 nu)); t = ln(1 - 2 nu): d nu/dt = -(1 - 2 nu)/2,
-    // so d mu/dt = mu (1 - 2 nu) / (2 (1 + nu)) and dK/dt = -K. The residual is minus f.
-    const fem::Material m = material(setting);
-    const double mu = m.shear_modulus(), K = m.young / (3 * (1 - 2 * m.poisson));
-    const auto unit = impl_->body.modulus_forces(q, impl_->setting(setting, m, action), memory_of(action));
-    Eigen::MatrixXd G(q.size(), 2);
-    // What tools press through is as many times as stiff.
-    G.col(ln_young) =
-        impl_->body.grip_forces(q, impl_->setting(setting, m, action)) - (mu * unit.col(0) + K * unit.col(1));
-    G.col(ln_compressibility) = -(mu * (1 - 2 * m.poisson) / (2 * (1 + m.poisson)) * unit.col(0) - K * unit.col(1));
+    const fem::BodySetting own = impl_->setting(setting, action);
+    const Eigen::MatrixXd unit = impl_->body.modulus_forces(q, own, memory_of(action));
+    const auto of_body = slopes_of(own.material, unit.leftCols<2>());
+    // The residual is minus the internal force. What tools press through is as many times as stiff as the body.
+    Eigen::MatrixXd G(q.size(), std::ssize(impl_->parameters));
+    G.col(ln_young) = impl_->body.grip_forces(q, own) - of_body.col(0);
+    G.col(ln_compressibility) = -of_body.col(1);
+    for (std::size_t r = 0; r < own.regions.size(); ++r) {
+        const auto place = static_cast<Eigen::Index>(r);
+        const auto of_region = slopes_of(own.regions[r], unit.middleCols<2>(2 * (place + 1)));
+        G.col(first_region + place) = -of_region.col(0);
+        if (!impl_->options.regions[r].poisson) G.col(ln_compressibility) -= of_region.col(1);
+    }
     return G;
 }
 

@@ -4,6 +4,7 @@
 #include "identify/measurements/measurement_set.h"
 #include "identify/models/body_model.h"
 #include "identify/models/rig.h"
+#include "mesh/core/material_region.h"
 
 namespace palpate::identify {
 
@@ -15,10 +16,18 @@ struct ReferenceBodyOptions {
     bool measured_on_mesh = false;  // what is measured was computed on this very mesh, and has its errors
     /// Quadratic tetrahedra of the same body that tell the error of the others; absent: those with halved edges.
     std::optional<mesh::VolumeMesh> finer = {};
-    Rig rig = {};  // what may touch the body, and act within it
+    Rig rig = {};                                    // what may touch the body, and act within it
+    std::vector<mesh::MaterialRegion> regions = {};  // whose surfaces the elements follow
 };
 
-/// The body of finite elements as a model: laws linear, svk, neo-hooke; parameters ln E and ln(1 - 2 nu).
+/// The name of the parameter ln E of a region.
+std::string region_parameter(const std::string& region);
+/// The region whose parameter has that name; none: it is no region's.
+std::optional<std::string> region_of_parameter(const std::string& parameter);
+
+/// The body of finite elements as a model: laws linear, svk, neo-hooke; parameters ln E and ln(1 - 2 nu) of the body,
+/// and ln E of each region (region_parameter), of which one that is known is not fitted. A region without a ratio of
+/// its own has the body's.
 ///
 /// Without the physics that it lacks it has next to no error of its own, so what it cannot explain is physics.
 /// A configuration is the displacement of the nodes (3n), and so is a step.
@@ -84,6 +93,10 @@ public:
     const fem::HyperelasticBody& body() const;
     /// Young's modulus and Poisson's ratio of a setting.
     fem::Material material(const ModelSetting& setting) const;
+    /// What each region is made of.
+    std::vector<fem::Material> region_materials(const ModelSetting& setting) const;
+    /// The region of each element, -1: it is of none; empty: there are no regions.
+    const std::vector<int>& region_of_element() const;
 
 private:
     struct Impl;

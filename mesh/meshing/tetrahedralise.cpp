@@ -186,6 +186,18 @@ void require_closed(const Surface& surface) {
                                        loose - used.begin()));
 }
 
+/// All of them as one, their vertices and triangles in this order.
+Surface united(Surface surface, const std::vector<Surface>& others) {
+    for (const Surface& other : others) {
+        const Eigen::Index vertices = surface.vertices.rows(), triangles = surface.triangles.rows();
+        surface.vertices.conservativeResize(vertices + other.vertices.rows(), Eigen::NoChange);
+        surface.vertices.bottomRows(other.vertices.rows()) = other.vertices;
+        surface.triangles.conservativeResize(triangles + other.triangles.rows(), Eigen::NoChange);
+        surface.triangles.bottomRows(other.triangles.rows()) = other.triangles.array() + static_cast<int>(vertices);
+    }
+    return surface;
+}
+
 }  // namespace
 
 void TetrahedraliseOptions::validate() const {
@@ -201,9 +213,15 @@ void TetrahedraliseOptions::validate() const {
 }
 
 VolumeMesh tetrahedralise(const Surface& surface, const TetrahedraliseOptions& options) {
+    return tetrahedralise_within(surface, {}, options);
+}
+
+VolumeMesh tetrahedralise_within(const Surface& outside, const std::vector<Surface>& interfaces,
+                                 const TetrahedraliseOptions& options) {
     options.validate();
+    const Surface surface = united(outside, interfaces);
     require_closed(surface);
-    const std::vector<Shell> shells = find_shells(surface);
+    const std::vector<Shell> shells = find_shells(outside);
     const double volume = enclosed_volume(shells);
     const Points holes = cavity_points(shells);
 

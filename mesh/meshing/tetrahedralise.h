@@ -1,5 +1,7 @@
 #pragma once
 
+#include <vector>
+
 #include "mesh/core/surface.h"
 #include "mesh/core/volume_mesh.h"
 
@@ -19,5 +21,10 @@ struct TetrahedraliseOptions {
 /// it returns is checked (elements, volume against the surface, least quality).
 /// @throws SolverFailure when it crashed, hung or returned nonsense: the message says which and what to do.
 VolumeMesh tetrahedralise(const Surface& surface, const TetrahedraliseOptions& options = {});
+
+/// The same with elements that end at closed surfaces inside, the interfaces of materials: none lies on both sides.
+/// @pre the interfaces meet neither the surface nor each other.
+VolumeMesh tetrahedralise_within(const Surface& surface, const std::vector<Surface>& interfaces,
+                                 const TetrahedraliseOptions& options = {});
 
 }  // namespace palpate::mesh

@@ -12,6 +12,7 @@
 #include "mesh/meshing/remesh.h"
 #include "mesh/meshing/repair_surface.h"
 #include "mesh/meshing/tetrahedralise.h"
+#include "mesh/regions/interfaces.h"
 #include "mesh/topology/check_surface.h"
 
 namespace palpate::pipeline {
@@ -44,7 +45,8 @@ void fill(MeshedBody& body, double edge, const MeshingOptions& options, const Pr
                 mesh::remesh(body.repaired, {.edge_length = share * edge, .volume_change = options.volume_change});
             body.surface = refined(body.surface, options.fine, share * edge, body.repaired);
             report(progress, "filling with tetrahedra", 0.6);
-            body.volume = mesh::tetrahedralise(body.surface, {.edge_length = share * edge});
+            body.interfaces = mesh::remesh_interfaces(options.regions, body.surface, share * edge);
+            body.volume = mesh::tetrahedralise_within(body.surface, body.interfaces, {.edge_length = share * edge});
             if (share < 1) body.notes.push_back(fmt::format("edges of {:.3g} mm: longer ones failed", share * edge));
             return;
         } catch (const LimitReached&) {
@@ -103,6 +105,7 @@ MeshedBody ready_made_body(const mesh::VolumeMesh& given, const mesh::Surface& s
     }
     MeshedBody body;
     body.is_ready_made = true;
+    for (const mesh::MaterialRegion& region : options.regions) body.interfaces.push_back(region.surface);
     body.repaired = body.surface = surface;
     body.volume = options.linear_elements ? given : mesh::to_quadratic(given);
     body.notes.push_back(fmt::format(
@@ -110,6 +113,12 @@ MeshedBody ready_made_body(const mesh::VolumeMesh& given, const mesh::Surface& s
         body.volume.is_quadratic() && !given.is_quadratic() ? ", given midside nodes on straight edges" : ""));
     if (options.edge_length > 0) body.notes.emplace_back("an edge length changes nothing on a ready-made mesh");
     return body;
+}
+
+std::vector<mesh::MaterialRegion> with_surfaces(std::vector<mesh::MaterialRegion> regions,
+                                                const std::vector<mesh::Surface>& interfaces) {
+    for (std::size_t r = 0; r < regions.size(); ++r) regions[r].surface = interfaces[r];
+    return regions;
 }
 
 double thickness_of(const mesh::Surface& surface) {

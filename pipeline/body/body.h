@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "mesh/core/material_region.h"
 #include "mesh/core/region.h"
 #include "mesh/core/surface.h"
 #include "mesh/core/volume_mesh.h"
@@ -14,17 +15,19 @@ namespace palpate::pipeline {
 struct MeshingOptions {
     double edge_length = 0;  // of the tetrahedra [mm]; 0: 6 % of the longest side, less in a thin body
     bool linear_elements = false;
-    std::vector<FineZone> fine = {};  // where edges are shorter
-    double volume_change = 0.01;      // that remeshing may make, as a share: chords of a round body cut volume off
+    std::vector<FineZone> fine = {};                 // where edges are shorter
+    std::vector<mesh::MaterialRegion> regions = {};  // whose surfaces elements end at
+    double volume_change = 0.01;  // that remeshing may make, as a share: chords of a round body cut volume off
 };
 
 /// A body ready for finite elements.
 struct MeshedBody {
-    mesh::Surface repaired;          // as it came, made closed
-    mesh::Surface surface;           // that, remeshed
-    mesh::VolumeMesh volume;         // quadratic, unless linear elements were asked for
-    bool is_ready_made = false;      // the elements are those of a file
-    std::vector<std::string> notes;  // what was done to the surface, in words
+    mesh::Surface repaired;                      // as it came, made closed
+    mesh::Surface surface;                       // that, remeshed
+    std::vector<mesh::Surface> interfaces = {};  // of the regions, as elements follow them
+    mesh::VolumeMesh volume;                     // quadratic, unless linear elements were asked for
+    bool is_ready_made = false;                  // the elements are those of a file
+    std::vector<std::string> notes;              // what was done to the surface, in words
 };
 
 /// Surface to body: repair, remesh, fill with tetrahedra.
@@ -34,6 +37,10 @@ MeshedBody make_body(const mesh::Surface& surface, const MeshingOptions& options
 /// A ready-made mesh behind its boundary as a body: used as it is, with midside nodes unless linear elements were asked
 /// for. @throws InvalidInput where the boundary crosses itself or meets itself along an edge.
 MeshedBody ready_made_body(const mesh::VolumeMesh& mesh, const mesh::Surface& boundary, const MeshingOptions& options);
+
+/// The regions with their surfaces as a body's elements follow them.
+std::vector<mesh::MaterialRegion> with_surfaces(std::vector<mesh::MaterialRegion> regions,
+                                                const std::vector<mesh::Surface>& interfaces);
 
 /// Elements by default: 6 % of the longest side, and shorter where the body is thinner (`edge_for_thickness`) [mm].
 double default_edge_length(const mesh::Surface& surface);

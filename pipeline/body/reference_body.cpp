@@ -8,7 +8,9 @@
 
 #include "fem/material.h"
 #include "mesh/errors.h"
+#include "mesh/geometry/surface_tree.h"
 #include "mesh/meshing/smooth_surface.h"
+#include "mesh/regions/element_regions.h"
 #include "mesh/supports/held_parts.h"
 #include "pipeline/body/body.h"
 
@@ -16,6 +18,31 @@ namespace palpate::pipeline {
 namespace {
 
 constexpr double default_density = 1000;  // [kg/m^3]
+
+/// Regions whose surfaces a given mesh does not follow, in words: its elements count as in or out by their centres.
+std::vector<std::string> not_followed(const MeshedBody& body, const std::vector<mesh::MaterialRegion>& regions) {
+    constexpr double allowed = 0.05;  // of a region's volume: stiffness is off by about as much
+    const std::vector<int> region_of = mesh::regions_of_elements(body.volume, body.interfaces);
+    const Eigen::VectorXd volumes = mesh::element_volumes(body.volume);
+    std::vector<double> filled(regions.size(), 0.0);
+    for (std::size_t e = 0; e < region_of.size(); ++e)
+        if (region_of[e] >= 0) filled[static_cast<std::size_t>(region_of[e])] += volumes[static_cast<Eigen::Index>(e)];
+    std::vector<std::string> notes;
+    for (std::size_t r = 0; r < regions.size(); ++r) {
+        double enclosed = std::abs(mesh::signed_volume(regions[r].surface));
+        for (const mesh::MaterialRegion& other : regions)
+            if (&other != &regions[r] && std::abs(mesh::signed_volume(other.surface)) < enclosed &&
+                mesh::SurfaceTree(regions[r].surface).inside(other.surface.vertices.row(0)))
+                enclosed -= std::abs(mesh::signed_volume(other.surface));
+        if (std::abs(filled[r] - enclosed) <= allowed * enclosed) continue;
+        notes.push_back(fmt::format(
+            "The set's mesh does not follow the surface of region '{}': its elements there fill {:.3g} mm^3 "
+            "of {:.3g} mm^3, and its stiffness may be off by as much. The rest surface alone would be meshed "
+            "along the region.",
+            regions[r].name, filled[r], enclosed));
+    }
+    return notes;
+}
 
 std::unique_ptr<identify::ReferenceBody> fill(const identify::MeasurementSet& set, double edge_length,
                                               const Progress& progress, std::vector<std::string>& notes) {
@@ -26,19 +53,23 @@ std::unique_ptr<identify::ReferenceBody> fill(const identify::MeasurementSet& se
     constexpr double most_nodes = 5000;     // fitted: twice those of a body that is meshed for it
     constexpr double enough_nodes = 40000;  // eight times as many, as halved edges make: they have next to no error
     std::optional<MeshedBody> given;
-    if (set.rest_volume) given = ready_made_body(*set.rest_volume, set.rest_surface, {});
+    if (set.rest_volume) given = ready_made_body(*set.rest_volume, set.rest_surface, {.regions = set.regions});
     const auto given_nodes = given ? static_cast<double>(given->volume.nodes.rows()) : 0;
     const bool is_fitted = given && (given_nodes <= most_nodes || edge > thickness_of(set.rest_surface));
     // Curving the elements gives back what their chords cut off.
     const MeshedBody body =
-        is_fitted ? *given
-                  : make_body(set.rest_surface,
-                              {.edge_length = edge, .fine = contact_zones(set), .volume_change = 0.06}, progress);
+        is_fitted
+            ? *given
+            : make_body(
+                  set.rest_surface,
+                  {.edge_length = edge, .fine = contact_zones(set), .regions = set.regions, .volume_change = 0.06},
+                  progress);
     const mesh::VolumeMesh curved = is_fitted ? body.volume : mesh::curve_to(body.volume, body.repaired);
     identify::ReferenceBodyOptions options;
     options.measured_on_mesh = is_fitted;
     if (given && !is_fitted && given_nodes <= enough_nodes) options.finer = given->volume;
     options.rig = {set.tools, set.actuators};
+    options.regions = with_surfaces(set.regions, body.interfaces);
     options.density = set.density.value_or(default_density * fem::tonne_per_mm3);
     if (set.material && set.material->young > 0) options.young = set.material->young;
     if (set.material && !std::isnan(set.material->poisson)) {
@@ -52,6 +83,7 @@ std::unique_ptr<identify::ReferenceBody> fill(const identify::MeasurementSet& se
             "The set's own mesh has {} nodes. The diagnosis fits one of {} nodes, and takes off what {} alter.",
             given->volume.nodes.rows(), curved.nodes.rows(), options.finer ? "the set's own would" : "halved edges"));
     }
+    if (is_fitted) std::ranges::move(not_followed(body, set.regions), std::back_inserter(notes));
     std::ranges::move(mesh::too_little_held(set.supports, curved), std::back_inserter(notes));
     return std::make_unique<identify::ReferenceBody>(curved, set.supports, set.markers, options);
 }

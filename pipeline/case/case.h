@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "identify/inference/problem/identify_options.h"
+#include "mesh/core/material_region.h"
 #include "mesh/core/region.h"
 #include "pipeline/case/body_verdict.h"
 #include "pipeline/run/run_diagnosis_options.h"
@@ -43,6 +44,7 @@ struct Case {
     double longest = 0;                             // the mesh is scaled to this longest side [mm]; 0: not
     KeptPieces keep = KeptPieces::automatic;        // of a surface of several pieces
     std::optional<int> label;                       // of a label image: which of its labels is the body
+    std::vector<mesh::MaterialRegion> regions;      // in the unit of the mesh
     std::vector<mesh::Region> supports;             // empty: the set's, or the default clamp
     std::optional<double> young, poisson, density;  // [MPa], [-], [kg/m^3]; absent: the set's, or defaults
     double edge_length =

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "fem/material.h"
+#include "identify/measurements/files/regions_yaml.h"
 #include "mesh/errors.h"
 #include "mesh/formats/read_body.h"
 #include "mesh/formats/yaml/yaml_fields.h"
@@ -57,6 +58,11 @@ Case read_case_file(const YamlFields& yaml) {
                         "'measurements' (a set), {}",
                         c.file.string(), c.mesh ? "not both" : "neither is there"));
     }
+    c.regions = identify::read_material_regions(yaml, 1.0, folder);
+    if (!c.regions.empty() && !c.mesh)
+        throw InvalidInput(
+            fmt::format("{}: regions of a measurement set stand in its set.yaml; a case has regions with a 'mesh' only",
+                        yaml.where("regions")));
     if (yaml.has("supports")) c.supports = mesh::read_regions(yaml, "supports", 1.0);
     read_section(yaml, "", c);
     for (const char* section : {"material", "volume", "skeleton", "probing", "identify", "diagnose", "expect"})

@@ -6,6 +6,7 @@
 #include <iterator>
 
 #include "identify/measurements/field.h"
+#include "identify/measurements/files/regions_yaml.h"
 #include "identify/measurements/labels/label_readings.h"
 #include "identify/measurements/plausibility.h"
 #include "identify/measurements/rig/fittable.h"
@@ -52,6 +53,8 @@ void read_mesh(Subject& subject) {
     const double scale = c.longest > 0 ? c.longest / longest : c.unit;
     subject.surface.vertices *= scale;
     if (subject.volume) subject.volume->nodes *= scale;
+    subject.regions = c.regions;
+    for (mesh::MaterialRegion& region : subject.regions) region.surface.vertices *= scale;
     judge_body(subject, c.mesh->string());
     std::string strange = identify::implausible_size(mesh::bounding_box(subject.surface.vertices).longest_side());
     if (!strange.empty()) subject.notes.push_back(std::move(strange));
@@ -66,6 +69,7 @@ void read_set(Subject& subject) {
     subject.set = read_measurements(*c.measurements, subject.notes, c.edge_length);
     subject.surface = subject.set->rest_surface;
     subject.volume = subject.set->rest_volume;
+    subject.regions = subject.set->regions;
     judge_body(subject, "the rest surface of " + subject.set->folder.string());
     subject.set->rest_surface = subject.surface;
     for (const auto& entry : std::filesystem::recursive_directory_iterator(subject.set->folder)) {
@@ -131,6 +135,18 @@ void choose_material(Subject& subject) {
     subject.material.validate();
 }
 
+/// A simulation has to know what it is of.
+void check_regions_of_case(const Subject& subject) {
+    const std::string where = subject.settings.file.empty() ? "--region" : subject.settings.file.string();
+    for (const mesh::MaterialRegion& region : subject.regions)
+        if (!region.young)
+            throw InvalidInput(
+                fmt::format("{}: region '{}' has no 'young', which a simulation needs: give it in MPa. Only a "
+                            "measurement set may leave it to be identified (young: null).",
+                            where, region.name));
+    identify::check_material_regions(subject.regions, subject.surface, subject.supports, where);
+}
+
 }  // namespace
 
 identify::MeasurementSet read_measurements(const std::filesystem::path& path, std::vector<std::string>& notes,
@@ -172,6 +188,7 @@ Subject read_subject_as_it_is(Case settings) {
         read_set(subject);
     }
     choose_supports(subject);
+    if (subject.settings.mesh) check_regions_of_case(subject);
     if (!subject.settings.model) choose_material(subject);
     return subject;
 }

@@ -21,6 +21,7 @@ struct Subject {
     std::optional<mesh::VolumeMesh> volume;  // a ready-made mesh of the body, behind that surface
     std::vector<mesh::Region> supports;
     fem::Material material;
+    std::vector<mesh::MaterialRegion> regions;  // of materials of their own [mm]
     std::optional<identify::MeasurementSet> set;
     std::vector<std::filesystem::path> files;  // that were read
     std::vector<std::string> notes;            // what was found and done in reading it, in words

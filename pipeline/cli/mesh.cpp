@@ -5,6 +5,7 @@
 #include "mesh/errors.h"
 #include "mesh/formats/volume/write_volume.h"
 #include "mesh/formats/vtk/vtk_files.h"
+#include "mesh/regions/element_regions.h"
 #include "mesh/text/atomic_file.h"
 #include "pipeline/body/body.h"
 #include "pipeline/body/subject_body.h"
@@ -31,16 +32,24 @@ std::string format_named(const fs::path& output) {
         fmt::format("{}: a body is written as .vtu, .inp or .msh; name the file so, or say --to", output.string()));
 }
 
-void write_body(const fs::path& output, const std::string& format, const mesh::VolumeMesh& body,
-                const Subject& subject) {
+mesh::SolverSetting solver_setting(const MeshedBody& meshed, const Subject& subject) {
+    const fem::Material& material = subject.material;
+    mesh::SolverSetting setting{.held = mesh::contains(subject.supports, meshed.volume.nodes),
+                                .material = {material.young, material.poisson, material.density}};
+    if (subject.regions.empty()) return setting;
+    for (const mesh::MaterialRegion& region : subject.regions)
+        setting.regions.push_back({region.young.value_or(material.young), region.poisson.value_or(material.poisson),
+                                   region.density.value_or(material.density)});
+    setting.region_of_element = mesh::regions_of_elements(meshed.volume, meshed.interfaces);
+    return setting;
+}
+
+void write_body(const fs::path& output, const std::string& format, const MeshedBody& meshed, const Subject& subject) {
+    const mesh::VolumeMesh& body = meshed.volume;
     if (format == "vtu") {
         mesh::write_vtu(output, body);
     } else if (format == "inp") {
-        mesh::write_inp(output, body,
-                        {.held = mesh::contains(subject.supports, body.nodes),
-                         .young = subject.material.young,
-                         .poisson = subject.material.poisson,
-                         .density = subject.material.density});
+        mesh::write_inp(output, body, solver_setting(meshed, subject));
     } else {
         mesh::write_gmsh(output, body, format == "msh22" ? mesh::GmshVersion::v2_2 : mesh::GmshVersion::v4_1);
     }
@@ -52,8 +61,11 @@ BuiltBody build_body(const fs::path& input, const CaseOverrides& overrides) {
     Subject subject = read_subject(read_case(input, overrides));
     Console::notices(subject.notes);
     Console::notices(subject.assumptions);
-    MeshedBody body =
-        make_body(subject, {subject.settings.edge_length, subject.settings.linear_elements}, Console::progress());
+    MeshedBody body = make_body(subject,
+                                {.edge_length = subject.settings.edge_length,
+                                 .linear_elements = subject.settings.linear_elements,
+                                 .regions = subject.regions},
+                                Console::progress());
     Console::notices(body.notes);
     return {std::move(subject), std::move(body)};
 }
@@ -63,7 +75,7 @@ Outcome mesh_body(const MeshOptions& options, const Common& common) {
     const std::string format = options.format.empty() ? format_named(output) : options.format;
     refuse_to_overwrite(output, common.force);
     const auto [subject, body] = build_body(options.input, options.overrides);
-    write_body(output, format, body.volume, subject);
+    write_body(output, format, body, subject);
     Outcome outcome;
     const double volume = mesh::element_volumes(body.volume).sum();
     outcome.text = fmt::format("{0}: {1} tetrahedra, {2} nodes, {3:.4g} mm^3.\nNext: paraview {0}\n", output.string(),

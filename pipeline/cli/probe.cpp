@@ -1,10 +1,13 @@
 #include <fmt/format.h>
+#include <algorithm>
 #include <map>
 
 #include "mesh/errors.h"
 #include "mesh/formats/vtk/vtk_files.h"
 #include "mesh/text/atomic_file.h"
+#include "mesh/text/words.h"
 #include "pipeline/case/read_case.h"
+#include "pipeline/case/region_spec.h"
 #include "pipeline/case/subject.h"
 #include "pipeline/command_line/commands.h"
 #include "pipeline/command_line/flags.h"
@@ -47,8 +50,23 @@ Probing probing_of_model(const ProbeCommandOptions& options) {
     return probing;
 }
 
+/// The case with the regions that flags add.
+Case with_regions(const ProbeCommandOptions& options, Case settings) {
+    if (!options.regions.empty() && !settings.mesh)
+        throw InvalidInput("--region tells what a mesh is made of; a measurement set tells its regions itself");
+    for (const std::string& spec : options.regions) {
+        mesh::MaterialRegion region = read_region_spec(spec);
+        if (std::ranges::find(settings.regions, region.name, &mesh::MaterialRegion::name) != settings.regions.end())
+            throw InvalidInput(
+                fmt::format("--region: {} is the name of two regions; each needs its own", mesh::cited(region.name)));
+        settings.regions.push_back(std::move(region));
+    }
+    return settings;
+}
+
 Probing probing_of_body(const ProbeCommandOptions& options) {
-    const Subject subject = read_subject(probe_settings(options, read_case(options.input, options.overrides)));
+    const Subject subject =
+        read_subject(with_regions(options, probe_settings(options, read_case(options.input, options.overrides))));
     Console::notices(subject.notes);
     Console::notices(subject.assumptions);
     return {finite_element_specimen(subject, options.synthesis, Console::progress()), subject.settings.probing,
@@ -87,7 +105,7 @@ void describe_hidden(const BlindSet& blind_set, bool has_fields) {
 
 /// What another solver computed.
 Outcome probe_from(const ProbeCommandOptions& options, const fs::path& output) {
-    const Case settings = read_case(options.input, options.overrides);
+    const Case settings = with_regions(options, read_case(options.input, options.overrides));
     const ForeignOptions how{.folder = options.from,
                              .array = options.array,
                              .faults = {.noise = options.overrides.on_defaults().probing.noise,
@@ -305,6 +323,7 @@ void Subcommands::add_probe(CLI::App& app) {
                    "  palpate probe liver.stl -o press --tool sphere:radius=5 --depth 0.5,1,2 --hide inclusion\n"
                    "  palpate probe finger.stl -o inflate --pressure 0.005,0.01,0.02 --hide gravity\n"
                    "  palpate probe liver.stl -o null --hide none --seed 7      # nothing is hidden\n"
+                   "  palpate probe finger.stl -o set --region bone:surface=bone.stl,young=20 --hide none\n"
                    "  palpate probe model.json -o twin        # the skeleton itself is the hidden truth\n"
                    "  palpate probe liver.stl --to inp -o deck    # for your own solver; then (cd deck && ccx body)\n"
                    "  palpate probe liver.stl --from deck -o set  # and what it computed\n",
@@ -315,6 +334,12 @@ void Subcommands::add_probe(CLI::App& app) {
     sub->add_option("INPUT", probe.input, "A mesh, a case.yaml, a measurement set, or a model.json")->required();
     sub->add_option("-o,--output", probe.output, "The set's folder; measurements by default");
     add_flags_of(sub, probe.overrides, "Body");
+    sub->add_option("--region", probe.regions,
+                    "A part of another material, bonded: NAME:surface=FILE,young=MPA[,poisson=NU][,density=KG_M3];\n"
+                    "FILE a closed surface inside the body, in the mesh's unit. Repeatable")
+        ->expected(1)
+        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
+        ->group("Body");
     add_law_flags(sub, probe.synthesis);
     add_flags_of(sub, probe.overrides, "Probing");
     add_sequence_flags(sub, probe.synthesis);

@@ -7,6 +7,7 @@
 #include "mesh/formats/vtk/vtk_files.h"
 #include "mesh/text/atomic_file.h"
 #include "pipeline/body/body.h"
+#include "pipeline/body/region_field.h"
 #include "pipeline/body/subject_body.h"
 #include "pipeline/case/read_case.h"
 #include "pipeline/case/subject.h"
@@ -50,6 +51,7 @@ BuiltSkeleton build_skeleton(const BuiltBody& from) {
                                            from.subject.supports, from.subject.settings.skeleton, &built.report);
     built.model.name = from.subject.settings.name;
     Console::notices(built.report.notes);
+    Console::notices(take_regions(from.subject.regions, from.subject.material.young, built.model));
     return built;
 }
 

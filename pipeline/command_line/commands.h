@@ -65,9 +65,10 @@ struct ProbeCommandOptions {
     std::filesystem::path input, output;
     CaseOverrides overrides;
     BlindSetOptions synthesis = {};
-    std::filesystem::path from = {};  // folder of another solver's results; empty: our own finite elements
-    std::string array = {};           // of displacements in those; empty: found by its name
-    std::string to = {};              // "inp": what is to be computed, for another solver; empty: it is computed
+    std::vector<std::string> regions = {};  // NAME:surface=FILE,young=MPA,... each
+    std::filesystem::path from = {};        // folder of another solver's results; empty: our own finite elements
+    std::string array = {};                 // of displacements in those; empty: found by its name
+    std::string to = {};                    // "inp": what is to be computed, for another solver; empty: it is computed
 };
 Outcome probe(const ProbeCommandOptions& options, const Common& common);
 

@@ -1,5 +1,7 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <iterator>
 #include <optional>
 
 #include "fem/elastic_body.h"
@@ -15,6 +17,7 @@
 #include "mesh/text/words.h"
 #include "pipeline/analysis/accuracy.h"
 #include "pipeline/body/body.h"
+#include "pipeline/body/region_field.h"
 #include "pipeline/body/subject_body.h"
 #include "pipeline/case/read_case.h"
 #include "pipeline/case/settings.h"
@@ -43,6 +46,11 @@ using nlohmann::json;
 /// @throws InvalidInput where its measurements have parts that cannot be fitted yet.
 Subject fittable(Subject subject) {
     if (subject.set) identify::require_fittable(*subject.set);
+    if (!subject.set && !subject.regions.empty())
+        throw InvalidInput(
+            fmt::format("{0}: the measurements that a run makes of a mesh are those of one material, and this case has "
+                        "'regions'. Make them with 'palpate probe {0} -o SET', then 'palpate run SET'.",
+                        subject.settings.file.string()));
     return subject;
 }
 
@@ -142,6 +150,8 @@ private:
                               skeleton::Model model = skeleton::build_skeleton(surface_, body_, subject_.material,
                                                                                subject_.supports, c.skeleton, &report);
                               model.name = c.name;
+                              std::ranges::move(take_regions(subject_.regions, subject_.material.young, model),
+                                                std::back_inserter(report.notes));
                               Console::notices(report.notes);
                               skeleton::write_model(file, model);
                               skeleton::write_model_vtp(folder_.path() / "skeleton/skeleton.vtp", model);

@@ -245,6 +245,9 @@ private:
                 fmt::format("The set declares a Poisson's ratio of {:g}; the hidden one differs.", guess.poisson));
         }
         if (std::isfinite(guess.poisson)) blind_set_.set.material = guess;
+        // Where and what regions are is known, how stiff they are is asked for.
+        if (!std::isfinite(guess.young))
+            for (mesh::MaterialRegion& region : blind_set_.set.regions) region.young.reset();
     }
 
     const Specimen& specimen_;

@@ -75,6 +75,7 @@ Specimen finite_element_specimen(const Subject& subject, const BlindSetOptions& 
     const MeshedBody body = make_body(subject,
                                       {.edge_length = edge > 0 ? edge : default_edge,
                                        .fine = zones_of(driven, subject.surface),
+                                       .regions = subject.regions,
                                        .volume_change = chords_cut_off},
                                       progress);
     specimen.notes = body.notes;
@@ -92,22 +93,27 @@ Specimen finite_element_specimen(const Subject& subject, const BlindSetOptions& 
     specimen.notes.insert(specimen.notes.end(), driven.notes.begin(), driven.notes.end());
     set.tools = driven.rig.tools;
     set.actuators = driven.rig.actuators;
+    set.regions = subject.regions;
 
     const fem::Material& material = subject.material;
     specimen.material = material;
     specimen.stiffness = material.young;
     const double radius = specimen.contacts.front().radius;
     specimen.most_force = largest_pressure * material.young * std::numbers::pi * radius * radius;
-    specimen.setting = {static_cast<int>(options.law.value_or(fem::MaterialLaw::neo_hookean)),
-                        Eigen::Vector2d(std::log(material.young), std::log(1 - 2 * material.poisson)),
-                        {}};
     specimen.model = std::make_unique<identify::ReferenceBody>(
         specimen.volume, set.supports, set.markers,
         identify::ReferenceBodyOptions{
             .density = material.density,
             .young = material.young,
             .dilatation = dilatation_for(body.surface, edge > 0 ? edge : default_edge, material.poisson),
-            .rig = driven.rig});
+            .rig = driven.rig,
+            .regions = with_surfaces(subject.regions, body.interfaces)});
+    specimen.setting = {static_cast<int>(options.law.value_or(fem::MaterialLaw::neo_hookean)),
+                        Eigen::VectorXd(std::ssize(specimen.model->parameters())),
+                        {}};
+    for (Eigen::Index p = 0; p < specimen.setting.theta.size(); ++p)
+        specimen.setting.theta[p] = specimen.model->parameters()[static_cast<std::size_t>(p)].start;
+    specimen.setting.theta.head<2>() = Eigen::Vector2d(std::log(material.young), std::log(1 - 2 * material.poisson));
     return specimen;
 }
 

@@ -13,6 +13,18 @@ json parameters_of(const skeleton::EffectRecord& effect) {
     return parameters;
 }
 
+json regions_of(const Specimen& specimen) {
+    json regions = json::array();
+    for (const mesh::MaterialRegion& region : specimen.set.regions) {
+        const double density = region.density.value_or(specimen.material->density);
+        regions.push_back({{"name", region.name},
+                           {"young_mpa", region.young.value()},
+                           {"poisson", region.poisson.value_or(specimen.material->poisson)},
+                           {"density_kg_m3", std::round(1e6 * density / fem::tonne_per_mm3) / 1e6}});
+    }
+    return regions;
+}
+
 }  // namespace
 
 json truth_of(const BlindSet& blind_set, const Specimen& specimen, const BlindSetOptions& options, std::uint64_t seed) {
@@ -39,6 +51,7 @@ json truth_of(const BlindSet& blind_set, const Specimen& specimen, const BlindSe
                   {"displacement_rms_mm", blind_set.strength.displacement},
                   {"change_rms_mm", blind_set.strength.change},
                   {"beyond_stiffness_rms_mm", blind_set.strength.beyond}};
+    if (!specimen.set.regions.empty()) truth["regions"] = regions_of(specimen);
     if (specimen.material) {
         const fem::Material& m = *specimen.material;
         truth["material"] = {{"young_mpa", m.young},

@@ -25,6 +25,13 @@ void validate(const Plasticity& plasticity) {
     }
 }
 
+std::vector<ElementModel> models_of(const BodyShape& body, const BodySetting& setting) {
+    assert(setting.regions.empty() || std::ssize(setting.regions) == body.regions.count());
+    std::vector<ElementModel> models(static_cast<std::size_t>(body.regions.count() + 1), {setting, body.dilatation});
+    for (std::size_t r = 0; r < setting.regions.size(); ++r) models[r + 1].take(setting.regions[r]);
+    return models;
+}
+
 Mat3 gradient_at(const ElementShape& shape, const NodeVectors& u, int q) {
     return Mat3::Identity() + u * shape.gradients(q).transpose();
 }
@@ -33,7 +40,7 @@ Mat3 gradient_at(const ElementShape& shape, const NodeVectors& u, int q) {
 
 BodyMaterial::BodyMaterial(const BodyShape& body, const BodySetting& setting, const PlasticState* before, bool flows)
     : body_(body),
-      model_(setting, body.dilatation),
+      models_(models_of(body, setting)),
       growth_(setting.effects.growth),
       plasticity_(setting.effects.plasticity),
       before_(before),
@@ -73,13 +80,13 @@ NodeVectors BodyMaterial::elastic_displacements(const Eigen::VectorXd& u, std::s
         node_positions<element_nodes>(body_.mesh.nodes, body_.mesh.tetrahedra.row(static_cast<Eigen::Index>(element)))
             .transpose();
     X.colwise() -= X.col(0).eval();
-    if (model_.law == MaterialLaw::linear) return moved - growth_ * X;
+    if (law() == MaterialLaw::linear) return moved - growth_ * X;
     return (moved - growth_ * X) / (1 + growth_);
 }
 
 double BodyMaterial::force(const Eigen::VectorXd& u, std::size_t element, NodeVectors& f) const {
     const double energy =
-        element_force(body_.elements[element], model_, effects(element), elastic_displacements(u, element), f);
+        element_force(body_.elements[element], model(element), effects(element), elastic_displacements(u, element), f);
     if (growth_ == 0) return energy;
     f *= scale_.force;
     return scale_.energy * energy;
@@ -97,20 +104,20 @@ NodeVectors BodyMaterial::force(const Eigen::VectorXd& u, std::size_t element) c
 }
 
 void BodyMaterial::tangent(const Eigen::VectorXd& u, std::size_t element, ElementTangent& K) const {
-    element_tangent(body_.elements[element], model_, effects(element), elastic_displacements(u, element), K);
+    element_tangent(body_.elements[element], model(element), effects(element), elastic_displacements(u, element), K);
     if (growth_ == 0) return;
     for (ElementTangent::NodePairs& block : K.blocks) block *= scale_.tangent;
 }
 
 PlasticState BodyMaterial::after(const Eigen::VectorXd& u) const {
     assert(plasticity_);
-    PlasticState result{model_.law, std::vector<PlasticPoint>(element_points * body_.elements.size())};
+    PlasticState result{law(), std::vector<PlasticPoint>(element_points * body_.elements.size())};
     for (std::size_t e = 0; e < body_.elements.size(); ++e) {
         force(u, e);  // refuses elements that are inside out
         const NodeVectors moved = elastic_displacements(u, e);
         for (int q = 0; q < element_points; ++q) {
             const std::size_t k = element_points * e + static_cast<std::size_t>(q);
-            result.points[k] = plastic_point(model_.law, *plasticity_, before_ ? before_->points[k] : PlasticPoint{},
+            result.points[k] = plastic_point(law(), *plasticity_, before_ ? before_->points[k] : PlasticPoint{},
                                              gradient_at(body_.elements[e], moved, q));
         }
     }
@@ -118,11 +125,12 @@ PlasticState BodyMaterial::after(const Eigen::VectorXd& u) const {
 }
 
 double BodyMaterial::energy_scale() const {
-    double volume = body_.integrals.volume.sum();
-    for (std::size_t e = 0; e < place_.size(); ++e) {
-        if (const ElementEffects* own = effects(e)) volume += (own->mean_s - 1) * body_.elements[e].w.sum();
+    double energy = 0;
+    for (std::size_t e = 0; e < body_.elements.size(); ++e) {
+        const ElementEffects* own = effects(e);
+        energy += (own ? own->mean_s : 1) * model(e).mu * body_.elements[e].w.sum();
     }
-    return model_.mu * volume;
+    return energy;
 }
 
 double BodyMaterial::rounding(const Eigen::VectorXd& u) const {
@@ -138,17 +146,18 @@ double BodyMaterial::rounding(const Eigen::VectorXd& u) const {
         for (int q = 0; q < element_points; ++q) {
             const double terms = 1 + shape.gradients(q).colwise().squaredNorm().cwiseProduct(reach).sum();
             const double stretch = gradient_at(shape, moved, q).squaredNorm() / 3;
-            double modulus = 1;  // over mu + K
+            const double mu = model(e).mu, K = model(e).K;
+            double modulus = mu + K;
             if (own) {
                 const Mat3 rest = Mat3::Identity();
-                const double added = own->is_scale() ? 0 : own->added(model_.law, q, rest, true).second.norm();
-                modulus = own->s(q) * (1 + model_.mu / (model_.mu + model_.K) * added);
+                const double added = own->is_scale() ? 0 : own->added(law(), q, rest, true).second.norm();
+                modulus = own->s(q) * (mu + K + mu * added);
             }
             squares += terms * std::max(1.0, stretch * stretch) * modulus * modulus *
                        (shape.w(q) * shape.gradients(q)).squaredNorm();
         }
     }
-    return std::numeric_limits<double>::epsilon() * (model_.mu + model_.K) * std::sqrt(squares);
+    return std::numeric_limits<double>::epsilon() * std::sqrt(squares);
 }
 
 }  // namespace palpate::fem

@@ -28,9 +28,11 @@ public:
     BodyMaterial(const BodyMaterial&) = delete;
     BodyMaterial& operator=(const BodyMaterial&) = delete;
 
-    /// Other moduli; effects in the material are shares of mu still.
-    void set_moduli(double mu, double K) { model_.mu = mu, model_.K = K; }
-    MaterialLaw law() const { return model_.law; }
+    /// Other moduli, of all regions; effects in the material are shares of mu still.
+    void set_moduli(double mu, double K) {
+        for (ElementModel& model : models_) model.mu = mu, model.K = K;
+    }
+    MaterialLaw law() const { return models_.front().law; }
     /// Are its forces the gradient of a potential?
     bool conservative() const { return !(plasticity_ && flows_); }
 
@@ -50,6 +52,7 @@ public:
     double rounding(const Eigen::VectorXd& u) const;
 
 private:
+    const ElementModel& model(std::size_t element) const { return models_[body_.regions.group(element)]; }
     const ElementEffects* effects(std::size_t element) const {
         return place_.empty() || place_[element] < 0 ? nullptr : &effects_[place_[element]];
     }
@@ -58,8 +61,8 @@ private:
     NodeVectors elastic_displacements(const Eigen::VectorXd& u, std::size_t element) const;
 
     const BodyShape& body_;
-    ElementModel model_;
-    double growth_;  // g - 1
+    std::vector<ElementModel> models_;  // of the body's own material, then of each region's
+    double growth_;                     // g - 1
     /// What an element's answer without growth is multiplied by: g^3, g^2 and g; in small strain 1.
     struct {
         double energy = 1, force = 1, tangent = 1;

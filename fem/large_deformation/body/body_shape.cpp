@@ -25,7 +25,7 @@ Eigen::VectorXd BodyShape::pressures(const Effects& effects) const {
 }
 
 NodeWeights BodyShape::points(ActsOn what, double density) const {
-    const Eigen::VectorXd& all = what == ActsOn::material  ? integrals.volume
+    const Eigen::VectorXd& all = what == ActsOn::material  ? integrals.mass
                                  : what == ActsOn::surface ? integrals.area
                                                            : integrals.support;
     const double factor = what == ActsOn::material ? density : 1;

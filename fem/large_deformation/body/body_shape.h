@@ -6,6 +6,7 @@
 #include "fem/elements/dilatation.h"
 #include "fem/large_deformation/body/body_points.h"
 #include "fem/large_deformation/body/cavities.h"
+#include "fem/large_deformation/body/element_regions.h"
 #include "fem/large_deformation/body/node_integrals.h"
 #include "fem/large_deformation/body/node_weights.h"
 #include "fem/large_deformation/body/placed_tendon.h"
@@ -27,6 +28,7 @@ struct BodyShape {
     std::shared_ptr<const Lazy<BodyPoints>> lazy_boundary = std::make_shared<Lazy<BodyPoints>>();
     std::shared_ptr<const Lazy<BodyPoints>> lazy_nodes = std::make_shared<Lazy<BodyPoints>>();
     std::shared_ptr<const TendonPaths> tendon_paths = std::make_shared<TendonPaths>();
+    ElementRegions regions{};
 
     const Skin& skin() const;
     const BodyPoints& boundary_points() const;

@@ -7,9 +7,11 @@
 
 namespace palpate::fem {
 
-NodeIntegrals node_integrals(const mesh::VolumeMesh& mesh, const std::vector<char>& held) {
+NodeIntegrals node_integrals(const mesh::VolumeMesh& mesh, const std::vector<char>& held,
+                             const ElementRegions& regions) {
     const Eigen::Index n = mesh.nodes.rows();
-    NodeIntegrals result{Eigen::VectorXd::Zero(n), Eigen::VectorXd::Zero(n), Eigen::VectorXd::Zero(n)};
+    NodeIntegrals result{Eigen::VectorXd::Zero(n), Eigen::VectorXd::Zero(n), Eigen::VectorXd::Zero(n),
+                         Eigen::VectorXd::Zero(n)};
     for (Eigen::Index i = 0; i < n; ++i) result.support(i) = held[i] ? 1 : 0;
     result.support /= result.support.sum();
 
@@ -17,11 +19,16 @@ NodeIntegrals node_integrals(const mesh::VolumeMesh& mesh, const std::vector<cha
     for (Eigen::Index e = 0; e < mesh.tetrahedra.rows(); ++e) {
         const auto element = mesh.tetrahedra.row(e);
         const auto X = node_positions<10>(mesh.nodes, element);
+        const std::size_t group = regions.group(static_cast<std::size_t>(e));
+        const double density = group == 0 ? 1 : regions.density[group - 1];
         for (const auto& [l, weight] : solid_rule) {
             const Mat3 J = X.transpose() * shape_gradient<4, 10>(l);
             const double dV = weight / 6 * J.determinant();
             const auto N = shape<4, 10>(l);
-            for (int i = 0; i < 10; ++i) result.volume(element(i)) += dV * N(i);
+            for (int i = 0; i < 10; ++i) {
+                result.volume(element(i)) += dV * N(i);
+                result.mass(element(i)) += density * dV * N(i);
+            }
         }
     }
 

@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "fem/large_deformation/body/element_regions.h"
 #include "mesh/core/volume_mesh.h"
 
 namespace palpate::fem {
@@ -12,10 +13,12 @@ namespace palpate::fem {
 /// it there.
 struct NodeIntegrals {
     Eigen::VectorXd volume;   // integral of N_i over the body [mm^3]
+    Eigen::VectorXd mass;     // the same, each region times its density as a share of the body's [mm^3]
     Eigen::VectorXd area;     // integral of N_i over the boundary [mm^2]
     Eigen::VectorXd support;  // the same for each node that is held, else 0; sum 1 [-]
 };
 
-NodeIntegrals node_integrals(const mesh::VolumeMesh& mesh, const std::vector<char>& held);
+NodeIntegrals node_integrals(const mesh::VolumeMesh& mesh, const std::vector<char>& held,
+                             const ElementRegions& regions = {});
 
 }  // namespace palpate::fem

@@ -155,10 +155,12 @@ auto dispatch(MaterialLaw law, const ElementEffects* effects, Work&& work) {
 }  // namespace
 
 ElementModel::ElementModel(const BodySetting& setting, Dilatation kept)
-    : law(setting.law),
-      mu(setting.material.shear_modulus()),
-      K(setting.material.young / (3 * (1 - 2 * setting.material.poisson))),
-      dilatation(kept) {}
+    : law(setting.law), mu(setting.material.shear_modulus()), K(setting.material.bulk_modulus()), dilatation(kept) {}
+
+void ElementModel::take(const Material& material) {
+    mu = material.shear_modulus();
+    K = material.bulk_modulus();
+}
 
 double element_force(const ElementShape& shape, const ElementModel& model, const ElementEffects* effects,
                      const NodeVectors& u, NodeVectors& f) {

@@ -19,6 +19,8 @@ struct ElementModel {
     Dilatation dilatation;
 
     ElementModel(const BodySetting& setting, Dilatation dilatation);
+    /// The moduli of a material.
+    void take(const Material& material);
 
     /// The part of the bulk modulus that answers to the volume change v at each point; what is left of it answers to
     /// the mean over the element. With mean dilatation that is lambda, as in small strain: K/2 v^2 splits into mu/3 v^2

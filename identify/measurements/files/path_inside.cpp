@@ -32,22 +32,26 @@ void check_region_paths(const std::vector<mesh::YamlFields>& regions, const std:
             path_inside(region.mapping("points"), "file", folder);
 }
 
-mesh::Surface read_closed_surface(const mesh::YamlFields& fields, const std::string& key,
-                                  const std::filesystem::path& folder, double unit, const std::string& what) {
+mesh::Surface read_closed_surface(const std::filesystem::path& file, double unit, const std::string& where,
+                                  const std::string& what) {
     constexpr double same = 1e-6;  // of the diagonal: corners of STL triangles that are one vertex
-    mesh::Surface read = mesh::read_surface(path_inside(fields, key, folder));
+    mesh::Surface read = mesh::read_surface(file);
     mesh::Surface surface = mesh::weld(read, same * mesh::bounding_box(read.vertices).diagonal()).surface;
     surface.vertices *= unit;
     const mesh::SurfaceReport report = mesh::check_surface(surface);
     if (!report.closed || report.volume == 0)
-        throw InvalidInput(
-            fmt::format("{}: '{}' is not closed ({} open edges, {} edges of more than two triangles), and {} must be a "
-                        "closed surface. Close it; 'palpate check {} -o FOLDER' shows where it is open.",
-                        fields.where(key), fields.text(key), report.boundary_edges, report.non_manifold_edges, what,
-                        (folder / fields.text(key)).string()));
+        throw InvalidInput(fmt::format(
+            "{}: '{}' is not closed ({} open edges, {} edges of more than two triangles), and {} must be a "
+            "closed surface. Close it; 'palpate check {} -o FOLDER' shows where it is open.",
+            where, file.filename().string(), report.boundary_edges, report.non_manifold_edges, what, file.string()));
     if (!report.outward)
         for (auto triangle : surface.triangles.rowwise()) std::swap(triangle[1], triangle[2]);
     return surface;
+}
+
+mesh::Surface read_closed_surface(const mesh::YamlFields& fields, const std::string& key,
+                                  const std::filesystem::path& folder, double unit, const std::string& what) {
+    return read_closed_surface(path_inside(fields, key, folder), unit, fields.where(key), what);
 }
 
 }  // namespace palpate::identify

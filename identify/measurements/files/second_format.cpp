@@ -25,24 +25,21 @@ constexpr const char* see_points =
     "Read points off the surfaces into positions.csv (an empty marker is a point without a name), and take surfaces/ "
     "and noise.surface out.";
 
-constexpr std::array parts_of_yaml{
-    FormatPart{"", "tools"},
-    FormatPart{"", "actuators"},
-    FormatPart{"", "displacements"},
-    FormatPart{"", "correlated"},
-    FormatPart{"units", "angle"},
-    FormatPart{"units", "pressure"},
-    FormatPart{"units", "moment"},
-    FormatPart{"noise", "reaction"},
-    FormatPart{"noise", "moment"},
-    FormatPart{"", "regions",
-               "Take 'regions' out: an inclusion that the readings reveal is told by the diagnosis, "
-               "as the effect 'inclusion'."},
-    FormatPart{"", "views", see_triangulated},
-    FormatPart{"noise", "image", see_triangulated},
-    FormatPart{"correlated", "image", see_triangulated},
-    FormatPart{"noise", "surface", see_points},
-    FormatPart{"correlated", "surface", see_points}};
+constexpr std::array parts_of_yaml{FormatPart{"", "tools"},
+                                   FormatPart{"", "actuators"},
+                                   FormatPart{"", "displacements"},
+                                   FormatPart{"", "correlated"},
+                                   FormatPart{"units", "angle"},
+                                   FormatPart{"units", "pressure"},
+                                   FormatPart{"units", "moment"},
+                                   FormatPart{"noise", "reaction"},
+                                   FormatPart{"noise", "moment"},
+                                   FormatPart{"", "regions"},
+                                   FormatPart{"", "views", see_triangulated},
+                                   FormatPart{"noise", "image", see_triangulated},
+                                   FormatPart{"correlated", "image", see_triangulated},
+                                   FormatPart{"noise", "surface", see_points},
+                                   FormatPart{"correlated", "surface", see_points}};
 constexpr std::array parts_in_files{FormatPart{"", "motions.csv"},
                                     FormatPart{"", "reactions.csv"},
                                     FormatPart{"", "actuations.csv"},

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "identify/measurements/files/path_inside.h"
+#include "identify/measurements/files/regions_yaml.h"
 #include "identify/measurements/files/rig_yaml.h"
 #include "identify/measurements/files/second_format.h"
 #include "mesh/errors.h"
@@ -106,8 +107,9 @@ SetDescription read_set_description(const std::filesystem::path& file, Measureme
     description.displacements_since = read_reference(fields);
 
     const std::filesystem::path surface = path_inside(fields, "rest_surface", set.folder);
-    fields.finish();
     read_rest(surface, units.length, set);
+    read_regions(fields, units.length, set);
+    fields.finish();
     read_tools(fields, units, set);
     read_actuators(fields, units, set);
     return description;

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "identify/measurements/files/probes_table.h"
+#include "identify/measurements/files/regions_yaml.h"
 #include "identify/measurements/files/rig_yaml.h"
 #include "identify/measurements/files/second_format.h"
 #include "identify/measurements/files/write_rig_tables.h"
@@ -60,6 +61,7 @@ std::string description(const MeasurementSet& set, const fs::path& folder) {
         is_second ? ", angle: rad, pressure: MPa, moment: N*mm" : "", rest_file(set),
         mesh::regions_to_yaml_in(folder, set.supports));
     text += tools_to_yaml(folder, set.tools) + actuators_to_yaml(folder, set.actuators);
+    text += regions_to_yaml(folder, set.regions);
     if (const auto since = displacements_since(set))
         text += fmt::format("displacements: {{since: {{probe: {}, time: {}}}}}\n", since->probe, since->time);
     if (set.density) text += fmt::format("density: {}  # kg/m^3\n", density_text(*set.density));

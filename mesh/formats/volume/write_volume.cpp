@@ -19,8 +19,9 @@ void put(Text& text, fmt::format_string<T...> format, T&&... values) {
     fmt::format_to(std::back_inserter(text), format, std::forward<T>(values)...);
 }
 
-void put_set(Text& text, const char* name, const std::vector<char>& is_in) {
-    put(text, "*NSET, NSET={}\n", name);
+/// `kind`: NSET or ELSET.
+void put_set(Text& text, const char* kind, const std::string& name, const std::vector<char>& is_in) {
+    put(text, "*{}, {}={}\n", kind, kind, name);
     int on_line = 0;
     for (std::size_t n = 0; n < is_in.size(); ++n)
         if (is_in[n]) put(text, "{}{}", on_line++ == 0 ? "" : (on_line % 10 == 1 ? ",\n" : ", "), n + 1);
@@ -48,16 +49,32 @@ std::vector<std::pair<Eigen::Index, int>> boundary_sides(const VolumeMesh& mesh)
 
 // CalculiX cuts numbers after 20 characters: 12 digits and an exponent fit.
 
-void put_material(Text& text, const SolverSetting& setting) {
-    put(text, "*MATERIAL, NAME=BODY\n");
-    if (setting.is_neo_hookean) {
-        const double mu = setting.young / (2 * (1 + setting.poisson));
-        const double K = setting.young / (3 * (1 - 2 * setting.poisson));
+void put_material(Text& text, const SolverMaterial& material, bool is_neo_hookean, const std::string& name,
+                  const std::string& elements) {
+    put(text, "*MATERIAL, NAME={}\n", name);
+    if (is_neo_hookean) {
+        const double mu = material.young / (2 * (1 + material.poisson));
+        const double K = material.young / (3 * (1 - 2 * material.poisson));
         put(text, "*HYPERELASTIC, NEO HOOKE\n{:.12g}, {:.12g}\n", mu / 2, 2 / K);
     } else {
-        put(text, "*ELASTIC\n{:.12g}, {:.12g}\n", setting.young, setting.poisson);
+        put(text, "*ELASTIC\n{:.12g}, {:.12g}\n", material.young, material.poisson);
     }
-    put(text, "*DENSITY\n{:.12g}\n*SOLID SECTION, ELSET=EBODY, MATERIAL=BODY\n", setting.density);
+    put(text, "*DENSITY\n{:.12g}\n*SOLID SECTION, ELSET={}, MATERIAL={}\n", material.density, elements, name);
+}
+
+void put_materials(Text& text, const SolverSetting& setting) {
+    if (setting.regions.empty()) {
+        put_material(text, setting.material, setting.is_neo_hookean, "BODY", "EBODY");
+        return;
+    }
+    for (int r = -1; r < static_cast<int>(setting.regions.size()); ++r) {
+        const std::string elements = r < 0 ? "EBODY0" : fmt::format("EREGION{}", r + 1);
+        std::vector<char> is_in(setting.region_of_element.size());
+        for (std::size_t e = 0; e < is_in.size(); ++e) is_in[e] = setting.region_of_element[e] == r;
+        put_set(text, "ELSET", elements, is_in);
+        put_material(text, r < 0 ? setting.material : setting.regions[static_cast<std::size_t>(r)],
+                     setting.is_neo_hookean, r < 0 ? "BODY" : fmt::format("REGION{}", r + 1), elements);
+    }
 }
 
 void put_steps(Text& text, const SolverSetting& setting) {
@@ -148,11 +165,11 @@ void write_inp(const std::filesystem::path& file, const VolumeMesh& mesh, const 
         for (const int node : mesh.tetrahedra.row(e)) put(text, ", {}", node + 1);
         put(text, "\n");
     }
-    put_set(text, "NSKIN", nodes_of(mesh.faces, mesh.nodes.rows()));
-    if (std::ranges::count(setting.held, 1) > 0) put_set(text, "NHELD", setting.held);
+    put_set(text, "NSET", "NSKIN", nodes_of(mesh.faces, mesh.nodes.rows()));
+    if (std::ranges::count(setting.held, 1) > 0) put_set(text, "NSET", "NHELD", setting.held);
     put(text, "*SURFACE, NAME=SKIN, TYPE=ELEMENT\n");
     for (const auto& [element, side] : boundary_sides(mesh)) put(text, "{}, S{}\n", element + 1, side);
-    put_material(text, setting);
+    put_materials(text, setting);
     put_steps(text, setting);
     write_text(file, fmt::to_string(text));
 }

@@ -59,10 +59,14 @@ std::string with_what(const RunFiles& files) {
 std::string material_tiles(const RunFiles& files) {
     const json& fit = files.improved.is_object() ? files.improved["baseline"] : files.compare["baseline"];
     if (!fit.is_object()) return {};
-    const std::string words = material_in_words(fit), of = ", finite elements, " + with_what(files);
+    json body = fit;
+    body.erase("regions");
+    const std::string words = material_in_words(body), of = ", finite elements, " + with_what(files);
     const std::size_t ratio = words.find(", ν");
     std::string html = tile(words.substr(0, ratio), "Young's modulus" + of);
     if (ratio != std::string::npos) html += tile(words.substr(ratio + 2), "Poisson's ratio");
+    for (const json& region : fit.value("regions", json::array()))
+        html += tile(region_in_words(region), "Young's modulus of '" + region["name"].get<std::string>() + "'" + of);
     return html;
 }
 

@@ -45,8 +45,8 @@ double young_of(double logarithm) { return std::exp(logarithm); }
 json parameters_json(const identify::Preflight& preflight) {
     json result = json::array();
     for (const identify::ParameterProspect& one : preflight.parameters.material) {
-        const bool is_young = one.name == "young";
-        result.push_back(is_young ? parameter_json(one, "young", "MPa", young_of)
+        const bool is_young = one.name != "compressibility";  // of the body, or of a region
+        result.push_back(is_young ? parameter_json(one, one.name, "MPa", young_of)
                                   : parameter_json(one, "poisson", "1", poisson_of));
         // Without a force nothing has the unit of one.
         if (is_young && !preflight.tells_a_force) result.back()["informed"] = false;

@@ -46,12 +46,16 @@ json regions_json(const identify::MeasurementSet& set, const identify::ErrorLoca
 }  // namespace
 
 json to_json(const identify::MaterialEstimate& material) {
-    return {{"law", material.law},
-            {"young_mpa", known(material.young)},
-            {"young_sd_mpa", known(material.young_sd)},
-            {"poisson", known(material.poisson)},
-            {"poisson_sd", known(material.poisson_sd)},
-            {"poisson_declared", material.poisson_is_declared}};
+    json result = {{"law", material.law},
+                   {"young_mpa", known(material.young)},
+                   {"young_sd_mpa", known(material.young_sd)},
+                   {"poisson", known(material.poisson)},
+                   {"poisson_sd", known(material.poisson_sd)},
+                   {"poisson_declared", material.poisson_is_declared}};
+    for (const identify::RegionEstimate& region : material.regions)
+        result["regions"].push_back(
+            {{"name", region.name}, {"young_mpa", known(region.young)}, {"sd", known(region.young_sd)}});
+    return result;
 }
 
 json baseline_json(const identify::BodyModel& model, const identify::Problem& problem, const identify::Refit& fit) {

@@ -12,6 +12,11 @@ double number_or_nothing(const json& object, const char* key) {
     return value.is_number() ? value.get<double>() : 0;
 }
 
+std::string modulus_in_words(double young, double sd) {
+    return sd < young ? fmt::format("E = {} MPa", mesh::with_sd(young, sd))
+                      : fmt::format("E = {:.2g} MPa, hardly known (± {:.1g})", young, sd);
+}
+
 std::string poisson_in_words(const json& material) {
     const double ratio = material["poisson"].get<double>(), sd = number_or_nothing(material, "poisson_sd");
     if (material.value("poisson_declared", false)) return fmt::format("ν = {:.3g} (the set's)", ratio);
@@ -41,12 +46,19 @@ std::string in_sigmas(const json& whitened_rms) {
                              : fmt::format("{:.2g} times what noise and unknown contacts explain", times);
 }
 
+std::string region_in_words(const json& region) {
+    const double young = region["young_mpa"].get<double>();
+    return region["sd"].is_number() ? modulus_in_words(young, region["sd"].get<double>())
+                                    : fmt::format("E = {:.3g} MPa (the set's)", young);
+}
+
 std::string material_in_words(const json& material) {
     if (!material["young_mpa"].is_number()) return {};
     const double young = material["young_mpa"].get<double>(), sd = number_or_nothing(material, "young_sd_mpa");
-    std::string text = sd < young ? fmt::format("E = {} MPa", mesh::with_sd(young, sd))
-                                  : fmt::format("E = {:.2g} MPa, hardly known (± {:.1g})", young, sd);
+    std::string text = modulus_in_words(young, sd);
     if (material["poisson"].is_number()) text += ", " + poisson_in_words(material);
+    for (const json& region : material.value("regions", json::array()))
+        text += fmt::format("; {}: {}", region["name"].get<std::string>(), region_in_words(region));
     return text;
 }
 

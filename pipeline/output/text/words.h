@@ -21,8 +21,11 @@ std::string place(const nlohmann::json& at);
 /// explain", or "no more than" that.
 std::string in_sigmas(const nlohmann::json& whitened_rms);
 
+/// The modulus of a region of a material of its own: "E = 1.2 ± 0.1 MPa".
+std::string region_in_words(const nlohmann::json& region);
+
 /// The modulus and ratio of a body in finite elements, as its JSON tells them: "E = 0.242 ± 0.012 MPa, ν = 0.499 (the
-/// set's)".
+/// set's)", then "; tumour: E = 1.2 ± 0.1 MPa" for each region.
 std::string material_in_words(const nlohmann::json& material);
 
 /// How an error goes with the load, after "errs by 2 mm rms": ", with or without load".

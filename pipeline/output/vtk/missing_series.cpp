@@ -24,12 +24,12 @@ double area_of(const mesh::Surface& surface) {
 }
 
 /// An array's name, and what densities are told over.
-struct Density {
+struct SourceDensity {
     std::string name;
     double per = 1;
 };
 
-Density density_of(const identify::SourceTerm& term, const mesh::Surface& surface) {
+SourceDensity density_of(const identify::SourceTerm& term, const mesh::Surface& surface) {
     switch (term.form) {
         case SourceForm::force:
             return {"missing force [N/mm^3]", std::abs(mesh::signed_volume(surface))};
@@ -77,7 +77,7 @@ std::string write_missing_series(const fs::path& folder, const identify::Measure
     Points rest(std::ssize(set.markers), 3);
     for (std::size_t m = 0; m < set.markers.size(); ++m)
         rest.row(static_cast<Eigen::Index>(m)) = set.markers[m].rest.transpose();
-    const Density density = density_of(term, set.rest_surface);
+    const SourceDensity density = density_of(term, set.rest_surface);
     const bool is_vector = term.form == SourceForm::force || term.form == SourceForm::traction;
     std::vector<mesh::SeriesStep> steps;
     for (std::size_t s = 0; s < set.states.size(); ++s) {

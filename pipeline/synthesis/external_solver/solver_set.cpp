@@ -125,9 +125,20 @@ private:
         made_.set.name = subject.settings.name;
         made_.set.rest_surface = subject.surface;
         made_.set.supports = subject.supports;
+        take_regions(subject);
         made_.notes.insert(made_.notes.end(), subject.notes.begin(), subject.notes.end());
         check_place(subject.surface);
         choose_markers();
+    }
+
+    /// Where they are is known; how stiff, the solver's answers tell.
+    void take_regions(const Subject& subject) {
+        made_.set.regions = subject.regions;
+        for (mesh::MaterialRegion& region : made_.set.regions) region.young.reset();
+        if (!subject.regions.empty())
+            made_.notes.emplace_back(
+                "The set leaves the regions' stiffness to be identified ('young: null'); write it into set.yaml where "
+                "it is known.");
     }
 
     /// Nodes that no step of the file moves, though it moves some (flags).

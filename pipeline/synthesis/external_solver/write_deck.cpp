@@ -2,6 +2,7 @@
 
 #include "fem/elements/patch_load.h"
 #include "identify/measurements/files/probes_table.h"
+#include "identify/models/reference_body.h"
 #include "mesh/formats/volume/write_volume.h"
 #include "mesh/text/atomic_file.h"
 
@@ -14,11 +15,13 @@ int write_deck(const std::filesystem::path& folder, const Specimen& specimen, co
 
     const fem::Material& material = *specimen.material;
     mesh::SolverSetting setting{.held = mesh::contains(specimen.set.supports, specimen.volume.nodes),
-                                .young = material.young,
-                                .poisson = material.poisson,
-                                .density = material.density,
+                                .material = {material.young, material.poisson, material.density},
                                 .is_neo_hookean = specimen.law() == "neo-hooke",
                                 .large_deformation = !specimen.in_small_strain()};
+    const auto& reference = dynamic_cast<const identify::ReferenceBody&>(*specimen.model);
+    for (const fem::Material& own : reference.region_materials(specimen.setting))
+        setting.regions.push_back({own.young, own.poisson, own.density});
+    setting.region_of_element = reference.region_of_element();
     const double reach = 0.05 * specimen.model->size();
     for (const identify::LoadState& state : states)
         setting.steps.emplace_back(fem::patch_loads(specimen.volume, state.contacts, reach) *

@@ -25,8 +25,6 @@ TEST_F(RigFiles, OfTheFirstFormatAreRefusedByTheirPart) {
 }
 
 TEST_F(RigFiles, WithPartsThatAreAnnouncedAreRefusedByTheirName) {
-    EXPECT_TRUE(says(refusal("set.yaml", yaml + "regions: [{name: tumour}]\n"),
-                     {"line 14", "'regions'", "cannot fit it yet", "inclusion"}));
     EXPECT_TRUE(says(refusal("set.yaml", yaml + "views: []\n"), {"'views'", "cannot fit it yet", "positions.csv"}));
     EXPECT_TRUE(says(refusal_of_yaml("reaction: 0.02", "image: 0.1"), {"noise.image", "cannot fit it yet"}));
     EXPECT_TRUE(says(refusal_of_yaml("reaction: 0.02", "surface: 0.1"), {"noise.surface", "cannot fit it yet"}));

@@ -36,8 +36,7 @@ TEST_F(SolverFiles, ADeckThatWeWroteIsReadBack) {
     Eigen::VectorXd first = Eigen::VectorXd::Zero(3 * bar.nodes.rows()), second = first;
     first[3 * 5 + 2] = -0.25;
     second[3 * 7] = 0.125;
-    write_inp(folder / "bar.inp", bar,
-              {.held = held, .young = 0.3, .poisson = 0.4, .density = 1e-9, .steps = {first, second}});
+    write_inp(folder / "bar.inp", bar, {.held = held, .material = {0.3, 0.4, 1e-9}, .steps = {first, second}});
     const Deck deck = read_deck(folder / "bar.inp");
     EXPECT_EQ(std::ssize(deck.held), std::ranges::count(held, 1));
     EXPECT_TRUE(deck.held_in_part.empty());

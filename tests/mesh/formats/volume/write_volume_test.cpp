@@ -44,7 +44,7 @@ TEST(InpFile, MidsidesStandOnTheEdgesThatCalculixDocuments) {
         {{5, 1, 2}, {6, 2, 3}, {7, 3, 1}, {8, 1, 4}, {9, 2, 4}, {10, 3, 4}}};
     const TemporaryFolder folder;
     const VolumeMesh bar = to_quadratic(make_bar({0, 0, 0}, {2, 1, 1}, {2, 1, 1}));
-    write_inp(folder / "bar.inp", bar, {std::vector<char>(static_cast<std::size_t>(bar.nodes.rows()), 0), 1, 0.3, 1});
+    write_inp(folder / "bar.inp", bar, {std::vector<char>(static_cast<std::size_t>(bar.nodes.rows()), 0), {1, 0.3, 1}});
     const std::string text = read_text(folder / "bar.inp");
     const auto nodes = block(text, "*NODE"), elements = block(text, "*ELEMENT");
     ASSERT_EQ(std::ssize(nodes), bar.nodes.rows());
@@ -67,7 +67,7 @@ TEST(InpFile, SidesOfTheSkinLookOutwardAndCloseIt) {
     const VolumeMesh bar = make_bar({1, 1, 1}, {3, 2, 2}, {2, 1, 1});
     std::vector<char> held(static_cast<std::size_t>(bar.nodes.rows()), 0);
     held[0] = held[3] = 1;
-    write_inp(folder / "bar.inp", bar, {held, 0.5, 0.3, 1e-9});
+    write_inp(folder / "bar.inp", bar, {held, {0.5, 0.3, 1e-9}});
     const std::string text = read_text(folder / "bar.inp");
     const auto skin = block(text, "*SURFACE");
     EXPECT_EQ(std::ssize(skin), bar.faces.rows());

@@ -203,6 +203,10 @@ TEST(Words, ACertaintyIsToldAsABound) {
               "E = 1 MPa, ν above 0.497");
     EXPECT_EQ(material_in_words({{"young_mpa", 0.0148}, {"young_sd_mpa", 0.44}, {"poisson", nullptr}}),
               "E = 0.015 MPa, hardly known (± 0.4)");
+    const json regions = {{{"name", "bone"}, {"young_mpa", 20.0}, {"sd", nullptr}},
+                          {{"name", "lump"}, {"young_mpa", 1.5}, {"sd", 4.0}}};
+    EXPECT_EQ(material_in_words({{"young_mpa", 1.0}, {"poisson", nullptr}, {"regions", regions}}),
+              "E = 1 MPa; bone: E = 20 MPa (the set's); lump: E = 1.5 MPa, hardly known (± 4)");
 }
 
 TEST(WorstTable, NamesProbesMarkersAndThePartOfTheBody) {

@@ -175,9 +175,7 @@ TEST(NodalLoads, APatchIsTheDiscThatSpreadsAsFar) {
     forces[3 * side] = 0.5;
     mesh::write_inp(folder / "plate.inp", plate,
                     {.held = std::vector<char>(static_cast<std::size_t>(plate.nodes.rows()), 0),
-                     .young = 1,
-                     .poisson = 0.3,
-                     .density = 1e-9,
+                     .material = {1, 0.3, 1e-9},
                      .steps = {forces}});
     std::vector<std::string> notes;
     const auto states = states_of_steps(mesh::read_deck(folder / "plate.inp"), 1, notes);

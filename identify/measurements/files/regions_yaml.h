@@ -1,0 +1,30 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "identify/measurements/measurement_set.h"
+#include "mesh/formats/yaml/yaml_fields.h"
+
+namespace palpate::identify {
+
+/// What `regions` of a set.yaml or a case.yaml tells: the surfaces in `unit` [mm]. Where the regions lie in the body is
+/// not looked at. @throws IoError, InvalidInput; also for parts of the format that this version cannot fit yet.
+std::vector<mesh::MaterialRegion> read_material_regions(const mesh::YamlFields& yaml, double unit,
+                                                        const std::filesystem::path& folder);
+
+/// Regions that contradict the body or its supports. @param where begins a message: the file.
+/// @throws InvalidInput, also for a region of unknown stiffness that is held altogether, which no reading could tell.
+void check_material_regions(const std::vector<mesh::MaterialRegion>& regions, const mesh::Surface& body,
+                            const std::vector<mesh::Region>& supports, const std::string& where);
+
+/// Reads `regions` into the set, and checks them. @pre its surface and supports are read. @throws IoError,
+/// InvalidInput.
+void read_regions(const mesh::YamlFields& yaml, double unit, MeasurementSet& set);
+
+/// `regions:` in mm for a set.yaml in `folder`, and the surfaces that it names there; "" where there is none.
+/// @throws IoError.
+std::string regions_to_yaml(const std::filesystem::path& folder, const std::vector<mesh::MaterialRegion>& regions);
+
+}  // namespace palpate::identify

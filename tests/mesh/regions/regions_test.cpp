@@ -1,0 +1,95 @@
+// Parts of a body of materials of their own: their surfaces, and the elements that follow them.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "mesh/meshing/remesh.h"
+#include "mesh/meshing/tetrahedralise.h"
+#include "mesh/regions/check_regions.h"
+#include "mesh/regions/element_regions.h"
+#include "mesh/regions/interfaces.h"
+#include "tests/mesh/faulty_surfaces.h"
+#include "tests/messages.h"
+
+namespace palpate::mesh {
+namespace {
+
+Surface long_bar() { return make_box({0, 0, 0}, {60, 20, 20}, {12, 4, 4}); }
+MaterialRegion ball(const std::string& name, const Vec3& at, double radius) {
+    return {.name = name, .surface = make_sphere(at, radius, 3)};
+}
+
+/// What the elements of each region fill; the last one is of none [mm^3].
+std::vector<double> volumes_of(const VolumeMesh& mesh, const std::vector<Surface>& surfaces) {
+    const std::vector<int> region = regions_of_elements(mesh, surfaces);
+    const Eigen::VectorXd volumes = element_volumes(mesh);
+    std::vector<double> result(surfaces.size() + 1, 0.0);
+    for (std::size_t e = 0; e < region.size(); ++e)
+        result[region[e] < 0 ? surfaces.size() : static_cast<std::size_t>(region[e])] +=
+            volumes[static_cast<Eigen::Index>(e)];
+    return result;
+}
+
+TEST(Regions, ElementsEndAtTheirSurfaces) {
+    // One alone, and a core within a ball.
+    const std::vector<MaterialRegion> regions{ball("core", {40, 10, 10}, 3), ball("lump", {15, 10, 10}, 5),
+                                              ball("shell", {40, 10, 10}, 7)};
+    check_regions(regions, long_bar(), "set.yaml");
+    const Surface body = remesh(long_bar(), {.edge_length = 5});
+    const std::vector<Surface> interfaces = remesh_interfaces(regions, body, 5);
+    const VolumeMesh mesh = tetrahedralise_within(body, interfaces, {.edge_length = 5});
+    const std::vector<double> volumes = volumes_of(mesh, interfaces);
+    const auto of = [&](std::size_t r) { return signed_volume(regions[r].surface); };
+    constexpr double chords = 2e-3;  // the vertices have moved out by what chords cut off, to first order
+    EXPECT_NEAR(volumes[0], of(0), chords * of(0));
+    EXPECT_NEAR(volumes[1], of(1), chords * of(1));
+    EXPECT_NEAR(volumes[2], of(2) - of(0), chords * of(2));
+    EXPECT_NEAR(volumes[0] + volumes[1] + volumes[2] + volumes[3], signed_volume(body), 1e-9 * signed_volume(body));
+    // The body's boundary is its own alone.
+    EXPECT_EQ(mesh.faces.rows(), body.triangles.rows());
+}
+
+TEST(Regions, ThinLayersBetweenThemAreKept) {
+    // Between two boxes, 0.4 mm; to the surface of the body 0.5 mm.
+    const std::vector<MaterialRegion> regions{
+        {.name = "left", .surface = make_box({5, 0.5, 5}, {29.8, 19.5, 15}, {1, 1, 1})},
+        {.name = "right", .surface = make_box({30.2, 0.5, 5}, {55, 19.5, 15}, {1, 1, 1})}};
+    check_regions(regions, long_bar(), "set.yaml");
+    const Surface body = remesh(long_bar(), {.edge_length = 5});
+    const std::vector<Surface> interfaces = remesh_interfaces(regions, body, 5);
+    const VolumeMesh mesh = tetrahedralise_within(body, interfaces, {.edge_length = 5});
+    const double each = 24.8 * 19 * 10;
+    const std::vector<double> volumes = volumes_of(mesh, interfaces);
+    EXPECT_NEAR(volumes[0], each, 1e-6 * each);  // flat sides have no chords
+    EXPECT_NEAR(volumes[1], each, 1e-6 * each);
+}
+
+std::string refusal(const std::vector<MaterialRegion>& regions, const Surface& body = long_bar()) {
+    return message_of<InvalidInput>([&] { check_regions(regions, body, "set.yaml"); });
+}
+
+TEST(Regions, ThatContradictTheBodyOrEachOtherAreRefused) {
+    EXPECT_EQ(refusal({ball("a", {15, 10, 10}, 5), ball("b", {15, 10, 10}, 3)}), "");
+    EXPECT_TRUE(says(refusal({ball("a", {15, 10, 10}, 5), ball("b", {19, 10, 10}, 5)}),
+                     {"set.yaml", "'a' and 'b'", "cross or touch", "one within another"}));
+    EXPECT_TRUE(says(refusal({ball("a", {15, 10, 10}, 5), ball("b", {15, 10, 10}, 5)}), {"'a' and 'b'", "touch"}));
+    EXPECT_TRUE(says(refusal({ball("a", {15, 10, 2}, 5)}), {"'a'", "that of the body", "end it short"}));
+    EXPECT_TRUE(says(refusal({ball("a", {15, 10, 40}, 5)}), {"'a'", "outside of the body", "unit"}));
+    EXPECT_TRUE(says(refusal({ball("a", {0, 0, 0}, 2)}, hollow_ball()), {"'a'", "outside of the body's material"}));
+    EXPECT_TRUE(says(refusal({ball("a", {15, 10, 10}, 0.2)}), {"'a'", "0.32", "at least 0.6 mm", "take it out"}));
+    MaterialRegion crossed = ball("a", {15, 10, 10}, 3);
+    crossed.surface = join(crossed.surface, make_sphere({18, 10, 10}, 3, 2));
+    EXPECT_TRUE(says(refusal({crossed}), {"'a'", "bounds no body", "palpate check"}));
+}
+
+TEST(Regions, TooCloseForTrianglesAreAnError) {
+    // A ball within a ball, a hundredth of a millimetre apart: chords of no allowed length pass between.
+    const std::vector<MaterialRegion> regions{ball("core", {30, 10, 10}, 6), ball("shell", {30, 10, 10}, 6.01)};
+    const Surface body = remesh(long_bar(), {.edge_length = 5});
+    EXPECT_TRUE(says(message_of<SolverFailure>([&] { remesh_interfaces(regions, body, 5); }),
+                     {"region 'core'", "so close", "Move them apart"}));
+}
+
+}  // namespace
+}  // namespace palpate::mesh
