@@ -11,10 +11,11 @@ namespace palpate::mesh {
 /// body encloses, less the regions within it.
 struct MaterialRegion {
     std::string name;
-    Surface surface;                  // closed, outward [mm]
+    Surface surface{};                // closed, outward [mm]
     std::optional<double> young{};    // [MPa]; none: unknown, to be identified
     std::optional<double> poisson{};  // none: the body's
     std::optional<double> density{};  // [tonne/mm^3]; none: the body's
+    std::optional<int> label{};       // that the body's file gives it, where the surface comes from there
 };
 
 }  // namespace palpate::mesh

@@ -16,6 +16,7 @@
 #include "mesh/formats/surface/read_surface.h"
 #include "mesh/formats/surface/surface_formats.h"
 #include "mesh/formats/volume/elements.h"
+#include "mesh/formats/volume/labelled_parts.h"
 #include "mesh/formats/vtk/vtk_polygons.h"
 #include "mesh/formats/well_formed.h"
 #include "mesh/text/words.h"
@@ -26,7 +27,18 @@ namespace fs = std::filesystem;
 
 namespace {
 
-BodyFile of_surface(const fs::path& file, const ReadBodyOptions&) {
+/// Parts are told apart by labels of elements or voxels alone.
+void refuse_parts(const fs::path& file, const ReadBodyOptions& options) {
+    if (options.parts.empty()) return;
+    throw InvalidInput(
+        fmt::format("{}: a file of this kind has no labels, so that label {} means nothing there. Labels are those of "
+                    "an image of voxels, or materials of elements (.vtu, .msh, .mesh, .node, .ele); or give the "
+                    "region's surface by 'surface'.",
+                    file.string(), options.parts.front()));
+}
+
+BodyFile of_surface(const fs::path& file, const ReadBodyOptions& options) {
+    refuse_parts(file, options);
     BodyFile body;
     int unused = 0;
     body.surface = well_formed(read_surface(file), file.string(), &unused);
@@ -37,14 +49,18 @@ BodyFile of_surface(const fs::path& file, const ReadBodyOptions&) {
 }
 
 template <Elements (*read)(const fs::path&)>
-BodyFile of_elements(const fs::path& file, const ReadBodyOptions&) {
+BodyFile of_elements(const fs::path& file, const ReadBodyOptions& options) {
     BodyFile body;
-    body.volume = assemble(read(file), file, body.notes);
+    const Elements elements = read(file);
+    body.volume = assemble(elements, file, body.notes);
+    if (options.parts.empty()) note_materials(elements, body.notes);
     body.surface = boundary_surface(*body.volume);
+    body.parts = labelled_parts(*body.volume, elements.materials, options.parts, file);
     return body;
 }
 
-BodyFile of_deck(const fs::path& file, const ReadBodyOptions&) {
+BodyFile of_deck(const fs::path& file, const ReadBodyOptions& options) {
+    refuse_parts(file, options);
     BodyFile body;
     const Deck deck = read_deck(file);
     body.notes = deck.notes;
@@ -61,7 +77,8 @@ BodyFile of_tetgen(const fs::path& file, const ReadBodyOptions& options) {
 }
 
 /// Tetrahedra where the file holds solid cells, else a surface.
-BodyFile of_legacy_vtk(const fs::path& file, const ReadBodyOptions&) {
+BodyFile of_legacy_vtk(const fs::path& file, const ReadBodyOptions& options) {
+    refuse_parts(file, options);
     BodyFile body;
     const VtkData data = read_vtk(file, VtkKind::legacy);
     if (std::ranges::all_of(data.types, is_flat)) {
@@ -73,7 +90,8 @@ BodyFile of_legacy_vtk(const fs::path& file, const ReadBodyOptions&) {
     return body;
 }
 
-BodyFile of_cad(const fs::path& file, const ReadBodyOptions&) {
+BodyFile of_cad(const fs::path& file, const ReadBodyOptions& options) {
+    refuse_parts(file, options);
     BodyFile body;
     body.surface = read_cad(file, body.notes);
     body.is_in_mm = true;
@@ -83,10 +101,17 @@ BodyFile of_cad(const fs::path& file, const ReadBodyOptions&) {
 template <LabelImage (*read)(const fs::path&)>
 BodyFile of_labels(const fs::path& file, const ReadBodyOptions& options) {
     const LabelImage image = read(file);
+    const auto labels = labels_of(image, file);
     BodyFile body;
-    body.surface =
-        surface_of_label(image, choose_label(labels_of(image, file), options.label, image, file), body.notes);
     body.is_in_mm = true;
+    if (options.parts.empty()) {
+        body.surface = surface_of_label(image, choose_label(labels, options.label, image, file), body.notes);
+        return body;
+    }
+    constexpr int all = 1;
+    body.surface = surface_of_label(with_one_label(image, all), all, body.notes);
+    for (const int label : options.parts)
+        body.parts.push_back(surface_of_label(image, choose_label(labels, label, image, file), body.notes));
     return body;
 }
 

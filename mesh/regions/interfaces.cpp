@@ -25,37 +25,63 @@ Surface remeshed(const MaterialRegion& region, double edge) {
                        signed_volume(region.surface));
 }
 
+/// Which of the surfaces meet neither that of the body nor each other.
+std::vector<char> clear_ones(const std::vector<Surface>& surfaces, const Surface& body) {
+    std::vector<char> is_clear(surfaces.size(), 1);
+    for (std::size_t a = 0; a < surfaces.size(); ++a) {
+        if (!meeting_places(surfaces[a], body).empty()) is_clear[a] = 0;
+        for (std::size_t b = a + 1; b < surfaces.size(); ++b)
+            if (!meeting_places(surfaces[a], surfaces[b]).empty()) is_clear[a] = is_clear[b] = 0;
+    }
+    return is_clear;
+}
+
 }  // namespace
 
-std::vector<Surface> remesh_interfaces(const std::vector<MaterialRegion>& regions, const Surface& body, double edge) {
+std::vector<Surface> Interfaces::followed() const {
+    std::vector<Surface> result;
+    for (std::size_t r = 0; r < surfaces.size(); ++r)
+        if (is_followed[r]) result.push_back(surfaces[r]);
+    return result;
+}
+
+Interfaces remesh_interfaces(const std::vector<MaterialRegion>& regions, const Surface& body, double edge) {
     constexpr double across = 0.6;   // of the side of a cube as large: a ball gets some 80 triangles
     constexpr double shorter = 0.6;  // where surfaces that are close cross, once they are made of longer chords
     constexpr int attempts = 4;
+    Interfaces result;
     std::vector<double> edges;
-    for (const MaterialRegion& region : regions)
+    for (const MaterialRegion& region : regions) {
+        result.surfaces.push_back(region.surface);
         edges.push_back(std::min(edge, across * std::cbrt(std::abs(signed_volume(region.surface)))));
-    std::vector<Surface> result(regions.size());
+    }
+    result.is_followed = clear_ones(result.surfaces, body);
     std::vector<char> is_made(regions.size(), 0);
     for (int attempt = 0; attempt < attempts; ++attempt) {
+        std::vector<Surface> followed;
+        std::vector<std::size_t> place;
         for (std::size_t r = 0; r < regions.size(); ++r) {
-            if (!is_made[r]) result[r] = remeshed(regions[r], edges[r]);
+            if (!result.is_followed[r]) continue;
+            if (!is_made[r]) result.surfaces[r] = remeshed(regions[r], edges[r]);
             is_made[r] = 1;
+            followed.push_back(result.surfaces[r]);
+            place.push_back(r);
         }
-        const auto redo = [&](std::size_t r) {
-            if (is_made[r]) edges[r] *= shorter;
-            is_made[r] = 0;
-        };
-        for (std::size_t a = 0; a < regions.size(); ++a) {
-            if (!meeting_places(result[a], body).empty()) redo(a);
-            for (std::size_t b = a + 1; b < regions.size(); ++b) {
-                if (meeting_places(result[a], result[b]).empty()) continue;
-                redo(a);
-                redo(b);
-            }
+        const std::vector<char> is_clear = clear_ones(followed, body);
+        if (std::ranges::count(is_clear, 0) == 0) return result;
+        for (std::size_t f = 0; f < place.size(); ++f) {
+            if (is_clear[f]) continue;
+            edges[place[f]] *= shorter;
+            is_made[place[f]] = 0;
         }
-        if (std::ranges::count(is_made, 0) == 0) return result;
     }
-    const auto failed = static_cast<std::size_t>(std::ranges::find(is_made, 0) - is_made.begin());
+    const auto failed = static_cast<std::size_t>(std::ranges::find_if(regions,
+                                                                      [&](const MaterialRegion& region) {
+                                                                          const auto r = static_cast<std::size_t>(
+                                                                              &region - regions.data());
+                                                                          return result.is_followed[r] && !is_made[r];
+                                                                      }) -
+                                                 regions.begin());
     throw SolverFailure(
         fmt::format("the surface of region '{}' comes so close to that of the body, or of another region, that "
                     "triangles of {:.3g} mm cross. Move them apart, or give a smaller edge length.",

@@ -45,8 +45,10 @@ void fill(MeshedBody& body, double edge, const MeshingOptions& options, const Pr
                 mesh::remesh(body.repaired, {.edge_length = share * edge, .volume_change = options.volume_change});
             body.surface = refined(body.surface, options.fine, share * edge, body.repaired);
             report(progress, "filling with tetrahedra", 0.6);
-            body.interfaces = mesh::remesh_interfaces(options.regions, body.surface, share * edge);
-            body.volume = mesh::tetrahedralise_within(body.surface, body.interfaces, {.edge_length = share * edge});
+            mesh::Interfaces interfaces = mesh::remesh_interfaces(options.regions, body.surface, share * edge);
+            body.volume =
+                mesh::tetrahedralise_within(body.surface, interfaces.followed(), {.edge_length = share * edge});
+            body.interfaces = std::move(interfaces.surfaces);
             if (share < 1) body.notes.push_back(fmt::format("edges of {:.3g} mm: longer ones failed", share * edge));
             return;
         } catch (const LimitReached&) {

@@ -8,9 +8,10 @@
 
 #include "fem/material.h"
 #include "mesh/errors.h"
-#include "mesh/geometry/surface_tree.h"
 #include "mesh/meshing/smooth_surface.h"
+#include "mesh/regions/check_regions.h"
 #include "mesh/regions/element_regions.h"
+#include "mesh/regions/labels.h"
 #include "mesh/supports/held_parts.h"
 #include "pipeline/body/body.h"
 
@@ -19,27 +20,44 @@ namespace {
 
 constexpr double default_density = 1000;  // [kg/m^3]
 
-/// Regions whose surfaces a given mesh does not follow, in words: its elements count as in or out by their centres.
-std::vector<std::string> not_followed(const MeshedBody& body, const std::vector<mesh::MaterialRegion>& regions) {
+/// What each region encloses, less the regions within it [mm^3].
+std::vector<double> own_volumes(const std::vector<mesh::MaterialRegion>& regions) {
+    std::vector<double> whole, own;
+    for (const mesh::MaterialRegion& region : regions) whole.push_back(std::abs(mesh::signed_volume(region.surface)));
+    own = whole;
+    for (std::size_t inner = 0; inner < regions.size(); ++inner) {
+        std::optional<std::size_t> parent;
+        for (std::size_t outer = 0; outer < regions.size(); ++outer) {
+            const bool is_smaller = whole[outer] > whole[inner] && (!parent || whole[outer] < whole[*parent]);
+            if (is_smaller && mesh::lies_within(regions[inner].surface, regions[outer].surface)) parent = outer;
+        }
+        if (parent) own[*parent] -= whole[inner];
+    }
+    return own;
+}
+
+/// Regions whose surfaces elements do not end at, in words: these count as in or out by their centres.
+std::vector<std::string> not_followed(const MeshedBody& body, const std::vector<mesh::MaterialRegion>& regions,
+                                      bool is_set_s_own) {
     constexpr double allowed = 0.05;  // of a region's volume: stiffness is off by about as much
+    if (regions.empty()) return {};
     const std::vector<int> region_of = mesh::regions_of_elements(body.volume, body.interfaces);
     const Eigen::VectorXd volumes = mesh::element_volumes(body.volume);
     std::vector<double> filled(regions.size(), 0.0);
     for (std::size_t e = 0; e < region_of.size(); ++e)
         if (region_of[e] >= 0) filled[static_cast<std::size_t>(region_of[e])] += volumes[static_cast<Eigen::Index>(e)];
+    const std::vector<double> enclosed = own_volumes(regions);
     std::vector<std::string> notes;
     for (std::size_t r = 0; r < regions.size(); ++r) {
-        double enclosed = std::abs(mesh::signed_volume(regions[r].surface));
-        for (const mesh::MaterialRegion& other : regions)
-            if (&other != &regions[r] && std::abs(mesh::signed_volume(other.surface)) < enclosed &&
-                mesh::SurfaceTree(regions[r].surface).inside(other.surface.vertices.row(0)))
-                enclosed -= std::abs(mesh::signed_volume(other.surface));
-        if (std::abs(filled[r] - enclosed) <= allowed * enclosed) continue;
-        notes.push_back(fmt::format(
-            "The set's mesh does not follow the surface of region '{}': its elements there fill {:.3g} mm^3 "
-            "of {:.3g} mm^3, and its stiffness may be off by as much. The rest surface alone would be meshed "
-            "along the region.",
-            regions[r].name, filled[r], enclosed));
+        if (std::abs(filled[r] - enclosed[r]) <= allowed * enclosed[r]) continue;
+        notes.push_back(
+            fmt::format("{} not end at the surface of region '{}': those with their centres within fill {:.3g} mm^3 of "
+                        "{:.3g} mm^3, and its stiffness may be off by as much. {}",
+                        is_set_s_own ? "Elements of the set's mesh do"
+                                     : "As it touches that of the body or of another region, elements do",
+                        regions[r].name, filled[r], enclosed[r],
+                        is_set_s_own ? "The rest surface alone would be meshed along the region."
+                                     : "Shorter elements (--edge-length) come closer."));
     }
     return notes;
 }
@@ -50,7 +68,8 @@ std::unique_ptr<identify::ReferenceBody> fill(const identify::MeasurementSet& se
     // Tetrahedra that are given stay: those who measured on them, by another solver, made their errors too. Where they
     // are many, fewer are fitted, and what the given ones alter is taken off; unless fewer would bend badly, as those
     // of a body that is thinner than they are long.
-    constexpr double most_nodes = 5000;     // fitted: twice those of a body that is meshed for it
+    // fitted: twice those of a body that is meshed for it; four times where they follow materials, as others would not
+    const double most_nodes = mesh::labels_of(set.regions).empty() ? 5000 : 10000;
     constexpr double enough_nodes = 40000;  // eight times as many, as halved edges make: they have next to no error
     std::optional<MeshedBody> given;
     if (set.rest_volume) given = ready_made_body(*set.rest_volume, set.rest_surface, {.regions = set.regions});
@@ -83,7 +102,7 @@ std::unique_ptr<identify::ReferenceBody> fill(const identify::MeasurementSet& se
             "The set's own mesh has {} nodes. The diagnosis fits one of {} nodes, and takes off what {} alter.",
             given->volume.nodes.rows(), curved.nodes.rows(), options.finer ? "the set's own would" : "halved edges"));
     }
-    if (is_fitted) std::ranges::move(not_followed(body, set.regions), std::back_inserter(notes));
+    std::ranges::move(not_followed(body, set.regions, is_fitted), std::back_inserter(notes));
     std::ranges::move(mesh::too_little_held(set.supports, curved), std::back_inserter(notes));
     return std::make_unique<identify::ReferenceBody>(curved, set.supports, set.markers, options);
 }

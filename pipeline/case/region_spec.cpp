@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
+#include <limits>
 
 #include "fem/material.h"
 #include "identify/measurements/files/path_inside.h"
@@ -14,9 +16,8 @@ namespace palpate::pipeline {
 namespace {
 
 constexpr const char* region_form =
-    "write NAME:surface=FILE,young=MPA, and after that poisson=NU or density=KG_M3 where they are not the body's, as "
-    "in "
-    "bone:surface=bone.stl,young=20";
+    "write NAME:surface=FILE,young=MPA or NAME:label=N,young=MPA, and after that poisson=NU or density=KG_M3 where "
+    "they are not the body's, as in bone:surface=bone.stl,young=20";
 
 class RegionSpecReader {
 public:
@@ -32,11 +33,12 @@ public:
     }
 
     mesh::MaterialRegion execute() {
-        if (file_.empty()) refuse("has no surface");
+        if (file_.empty() != region_.label.has_value()) refuse(file_.empty() ? "has no surface" : "has two places");
         if (!region_.young) refuse("has no young");
         check_ranges();
-        region_.surface =
-            identify::read_closed_surface(file_, 1.0, where_, fmt::format("the region '{}'", region_.name));
+        if (!region_.label)
+            region_.surface =
+                identify::read_closed_surface(file_, 1.0, where_, fmt::format("the region '{}'", region_.name));
         return std::move(region_);
     }
 
@@ -52,6 +54,11 @@ private:
         const std::string value = item.substr(equals + 1);
         if (key == "surface") {
             file_ = value;
+        } else if (key == "label") {
+            const double label = number(key, value);
+            if (label != std::round(label) || std::abs(label) > std::numeric_limits<int>::max())
+                refuse(fmt::format("has label = {}, which is no whole number", mesh::cited(value)));
+            region_.label = static_cast<int>(label);
         } else if (key == "young") {
             region_.young = number(key, value);
         } else if (key == "poisson") {

@@ -12,6 +12,7 @@
 #include "identify/measurements/rig/fittable.h"
 #include "mesh/errors.h"
 #include "mesh/formats/read_body.h"
+#include "mesh/regions/labels.h"
 #include "mesh/supports/support_points.h"
 #include "pipeline/body/body.h"
 #include "pipeline/body/reference_body.h"
@@ -35,7 +36,7 @@ void judge_body(Subject& subject, const std::string& name) {
 
 void read_mesh(Subject& subject) {
     const Case& c = subject.settings;
-    mesh::BodyFile read = mesh::read_body(*c.mesh, {c.label});
+    mesh::BodyFile read = mesh::read_body(*c.mesh, {.label = c.label, .parts = mesh::labels_of(c.regions)});
     subject.files = read.files;
     subject.surface = std::move(read.surface);
     subject.volume = std::move(read.volume);
@@ -55,6 +56,7 @@ void read_mesh(Subject& subject) {
     if (subject.volume) subject.volume->nodes *= scale;
     subject.regions = c.regions;
     for (mesh::MaterialRegion& region : subject.regions) region.surface.vertices *= scale;
+    mesh::take_parts(read.parts, scale, subject.regions);
     judge_body(subject, c.mesh->string());
     std::string strange = identify::implausible_size(mesh::bounding_box(subject.surface.vertices).longest_side());
     if (!strange.empty()) subject.notes.push_back(std::move(strange));

@@ -44,10 +44,19 @@ mesh::SolverSetting solver_setting(const MeshedBody& meshed, const Subject& subj
     return setting;
 }
 
+/// The number of each element's region, from 1; 0: it is of none.
+mesh::MeshData regions_shown(const MeshedBody& meshed, const Subject& subject) {
+    if (subject.regions.empty()) return {};
+    const std::vector<int> region = mesh::regions_of_elements(meshed.volume, meshed.interfaces);
+    Eigen::MatrixXd shown(std::ssize(region), 1);
+    for (std::size_t e = 0; e < region.size(); ++e) shown(static_cast<Eigen::Index>(e)) = region[e] + 1;
+    return {.points = {}, .cells = {{"region", std::move(shown)}}};
+}
+
 void write_body(const fs::path& output, const std::string& format, const MeshedBody& meshed, const Subject& subject) {
     const mesh::VolumeMesh& body = meshed.volume;
     if (format == "vtu") {
-        mesh::write_vtu(output, body);
+        mesh::write_vtu(output, body, regions_shown(meshed, subject));
     } else if (format == "inp") {
         mesh::write_inp(output, body, solver_setting(meshed, subject));
     } else {

@@ -336,7 +336,8 @@ void Subcommands::add_probe(CLI::App& app) {
     add_flags_of(sub, probe.overrides, "Body");
     sub->add_option("--region", probe.regions,
                     "A part of another material, bonded: NAME:surface=FILE,young=MPA[,poisson=NU][,density=KG_M3];\n"
-                    "FILE a closed surface inside the body, in the mesh's unit. Repeatable")
+                    "FILE a closed surface inside the body, in the mesh's unit; or NAME:label=N,... of the mesh's own\n"
+                    "labels. Repeatable")
         ->expected(1)
         ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
         ->group("Body");

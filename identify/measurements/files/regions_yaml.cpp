@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "identify/measurements/files/path_inside.h"
 #include "identify/measurements/files/rig_yaml.h"
@@ -40,21 +41,26 @@ std::optional<double> read_poisson(const YamlFields& item) {
     return poisson;
 }
 
+/// The surface, or the label that stands for it until the body's file is read.
+void read_place(const YamlFields& item, double unit, const std::filesystem::path& folder, MaterialRegion& region) {
+    if (item.has("label") == item.has("surface"))
+        throw InvalidInput(
+            fmt::format("{}: region '{}' has {}: name the file of a closed surface inside the body, or the label that "
+                        "the body's own file (an image of labels, a mesh with materials) gives it.",
+                        item.where("name"), region.name,
+                        item.has("label") ? "both 'label' and 'surface'" : "neither 'surface' nor 'label'"));
+    constexpr int most = std::numeric_limits<int>::max();
+    if (item.has("label"))
+        region.label = item.integer("label", -most, most);
+    else
+        region.surface =
+            read_closed_surface(item, "surface", folder, unit, fmt::format("the region '{}'", region.name));
+}
+
 MaterialRegion read_region(const YamlFields& item, double unit, const std::filesystem::path& folder,
                            const std::vector<std::string>& taken) {
-    MaterialRegion region{.name = read_own_name(item, taken), .surface = {}};
-    if (item.has("label"))
-        throw InvalidInput(
-            fmt::format("{}: a region by its label belongs to the format, and this version cannot fit it yet. Write "
-                        "the label's surface to a file ('palpate mesh' reads one label of an image) and name it by "
-                        "'surface'.",
-                        item.where("label")));
-    if (!item.has("surface"))
-        throw InvalidInput(
-            fmt::format("{}: region '{}' has no 'surface': name the file of a closed surface inside the "
-                        "body.",
-                        item.where("name"), region.name));
-    region.surface = read_closed_surface(item, "surface", folder, unit, fmt::format("the region '{}'", region.name));
+    MaterialRegion region{.name = read_own_name(item, taken)};
+    read_place(item, unit, folder, region);
     region.young = read_young(item, region.name);
     region.poisson = read_poisson(item);
     // A density in another unit than kg/m^3 is far outside: air has 1, the heaviest metal 22,600.
@@ -72,8 +78,13 @@ std::vector<MaterialRegion> read_material_regions(const YamlFields& yaml, double
     if (!yaml.has("regions")) return regions;
     std::vector<std::string> taken;
     for (const YamlFields& item : yaml.mappings("regions")) {
-        regions.push_back(read_region(item, unit, folder, taken));
-        taken.push_back(regions.back().name);
+        MaterialRegion region = read_region(item, unit, folder, taken);
+        const auto same = std::ranges::find(regions, region.label, &MaterialRegion::label);
+        if (region.label && same != regions.end())
+            throw InvalidInput(fmt::format("{}: label {} is that of region '{}' already; each region needs its own.",
+                                           item.where("label"), *region.label, same->name));
+        taken.push_back(region.name);
+        regions.push_back(std::move(region));
     }
     return regions;
 }
@@ -89,12 +100,6 @@ void check_material_regions(const std::vector<MaterialRegion>& regions, const me
                         "Give its 'young', or take it out.",
                         where, region.name));
     }
-}
-
-void read_regions(const YamlFields& yaml, double unit, MeasurementSet& set) {
-    if (!yaml.has("regions")) return;
-    set.regions = read_material_regions(yaml, unit, set.folder);
-    check_material_regions(set.regions, set.rest_surface, set.supports, yaml.where("regions"));
 }
 
 std::string regions_to_yaml(const std::filesystem::path& folder, const std::vector<MaterialRegion>& regions) {

@@ -9,8 +9,9 @@
 
 namespace palpate::identify {
 
-/// What `regions` of a set.yaml or a case.yaml tells: the surfaces in `unit` [mm]. Where the regions lie in the body is
-/// not looked at. @throws IoError, InvalidInput; also for parts of the format that this version cannot fit yet.
+/// What `regions` of a set.yaml or a case.yaml tells: the surfaces in `unit` [mm]; those of regions by label are left
+/// out until the body's file is read. Where the regions lie in the body is not looked at. @throws IoError,
+/// InvalidInput.
 std::vector<mesh::MaterialRegion> read_material_regions(const mesh::YamlFields& yaml, double unit,
                                                         const std::filesystem::path& folder);
 
@@ -18,10 +19,6 @@ std::vector<mesh::MaterialRegion> read_material_regions(const mesh::YamlFields& 
 /// @throws InvalidInput, also for a region of unknown stiffness that is held altogether, which no reading could tell.
 void check_material_regions(const std::vector<mesh::MaterialRegion>& regions, const mesh::Surface& body,
                             const std::vector<mesh::Region>& supports, const std::string& where);
-
-/// Reads `regions` into the set, and checks them. @pre its surface and supports are read. @throws IoError,
-/// InvalidInput.
-void read_regions(const mesh::YamlFields& yaml, double unit, MeasurementSet& set);
 
 /// `regions:` in mm for a set.yaml in `folder`, and the surfaces that it names there; "" where there is none.
 /// @throws IoError.

@@ -13,6 +13,7 @@
 #include "mesh/errors.h"
 #include "mesh/formats/read_body.h"
 #include "mesh/formats/yaml/yaml_fields.h"
+#include "mesh/regions/labels.h"
 #include "mesh/supports/region_yaml.h"
 
 namespace palpate::identify {
@@ -70,12 +71,13 @@ void read_correlation(const YamlFields& fields, double unit, MeasurementSet& set
 }
 
 void read_rest(const std::filesystem::path& file, double unit, MeasurementSet& set) {
-    mesh::BodyFile rest = mesh::read_body(file);
+    mesh::BodyFile rest = mesh::read_body(file, {.label = {}, .parts = mesh::labels_of(set.regions)});
     const double scale = rest.is_in_mm ? 1 : unit;
     set.rest_surface = std::move(rest.surface);
     set.rest_surface.vertices *= scale;
     set.rest_volume = std::move(rest.volume);
     if (set.rest_volume) set.rest_volume->nodes *= scale;
+    mesh::take_parts(rest.parts, scale, set.regions);
 }
 
 }  // namespace
@@ -107,8 +109,10 @@ SetDescription read_set_description(const std::filesystem::path& file, Measureme
     description.displacements_since = read_reference(fields);
 
     const std::filesystem::path surface = path_inside(fields, "rest_surface", set.folder);
+    set.regions = read_material_regions(fields, units.length, set.folder);
     read_rest(surface, units.length, set);
-    read_regions(fields, units.length, set);
+    if (!set.regions.empty())
+        check_material_regions(set.regions, set.rest_surface, set.supports, fields.where("regions"));
     fields.finish();
     read_tools(fields, units, set);
     read_actuators(fields, units, set);

@@ -146,24 +146,6 @@ std::pair<int, int> compact(VolumeMesh& mesh) {
     return {welded.merged, unused};
 }
 
-void note_materials(const Elements& elements, std::vector<std::string>& notes) {
-    std::map<std::int64_t, int> count;
-    for (const std::int64_t material : elements.materials) ++count[material];
-    if (count.size() < 2) return;
-    std::string list;
-    for (const auto& [material, elements_of_it] : count) {
-        if (list.size() > 100) {
-            list += ", ...";
-            break;
-        }
-        list += fmt::format("{}{} ({} elements)", list.empty() ? "" : ", ", material, elements_of_it);
-    }
-    notes.push_back(fmt::format(
-        "The mesh tells {} materials apart: {}. One material is taken for the whole body: differences between them "
-        "are left to the stiffness of the links.",
-        count.size(), list));
-}
-
 /// Elements that hang together by sides are one part.
 int count_parts(const VolumeMesh& mesh) {
     std::vector<int> leader(static_cast<std::size_t>(mesh.nodes.rows()));
@@ -196,6 +178,24 @@ void Elements::add(std::int64_t number, const std::vector<std::int64_t>& element
     element_numbers.push_back(number);
 }
 
+void note_materials(const Elements& elements, std::vector<std::string>& notes) {
+    std::map<std::int64_t, int> count;
+    for (const std::int64_t material : elements.materials) ++count[material];
+    if (count.size() < 2) return;
+    std::string list;
+    for (const auto& [material, elements_of_it] : count) {
+        if (list.size() > 100) {
+            list += ", ...";
+            break;
+        }
+        list += fmt::format("{}{} ({} elements)", list.empty() ? "" : ", ", material, elements_of_it);
+    }
+    notes.push_back(fmt::format(
+        "The mesh tells {} materials apart: {}. One material is taken for the whole body: 'regions' with these labels "
+        "give each its own.",
+        count.size(), list));
+}
+
 VolumeMesh assemble(const Elements& elements, const std::filesystem::path& file, std::vector<std::string>& notes,
                     std::vector<int>* row_of_node) {
     if (elements.element_numbers.empty())
@@ -222,7 +222,6 @@ VolumeMesh assemble(const Elements& elements, const std::filesystem::path& file,
             fmt::format("{} of {} elements were numbered inside out: turned.", turned, mesh.tetrahedra.rows()));
     if (merged > 0) notes.push_back(fmt::format("{} nodes lay on others: each became one with them.", merged));
     if (unused > 0) notes.push_back(fmt::format("{} nodes belong to no tetrahedron: left out.", unused));
-    note_materials(elements, notes);
     if (const int parts = count_parts(mesh); parts > 1)
         notes.push_back(
             fmt::format("The mesh is {} parts that share no node: each must be held, or the body falls apart.", parts));

@@ -23,13 +23,16 @@ struct Elements {
     void add(std::int64_t number, const std::vector<std::int64_t>& element_nodes, const std::string& where);
 };
 
-/// The body of those elements. Elements that are numbered inside out are turned, equal nodes become one, nodes of no
-/// element are left out, and several materials are told; what was done stands in `notes`. `row_of_node` (when asked
-/// for) tells which of the elements' nodes each of the body's is.
+/// The body of those elements, in their order. Elements that are numbered inside out are turned, equal nodes become
+/// one, nodes of no element are left out; what was done stands in `notes`. `row_of_node` (when asked for) tells which
+/// of the elements' nodes each of the body's is.
 /// @throws InvalidInput naming node or element: no elements, a node that does not exist, an element without volume,
 /// a midside node away from its edge, a side that more than two elements share.
 VolumeMesh assemble(const Elements& elements, const std::filesystem::path& file, std::vector<std::string>& notes,
                     std::vector<int>* row_of_node = nullptr);
+
+/// Several materials, which the body is taken to be one of.
+void note_materials(const Elements& elements, std::vector<std::string>& notes);
 
 /// One reader a format, tetrahedra with 4 or 10 nodes; elements of lower dimension are skipped, other solid ones
 /// refused. @throws IoError, InvalidInput with file and line, byte or element.

@@ -138,6 +138,9 @@ TEST_F(ProbeRegions, ThatAreNotToldInFullAreRefused) {
     EXPECT_TRUE(says(message({ball("")}), {"has no young"}));
     EXPECT_TRUE(says(message({ball(",young=stiff")}), {"young = 'stiff'", "no number"}));
     EXPECT_TRUE(says(message({ball(",young=-1")}), {"Young's modulus is -1"}));
+    EXPECT_TRUE(says(message({ball(",young=1,label=2")}), {"has two places", "NAME:label=N"}));
+    EXPECT_TRUE(says(message({"ball:label=1.5,young=1"}), {"label = '1.5'", "no whole number"}));
+    EXPECT_TRUE(says(message({"ball:label=1,young=1"}), {"bar.stl", "no labels"}));
     EXPECT_TRUE(says(message({ball(",young=1,ratio=2")}), {"'ratio'", "which no region has"}));
     EXPECT_TRUE(says(message({ball(",young=1,soft")}), {"'soft'", "not name=value"}));
     EXPECT_TRUE(says(message({ball(",young=1"), ball(",young=2")}), {"'ball' is the name of two regions"}));

@@ -40,6 +40,27 @@ TEST_F(RegionFiles, AreReadInMillimetresAndAsKnownOrUnknown) {
     EXPECT_TRUE(needs_second_format(set));
 }
 
+TEST_F(RegionFiles, AreToldByLabelsOfTheRestMesh) {
+    // In centimetres; the outer half by its label, which touches the body's surface and the rest.
+    const mesh::VolumeMesh bar = mesh::make_bar({0, 0, 0}, {10, 2, 2}, {10, 2, 2});
+    Eigen::MatrixXd label(bar.tetrahedra.rows(), 1);
+    for (Eigen::Index e = 0; e < label.rows(); ++e) label(e) = bar.nodes(bar.tetrahedra.row(e), 0).mean() < 5 ? 1 : 2;
+    mesh::write_vtu(folder / "rest.vtu", bar, {.points = {}, .cells = {{"material", label}}});
+    std::string text = second(yaml);
+    text.replace(text.find("length: mm"), 10, "length: cm");
+    text.replace(text.find("rest.vtp"), 8, "rest.vtu");
+    folder.write("set.yaml", text + "regions:\n  - {name: tip, label: 2, young: null}\n");
+    const MeasurementSet set = read();
+    ASSERT_EQ(set.regions.size(), 1U);
+    EXPECT_EQ(set.regions[0].label, 2);
+    EXPECT_NEAR(mesh::signed_volume(set.regions[0].surface), 20000, 1e-6);
+    // A set that is written tells it by its surface.
+    write_measurement_set(folder / "copy", set);
+    const MeasurementSet copy = read_measurement_set(folder / "copy");
+    ASSERT_EQ(copy.regions.size(), 1U);
+    EXPECT_NEAR(mesh::signed_volume(copy.regions[0].surface), 20000, 1e-6);
+}
+
 TEST_F(RegionFiles, AreWrittenAsTheyAreRead) {
     folder.write("set.yaml", second(yaml) +
                                  "regions:\n"
@@ -61,8 +82,12 @@ TEST_F(RegionFiles, AreWrittenAsTheyAreRead) {
 TEST_F(RegionFiles, ThatAreNoneAreRefused) {
     EXPECT_TRUE(says(refusal_of("surface: ball.stl, young: 1"), {"set.yaml, line 8", "name"}));
     EXPECT_TRUE(says(refusal_of("name: a, surface: ball.stl"), {"'a'", "no material", "young: null"}));
-    EXPECT_TRUE(says(refusal_of("name: a, young: 1"), {"'a'", "no 'surface'", "closed surface"}));
-    EXPECT_TRUE(says(refusal_of("name: a, label: 2, young: 1"), {"label", "cannot fit it yet", "'surface'"}));
+    EXPECT_TRUE(says(refusal_of("name: a, young: 1"), {"'a'", "neither 'surface' nor 'label'", "closed surface"}));
+    EXPECT_TRUE(says(refusal_of("name: a, label: 2, surface: ball.stl, young: 1"), {"'a'", "both"}));
+    EXPECT_TRUE(says(refusal_of("name: a, label: 2, young: 1"), {"rest.vtp", "no labels", "'surface'"}));
+    EXPECT_TRUE(says(refusal("set.yaml", second(yaml) + "regions:\n  - {name: a, label: 2, young: 1}\n"
+                                                        "  - {name: b, label: 2, young: null}\n"),
+                     {"line 9", "label 2 is that of region 'a'"}));
     EXPECT_TRUE(says(refusal_of("name: a, surface: ball.stl, young: -1"), {"young", "-1"}));
     EXPECT_TRUE(says(refusal_of("name: a, surface: ball.stl, young: stiff"), {"young", "stiff"}));
     EXPECT_TRUE(says(refusal_of("name: a, surface: ball.stl, young: 1, poisson: 0.5"), {"poisson", "0.5"}));
@@ -88,7 +113,8 @@ TEST_F(RegionFiles, ThatAreHeldAltogetherAreKnownOrRefused) {
 
 TEST_F(RegionFiles, ThatContradictTheBodyAreRefusedByTheirPlace) {
     mesh::write_surface(folder / "out.stl", mesh::make_sphere({60, 10, 16}, 6, 2));
-    EXPECT_TRUE(says(refusal_of("name: a, surface: out.stl, young: 1"), {"set.yaml", "'a'", "that of the body"}));
+    EXPECT_TRUE(
+        says(refusal_of("name: a, surface: out.stl, young: 1"), {"set.yaml", "'a'", "reaches 2 mm out of the body"}));
 }
 
 }  // namespace
