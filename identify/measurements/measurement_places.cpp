@@ -36,7 +36,7 @@ void check_places(const MeasurementSet& set) {
         }
     };
     for (const LoadState& state : set.states) check_contacts(state, "probes.csv");
-    for (const Recording& recording : set.recordings)
+    for (const MotionRecording& recording : set.recordings)
         for (const LoadState& load : recording.loads) check_contacts(load, "motion_probes.csv");
 
     for (const Marker& marker : set.markers) {

@@ -82,7 +82,7 @@ struct LoadState {
 };
 
 /// How a body moved: what acted on it, and what was read meanwhile.
-struct Recording {
+struct MotionRecording {
     int probe = 0;
     // Each acts from the one before it up to its own time, the last one to the end. One of time 0 acted before the
     // beginning: the body starts from its equilibrium. Without readings.
@@ -121,9 +121,9 @@ struct MeasurementSet {
     std::vector<mesh::Actuator> actuators;
     std::vector<mesh::MaterialRegion> regions;  // of materials of their own
     std::vector<Marker> markers;
-    std::vector<LoadState> states;      // in the order of probes.csv
-    std::vector<Recording> recordings;  // of bodies in motion; mostly none
-    std::vector<std::string> notes;     // what the files leave open and how it was taken, in words
+    std::vector<LoadState> states;            // in the order of probes.csv
+    std::vector<MotionRecording> recordings;  // of bodies in motion; mostly none
+    std::vector<std::string> notes;           // what the files leave open and how it was taken, in words
 };
 
 /// Does a set say what the format palpate-measurements/1 cannot?

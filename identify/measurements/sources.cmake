@@ -5,19 +5,19 @@ set(measurements_sources
   measurements/plausibility.cpp
   measurements/rest_body.cpp
   measurements/twin.cpp
-  measurements/files/actuators_yaml.cpp
+  measurements/files/rig/actuators_yaml.cpp
   measurements/files/path_inside.cpp
   measurements/files/read_measurement_set.cpp
-  measurements/files/regions_yaml.cpp
-  measurements/files/rig_tables.cpp
-  measurements/files/rig_yaml.cpp
+  measurements/files/rig/regions_yaml.cpp
+  measurements/files/rig/rig_tables.cpp
+  measurements/files/rig/rig_yaml.cpp
   measurements/files/second_format.cpp
   measurements/files/set_description.cpp
   measurements/files/set_units.cpp
   measurements/files/tables.cpp
-  measurements/files/tools_yaml.cpp
+  measurements/files/rig/tools_yaml.cpp
   measurements/files/write_measurement_set.cpp
-  measurements/files/write_rig_tables.cpp
+  measurements/files/rig/write_rig_tables.cpp
   measurements/labels/coherent_drift.cpp
   measurements/labels/label_readings.cpp
   measurements/rig/actuator_places.cpp

@@ -28,14 +28,14 @@ Eigen::VectorXd step_between(const Model& model, const Equilibrium& from, const 
 }
 
 /// Rows of a recording's readings: x, y, z of each marker, a column an instant.
-void fill_readings(const Recording& recording, const MeasurementSet& set, Ringdown& ringdown) {
+void fill_readings(const MotionRecording& recording, const MeasurementSet& set, Ringdown& ringdown) {
     const auto rows = 3 * static_cast<Eigen::Index>(set.markers.size());
     const auto instants = static_cast<Eigen::Index>(recording.instants.size());
     ringdown.times.resize(instants);
     ringdown.measured = Eigen::MatrixXd::Constant(rows, instants, missing);
     ringdown.weights = Eigen::MatrixXd::Zero(rows, instants);
     for (Eigen::Index t = 0; t < instants; ++t) {
-        const Recording::Instant& instant = recording.instants[t];
+        const MotionRecording::Instant& instant = recording.instants[t];
         ringdown.times[t] = instant.time;
         for (const Reading& reading : instant.readings) {
             const double sigma = std::isnan(reading.sigma) ? set.position_noise.value_or(1) : reading.sigma;
@@ -89,7 +89,7 @@ struct Acting {
     double begins;
     const LoadState* load;
 };
-std::vector<Acting> acting_on(const Recording& recording, const LoadState& nothing) {
+std::vector<Acting> acting_on(const MotionRecording& recording, const LoadState& nothing) {
     std::vector<const LoadState*> loads;
     loads.reserve(recording.loads.size());
     for (const LoadState& load : recording.loads) loads.push_back(&load);
@@ -153,7 +153,7 @@ Ringdowns ringdowns(const Model& model, const MeasurementSet& set, int modes) {
     Equilibria equilibria(model, set);
     const LoadState nothing;
     std::vector<std::vector<Equilibrium>> found;  // of each stretch of each recording
-    for (const Recording& recording : set.recordings) {
+    for (const MotionRecording& recording : set.recordings) {
         Ringdown& ringdown = all.recordings.emplace_back();
         fill_readings(recording, set, ringdown);
         std::vector<Equilibrium>& stations = found.emplace_back();

@@ -4,9 +4,9 @@
 #include <vector>
 
 #include "identify/diagnosis/diagnose_options.h"
-#include "identify/preflight/effect_prospects.h"
-#include "identify/preflight/experiments.h"
-#include "identify/preflight/parameter_prospects.h"
+#include "identify/preflight/prospects/effect_prospects.h"
+#include "identify/preflight/prospects/experiments.h"
+#include "identify/preflight/prospects/parameter_prospects.h"
 #include "identify/preflight/repeats.h"
 #include "identify/preflight/suspicions.h"
 #include "mesh/progress.h"

@@ -8,6 +8,6 @@ namespace palpate::identify {
 
 /// A table of what a recording holds, to be read by people: points, frames, clock and rate, share of what is missing,
 /// channels with unit and extremes, notes.
-std::string describe(const recordings::Recording& recording);
+std::string describe(const Recording& recording);
 
 }  // namespace palpate::identify

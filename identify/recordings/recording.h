@@ -9,8 +9,6 @@
 // Units are ours (mm, N, N*mm, MPa, s, rad); the frame and the clock are the file's.
 
 namespace palpate::identify {
-// A set has recordings of bodies in motion, of the same name: where both are known, this one is recordings::Recording.
-inline namespace recordings {
 
 /// A point that was followed by a camera, a tracker or image correlation.
 struct RecordedPoint {
@@ -46,5 +44,4 @@ struct Recording {
     std::vector<std::string> notes;  ///< what was found out by itself: delimiter, decimal comma, unit row, encoding
 };
 
-}  // namespace recordings
 }  // namespace palpate::identify

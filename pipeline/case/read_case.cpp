@@ -5,13 +5,13 @@
 #include <algorithm>
 
 #include "fem/material.h"
-#include "identify/measurements/files/regions_yaml.h"
+#include "identify/measurements/files/rig/regions_yaml.h"
 #include "mesh/errors.h"
 #include "mesh/formats/read_body.h"
 #include "mesh/formats/yaml/yaml_fields.h"
 #include "mesh/supports/region_yaml.h"
-#include "pipeline/case/overrides.h"
-#include "pipeline/case/settings.h"
+#include "pipeline/case/settings/overrides.h"
+#include "pipeline/case/settings/settings.h"
 
 namespace palpate::pipeline {
 namespace {

@@ -6,7 +6,7 @@
 #include <iterator>
 
 #include "identify/measurements/field.h"
-#include "identify/measurements/files/regions_yaml.h"
+#include "identify/measurements/files/rig/regions_yaml.h"
 #include "identify/measurements/labels/label_readings.h"
 #include "identify/measurements/plausibility.h"
 #include "identify/measurements/rig/fittable.h"

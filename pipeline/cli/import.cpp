@@ -66,7 +66,7 @@ Outcome describe_files(const ImportCommandOptions& options, const Common& common
     for (const fs::path& file : options.files) {
         identify::FileMap how;
         how.unit = options.unit;
-        std::vector<identify::recordings::Recording> recordings;
+        std::vector<identify::Recording> recordings;
         try {
             recordings = identify::read_recordings(file, how);
         } catch (const InvalidInput& error) {

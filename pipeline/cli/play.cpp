@@ -5,8 +5,8 @@
 #include "mesh/errors.h"
 #include "mesh/text/atomic_file.h"
 #include "pipeline/command_line/commands.h"
-#include "pipeline/command_line/console.h"
 #include "pipeline/command_line/subcommands.h"
+#include "pipeline/command_line/terminal/console.h"
 #include "pipeline/play/play_page.h"
 #include "pipeline/play/serve.h"
 

@@ -6,7 +6,7 @@
 #include <thread>
 
 #include "pipeline/command_line/subcommands.h"
-#include "pipeline/command_line/usage_error.h"
+#include "pipeline/command_line/terminal/usage_error.h"
 #include "pipeline/command_line/version_text.h"
 
 namespace palpate::pipeline {

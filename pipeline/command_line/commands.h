@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "pipeline/analysis/quality/convergence_study.h"
-#include "pipeline/case/overrides.h"
-#include "pipeline/command_line/console.h"
+#include "pipeline/case/settings/overrides.h"
+#include "pipeline/command_line/terminal/console.h"
 #include "pipeline/synthesis/options.h"
 
 namespace palpate::pipeline::commands {

@@ -5,7 +5,7 @@
 #include <cctype>
 #include <stdexcept>
 
-#include "pipeline/case/settings.h"
+#include "pipeline/case/settings/settings.h"
 
 namespace palpate::pipeline {
 namespace {

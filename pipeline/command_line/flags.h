@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 
-#include "pipeline/case/overrides.h"
+#include "pipeline/case/settings/overrides.h"
 
 // Flags that several commands share.
 

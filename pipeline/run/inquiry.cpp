@@ -7,7 +7,7 @@
 #include "mesh/errors.h"
 #include "mesh/supports/region_yaml.h"
 #include "mesh/text/atomic_file.h"
-#include "pipeline/case/settings.h"
+#include "pipeline/case/settings/settings.h"
 #include "pipeline/output/identification.h"
 #include "pipeline/output/json/diagnosis.h"
 #include "pipeline/output/json/reference_comparison.h"

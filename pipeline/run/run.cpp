@@ -20,7 +20,7 @@
 #include "pipeline/body/region_field.h"
 #include "pipeline/body/subject_body.h"
 #include "pipeline/case/read_case.h"
-#include "pipeline/case/settings.h"
+#include "pipeline/case/settings/settings.h"
 #include "pipeline/output/csv/posterior.h"
 #include "pipeline/output/html/report.h"
 #include "pipeline/output/identification.h"

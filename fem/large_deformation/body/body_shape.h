@@ -5,14 +5,14 @@
 #include "fem/effects/effects.h"
 #include "fem/elements/dilatation.h"
 #include "fem/large_deformation/body/body_points.h"
-#include "fem/large_deformation/body/cavities.h"
 #include "fem/large_deformation/body/element_regions.h"
 #include "fem/large_deformation/body/node_integrals.h"
 #include "fem/large_deformation/body/node_weights.h"
-#include "fem/large_deformation/body/placed_tendon.h"
-#include "fem/large_deformation/body/skin.h"
 #include "fem/large_deformation/elements/element_kernel.h"
 #include "fem/large_deformation/lazy.h"
+#include "fem/large_deformation/loads/cavities.h"
+#include "fem/large_deformation/loads/placed_tendon.h"
+#include "fem/large_deformation/loads/skin.h"
 
 namespace palpate::fem {
 

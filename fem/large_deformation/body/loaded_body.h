@@ -2,9 +2,9 @@
 
 #include "fem/large_deformation/body/body_material.h"
 #include "fem/large_deformation/body/node_weights.h"
-#include "fem/large_deformation/body/placed_tendon.h"
-#include "fem/large_deformation/body/placed_tool.h"
 #include "fem/large_deformation/body/unknowns.h"
+#include "fem/large_deformation/loads/placed_tendon.h"
+#include "fem/large_deformation/loads/placed_tool.h"
 
 namespace palpate::fem {
 

@@ -4,8 +4,8 @@
 #include <optional>
 
 #include "identify/diagnosis/fit/explanation.h"
-#include "identify/diagnosis/fit/nuisances.h"
-#include "identify/diagnosis/fit/whitening.h"
+#include "identify/diagnosis/likelihood/nuisances.h"
+#include "identify/diagnosis/likelihood/whitening.h"
 
 namespace palpate::identify {
 

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "identify/diagnosis/fit/whitening.h"
+#include "identify/diagnosis/likelihood/whitening.h"
 
 namespace palpate::identify {
 

@@ -3,7 +3,7 @@
 #include <utility>
 #include <vector>
 
-#include "identify/diagnosis/fit/whitening.h"
+#include "identify/diagnosis/likelihood/whitening.h"
 #include "identify/diagnosis/problem.h"
 
 namespace palpate::identify {

@@ -8,8 +8,8 @@
 #include <functional>
 
 #include "identify/diagnosis/fit/explanation.h"
-#include "identify/effects/body/plane_scan.h"
 #include "identify/effects/effect.h"
+#include "identify/effects/plane_scan.h"
 #include "mesh/errors.h"
 
 namespace palpate::identify {

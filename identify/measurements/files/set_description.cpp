@@ -7,8 +7,8 @@
 #include <string>
 
 #include "identify/measurements/files/path_inside.h"
-#include "identify/measurements/files/regions_yaml.h"
-#include "identify/measurements/files/rig_yaml.h"
+#include "identify/measurements/files/rig/regions_yaml.h"
+#include "identify/measurements/files/rig/rig_yaml.h"
 #include "identify/measurements/files/second_format.h"
 #include "mesh/errors.h"
 #include "mesh/formats/read_body.h"

@@ -231,7 +231,7 @@ void TableReader::add_to_recording(const CsvTable& table, int row, const std::ma
     if (reading.marker < 0)
         throw InvalidInput(
             fmt::format("{}: a reading of a body in motion has no marker. Give its number or name.", table.where(row)));
-    std::vector<Recording::Instant>& instants = set_.recordings[found->second].instants;
+    std::vector<MotionRecording::Instant>& instants = set_.recordings[found->second].instants;
     if (time < 0 || (!instants.empty() && time < instants.back().time))
         throw InvalidInput(
             fmt::format("{}, column time: {} comes after {} in probe {}. Count time from the beginning of the probe, "
@@ -257,7 +257,7 @@ void TableReader::read_recordings(const fs::path& loads, const fs::path& reading
     const CsvTable table(readings, {"probe", "time", "marker", "x", "y", "z"}, {"sigma"}, {"marker"});
     require_length(table, {"x", "y", "z", "sigma"});
     for (int row = 0; row < table.rows(); ++row) add_to_recording(table, row, recording_of);
-    for (const Recording& recording : set_.recordings) {
+    for (const MotionRecording& recording : set_.recordings) {
         if (recording.instants.empty())
             throw InvalidInput(
                 fmt::format("{}: probe {} of motion_probes.csv has no readings. Add them, or take it "

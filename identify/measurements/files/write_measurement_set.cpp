@@ -4,10 +4,10 @@
 #include <string>
 
 #include "identify/measurements/files/probes_table.h"
-#include "identify/measurements/files/regions_yaml.h"
-#include "identify/measurements/files/rig_yaml.h"
+#include "identify/measurements/files/rig/regions_yaml.h"
+#include "identify/measurements/files/rig/rig_yaml.h"
+#include "identify/measurements/files/rig/write_rig_tables.h"
 #include "identify/measurements/files/second_format.h"
-#include "identify/measurements/files/write_rig_tables.h"
 #include "identify/measurements/measurement_set.h"
 #include "mesh/errors.h"
 #include "mesh/formats/vtk/vtk_files.h"
@@ -109,9 +109,9 @@ void write_recordings(const fs::path& folder, const MeasurementSet& set) {
     if (set.recordings.empty()) return;
     std::vector<LoadState> loads;
     std::string text = positions_header;
-    for (const Recording& recording : set.recordings) {
+    for (const MotionRecording& recording : set.recordings) {
         loads.insert(loads.end(), recording.loads.begin(), recording.loads.end());
-        for (const Recording::Instant& instant : recording.instants)
+        for (const MotionRecording::Instant& instant : recording.instants)
             text += position_rows(set, recording.probe, instant.time, instant.readings);
     }
     mesh::write_text(folder / "motion_probes.csv", probes_table(loads));

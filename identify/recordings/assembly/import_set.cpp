@@ -61,7 +61,7 @@ fs::path located(const MappedFile& mapped, const std::vector<fs::path>& folders)
     return mapped.file;
 }
 
-void check_times(const recordings::Recording& recording) {
+void check_times(const Recording& recording) {
     const auto& t = recording.times;
     bool is_sound = t.size() > 0 && t.allFinite();
     for (Eigen::Index i = 1; is_sound && i < t.size(); ++i) is_sound = t[i] > t[i - 1];
@@ -83,12 +83,11 @@ std::vector<FileRecordings> read_files(const ImportMap& map, const ImportOptions
         file.mapped = &mapped;
         file.name = mapped.file;
         file.recordings = read_recordings(located(mapped, folders), how);
-        std::erase_if(file.recordings,
-                      [](const recordings::Recording& r) { return r.points.empty() && r.channels.empty(); });
+        std::erase_if(file.recordings, [](const Recording& r) { return r.points.empty() && r.channels.empty(); });
         if (file.recordings.empty())
             throw InvalidInput(fmt::format("{}: the file {} holds neither points nor channels.", mapped.where,
                                            mesh::cited(mapped.file)));
-        for (const recordings::Recording& recording : file.recordings) {
+        for (const Recording& recording : file.recordings) {
             check_times(recording);
             for (const std::string& note : recording.notes)
                 notes.push_back(fmt::format("{}: {}.", recording.source, note));
@@ -98,7 +97,7 @@ std::vector<FileRecordings> read_files(const ImportMap& map, const ImportOptions
 }
 
 /// The middle of each point's track over its first frames.
-Points first_places(const recordings::Recording& recording) {
+Points first_places(const Recording& recording) {
     constexpr Eigen::Index frames = 20;
     Points places(std::ssize(recording.points), 3);
     for (Eigen::Index p = 0; p < places.rows(); ++p) {
@@ -112,8 +111,7 @@ Points first_places(const recordings::Recording& recording) {
 }
 
 /// Finds which point is which of the map's, by their distances.
-void name_by_distances(const ImportMap& map, const std::string& file, recordings::Recording& recording,
-                       ImportReport& report) {
+void name_by_distances(const ImportMap& map, const std::string& file, Recording& recording, ImportReport& report) {
     constexpr std::size_t most_names = 12;  // beyond that trying all orders takes too long
     std::vector<const MappedPlace*> places;
     for (const MappedPlace& place : map.places)
@@ -151,7 +149,7 @@ void name_by_distances(const ImportMap& map, const std::string& file, recordings
 
 void mend(const ImportMap& map, std::vector<FileRecordings>& files, ImportReport& report) {
     for (FileRecordings& file : files)
-        for (recordings::Recording& recording : file.recordings) {
+        for (Recording& recording : file.recordings) {
             if (recording.points.empty()) continue;
             if (const std::string done = describe(mend_tracks(recording.points)); !done.empty())
                 report.notes.push_back(fmt::format("{}: {}.", recording.source, done));

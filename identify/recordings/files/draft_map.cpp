@@ -7,7 +7,7 @@
 
 #include "identify/recordings/files/tables/column_roles.h"
 #include "identify/recordings/files/tables/table_recording.h"
-#include "identify/recordings/files/text/open_text.h"
+#include "identify/recordings/files/text/decoding/open_text.h"
 #include "mesh/errors.h"
 #include "mesh/text/atomic_file.h"
 

@@ -11,6 +11,6 @@ namespace palpate::identify {
 /// The text of a map.yaml for a file, to be edited: what was found out about it, and, as comments, what may be told
 /// besides. @param recordings that were read of it; empty where it could not be read
 /// @throws IoError when there is no such file.
-std::string draft_map(const std::filesystem::path& file, const std::vector<recordings::Recording>& recordings);
+std::string draft_map(const std::filesystem::path& file, const std::vector<Recording>& recordings);
 
 }  // namespace palpate::identify

@@ -12,7 +12,7 @@
 #include "identify/recordings/files/scans/read_scan.h"
 #include "identify/recordings/files/series.h"
 #include "identify/recordings/files/tables/table_recording.h"
-#include "identify/recordings/files/text/open_text.h"
+#include "identify/recordings/files/text/decoding/open_text.h"
 #include "identify/recordings/files/text/table_head.h"
 #include "mesh/errors.h"
 #include "mesh/text/atomic_file.h"

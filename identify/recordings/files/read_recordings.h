@@ -17,6 +17,6 @@ namespace palpate::identify {
 /// @return one recording for each clock that the file has, at least one; each holds points or channels.
 /// @throws IoError; InvalidInput where the content is broken, or is none of these: the message tells what was
 /// recognised, what was not, and a map to start from.
-std::vector<recordings::Recording> read_recordings(const std::filesystem::path& file, const FileMap& map = {});
+std::vector<Recording> read_recordings(const std::filesystem::path& file, const FileMap& map = {});
 
 }  // namespace palpate::identify

@@ -4,7 +4,7 @@
 #include "mesh/formats/surface/read_surface.h"
 #include "mesh/formats/surface/surface_formats.h"
 #include "mesh/text/atomic_file.h"
-#include "pipeline/case/settings.h"
+#include "pipeline/case/settings/settings.h"
 #include "pipeline/cli/shell/new_rig.h"
 #include "pipeline/cli/shell/templates.h"
 #include "pipeline/command_line/commands.h"

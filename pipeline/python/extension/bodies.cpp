@@ -4,8 +4,8 @@
 #include <atomic>
 
 #include "mesh/errors.h"
-#include "pipeline/python/extension/arrays.h"
 #include "pipeline/python/extension/bind.h"
+#include "pipeline/python/extension/conversions/arrays.h"
 #include "skeleton/model/io/model_io.h"
 #include "skeleton/runtime/body.h"
 

@@ -5,12 +5,12 @@
 
 #include <map>
 
-#include "pipeline/case/settings.h"
+#include "pipeline/case/settings/settings.h"
 #include "pipeline/output/ladder.h"
 #include "pipeline/output/text/diagnosis.h"
 #include "pipeline/python/extension/bind.h"
-#include "pipeline/python/extension/border.h"
-#include "pipeline/python/extension/overrides.h"
+#include "pipeline/python/extension/conversions/border.h"
+#include "pipeline/python/extension/conversions/overrides.h"
 
 namespace palpate::python {
 namespace {

@@ -10,10 +10,10 @@
 #include "pipeline/output/text/comparison.h"
 #include "pipeline/output/text/diagnosis.h"
 #include "pipeline/output/vtk/series.h"
-#include "pipeline/python/extension/arrays.h"
 #include "pipeline/python/extension/bind.h"
-#include "pipeline/python/extension/border.h"
-#include "pipeline/python/extension/overrides.h"
+#include "pipeline/python/extension/conversions/arrays.h"
+#include "pipeline/python/extension/conversions/border.h"
+#include "pipeline/python/extension/conversions/overrides.h"
 
 // The commands that take a model and a set, on objects; and bodies and skeletons as objects.
 

@@ -2,8 +2,8 @@
 #include <pybind11/stl.h>
 
 #include "identify/effects/catalogue.h"
-#include "pipeline/python/extension/arrays.h"
 #include "pipeline/python/extension/bind.h"
+#include "pipeline/python/extension/conversions/arrays.h"
 
 // An effect that a function of Python's tells: for trying out, as each of its points takes the interpreter's lock.
 

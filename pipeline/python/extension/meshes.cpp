@@ -7,8 +7,8 @@
 #include "mesh/formats/volume/write_volume.h"
 #include "mesh/formats/vtk/vtk_files.h"
 #include "pipeline/command_line/commands.h"
-#include "pipeline/python/extension/arrays.h"
 #include "pipeline/python/extension/bind.h"
+#include "pipeline/python/extension/conversions/arrays.h"
 
 namespace palpate::python {
 namespace {

@@ -6,8 +6,8 @@
 
 #include "mesh/errors.h"
 #include "pipeline/command_line/commands.h"
-#include "pipeline/python/extension/arrays.h"
 #include "pipeline/python/extension/bind.h"
+#include "pipeline/python/extension/conversions/arrays.h"
 #include "skeleton/effects/effect.h"
 #include "skeleton/model/io/model_io.h"
 

@@ -1,5 +1,5 @@
 #include "pipeline/python/extension/bind.h"
-#include "pipeline/python/extension/border.h"
+#include "pipeline/python/extension/conversions/border.h"
 #include "pipeline/version.h"
 
 PYBIND11_MODULE(_core, module) {

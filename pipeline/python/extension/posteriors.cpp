@@ -8,8 +8,8 @@
 #include "pipeline/output/csv/posterior.h"
 #include "pipeline/output/identification.h"
 #include "pipeline/output/json/comparison.h"
-#include "pipeline/python/extension/arrays.h"
 #include "pipeline/python/extension/bind.h"
+#include "pipeline/python/extension/conversions/arrays.h"
 
 namespace palpate::python {
 namespace {

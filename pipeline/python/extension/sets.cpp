@@ -2,9 +2,9 @@
 #include <pybind11/stl/filesystem.h>
 
 #include "pipeline/case/subject.h"
-#include "pipeline/python/extension/arrays.h"
 #include "pipeline/python/extension/bind.h"
-#include "pipeline/python/extension/border.h"
+#include "pipeline/python/extension/conversions/arrays.h"
+#include "pipeline/python/extension/conversions/border.h"
 
 namespace palpate::python {
 namespace {

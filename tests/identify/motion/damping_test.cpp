@@ -45,7 +45,7 @@ MeasurementSet released(const skeleton::Model& model, const Release& how) {
     for (int i = 0; i < how.readers; ++i)
         set.markers.push_back({.id = i, .rest = model.spheres[first + i].center, .anchor = {}});
     const Vec3 pulls = how.pull * Vec3(0.2, 0.5, -1).normalized();
-    Recording recording{.probe = 1, .loads = {}, .instants = {}};
+    MotionRecording recording{.probe = 1, .loads = {}, .instants = {}};
     recording.loads.push_back({.probe = 1, .time = 0});
     recording.loads.back().gravity = pulls;
     recording.loads.push_back({.probe = 1, .time = how.lasts});
@@ -60,7 +60,7 @@ MeasurementSet released(const skeleton::Model& model, const Release& how) {
     std::normal_distribution<double> noise(0, how.noise);
     const int steps = static_cast<int>(std::ceil(how.spacing / (0.2 * body.stable_step())));
     for (double time = 0; time < how.lasts; time += how.spacing) {
-        Recording::Instant instant{.time = time, .readings = {}};
+        MotionRecording::Instant instant{.time = time, .readings = {}};
         for (int i = 0; i < how.readers; ++i) {
             const Vec3 off(noise(random), noise(random), noise(random));
             instant.readings.push_back({.marker = i, .position = body.position(first + i) + off, .sigma = missing});

@@ -2,7 +2,7 @@
 
 #include "pipeline/analysis/accuracy.h"
 #include "pipeline/body/subject_body.h"
-#include "pipeline/case/overrides.h"
+#include "pipeline/case/settings/overrides.h"
 
 #include <gtest/gtest.h>
 

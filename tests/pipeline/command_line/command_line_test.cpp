@@ -10,7 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include "mesh/formats/surface/read_surface.h"
-#include "pipeline/case/settings.h"
+#include "pipeline/case/settings/settings.h"
 #include "tests/temporary_folder.h"
 
 namespace palpate::pipeline {

@@ -56,9 +56,9 @@ Signal leading_motion(const ProbeRecording& probe) {
     return {probe.times, v};
 }
 
-const RecordedChannel* channel_of(const std::vector<recordings::Recording>& recordings, const std::string& name,
-                                  const recordings::Recording*& of) {
-    for (const recordings::Recording& recording : recordings)
+const RecordedChannel* channel_of(const std::vector<Recording>& recordings, const std::string& name,
+                                  const Recording*& of) {
+    for (const Recording& recording : recordings)
         for (const RecordedChannel& channel : recording.channels)
             if (channel.name == name) {
                 of = &recording;
@@ -68,15 +68,14 @@ const RecordedChannel* channel_of(const std::vector<recordings::Recording>& reco
 }
 
 /// Edges of a trigger, or events of its name.
-std::vector<double> trigger_times(const std::vector<recordings::Recording>& recordings, const ClockRule& rule,
-                                  double& interval) {
-    const recordings::Recording* of = nullptr;
+std::vector<double> trigger_times(const std::vector<Recording>& recordings, const ClockRule& rule, double& interval) {
+    const Recording* of = nullptr;
     if (const RecordedChannel* channel = channel_of(recordings, rule.channel, of)) {
         interval = interval_of(of->times);
         return edges_of({of->times, channel->values}, rule.rising, rule.level);
     }
     std::vector<double> times;
-    for (const recordings::Recording& recording : recordings)
+    for (const Recording& recording : recordings)
         for (const RecordedEvent& event : recording.events)
             if (event.name == rule.channel) times.push_back(event.time);
     std::ranges::sort(times);
@@ -94,8 +93,7 @@ public:
     ProbeRecording merged(std::vector<FileRecordings*> files) {
         // the points' clock is everybody's; without points the first file's is
         const auto shows_points = [](const FileRecordings* file) {
-            return std::ranges::any_of(file->recordings,
-                                       [](const recordings::Recording& r) { return !r.points.empty(); });
+            return std::ranges::any_of(file->recordings, [](const Recording& r) { return !r.points.empty(); });
         };
         std::stable_partition(files.begin(), files.end(), shows_points);
         reference_ = files.front();
@@ -118,9 +116,9 @@ public:
 
 private:
     void begin() {
-        const auto with_points = std::ranges::find_if(reference_->recordings,
-                                                      [](const recordings::Recording& r) { return !r.points.empty(); });
-        const recordings::Recording& first =
+        const auto with_points =
+            std::ranges::find_if(reference_->recordings, [](const Recording& r) { return !r.points.empty(); });
+        const Recording& first =
             with_points == reference_->recordings.end() ? reference_->recordings.front() : *with_points;
         probe_.times = first.times;
         probe_.has_clock = first.has_clock;
@@ -133,7 +131,7 @@ private:
     /// All of a file, at times that `on_clock` makes of its own (NaN: not on this clock).
     template <class OnClock>
     void add(const FileRecordings& file, const OnClock& on_clock) {
-        for (const recordings::Recording& recording : file.recordings) {
+        for (const Recording& recording : file.recordings) {
             Eigen::VectorXd times = recording.times;
             for (double& t : times) t = on_clock(t);
             for (const RecordedPoint& point : recording.points) add_point(point, times, file.name);
@@ -170,7 +168,7 @@ private:
 
     /// Neither has a clock, and both have as many frames.
     bool shares_frames(const FileRecordings& file) const {
-        return !probe_.has_clock && std::ranges::none_of(file.recordings, [&](const recordings::Recording& recording) {
+        return !probe_.has_clock && std::ranges::none_of(file.recordings, [&](const Recording& recording) {
             return recording.has_clock || recording.times.size() != probe_.times.size() ||
                    recording.times != probe_.times;
         });
@@ -231,16 +229,16 @@ private:
 
     /// A channel of another file that the map uses, or its first one.
     Signal force_of(const FileRecordings& file) const {
-        const recordings::Recording* of = nullptr;
+        const Recording* of = nullptr;
         std::vector<std::string> names{map_.clock.force};
         for (const MappedUse& use : map_.uses) names.push_back(use.channel);
         for (const std::string& name : names)
             if (const RecordedChannel* channel = name.empty() ? nullptr : channel_of(file.recordings, name, of))
                 return without_gaps({of->times, channel->values});
-        for (const recordings::Recording& recording : file.recordings)
+        for (const Recording& recording : file.recordings)
             if (!recording.channels.empty()) return without_gaps({recording.times, recording.channels.front().values});
         // another tracking system
-        for (const recordings::Recording& recording : file.recordings) {
+        for (const Recording& recording : file.recordings) {
             ProbeRecording other;
             other.times = recording.times;
             other.points = recording.points;
@@ -273,7 +271,7 @@ private:
     void add_by_common(const FileRecordings& file) {
         const std::string& name = map_.clock.channel;
         const NamedSignal* here = probe_.channel(name);
-        const recordings::Recording* of = nullptr;
+        const Recording* of = nullptr;
         const RecordedChannel* there = channel_of(file.recordings, name, of);
         const Signal other = there ? without_gaps({of->times, there->values}) : Signal{};
         const Signal own = here ? without_gaps(here->signal) : Signal{};
@@ -297,7 +295,7 @@ private:
                             own.values.maxCoeff(), reference_->name));
         report_.clocks.push_back({file.name, fmt::format("by the common column '{}'", name), probe_.probe});
         FileRecordings rest = file;
-        for (recordings::Recording& recording : rest.recordings)
+        for (Recording& recording : rest.recordings)
             std::erase_if(recording.channels, [&](const RecordedChannel& channel) { return channel.name == name; });
         add(rest, [&](double t) { return value_at(known, t); });
     }

@@ -14,7 +14,7 @@ namespace palpate::identify {
 struct FileRecordings {
     const MappedFile* mapped = nullptr;
     std::string name;  // of the file
-    std::vector<recordings::Recording> recordings;
+    std::vector<Recording> recordings;
 };
 
 struct NamedSignal {

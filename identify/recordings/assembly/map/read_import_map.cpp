@@ -5,7 +5,7 @@
 #include <cctype>
 #include <numbers>
 
-#include "identify/measurements/files/rig_yaml.h"
+#include "identify/measurements/files/rig/rig_yaml.h"
 #include "identify/measurements/files/set_description.h"
 #include "identify/measurements/files/set_units.h"
 #include "identify/recordings/assembly/map/import_map.h"

@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "identify/recordings/files/file_map.h"
-#include "identify/recordings/files/text/text_file.h"
+#include "identify/recordings/files/text/decoding/text_file.h"
 #include "identify/recordings/recording.h"
 
 namespace palpate::identify {

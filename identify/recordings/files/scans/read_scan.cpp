@@ -9,7 +9,7 @@
 #include "identify/recordings/files/conversion.h"
 #include "identify/recordings/files/series.h"
 #include "identify/recordings/files/text/cell.h"
-#include "identify/recordings/files/text/open_text.h"
+#include "identify/recordings/files/text/decoding/open_text.h"
 #include "mesh/errors.h"
 #include "mesh/formats/surface/surface_formats.h"
 #include "mesh/formats/vtk/vtk_data.h"

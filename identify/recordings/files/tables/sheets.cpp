@@ -5,7 +5,7 @@
 
 #include "identify/recordings/files/conversion.h"
 #include "identify/recordings/files/tables/table_recording.h"
-#include "identify/recordings/files/text/open_text.h"
+#include "identify/recordings/files/text/decoding/open_text.h"
 #include "mesh/errors.h"
 
 namespace palpate::identify {

@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "identify/recordings/files/text/text_file.h"
+#include "identify/recordings/files/text/decoding/text_file.h"
 
 namespace palpate::identify {
 

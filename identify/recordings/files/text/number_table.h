@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "identify/recordings/files/text/text_file.h"
+#include "identify/recordings/files/text/decoding/text_file.h"
 
 namespace palpate::identify {
 

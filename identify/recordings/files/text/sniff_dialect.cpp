@@ -3,7 +3,7 @@
 #include <cctype>
 #include <map>
 
-#include "identify/recordings/files/text/text_file.h"
+#include "identify/recordings/files/text/decoding/text_file.h"
 
 namespace palpate::identify {
 namespace {

@@ -29,7 +29,7 @@ TEST_F(RecordingFiles, AreReadInTheSetsUnits) {
     folder.write("set.yaml", text);
     const MeasurementSet set = read();
     ASSERT_EQ(set.recordings.size(), 1U);
-    const Recording& recording = set.recordings[0];
+    const MotionRecording& recording = set.recordings[0];
     EXPECT_EQ(recording.probe, 4);
     ASSERT_EQ(recording.loads.size(), 2U);
     EXPECT_DOUBLE_EQ(recording.loads[0].contacts.at(0).force.z(), -0.002);

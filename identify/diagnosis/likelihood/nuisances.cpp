@@ -1,0 +1,265 @@
+#include "identify/diagnosis/likelihood/nuisances.h"
+
+#include <fmt/format.h>
+#include <Eigen/Geometry>
+
+#include <algorithm>
+#include <cmath>
+
+#include "identify/diagnosis/likelihood/tool_nuisances.h"
+#include "mesh/geometry/sampling.h"
+
+namespace palpate::identify {
+namespace {
+
+/// Collects nuisances: names and precisions once, forces action by action.
+class Collector {
+public:
+    /// Columns known in one action only.
+    struct Own {
+        int action;
+        std::function<Eigen::MatrixXd(const Eigen::VectorXd& q)> forces;  // (dofs x c)
+        std::vector<int> columns;
+    };
+
+    /// The number of a nuisance, which actions may share.
+    int add(const std::string& name, double sd) {
+        const auto found = std::ranges::find(names, name);
+        if (found != names.end()) return static_cast<int>(found - names.begin());
+        names.push_back(name);
+        precisions.push_back(1 / (sd * sd));
+        return static_cast<int>(names.size()) - 1;
+    }
+
+    std::vector<std::string> names;
+    std::vector<double> precisions;
+    std::vector<Own> own;
+};
+
+void add_contact(Collector& all, const BodyModel& model, const ModelSetting& setting, int k, const Action& action,
+                 const mesh::Contact& contact, const NuisanceOptions& options) {
+    const double r = effective_radius(model, contact);
+    const Vec3 normal = model.normal_near(contact.point, 1.2 * r), a = normal.unitOrthogonal(), b = normal.cross(a);
+    // However loads are numbered: what touches a place with the same tip does so in one way.
+    const std::string where = fmt::format("of radius {:.4g} mm at ({:.4g}, {:.4g}, {:.4g})", r, contact.point.x(),
+                                          contact.point.y(), contact.point.z());
+
+    // Shifts and radius, each a difference over the radius.
+    std::vector<int> columns{all.add("contact " + where + " shifted", options.shift),
+                             all.add("contact " + where + " shifted across", options.shift),
+                             all.add("radius of the contact " + where, options.radius)};
+    all.own.push_back({k,
+                       [&model, setting, contact, r, a, b](const Eigen::VectorXd& q) {
+                           const auto force = [&](const Vec3& shift, double scale) {
+                               mesh::Contact moved = contact;
+                               moved.point += shift;
+                               moved.radius = scale * r;
+                               return model.contact_force(q, setting, moved);
+                           };
+                           const double h = 0.35;
+                           Eigen::MatrixXd G(model.dofs(), 3);
+                           G.col(0) = (force(h * r * a, 1) - force(-h * r * a, 1)) / (2 * h);
+                           G.col(1) = (force(h * r * b, 1) - force(-h * r * b, 1)) / (2 * h);
+                           G.col(2) = (force(Vec3::Zero(), 1.3) - force(Vec3::Zero(), 0.75)) / 0.55;
+                           return G;
+                       },
+                       columns});
+
+    // Softness within two radii, fading out from one.
+    const Points& centres = model.pieces();
+    Eigen::VectorXd distance = (centres.rowwise() - contact.point.transpose()).rowwise().norm() / r;
+    Eigen::VectorXd weight = (2 - distance.array()).min(1.0).max(0.0);
+    Eigen::Index nearest = 0;
+    distance.minCoeff(&nearest);
+    weight[nearest] = 1;
+    all.own.push_back({k,
+                       [&model, setting, action, weight](const Eigen::VectorXd& q) {
+                           return model.piece_force(q, setting, action, weight);
+                       },
+                       {all.add("softness round the contact " + where, options.softness)}});
+
+    // Next to a support most of the force goes straight into it.
+    const double gap = (model.support_points().rowwise() - contact.point.transpose()).rowwise().norm().minCoeff();
+    if (gap < 1.2 * r) {
+        all.own.push_back({k,
+                           [&model, setting, contact](const Eigen::VectorXd& q) -> Eigen::MatrixXd {
+                               return model.contact_force(q, setting, contact);
+                           },
+                           {all.add("gain next to the support, of the contact " + where, options.gain_at_support)}});
+    }
+}
+
+/// Sectors of the pieces that supports cut, as weights (p x sectors).
+Eigen::MatrixXd clamp_sectors(const BodyModel& model, int most) {
+    const std::vector<char>& cut = model.pieces_at_support();
+    std::vector<int> ids;
+    for (std::size_t p = 0; p < cut.size(); ++p) {
+        if (cut[p]) ids.push_back(static_cast<int>(p));
+    }
+    const Points centres = model.pieces()(ids, Eigen::all);
+    const std::vector<int> seeds = mesh::farthest_points(centres, most);
+    Eigen::MatrixXd W = Eigen::MatrixXd::Zero(std::ssize(cut), std::ssize(seeds));
+    for (std::size_t i = 0; i < ids.size(); ++i) {
+        Eigen::Index nearest = 0;
+        (centres(seeds, Eigen::all).rowwise() - centres.row(static_cast<Eigen::Index>(i)))
+            .rowwise()
+            .squaredNorm()
+            .minCoeff(&nearest);
+        W(ids[i], nearest) = 1;
+    }
+    return W;
+}
+
+double squared_distance(const Points& points, const Vec3& x, Eigen::Index& nearest) {
+    return (points.rowwise() - x.transpose()).rowwise().squaredNorm().minCoeff(&nearest);
+}
+
+/// How closely each marker lies to what is held.
+class Border {
+public:
+    Border(const BodyModel& model, const Points& markers) {
+        const Points& support = model.support_points();
+        double sum = 0;
+        int count = 0;
+        for (Eigen::Index p = 0; p < model.pieces().rows() && support.rows() > 0; ++p) {
+            if (!model.pieces_at_support()[static_cast<std::size_t>(p)]) continue;
+            Eigen::Index nearest = 0;
+            sum += std::sqrt(squared_distance(support, model.pieces().row(p), nearest));
+            ++count;
+        }
+        closeness_ = Eigen::VectorXd::Zero(markers.rows());
+        skin_.assign(static_cast<std::size_t>(markers.rows()), 0);
+        if (!(sum > 0)) return;
+        const double reach = 2 * sum / count;
+        for (Eigen::Index m = 0; m < markers.rows(); ++m) {
+            Eigen::Index held = 0;
+            closeness_[m] = std::exp(-squared_distance(support, markers.row(m), held) / (reach * reach));
+            squared_distance(model.skin(), support.row(held), skin_[static_cast<std::size_t>(m)]);
+        }
+    }
+
+    double closeness(int marker) const { return closeness_[marker]; }  // 1: on the support, 0: far from it
+    Eigen::Index skin_point(int marker) const { return skin_[static_cast<std::size_t>(marker)]; }  // held next to it
+
+private:
+    Eigen::VectorXd closeness_;
+    std::vector<Eigen::Index> skin_;
+};
+
+/// The contacts that dent the body in each action: its own, and where it yields, the strongest at each place before.
+std::vector<std::vector<mesh::Contact>> contacts_that_dent(const Problem& problem, const ForwardSolution& forward,
+                                                           bool yields) {
+    std::vector<std::vector<mesh::Contact>> dents;
+    dents.reserve(forward.actions.size());
+    for (int k = 0; k < static_cast<int>(forward.actions.size()); ++k) {
+        dents.push_back(forward.actions[k].contacts);
+        if (!yields || problem.before(k) < 0) continue;
+        for (const mesh::Contact& earlier : dents[problem.before(k)]) {
+            const auto same = std::ranges::find(dents.back(), earlier.point, &mesh::Contact::point);
+            if (same == dents.back().end()) {
+                dents.back().push_back(earlier);
+            } else if (earlier.force.norm() > same->force.norm()) {
+                *same = earlier;
+            }
+        }
+    }
+    return dents;
+}
+
+/// Adds nuisances of one prior sd; columns over sigma (N x c).
+void add(const std::vector<std::string>& names, const Eigen::MatrixXd& columns, double sd, Nuisances& nuisances) {
+    const Eigen::Index more = columns.cols();
+    nuisances.columns.conservativeResize(Eigen::NoChange, nuisances.columns.cols() + more);
+    nuisances.columns.rightCols(more) = columns;
+    nuisances.precisions.conservativeResize(nuisances.precisions.size() + more);
+    nuisances.precisions.tail(more).setConstant(1 / (sd * sd));
+    nuisances.names.insert(nuisances.names.end(), names.begin(), names.end());
+}
+
+}  // namespace
+
+double effective_radius(const BodyModel& model, const mesh::Contact& contact) {
+    return std::max(contact.radius, 0.01 * model.size());
+}
+
+Nuisances make_nuisances(const BodyModel& model, const Problem& problem, const Explanation& explanation,
+                         const ForwardSolution& forward, int threads, const NuisanceOptions& options) {
+    const ModelSetting setting = explanation.setting();
+    Collector all;
+    for (int k = 0; k < static_cast<int>(problem.actions.size()); ++k) {
+        for (const mesh::Contact& contact : forward.actions[k].contacts) {
+            add_contact(all, model, setting, k, forward.actions[k], contact, options);
+        }
+    }
+    const Eigen::MatrixXd sectors = clamp_sectors(model, options.clamp_sectors);
+    std::vector<int> sector_columns;
+    for (Eigen::Index s = 0; s < sectors.cols(); ++s) {
+        sector_columns.push_back(all.add(fmt::format("sector {} of the supports' border", s), options.clamp));
+    }
+
+    Signatures signatures{std::ssize(all.names), [&](int k, const Eigen::VectorXd& q) {
+                              Signatures::InAction result;
+                              std::vector<Eigen::MatrixXd> parts;
+                              if (sectors.cols() > 0) {
+                                  parts.push_back(model.piece_force(q, setting, forward.actions[k], sectors));
+                                  result.columns = sector_columns;
+                              }
+                              for (const Collector::Own& own : all.own) {
+                                  if (own.action != k) continue;
+                                  parts.push_back(own.forces(q));
+                                  result.columns.insert(result.columns.end(), own.columns.begin(), own.columns.end());
+                              }
+                              result.forces.resize(model.dofs(), std::ssize(result.columns));
+                              Eigen::Index at = 0;
+                              for (const Eigen::MatrixXd& part : parts) {
+                                  result.forces.middleCols(at, part.cols()) = part;
+                                  at += part.cols();
+                              }
+                              return result;
+                          }};
+    const ToolNuisances tools = tool_nuisances(model, problem, setting, forward);
+    const std::vector<Eigen::MatrixXd> columns =
+        sensitivities(model, problem, explanation, forward, {signatures, tools.signatures}, threads);
+    Nuisances result{columns.front(), Eigen::Map<Eigen::VectorXd>(all.precisions.data(), std::ssize(all.precisions)),
+                     all.names};
+    add(tools.names, columns.back(), options.play, result);
+    // What was taken off for the mesh, more or less of it.
+    if (problem.discretisation.size() > 0) {
+        add({"error of the mesh"}, problem.discretisation.cwiseQuotient(problem.sigma), options.discretisation, result);
+    }
+    return result;
+}
+
+Eigen::VectorXd reading_weights(const BodyModel& model, const Problem& problem, const Explanation& explanation,
+                                const ForwardSolution& forward, const NuisanceOptions& options) {
+    const ModelSetting setting = explanation.setting();
+    const double E = model.young(setting);
+    constexpr double nu = 0.45;
+    const double flow = setting.effects.plasticity ? options.flow : 0;
+    const Border border(model, problem.rest.topRows(problem.markers));
+    const std::vector<std::vector<mesh::Contact>> dents =
+        contacts_that_dent(problem, forward, problem.by_stage && flow > 0);
+    std::vector<Points> skin;  // what it moved by, in each action
+    for (const Eigen::VectorXd& q : forward.q) skin.push_back(model.skin_positions(q, setting) - model.skin());
+    Eigen::VectorXd variance = Eigen::VectorXd::Ones(problem.rows());  // in sigma^2
+    for (Eigen::Index n = 0; n < problem.rows(); ++n) {
+        if (!problem.is_position(n)) continue;
+        const int marker = problem.channel(n);
+        const Vec3 moved = forward.stand[problem.action[n]].row(marker) - problem.rest.row(marker);
+        const Vec3 base = skin[problem.action[n]].row(border.skin_point(marker));
+        variance[n] += std::pow(flow * moved.norm() / problem.sigma[n], 2);
+        variance[n] +=
+            std::pow(options.ragged * border.closeness(marker) * (moved - base).norm() / problem.sigma[n], 2);
+        for (const mesh::Contact& contact : dents[problem.action[n]]) {
+            const double r = effective_radius(model, contact), F = contact.force.norm();
+            const double d = (problem.rest.row(marker).transpose() - contact.point).norm();
+            double U = F * (1 - nu * nu) / (2 * E * r);
+            if (model.is_nonlinear(setting)) U *= 1 + F / (M_PI * r * r * E);
+            const double near = std::min(1.0, std::pow(1.2 * r / std::max(d, 1e-9), 2));
+            variance[n] += std::pow(options.dent * U * near / problem.sigma[n], 2);
+        }
+    }
+    return variance.cwiseSqrt().cwiseInverse();
+}
+
+}  // namespace palpate::identify

@@ -1,0 +1,85 @@
+#include "identify/diagnosis/likelihood/tool_nuisances.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <memory>
+
+namespace palpate::identify {
+namespace {
+
+/// The motion, 0 where a coordinate is left free.
+Vec3 imposed(const mesh::ToolMotion& motion) {
+    return motion.translation.array().isNaN().select(Vec3::Zero(), motion.translation);
+}
+
+Vec3 force_on_body(const Problem& problem, const ForwardSolution& forward, std::size_t k, int tool) {
+    return forward.stand[k].row(problem.markers + 2 * Eigen::Index{tool});
+}
+
+/// The largest motion and force of a tool over all actions, and where its columns stand.
+struct Range {
+    double motion = 0;  // [mm]
+    double force = 0;   // [N]
+    int column = 0;     // of its play; that of the compliance follows
+};
+
+std::map<int, Range> ranges_of(const Problem& problem, const ForwardSolution& forward) {
+    std::map<int, Range> ranges;
+    for (std::size_t k = 0; k < forward.actions.size(); ++k) {
+        for (const mesh::ToolMotion& motion : forward.actions[k].motions) {
+            Range& range = ranges[motion.tool];
+            range.motion = std::max(range.motion, imposed(motion).norm());
+            range.force = std::max(range.force, force_on_body(problem, forward, k, motion.tool).norm());
+        }
+    }
+    return ranges;
+}
+
+/// How far a tool falls short of its motion (6 x 2): by its play, and by the compliance of what moves it.
+Eigen::Matrix<double, 6, 2> shortfalls(const mesh::ToolMotion& motion, const Vec3& felt, const Range& range) {
+    Eigen::Matrix<double, 6, 2> errors = Eigen::Matrix<double, 6, 2>::Zero();
+    const Vec3 u = imposed(motion);
+    if (u.norm() > 0) errors.col(0).head<3>() = -range.motion * u.normalized();
+    if (range.force > 0) errors.col(1).head<3>() = -range.motion / range.force * felt;
+    for (int axis = 0; axis < 3; ++axis) {
+        if (std::isnan(motion.translation[axis])) errors.row(axis).setZero();  // it goes where no force acts
+    }
+    return errors;
+}
+
+}  // namespace
+
+ToolNuisances tool_nuisances(const BodyModel& model, const Problem& problem, const ModelSetting& setting,
+                             const ForwardSolution& forward) {
+    ToolNuisances result;
+    std::map<int, Range> ranges = ranges_of(problem, forward);
+    for (auto& [tool, range] : ranges) {
+        range.column = static_cast<int>(result.names.size());
+        result.names.push_back(fmt::format("play of the tool '{}'", problem.tools[tool]));
+        result.names.push_back(fmt::format("compliance of what moves the tool '{}'", problem.tools[tool]));
+    }
+    result.signatures = {std::ssize(result.names), [&, setting, ranges](int k, const Eigen::VectorXd& q) {
+                             const Action& action = forward.actions[k];
+                             Signatures::InAction own;
+                             if (action.motions.empty()) return own;
+                             const auto tools = std::ssize(action.motions);
+                             Eigen::MatrixXd poses = Eigen::MatrixXd::Zero(6 * tools, 2 * tools);
+                             for (Eigen::Index i = 0; i < tools; ++i) {
+                                 const mesh::ToolMotion& motion = action.motions[static_cast<std::size_t>(i)];
+                                 const Range& range = ranges.at(motion.tool);
+                                 const Vec3 felt =
+                                     force_on_body(problem, forward, static_cast<std::size_t>(k), motion.tool);
+                                 poses.block<6, 2>(6 * i, 2 * i) = shortfalls(motion, felt, range);
+                                 own.columns.insert(own.columns.end(), {range.column, range.column + 1});
+                             }
+                             const ReactionSlopes slopes = model.reaction_slopes(q, setting, action);
+                             own.forces = -slopes.by_step.transpose() * poses;
+                             own.reactions = slopes.by_pose * poses;
+                             return own;
+                         }};
+    return result;
+}
+
+}  // namespace palpate::identify

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "identify/measurements/measurement_set.h"
+#include "identify/preflight/prospects/effect_prospects.h"
+
+namespace palpate::identify {
+
+/// More states for a set, as a rig could bring them within an hour.
+struct Experiment {
+    std::string kind;                    // unload, levels, repeat, orientation, load, dwell, release, pressure
+    std::string words;                   // what to do, as an order
+    std::vector<LoadState> states = {};  // without readings
+    std::vector<ProbeConditions> circumstances = {};  // of each state
+};
+
+/// Those that the set lacks: the unloaded pose, the body turned, every probe at one and two thirds of its load and once
+/// more, presses at other places, the strongest load held, or taken off, vented cavities. Loads, tools and actuators
+/// are the set's own.
+std::vector<Experiment> possible_experiments(const BodyModel& model, const MeasurementSet& set, const Problem& problem);
+
+/// What an experiment would do for an effect.
+struct ExperimentGain {
+    std::string effect;
+    double share_before = 0, share_after = 0;  // of cases that would be named
+    double least_before = INFINITY, least_after = INFINITY;
+};
+
+/// An experiment and what it would bring.
+struct ExperimentProspect {
+    Experiment experiment;
+    std::vector<ExperimentGain> gains = {};  // effects that need a fifth less strength at least
+    std::vector<std::string> opens = {};     // effects that would then be named in half of the cases, and are not now
+};
+
+/// Each experiment added to the set, its readings of all markers as noisy as the set's, at the same guess of the
+/// stiffness; those that open most come first, and those that bring nothing are left out.
+/// @param noise where the set tells none [mm]
+std::vector<ExperimentProspect> experiment_prospects(const BodyModel& model, const MeasurementSet& set, double noise,
+                                                     const Explanation& guess,
+                                                     const std::vector<EffectProspect>& before,
+                                                     const std::vector<Experiment>& experiments,
+                                                     const DiagnoseOptions& options);
+
+}  // namespace palpate::identify

@@ -1,0 +1,60 @@
+#include "identify/preflight/prospects/own_number.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+namespace palpate::identify {
+namespace {
+
+/// What a screen of its own calls its number, for effects whose screen asks for another one than the fit.
+struct ScreenedNumber {
+    const char *name, *unit;
+    double (*value)(double screened);
+    bool at_most = false;
+};
+
+const std::map<std::string, ScreenedNumber>& screened_numbers() {
+    static const std::map<std::string, ScreenedNumber> known{
+        {"anisotropy", {"k", "1", [](double k) { return std::abs(k); }}},
+        {"inclusion", {"ratio", "1", [](double logarithm) { return std::exp(std::abs(logarithm)); }}},
+        {"viscosity", {"creep", "1", [](double creep) { return creep; }}},
+        {"compliant-support", {"stiffness", "N/mm", [](double compliance) { return 1 / compliance; }, true}}};
+    return known;
+}
+
+/// Those whose screen says how much there is of something that has several numbers.
+bool is_a_share(const std::string& effect) {
+    return effect == "contact" || effect == "plasticity" || effect == "stiffening";
+}
+
+}  // namespace
+
+std::optional<OwnNumber> own_number(const EffectHypothesis& effect, const std::vector<EffectNumber>& numbers,
+                                    const Eigen::VectorXd& values, double factor) {
+    if (is_a_share(effect.name())) return std::nullopt;
+    if (const auto known = screened_numbers().find(effect.name()); known != screened_numbers().end()) {
+        const ScreenedNumber& number = known->second;
+        return OwnNumber{number.name, number.unit, number.value(factor * values[0]), number.at_most};
+    }
+    if (values.size() != std::ssize(numbers)) return std::nullopt;
+    // Numbers of one unit are a vector, which has a length.
+    Eigen::VectorXd start(std::ssize(numbers));
+    for (Eigen::Index j = 0; j < start.size(); ++j) start[j] = numbers[static_cast<std::size_t>(j)].start;
+    const skeleton::EffectRecord none = effect.record(numbers, start);
+    const skeleton::EffectRecord some = effect.record(numbers, start + factor * values);
+    if (none.parameters.size() != some.parameters.size() || some.parameters.empty()) return std::nullopt;
+    double squares = 0;
+    for (std::size_t i = 0; i < some.parameters.size(); ++i) {
+        if (some.parameters[i].unit != some.parameters.front().unit) return std::nullopt;
+        squares += std::pow(some.parameters[i].value - none.parameters[i].value, 2);
+    }
+    const bool is_one = some.parameters.size() == 1;
+    // Gains are told by how much they are off on average over those that there are.
+    const bool are_ratios = some.parameters.front().unit == "1";
+    const auto count = static_cast<double>(some.parameters.size());
+    return OwnNumber{is_one ? some.parameters.front().name : effect.name(), some.parameters.front().unit,
+                     std::sqrt(are_ratios ? squares / count : squares)};
+}
+
+}  // namespace palpate::identify
