@@ -100,6 +100,8 @@ YamlFields YamlFields::from_text(const std::string& text, const std::filesystem:
 
 bool YamlFields::has(const std::string& key) const { return impl_->find(key) != nullptr; }
 
+bool YamlFields::is_null(const std::string& key) const { return impl_->get(key).kind == Kind::empty; }
+
 std::string YamlFields::text(const std::string& key) const {
     const YamlNode& value = impl_->get(key);
     if (value.kind != Kind::scalar) impl_->refuse(key, value, "a text");

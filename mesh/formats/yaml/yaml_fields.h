@@ -20,6 +20,8 @@ public:
     static YamlFields from_text(const std::string& text, const std::filesystem::path& name);
 
     bool has(const std::string& key) const;
+    /// Does nothing stand there, or null?
+    bool is_null(const std::string& key) const;
     std::string text(const std::string& key) const;
     /// One of `allowed`.
     std::string choice(const std::string& key, const std::vector<std::string>& allowed) const;

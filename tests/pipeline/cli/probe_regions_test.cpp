@@ -55,7 +55,7 @@ protected:
     std::string message(const commands::ProbeCommandOptions& how) const {
         return message_of<InvalidInput>([&] { commands::probe(how, {}); });
     }
-    std::string message(const std::vector<std::string>& regions) const { return message(options(regions)); }
+    std::string message_of_regions(const std::vector<std::string>& regions) const { return message(options(regions)); }
     json truth() const { return json::parse(mesh::read_text(scratch_ / "set/truth.json")); }
     /// The largest displacement that is read.
     static double largest(const MeasurementSet& set) {
@@ -133,17 +133,17 @@ TEST_F(ProbeRegions, OfACaseAreInTheDeckOfAnotherSolver) {
 }
 
 TEST_F(ProbeRegions, ThatAreNotToldInFullAreRefused) {
-    EXPECT_TRUE(says(message({"ball"}), {"--region 'ball'", "names no region", "NAME:surface=FILE"}));
-    EXPECT_TRUE(says(message({"ball:young=1"}), {"has no surface", "NAME:surface=FILE"}));
-    EXPECT_TRUE(says(message({ball("")}), {"has no young"}));
-    EXPECT_TRUE(says(message({ball(",young=stiff")}), {"young = 'stiff'", "no number"}));
-    EXPECT_TRUE(says(message({ball(",young=-1")}), {"Young's modulus is -1"}));
-    EXPECT_TRUE(says(message({ball(",young=1,label=2")}), {"has two places", "NAME:label=N"}));
-    EXPECT_TRUE(says(message({"ball:label=1.5,young=1"}), {"label = '1.5'", "no whole number"}));
-    EXPECT_TRUE(says(message({"ball:label=1,young=1"}), {"bar.stl", "no labels"}));
-    EXPECT_TRUE(says(message({ball(",young=1,ratio=2")}), {"'ratio'", "which no region has"}));
-    EXPECT_TRUE(says(message({ball(",young=1,soft")}), {"'soft'", "not name=value"}));
-    EXPECT_TRUE(says(message({ball(",young=1"), ball(",young=2")}), {"'ball' is the name of two regions"}));
+    EXPECT_TRUE(says(message_of_regions({"ball"}), {"--region 'ball'", "names no region", "NAME:surface=FILE"}));
+    EXPECT_TRUE(says(message_of_regions({"ball:young=1"}), {"has no surface", "NAME:surface=FILE"}));
+    EXPECT_TRUE(says(message_of_regions({ball("")}), {"has no young"}));
+    EXPECT_TRUE(says(message_of_regions({ball(",young=stiff")}), {"young = 'stiff'", "no number"}));
+    EXPECT_TRUE(says(message_of_regions({ball(",young=-1")}), {"Young's modulus is -1"}));
+    EXPECT_TRUE(says(message_of_regions({ball(",young=1,label=2")}), {"has two places", "NAME:label=N"}));
+    EXPECT_TRUE(says(message_of_regions({"ball:label=1.5,young=1"}), {"label = '1.5'", "no whole number"}));
+    EXPECT_TRUE(says(message_of_regions({"ball:label=1,young=1"}), {"bar.stl", "no labels"}));
+    EXPECT_TRUE(says(message_of_regions({ball(",young=1,ratio=2")}), {"'ratio'", "which no region has"}));
+    EXPECT_TRUE(says(message_of_regions({ball(",young=1,soft")}), {"'soft'", "not name=value"}));
+    EXPECT_TRUE(says(message_of_regions({ball(",young=1"), ball(",young=2")}), {"'ball' is the name of two regions"}));
     scratch_.write("bar.yaml",
                    "format: palpate-case/1\nmesh: bar.stl\nregions:\n  - {name: a, surface: ball.stl, young: null}\n");
     auto how = options({});
@@ -166,8 +166,10 @@ TEST_F(ProbeRegions, OfASetStandInItsOwnFile) {
 TEST_F(ProbeRegions, ARunMakesNoMeasurementsOfThem) {
     scratch_.write("bar.yaml",
                    "format: palpate-case/1\nmesh: bar.stl\nregions:\n  - {name: a, surface: ball.stl, young: 1}\n");
-    EXPECT_TRUE(says(message_of<InvalidInput>(
-                         [&] { commands::run({.input = scratch_ / "bar.yaml", .output = scratch_ / "run"}, {}); }),
+    EXPECT_TRUE(says(message_of<InvalidInput>([&] {
+                         commands::run({.input = scratch_ / "bar.yaml", .output = scratch_ / "run", .overrides = {}},
+                                       {});
+                     }),
                      {"bar.yaml", "'regions'", "palpate probe"}));
 }
 

@@ -20,7 +20,7 @@ using mesh::YamlFields;
 
 constexpr double tonne_per_mm3 = 1e-12;  // one kg/m^3
 
-bool is_null(const std::string& text) { return text == "null" || text == "~" || text.empty(); }
+bool tells(const YamlFields& item, const std::string& key) { return item.has(key) && !item.is_null(key); }
 
 std::optional<double> read_young(const YamlFields& item, const std::string& name) {
     if (!item.has("young"))
@@ -28,12 +28,12 @@ std::optional<double> read_young(const YamlFields& item, const std::string& name
             fmt::format("{}: region '{}' tells no material. Give 'young' in MPa, or 'young: null' to have it "
                         "identified.",
                         item.where("name"), name));
-    if (is_null(item.text("young"))) return std::nullopt;
+    if (item.is_null("young")) return std::nullopt;
     return item.number("young", 1e-9, 1e9);  // MPa; diamond has 1.2e6
 }
 
 std::optional<double> read_poisson(const YamlFields& item) {
-    if (!item.has("poisson") || is_null(item.text("poisson"))) return std::nullopt;
+    if (!tells(item, "poisson")) return std::nullopt;
     const double poisson = item.number("poisson");
     if (poisson <= -1 || poisson >= 0.5)
         throw InvalidInput(fmt::format("{}: {} must lie between -1 and 0.5, both excluded (0.499 for rubber).",
@@ -64,7 +64,7 @@ MaterialRegion read_region(const YamlFields& item, double unit, const std::files
     region.young = read_young(item, region.name);
     region.poisson = read_poisson(item);
     // A density in another unit than kg/m^3 is far outside: air has 1, the heaviest metal 22,600.
-    if (item.has("density") && !is_null(item.text("density")))
+    if (tells(item, "density"))
         region.density = item.number("density", 1, 30000) * tonne_per_mm3;
     item.finish();
     return region;
