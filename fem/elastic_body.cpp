@@ -84,7 +84,7 @@ Points numbered_positions(const mesh::VolumeMesh& mesh, const std::vector<int>& 
 
 struct ElasticBody::Impl {
     mesh::VolumeMesh mesh;
-    Material material;
+    Materials materials;
     std::vector<char> held;
     ElasticBodyOptions options;
     ElasticBodyStats stats;
@@ -112,18 +112,23 @@ struct ElasticBody::Impl {
 
 ElasticBody::ElasticBody(mesh::VolumeMesh mesh, const Material& material, const std::vector<char>& held,
                          const ElasticBodyOptions& options)
+    : ElasticBody(std::move(mesh), Materials{.body = material}, held, options) {}
+
+ElasticBody::ElasticBody(mesh::VolumeMesh mesh, Materials materials, const std::vector<char>& held,
+                         const ElasticBodyOptions& options)
     : impl_(std::make_unique<Impl>()) {
     assert(held.size() == static_cast<std::size_t>(mesh.nodes.rows()));
-    material.validate();
+    assert(materials.of_element.empty() || std::ssize(materials.of_element) == mesh.tetrahedra.rows());
+    materials.validate();
     validate(options);
     check_restraint(mesh, held);
     ElasticBodyStats& stats = impl_->stats;
     constexpr double near_incompressible = 0.45;
-    if (mesh.is_quadratic() && material.poisson >= near_incompressible) stats.dilatation = Dilatation::mean;
+    if (mesh.is_quadratic() && materials.most_poisson() >= near_incompressible) stats.dilatation = Dilatation::mean;
     stats.nodes = static_cast<int>(mesh.nodes.rows());
     stats.elements = static_cast<int>(mesh.tetrahedra.rows());
     impl_->mesh = std::move(mesh);
-    impl_->material = material;
+    impl_->materials = std::move(materials);
     impl_->held = held;
     impl_->options = options;
     arena(options).execute([&] { impl_->prepare(); });
@@ -165,7 +170,7 @@ void ElasticBody::Impl::make_factor(Elimination elimination) {
         if (k >= 0) k = elimination.position[k];
     }
     auto start = std::chrono::steady_clock::now();
-    const LowerMatrix K = assemble<std::int64_t>(mesh, material, stats.dilatation, number, Half::lower);
+    const LowerMatrix K = assemble<std::int64_t>(mesh, materials, stats.dilatation, number, Half::lower);
     stats.seconds_assemble = seconds_since(start);
     start = std::chrono::steady_clock::now();
     factor = std::make_unique<Cholesky>(std::make_shared<const Supernodes>(std::move(elimination.supernodes)), K);
@@ -183,7 +188,7 @@ void ElasticBody::Impl::make_multigrid() {
     }
     positions = Points(positions(order, Eigen::all));
 
-    BlockMatrix<3, 3> K = assemble_blocks(mesh, material, stats.dilatation, number);
+    BlockMatrix<3, 3> K = assemble_blocks(mesh, materials, stats.dilatation, number);
     stats.seconds_assemble = seconds_since(start);
     start = std::chrono::steady_clock::now();
     multigrid = std::make_unique<Multigrid>(std::move(K), rigid_modes(positions));
@@ -304,7 +309,7 @@ Eigen::MatrixXd ElasticBody::solve(const Eigen::SparseMatrix<double>& loads) con
 Eigen::MatrixXd ElasticBody::solve(const Eigen::MatrixXd& loads) const { return impl_->solve(loads); }
 
 const mesh::VolumeMesh& ElasticBody::mesh() const { return impl_->mesh; }
-const Material& ElasticBody::material() const { return impl_->material; }
+const Materials& ElasticBody::materials() const { return impl_->materials; }
 const std::vector<char>& ElasticBody::held() const { return impl_->held; }
 const ElasticBodyStats& ElasticBody::stats() const { return impl_->stats; }
 int ElasticBody::most_iterations() const { return impl_->most_iterations; }

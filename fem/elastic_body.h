@@ -34,6 +34,9 @@ public:
     /// SolverFailure when the factorisation fails.
     ElasticBody(mesh::VolumeMesh mesh, const Material& material, const std::vector<char>& held,
                 const ElasticBodyOptions& options = {});
+    /// The same of several materials. P2/P0 from nu = 0.45 in any of them.
+    ElasticBody(mesh::VolumeMesh mesh, Materials materials, const std::vector<char>& held,
+                const ElasticBodyOptions& options = {});
     ~ElasticBody();
     ElasticBody(ElasticBody&&) noexcept;
 
@@ -43,7 +46,7 @@ public:
     Eigen::MatrixXd solve(const Eigen::MatrixXd& loads) const;
 
     const mesh::VolumeMesh& mesh() const;
-    const Material& material() const;
+    const Materials& materials() const;
     const std::vector<char>& held() const;
     const ElasticBodyStats& stats() const;
     /// Of conjugate gradients, the most that loads took so far; 0 with a factor.

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "mesh/errors.h"
 
 namespace palpate::fem {
@@ -24,6 +26,17 @@ void Material::validate() const {
         throw InvalidInput(fmt::format(
             "Density is {} tonne/mm^3; allowed: 0 to less than 1. 1000 kg/m^3 is 1e-9 tonne/mm^3.", density));
     }
+}
+
+double Materials::most_poisson() const {
+    double most = body.poisson;
+    for (const Material& region : regions) most = std::max(most, region.poisson);
+    return most;
+}
+
+void Materials::validate() const {
+    body.validate();
+    for (const Material& region : regions) region.validate();
 }
 
 }  // namespace palpate::fem

@@ -14,12 +14,12 @@ namespace palpate::fem {
 
 namespace {
 
-void refuse_locking(const mesh::VolumeMesh& mesh, const Material& material) {
-    if (mesh.is_quadratic() || material.poisson <= 0.4) return;
+void refuse_locking(const mesh::VolumeMesh& mesh, const Materials& materials) {
+    if (mesh.is_quadratic() || materials.most_poisson() <= 0.4) return;
     throw InvalidInput(
         fmt::format("Poisson's ratio is {} on linear tetrahedra, which lock above 0.4 (26 % too stiff at 0.49). Use "
                     "quadratic tetrahedra, or a ratio of at most 0.4.",
-                    material.poisson));
+                    materials.most_poisson()));
 }
 
 /// The elements of each node, as element * nodes + local index, ascending.
@@ -78,7 +78,7 @@ std::vector<std::vector<int>> neighbours_of(const mesh::VolumeMesh& mesh, const 
 template <int nodes>
 struct ColumnGather {
     const ElementGradients& gradients;
-    double mu, lambda;
+    const Materials& materials;
     Dilatation dilatation;
 
     /// `place` (nodes): where node j's rows begin in each column, or -1; `stride`: entries of a column.
@@ -91,6 +91,8 @@ struct ColumnGather {
                 for (int k = 0; k < width; ++k) S[a][k] += g[3 * i + a] * g[k];
             }
         }
+        const Material& material = materials.of(static_cast<std::size_t>(element));
+        const double mu = material.shear_modulus(), lambda = material.lame_lambda();
         const double* m = &gradients.means[static_cast<std::size_t>(element) * width];
         for (int j = 0; j < nodes; ++j) {
             if (place[j] < 0) continue;
@@ -109,11 +111,11 @@ struct ColumnGather {
 
 /// `columns_of(c)`: where the three columns of numbered node c are stored, one after the other.
 template <int nodes, class ColumnsOf>
-void fill_values(const mesh::VolumeMesh& mesh, const Material& material, Dilatation dilatation,
+void fill_values(const mesh::VolumeMesh& mesh, const Materials& materials, Dilatation dilatation,
                  const NodeElements& elements, const std::vector<int>& number, const std::vector<int>& numbered,
                  const std::vector<std::vector<int>>& rows, ColumnsOf&& columns_of) {
     const ElementGradients gradients = element_gradients(mesh);
-    const ColumnGather<nodes> gather{gradients, material.shear_modulus(), material.lame_lambda(), dilatation};
+    const ColumnGather<nodes> gather{gradients, materials, dilatation};
     const auto count = static_cast<int>(numbered.size());
     tbb::enumerable_thread_specific<std::vector<int>> place_by([&] { return std::vector<int>(count, -1); });
     tbb::parallel_for(tbb::blocked_range<int>(0, count, 256), [&](const tbb::blocked_range<int>& range) {
@@ -142,11 +144,11 @@ std::vector<std::vector<int>> neighbours(const mesh::VolumeMesh& mesh, const std
 }
 
 template <class Index>
-Eigen::SparseMatrix<double, Eigen::ColMajor, Index> assemble(const mesh::VolumeMesh& mesh, const Material& material,
+Eigen::SparseMatrix<double, Eigen::ColMajor, Index> assemble(const mesh::VolumeMesh& mesh, const Materials& materials,
                                                              Dilatation dilatation, const std::vector<int>& number,
                                                              Half half) {
-    material.validate();
-    refuse_locking(mesh, material);
+    materials.validate();
+    refuse_locking(mesh, materials);
     const NodeElements elements(mesh);
     const std::vector<int> numbered = numbered_nodes(number);
     const auto rows = neighbours_of(mesh, elements, number, numbered, half);
@@ -167,17 +169,17 @@ Eigen::SparseMatrix<double, Eigen::ColMajor, Index> assemble(const mesh::VolumeM
 
     const auto columns_of = [&](int c) { return K.valuePtr() + start[3 * static_cast<Eigen::Index>(c)]; };
     if (mesh.is_quadratic()) {
-        fill_values<10>(mesh, material, dilatation, elements, number, numbered, rows, columns_of);
+        fill_values<10>(mesh, materials, dilatation, elements, number, numbered, rows, columns_of);
     } else {
-        fill_values<4>(mesh, material, dilatation, elements, number, numbered, rows, columns_of);
+        fill_values<4>(mesh, materials, dilatation, elements, number, numbered, rows, columns_of);
     }
     return K;
 }
 
-BlockMatrix<3, 3> assemble_blocks(const mesh::VolumeMesh& mesh, const Material& material, Dilatation dilatation,
+BlockMatrix<3, 3> assemble_blocks(const mesh::VolumeMesh& mesh, const Materials& materials, Dilatation dilatation,
                                   const std::vector<int>& number) {
-    material.validate();
-    refuse_locking(mesh, material);
+    materials.validate();
+    refuse_locking(mesh, materials);
     const NodeElements elements(mesh);
     const std::vector<int> numbered = numbered_nodes(number);
     const auto rows = neighbours_of(mesh, elements, number, numbered, Half::both);
@@ -186,17 +188,17 @@ BlockMatrix<3, 3> assemble_blocks(const mesh::VolumeMesh& mesh, const Material& 
     // K is symmetric: the three columns of a node are its three rows.
     const auto rows_of = [&](int c) { return K.panel(c).data(); };
     if (mesh.is_quadratic()) {
-        fill_values<10>(mesh, material, dilatation, elements, number, numbered, rows, rows_of);
+        fill_values<10>(mesh, materials, dilatation, elements, number, numbered, rows, rows_of);
     } else {
-        fill_values<4>(mesh, material, dilatation, elements, number, numbered, rows, rows_of);
+        fill_values<4>(mesh, materials, dilatation, elements, number, numbered, rows, rows_of);
     }
     return K;
 }
 
 template Eigen::SparseMatrix<double, Eigen::ColMajor, int> assemble<int>(  //
-    const mesh::VolumeMesh&, const Material&, Dilatation, const std::vector<int>&, Half);
+    const mesh::VolumeMesh&, const Materials&, Dilatation, const std::vector<int>&, Half);
 template Eigen::SparseMatrix<double, Eigen::ColMajor, std::int64_t> assemble<std::int64_t>(const mesh::VolumeMesh&,
-                                                                                           const Material&, Dilatation,
+                                                                                           const Materials&, Dilatation,
                                                                                            const std::vector<int>&,
                                                                                            Half);
 

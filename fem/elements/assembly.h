@@ -23,17 +23,17 @@ std::vector<std::vector<int>> neighbours(const mesh::VolumeMesh& mesh, const std
 /// Each column is summed by one thread, over the node's elements in order: the same numbers on any number of threads.
 /// @throws InvalidInput for a material out of range, linear elements with nu > 0.4, an element turned inside out.
 template <class Index>
-Eigen::SparseMatrix<double, Eigen::ColMajor, Index> assemble(const mesh::VolumeMesh& mesh, const Material& material,
+Eigen::SparseMatrix<double, Eigen::ColMajor, Index> assemble(const mesh::VolumeMesh& mesh, const Materials& materials,
                                                              Dilatation dilatation, const std::vector<int>& number,
                                                              Half half);
 
 /// The same as blocks, both halves: a third of the memory. @throws as assemble.
-BlockMatrix<3, 3> assemble_blocks(const mesh::VolumeMesh& mesh, const Material& material, Dilatation dilatation,
+BlockMatrix<3, 3> assemble_blocks(const mesh::VolumeMesh& mesh, const Materials& materials, Dilatation dilatation,
                                   const std::vector<int>& number);
 
 extern template Eigen::SparseMatrix<double, Eigen::ColMajor, int> assemble<int>(  //
-    const mesh::VolumeMesh&, const Material&, Dilatation, const std::vector<int>&, Half);
+    const mesh::VolumeMesh&, const Materials&, Dilatation, const std::vector<int>&, Half);
 extern template Eigen::SparseMatrix<double, Eigen::ColMajor, std::int64_t> assemble<std::int64_t>(
-    const mesh::VolumeMesh&, const Material&, Dilatation, const std::vector<int>&, Half);
+    const mesh::VolumeMesh&, const Materials&, Dilatation, const std::vector<int>&, Half);
 
 }  // namespace palpate::fem

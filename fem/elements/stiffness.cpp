@@ -34,7 +34,7 @@ Eigen::VectorXd gravity_of(const mesh::VolumeMesh& mesh, double density, const V
 SparseMatrix stiffness(const mesh::VolumeMesh& mesh, const Material& material, Dilatation dilatation) {
     std::vector<int> number(mesh.nodes.rows());
     std::iota(number.begin(), number.end(), 0);
-    return assemble<int>(mesh, material, dilatation, number, Half::both);
+    return assemble<int>(mesh, {.body = material}, dilatation, number, Half::both);
 }
 
 Eigen::VectorXd gravity_load(const mesh::VolumeMesh& mesh, double density, const Vec3& g) {

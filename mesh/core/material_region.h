@@ -1,5 +1,6 @@
 #pragma once
 
+#include <filesystem>
 #include <optional>
 #include <string>
 
@@ -16,6 +17,7 @@ struct MaterialRegion {
     std::optional<double> poisson{};  // none: the body's
     std::optional<double> density{};  // [tonne/mm^3]; none: the body's
     std::optional<int> label{};       // that the body's file gives it, where the surface comes from there
+    std::filesystem::path file{};     // that the surface comes from otherwise
 };
 
 }  // namespace palpate::mesh

@@ -53,7 +53,7 @@ std::optional<ReferenceAccuracy> estimate_accuracy(const Subject& subject, const
                                                       .linear_elements = !body.mesh().is_quadratic(),
                                                       .volume_change = 0.05});
         accuracy.coarser_nodes = second.volume.nodes.rows();
-        const fem::ElasticBody other(second.volume, body.material(),
+        const fem::ElasticBody other(second.volume, materials_of(subject, element_regions(subject, second)),
                                      mesh::contains(subject.supports, second.volume.nodes));
         const Eigen::MatrixXd fine = at_markers(body, loads, reach, markers);
         accuracy.difference = (at_markers(other, loads, reach, markers) - fine).norm() / fine.norm();

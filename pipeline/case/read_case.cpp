@@ -58,7 +58,7 @@ Case read_case_file(const YamlFields& yaml) {
                         "'measurements' (a set), {}",
                         c.file.string(), c.mesh ? "not both" : "neither is there"));
     }
-    c.regions = identify::read_material_regions(yaml, 1.0, folder);
+    c.regions = identify::read_material_regions(yaml, 1.0, folder, identify::RegionFiles::anywhere);
     if (!c.regions.empty() && !c.mesh)
         throw InvalidInput(
             fmt::format("{}: regions of a measurement set stand in its set.yaml; a case has regions with a 'mesh' only",

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 #include <limits>
 
 #include "fem/material.h"
@@ -33,12 +32,13 @@ public:
     }
 
     mesh::MaterialRegion execute() {
-        if (file_.empty() != region_.label.has_value()) refuse(file_.empty() ? "has no surface" : "has two places");
+        if (region_.file.empty() != region_.label.has_value())
+            refuse(region_.file.empty() ? "has no surface" : "has two places");
         if (!region_.young) refuse("has no young");
         check_ranges();
         if (!region_.label)
             region_.surface =
-                identify::read_closed_surface(file_, 1.0, where_, fmt::format("the region '{}'", region_.name));
+                identify::read_closed_surface(region_.file, 1.0, where_, fmt::format("the region '{}'", region_.name));
         return std::move(region_);
     }
 
@@ -53,7 +53,7 @@ private:
         if (equals == std::string::npos) refuse(fmt::format("says {}, which is not name=value", mesh::cited(item)));
         const std::string value = item.substr(equals + 1);
         if (key == "surface") {
-            file_ = value;
+            region_.file = value;
         } else if (key == "label") {
             const double label = number(key, value);
             if (label != std::round(label) || std::abs(label) > std::numeric_limits<int>::max())
@@ -88,7 +88,6 @@ private:
     }
 
     std::string where_;
-    std::filesystem::path file_;
     mesh::MaterialRegion region_{};
 };
 

@@ -55,7 +55,10 @@ void read_mesh(Subject& subject) {
     subject.surface.vertices *= scale;
     if (subject.volume) subject.volume->nodes *= scale;
     subject.regions = c.regions;
-    for (mesh::MaterialRegion& region : subject.regions) region.surface.vertices *= scale;
+    for (mesh::MaterialRegion& region : subject.regions) {
+        region.surface.vertices *= scale;
+        if (!region.label) subject.files.push_back(region.file);
+    }
     mesh::take_parts(read.parts, scale, subject.regions);
     judge_body(subject, c.mesh->string());
     std::string strange = identify::implausible_size(mesh::bounding_box(subject.surface.vertices).longest_side());

@@ -5,7 +5,6 @@
 #include "mesh/errors.h"
 #include "mesh/formats/volume/write_volume.h"
 #include "mesh/formats/vtk/vtk_files.h"
-#include "mesh/regions/element_regions.h"
 #include "mesh/text/atomic_file.h"
 #include "pipeline/body/body.h"
 #include "pipeline/body/subject_body.h"
@@ -33,30 +32,19 @@ std::string format_named(const fs::path& output) {
 }
 
 mesh::SolverSetting solver_setting(const MeshedBody& meshed, const Subject& subject) {
-    const fem::Material& material = subject.material;
+    const auto told = [](const fem::Material& m) { return mesh::SolverMaterial{m.young, m.poisson, m.density}; };
+    const fem::Materials materials = materials_of(subject, element_regions(subject, meshed));
     mesh::SolverSetting setting{.held = mesh::contains(subject.supports, meshed.volume.nodes),
-                                .material = {material.young, material.poisson, material.density}};
-    if (subject.regions.empty()) return setting;
-    for (const mesh::MaterialRegion& region : subject.regions)
-        setting.regions.push_back({region.young.value_or(material.young), region.poisson.value_or(material.poisson),
-                                   region.density.value_or(material.density)});
-    setting.region_of_element = mesh::regions_of_elements(meshed.volume, meshed.interfaces);
+                                .material = told(materials.body)};
+    for (const fem::Material& region : materials.regions) setting.regions.push_back(told(region));
+    setting.region_of_element = materials.of_element;
     return setting;
-}
-
-/// The number of each element's region, from 1; 0: it is of none.
-mesh::MeshData regions_shown(const MeshedBody& meshed, const Subject& subject) {
-    if (subject.regions.empty()) return {};
-    const std::vector<int> region = mesh::regions_of_elements(meshed.volume, meshed.interfaces);
-    Eigen::MatrixXd shown(std::ssize(region), 1);
-    for (std::size_t e = 0; e < region.size(); ++e) shown(static_cast<Eigen::Index>(e)) = region[e] + 1;
-    return {.points = {}, .cells = {{"region", std::move(shown)}}};
 }
 
 void write_body(const fs::path& output, const std::string& format, const MeshedBody& meshed, const Subject& subject) {
     const mesh::VolumeMesh& body = meshed.volume;
     if (format == "vtu") {
-        mesh::write_vtu(output, body, regions_shown(meshed, subject));
+        mesh::write_vtu(output, body, regions_shown(element_regions(subject, meshed)));
     } else if (format == "inp") {
         mesh::write_inp(output, body, solver_setting(meshed, subject));
     } else {
@@ -70,11 +58,9 @@ BuiltBody build_body(const fs::path& input, const CaseOverrides& overrides) {
     Subject subject = read_subject(read_case(input, overrides));
     Console::notices(subject.notes);
     Console::notices(subject.assumptions);
-    MeshedBody body = make_body(subject,
-                                {.edge_length = subject.settings.edge_length,
-                                 .linear_elements = subject.settings.linear_elements,
-                                 .regions = subject.regions},
-                                Console::progress());
+    MeshedBody body = make_body(
+        subject, {.edge_length = subject.settings.edge_length, .linear_elements = subject.settings.linear_elements},
+        Console::progress());
     Console::notices(body.notes);
     return {std::move(subject), std::move(body)};
 }

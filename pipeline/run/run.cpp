@@ -46,12 +46,16 @@ using nlohmann::json;
 /// @throws InvalidInput where its measurements have parts that cannot be fitted yet.
 Subject fittable(Subject subject) {
     if (subject.set) identify::require_fittable(*subject.set);
-    if (!subject.set && !subject.regions.empty())
-        throw InvalidInput(
-            fmt::format("{0}: the measurements that a run makes of a mesh are those of one material, and this case has "
-                        "'regions'. Make them with 'palpate probe {0} -o SET', then 'palpate run SET'.",
-                        subject.settings.file.string()));
     return subject;
+}
+
+/// The materials of regions, which stages depend on beside the files of their surfaces.
+json moduli_of(const std::vector<mesh::MaterialRegion>& regions) {
+    json all = json::array();
+    for (const mesh::MaterialRegion& region : regions)
+        all.push_back({region.name, region.label.value_or(0), region.young.value_or(0), region.poisson.value_or(0),
+                       region.density.value_or(0)});
+    return all;
 }
 
 /// The stages of a run, one after the other. Each leaves its result as a file and a member; a stage that was finished
@@ -96,18 +100,22 @@ private:
             mesh::write_vtp(folder_.path() / "mesh/surface.vtp", subject_.surface);
             return;
         }
-        const bool ran = folder_.stage(
-            {"mesh", settings_of_stage(c, "mesh"), subject_.files, {}, {"mesh/body.vtu", "mesh/surface.vtp"}}, [&] {
-                const MeshedBody body = make_body(subject_, {c.edge_length, c.linear_elements}, Console::progress());
-                for (const std::string& note : body.notes) Console::notice("Repair: " + note);
-                mesh::write_vtu(folder_.path() / "mesh/body.vtu", body.volume);
-                mesh::write_vtp(folder_.path() / "mesh/surface.vtp", body.surface);
-                return json{{"nodes", body.volume.nodes.rows()},
-                            {"tetrahedra", body.volume.tetrahedra.rows()},
-                            {"volume_mm3", mesh::element_volumes(body.volume).sum()},
-                            {"repair", body.notes}};
-            });
-        body_ = mesh::read_vtu(folder_.path() / "mesh/body.vtu");
+        json key = settings_of_stage(c, "mesh");
+        if (!subject_.regions.empty()) key["regions"] = moduli_of(subject_.regions);
+        const bool ran = folder_.stage({"mesh", key, subject_.files, {}, {"mesh/body.vtu", "mesh/surface.vtp"}}, [&] {
+            const MeshedBody body = make_body(subject_, {c.edge_length, c.linear_elements}, Console::progress());
+            for (const std::string& note : body.notes) Console::notice("Repair: " + note);
+            mesh::write_vtu(folder_.path() / "mesh/body.vtu", body.volume,
+                            regions_shown(element_regions(subject_, body)));
+            mesh::write_vtp(folder_.path() / "mesh/surface.vtp", body.surface);
+            return json{{"nodes", body.volume.nodes.rows()},
+                        {"tetrahedra", body.volume.tetrahedra.rows()},
+                        {"volume_mm3", mesh::element_volumes(body.volume).sum()},
+                        {"repair", body.notes}};
+        });
+        mesh::MeshData data;
+        body_ = mesh::read_vtu(folder_.path() / "mesh/body.vtu", &data);
+        element_regions_ = regions_read(data);
         surface_ = mesh::read_surface(folder_.path() / "mesh/surface.vtp");
         tell("mesh", ran, fmt::format("{} tetrahedra, {} nodes", body_.tetrahedra.rows(), body_.nodes.rows()));
         report_supports();
@@ -141,6 +149,7 @@ private:
                             {"young", subject_.material.young},
                             {"poisson", subject_.material.poisson},
                             {"density", subject_.material.density},
+                            {"regions", moduli_of(subject_.regions)},
                             {"supports", mesh::regions_to_yaml(subject_.supports)}},
                            {},
                            {"mesh"},
@@ -196,14 +205,17 @@ private:
         const ProbeOptions& p = c.probing;
         const bool ran = folder_.stage(
             {"measurements",
-             {{"settings", settings_of_stage(c, "measurements")}, {"seed", c.identify.seed}},
+             {{"settings", settings_of_stage(c, "measurements")},
+              {"regions", moduli_of(subject_.regions)},
+              {"seed", c.identify.seed}},
              {},
              {"skeleton"},
              {"measurements", "reference/reference.pvd"}},
             [&] {
                 std::optional<fem::ElasticBody> elastic;
                 const auto probe = [&](int loads) {
-                    elastic.emplace(body_, subject_.material, mesh::contains(subject_.supports, body_.nodes),
+                    elastic.emplace(body_, materials_of(subject_, element_regions_),
+                                    mesh::contains(subject_.supports, body_.nodes),
                                     fem::ElasticBodyOptions{.threads = common_.threads, .loads = loads});
                     if (!elastic->stats().note.empty()) Console::notice(elastic->stats().note);
                     return probe_body(*elastic, surface_, subject_.supports, p, c.identify.seed, Console::progress());
@@ -217,6 +229,7 @@ private:
                     probed = probe(0);
                 }
                 probed.set.name = c.name;
+                probed.set.regions = subject_.regions;
                 write_probed_body(folder_.path() / "measurements", probed, body_);
                 write_reference_series(probed.set);
                 json figures{{"states", probed.set.states.size()},
@@ -345,6 +358,7 @@ private:
     Subject subject_;
     RunFolder folder_;
     mesh::VolumeMesh body_;
+    std::vector<int> element_regions_;  // of the body; empty: it is of one material
     mesh::Surface surface_;
     skeleton::Model model_;
     identify::MeasurementSet set_, fit_, held_out_;

@@ -75,7 +75,6 @@ Specimen finite_element_specimen(const Subject& subject, const BlindSetOptions& 
     const MeshedBody body = make_body(subject,
                                       {.edge_length = edge > 0 ? edge : default_edge,
                                        .fine = zones_of(driven, subject.surface),
-                                       .regions = subject.regions,
                                        .volume_change = chords_cut_off},
                                       progress);
     specimen.notes = body.notes;

@@ -1,4 +1,5 @@
 #include "fem/elastic_body.h"
+#include "fem/hyperelastic_body.h"
 
 #include <algorithm>
 
@@ -39,6 +40,29 @@ TEST(ElasticBody, ForcesBalance) {
     }
     // Rounding times the condition of a slender bar at nu = 0.47.
     EXPECT_LT(left.norm(), 1e-10 * p.loads.norm());
+}
+
+TEST(ElasticBody, OfSeveralMaterialsBalancesEachOnesForces) {
+    // Against the body in large deformation at the linear law, which sums its forces element by element.
+    const Probed p;
+    Materials materials{.body = p.material, .regions = {{.young = 5, .poisson = 0.3}, {.young = 0.01, .poisson = 0.4}}};
+    for (Eigen::Index e = 0; e < p.mesh.tetrahedra.rows(); ++e)
+        materials.of_element.push_back(static_cast<int>(e % 3) - 1);
+    const ElasticBody body(p.mesh, materials, p.held);
+    const Eigen::VectorXd f = Eigen::MatrixXd(p.loads).col(4);
+    const Eigen::VectorXd u = body.solve(Eigen::MatrixXd(f));
+    const HyperelasticBody same(p.mesh, p.held, body.stats().dilatation, {materials.of_element, {1, 1}});
+    BodySetting setting;
+    setting.law = MaterialLaw::linear;
+    setting.material = materials.body;
+    setting.regions = materials.regions;
+    Eigen::VectorXd left = same.residual(u, setting, f);
+    for (std::size_t i = 0; i < p.held.size(); ++i)
+        if (p.held[i]) left.segment<3>(static_cast<Eigen::Index>(3 * i)).setZero();
+    EXPECT_LT(left.norm(), 1e-9 * f.norm());  // rounding, as above
+    // And they matter.
+    const Eigen::VectorXd of_one = ElasticBody(p.mesh, p.material, p.held).solve(Eigen::MatrixXd(f));
+    EXPECT_GT((u - of_one).norm(), 0.1 * of_one.norm());
 }
 
 TEST(ElasticBody, SolutionsAreReciprocal) {

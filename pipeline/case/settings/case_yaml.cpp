@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include "fem/material.h"
 #include "mesh/supports/region_yaml.h"
 #include "pipeline/case/read_case.h"
 #include "pipeline/case/settings/settings.h"
@@ -27,6 +28,20 @@ std::string expectation_yaml(const Case& c) {
     return text;
 }
 
+std::string regions_yaml(const std::vector<mesh::MaterialRegion>& regions) {
+    std::string text =
+        regions.empty() ? "" : "regions:                      # of materials of their own [MPa, kg/m^3]\n";
+    for (const mesh::MaterialRegion& region : regions) {
+        text +=
+            fmt::format("  - name: {}\n    {}", quoted(region.name),
+                        region.label ? fmt::format("label: {}\n", *region.label) : path_yaml("surface", region.file));
+        if (region.young) text += fmt::format("    young: {}\n", *region.young);
+        if (region.poisson) text += fmt::format("    poisson: {}\n", *region.poisson);
+        if (region.density) text += fmt::format("    density: {:.12g}\n", *region.density / fem::tonne_per_mm3);
+    }
+    return text;
+}
+
 std::string input_yaml(const Case& c) {
     std::string text = fmt::format("name: {}\n", quoted(c.name));
     if (c.mesh) {
@@ -36,6 +51,7 @@ std::string input_yaml(const Case& c) {
         text += path_yaml("measurements", *c.measurements);
         if (c.model) text += path_yaml("model", *c.model);
     }
+    text += regions_yaml(c.regions);
     if (!c.supports.empty())
         text += "supports:                     # where the body is held [mm]\n" + mesh::regions_to_yaml(c.supports);
     return text;

@@ -126,8 +126,8 @@ ProbedBody probe_body(const fem::ElasticBody& body, const mesh::Surface& surface
     MeasurementSet& set = probed.set;
     set.rest_surface = surface;
     set.supports = supports;
-    set.density = body.material().density;
-    set.material = identify::MaterialGuess{body.material().young, body.material().poisson};
+    set.density = body.materials().body.density;
+    set.material = identify::MaterialGuess{body.materials().body.young, body.materials().body.poisson};
     if (options.noise > 0) set.position_noise = options.noise;
 
     std::vector<mesh::Contact> contacts = probing_contacts(surface, supports, options, seed);
@@ -135,8 +135,8 @@ ProbedBody probe_body(const fem::ElasticBody& body, const mesh::Surface& surface
     const double longest = mesh::bounding_box(surface.vertices).longest_side();
     Eigen::MatrixXd unit = body.solve(fem::patch_loads(body.mesh(), contacts, 0.05 * longest));
     report(progress, "reference deformations", 0.9);
-    const Eigen::VectorXd scales =
-        load_scales(unit, options.largest_displacement(true) * longest, contacts.front().radius, body.material().young);
+    const Eigen::VectorXd scales = load_scales(unit, options.largest_displacement(true) * longest,
+                                               contacts.front().radius, body.materials().body.young);
     probed.displacements.resize(unit.rows(), unit.cols() + 1);
     probed.displacements << Eigen::VectorXd::Zero(unit.rows()), unit * scales.asDiagonal();
 

@@ -9,8 +9,10 @@
 #include "identify/measurements/measurement_set.h"
 #include "mesh/errors.h"
 #include "mesh/formats/surface/read_surface.h"
+#include "mesh/formats/vtk/vtk_files.h"
 #include "mesh/text/atomic_file.h"
 #include "pipeline/body/reference_body.h"
+#include "pipeline/case/read_case.h"
 #include "pipeline/command_line/commands.h"
 #include "tests/messages.h"
 #include "tests/temporary_folder.h"
@@ -163,14 +165,29 @@ TEST_F(ProbeRegions, OfASetStandInItsOwnFile) {
     EXPECT_TRUE(says(message(how), {"--region", "tells its regions itself"}));
 }
 
-TEST_F(ProbeRegions, ARunMakesNoMeasurementsOfThem) {
-    scratch_.write("bar.yaml",
-                   "format: palpate-case/1\nmesh: bar.stl\nregions:\n  - {name: a, surface: ball.stl, young: 1}\n");
-    EXPECT_TRUE(says(message_of<InvalidInput>([&] {
-                         commands::run({.input = scratch_ / "bar.yaml", .output = scratch_ / "run", .overrides = {}},
-                                       {});
-                     }),
-                     {"bar.yaml", "'regions'", "palpate probe"}));
+TEST_F(ProbeRegions, ARunMeasuresThemAndTellsThemAgain) {
+    scratch_.write(
+        "bar.yaml",
+        "format: palpate-case/1\nmesh: bar.stl\nvolume: {edge_length: 8}\nskeleton: {spheres: 6}\n"
+        "probing: {probes: 3, markers: 20, held_out: 1}\nidentify: {particles: 40, parameters: uniform}\nregions:\n"
+        "  - {name: ball, surface: ball.stl, young: 2, poisson: 0.4, density: 1200}\n");
+    commands::run({.input = scratch_ / "bar.yaml", .output = scratch_ / "run", .overrides = {}}, {});
+    mesh::MeshData data;
+    const mesh::VolumeMesh body = mesh::read_vtu(scratch_ / "run/mesh/body.vtu", &data);
+    ASSERT_EQ(data.cells.size(), 1U);
+    const double enclosed = mesh::signed_volume(mesh::read_surface(scratch_ / "ball.stl"));
+    EXPECT_NEAR(mesh::element_volumes(body).dot(data.cells[0].values.col(0)), enclosed, 0.01 * enclosed);
+    const MeasurementSet set = identify::read_measurement_set(scratch_ / "run/measurements");
+    ASSERT_EQ(set.regions.size(), 1U);
+    EXPECT_EQ(set.regions[0].young.value(), 2.0);
+    const json baseline = json::parse(mesh::read_text(scratch_ / "run/compare/compare.json"))["baseline"];
+    EXPECT_EQ(baseline["regions"][0]["name"], "ball");
+    EXPECT_NEAR(baseline["regions"][0]["young_mpa"].get<double>(), 2, 1e-3);
+    // What the run was told is a case again.
+    const Case again = read_case(scratch_ / "run/case.yaml", {});
+    ASSERT_EQ(again.regions.size(), 1U);
+    EXPECT_EQ(again.regions[0].young.value(), 2.0);
+    EXPECT_NEAR(again.regions[0].density.value(), 1.2e-9, 1e-20);
 }
 
 }  // namespace

@@ -42,7 +42,8 @@ std::optional<double> read_poisson(const YamlFields& item) {
 }
 
 /// The surface, or the label that stands for it until the body's file is read.
-void read_place(const YamlFields& item, double unit, const std::filesystem::path& folder, MaterialRegion& region) {
+void read_place(const YamlFields& item, double unit, const std::filesystem::path& folder, RegionFiles files,
+                MaterialRegion& region) {
     if (item.has("label") == item.has("surface"))
         throw InvalidInput(
             fmt::format("{}: region '{}' has {}: name the file of a closed surface inside the body, or the label that "
@@ -50,22 +51,24 @@ void read_place(const YamlFields& item, double unit, const std::filesystem::path
                         item.where("name"), region.name,
                         item.has("label") ? "both 'label' and 'surface'" : "neither 'surface' nor 'label'"));
     constexpr int most = std::numeric_limits<int>::max();
-    if (item.has("label"))
+    if (item.has("label")) {
         region.label = item.integer("label", -most, most);
-    else
-        region.surface =
-            read_closed_surface(item, "surface", folder, unit, fmt::format("the region '{}'", region.name));
+        return;
+    }
+    region.file =
+        files == RegionFiles::inside_folder ? path_inside(item, "surface", folder) : folder / item.text("surface");
+    region.surface =
+        read_closed_surface(region.file, unit, item.where("surface"), fmt::format("the region '{}'", region.name));
 }
 
-MaterialRegion read_region(const YamlFields& item, double unit, const std::filesystem::path& folder,
+MaterialRegion read_region(const YamlFields& item, double unit, const std::filesystem::path& folder, RegionFiles files,
                            const std::vector<std::string>& taken) {
     MaterialRegion region{.name = read_own_name(item, taken)};
-    read_place(item, unit, folder, region);
+    read_place(item, unit, folder, files, region);
     region.young = read_young(item, region.name);
     region.poisson = read_poisson(item);
     // A density in another unit than kg/m^3 is far outside: air has 1, the heaviest metal 22,600.
-    if (tells(item, "density"))
-        region.density = item.number("density", 1, 30000) * tonne_per_mm3;
+    if (tells(item, "density")) region.density = item.number("density", 1, 30000) * tonne_per_mm3;
     item.finish();
     return region;
 }
@@ -73,12 +76,12 @@ MaterialRegion read_region(const YamlFields& item, double unit, const std::files
 }  // namespace
 
 std::vector<MaterialRegion> read_material_regions(const YamlFields& yaml, double unit,
-                                                  const std::filesystem::path& folder) {
+                                                  const std::filesystem::path& folder, RegionFiles files) {
     std::vector<MaterialRegion> regions;
     if (!yaml.has("regions")) return regions;
     std::vector<std::string> taken;
     for (const YamlFields& item : yaml.mappings("regions")) {
-        MaterialRegion region = read_region(item, unit, folder, taken);
+        MaterialRegion region = read_region(item, unit, folder, files, taken);
         const auto same = std::ranges::find(regions, region.label, &MaterialRegion::label);
         if (region.label && same != regions.end())
             throw InvalidInput(fmt::format("{}: label {} is that of region '{}' already; each region needs its own.",

@@ -12,8 +12,11 @@ namespace palpate::identify {
 /// What `regions` of a set.yaml or a case.yaml tells: the surfaces in `unit` [mm]; those of regions by label are left
 /// out until the body's file is read. Where the regions lie in the body is not looked at. @throws IoError,
 /// InvalidInput.
+/// Files lie in `folder`: those of a set nowhere else.
+enum class RegionFiles { inside_folder, anywhere };
 std::vector<mesh::MaterialRegion> read_material_regions(const mesh::YamlFields& yaml, double unit,
-                                                        const std::filesystem::path& folder);
+                                                        const std::filesystem::path& folder,
+                                                        RegionFiles files = RegionFiles::inside_folder);
 
 /// Regions that contradict the body or its supports. @param where begins a message: the file.
 /// @throws InvalidInput, also for a region of unknown stiffness that is held altogether, which no reading could tell.

@@ -50,13 +50,14 @@ struct Bar {
         for (std::size_t i = 0; i < number.size(); ++i) {
             if (number[i] >= 0) free.row(number[i]) = mesh.nodes.row(static_cast<Eigen::Index>(i));
         }
-        A = assemble_blocks(mesh, {.young = 0.2, .poisson = poisson}, Dilatation::mean, number);
+        A = assemble_blocks(mesh, {.body = {.young = 0.2, .poisson = poisson}}, Dilatation::mean, number);
     }
 };
 
 TEST(BlockMatrix, IsTheStiffnessMatrix) {
     const Bar bar({3, 1, 1}, {4, 2, 2});
-    const auto K = assemble<int>(bar.mesh, {.young = 0.2, .poisson = 0.3}, Dilatation::mean, bar.number, Half::both);
+    const auto K =
+        assemble<int>(bar.mesh, {.body = {.young = 0.2, .poisson = 0.3}}, Dilatation::mean, bar.number, Half::both);
     EXPECT_EQ(dense(bar.A), Eigen::MatrixXd(K));
 }
 
