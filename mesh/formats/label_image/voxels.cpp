@@ -194,9 +194,10 @@ int choose_label(const std::map<int, std::int64_t>& labels, std::optional<int> a
     for (const auto& [label, voxels] : labels)
         list += fmt::format("{}{} ({:.4g} mm^3)", list.empty() ? "" : ", ", label,
                             static_cast<double>(voxels) * image.voxel_volume());
-    throw InvalidInput(
-        asked ? fmt::format("{}: has no label {}; there are {}.", file.string(), *asked, list)
-              : fmt::format("{}: holds {} labels: {}. Choose one with --label.", file.string(), labels.size(), list));
+    throw InvalidInput(asked ? fmt::format("{}: has no label {}; there are {}.", file.string(), *asked, list)
+                             : fmt::format("{}: holds {} labels: {}. Choose one with --label, or name them by regions: "
+                                           "the body is all of them, then.",
+                                           file.string(), labels.size(), list));
 }
 
 }  // namespace palpate::mesh

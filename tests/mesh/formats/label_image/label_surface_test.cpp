@@ -237,6 +237,26 @@ TEST_F(ReadLabels, AChosenLabelIsReadAndSeveralAreListed) {
     EXPECT_NEAR(bounding_box(body.surface.vertices).extent().y(), 16, 1);
 }
 
+TEST_F(ReadLabels, PartsAreSurfacesWithinAllThatIsLabelled) {
+    Labels labels;
+    labels.fill_ball(3, {20, 18, 15}, ball_radius);
+    labels.fill_ball(9, {22, 18, 15}, 6);
+    labels.fill_ball(1, {10, 14, 15}, 3);
+    const auto file = folder.write("three.mha", meta_image(labels));
+    const BodyFile body = read_body(file, {.label = {}, .parts = {9, 1}});
+    const auto voxels = [&](auto... of) {
+        return static_cast<double>((std::count(labels.voxels.begin(), labels.voxels.end(), of) + ...));
+    };
+    ASSERT_EQ(body.parts.size(), 2U);
+    constexpr double close = 0.01;  // smoothing keeps the volume
+    EXPECT_NEAR(signed_volume(body.surface), voxels(1, 3, 9), close * voxels(1, 3, 9));
+    EXPECT_NEAR(signed_volume(body.parts[0]), voxels(9), close * voxels(9));
+    EXPECT_NEAR(signed_volume(body.parts[1]), voxels(1), close * voxels(1));
+    EXPECT_TRUE(check_surface(body.parts[0]).sound());
+    EXPECT_TRUE(says(message_of<InvalidInput>([&] { read_body(file, {.label = {}, .parts = {4}}); }),
+                     {"three.mha", "no label 4", "9 ("}));
+}
+
 TEST_F(ReadLabels, SpecksAreLeftOutAndACutBodyIsTold) {
     Labels labels;
     labels.fill_ball(1, {20, 18, 2}, 10);  // through the border
