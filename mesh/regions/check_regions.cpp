@@ -24,7 +24,7 @@ void check_sound(const MaterialRegion& region, const std::string& where) {
                     where, region.name, fmt::join(describe_faults(report), " ")));
 }
 
-constexpr double least_share = 0.01;  // of the body's longest side: what is smaller changes nothing that is measured
+constexpr double least_region = 0.01;  // of the body's longest side: what is smaller changes nothing that is measured
 
 void check_size(const MaterialRegion& region, double least_side, const std::string& where) {
     const double side = std::cbrt(std::abs(signed_volume(region.surface)));
@@ -121,7 +121,7 @@ bool lies_within(const Surface& one, const Surface& other) {
 
 void check_regions(const std::vector<MaterialRegion>& regions, const Surface& body, const std::string& where) {
     if (regions.empty()) return;
-    const double least_side = least_share * bounding_box(body.vertices).longest_side();
+    const double least_side = least_region * bounding_box(body.vertices).longest_side();
     const SurfaceTree tree(body);
     for (const MaterialRegion& region : regions) {
         check_size(region, least_side, where);

@@ -74,7 +74,7 @@ void PlacedEffects::place(double pressure, Cavities cavities, const Pair& pair) 
             "inwards, "
             "or take the pressure away");
     PlacedPressure placed{pressure, std::move(cavities), {}};
-    placed.cavities.for_each_block(rest_, [&](int a, int b, const Block&) { placed.blocks.push_back(pair(a, b)); });
+    placed.cavities.for_each_pair([&](int a, int b) { placed.blocks.push_back(pair(a, b)); });
     cavities_.push_back(std::move(placed));
 }
 

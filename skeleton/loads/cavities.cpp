@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <set>
 
 #include "mesh/topology/shells.h"
@@ -11,14 +12,16 @@ namespace palpate::skeleton {
 
 namespace {
 
-// Does every edge of these triangles have its other side among them?
+// Is every edge of these triangles run through as often one way as the other?
 bool is_closed(const mesh::Surface& surface, const std::vector<int>& triangles) {
-    std::set<std::pair<int, int>> edges;
-    for (const int t : triangles)
-        for (int i = 0; i < 3; ++i) edges.emplace(surface.triangles(t, i), surface.triangles(t, (i + 1) % 3));
-    for (const auto& [from, to] : edges)
-        if (!edges.contains({to, from})) return false;
-    return true;
+    std::map<std::pair<int, int>, int> runs;  // of each edge, from its lesser vertex less from its greater one
+    for (const int t : triangles) {
+        for (int i = 0; i < 3; ++i) {
+            const int from = surface.triangles(t, i), to = surface.triangles(t, (i + 1) % 3);
+            runs[std::minmax(from, to)] += from < to ? 1 : -1;
+        }
+    }
+    return std::ranges::all_of(runs, [](const auto& edge) { return edge.second == 0; });
 }
 
 double enclosed(const mesh::Surface& surface, const std::vector<int>& triangles) {
@@ -97,45 +100,80 @@ Cavities::Cavities(const Model& model, const mesh::PressureActuator& actuator)
     : Cavities(model, walls_of(model, actuator)) {}
 
 Cavities::Cavities(const Model& model, const std::vector<Corners>& walls) : rest_(rest_state(model)) {
+    std::map<int, int> place;  // among the points, of each vertex of the skin
     for (const Corners& wall : walls) {
-        walls_.push_back({model.skin[wall[0]], model.skin[wall[1]], model.skin[wall[2]]});
+        Corners& own = walls_.emplace_back();
+        for (std::size_t c = 0; c < 3; ++c) {
+            const auto [at, fresh] = place.try_emplace(wall[c], static_cast<int>(points_.size()));
+            if (fresh) points_.push_back(model.skin[wall[c]]);
+            own[c] = at->second;
+        }
         origin_ += model.surface.vertices.row(wall[0]).transpose();
     }
     if (walls_.empty()) return;
     origin_ /= static_cast<double>(walls_.size());
+    join_walls();
     rest_volume_ = volume(rest_);
+}
+
+/// As the walls close, each edge of one is run through the other way by another.
+void Cavities::join_walls() {
+    std::multimap<std::array<int, 2>, int> left_of;  // the corner across, of each edge as its wall runs round
+    for (const Corners& wall : walls_)
+        for (std::size_t c = 0; c < 3; ++c) left_of.emplace(std::array{wall[c], wall[(c + 1) % 3]}, wall[(c + 2) % 3]);
     std::set<std::array<int, 2>> joined;
-    for (const std::array<Attachment, 3>& wall : walls_)
-        for (const Attachment& one : wall)
-            for (const Attachment& other : wall)
-                for (const SphereInfluence& a : one.shares)
-                    for (const SphereInfluence& b : other.shares)
-                        if (a.sphere < b.sphere) joined.insert({a.sphere, b.sphere});
+    const auto join = [&](int p, int q) {
+        for (const SphereInfluence& one : points_[p].shares)
+            for (const SphereInfluence& other : points_[q].shares)
+                if (one.sphere != other.sphere)
+                    joined.insert({std::min(one.sphere, other.sphere), std::max(one.sphere, other.sphere)});
+    };
+    for (const auto& [edge, left] : left_of) {
+        const auto [a, b] = edge;
+        join(a, b);
+        if (a > b) continue;
+        const auto other = left_of.find({b, a});
+        edges_.push_back({a, b, left, other->second});
+        left_of.erase(other);
+    }
+    for (int p = 0; p < static_cast<int>(points_.size()); ++p) join(p, p);
     joined_.assign(joined.begin(), joined.end());
 }
 
-Cavities::Wall Cavities::at(const std::array<Attachment, 3>& wall, const State& state) const {
-    return {CarriedPoint(wall[0], rest_, state), CarriedPoint(wall[1], rest_, state),
-            CarriedPoint(wall[2], rest_, state)};
+std::vector<CarriedPoint> Cavities::at(const State& state) const {
+    std::vector<CarriedPoint> x;
+    x.reserve(points_.size());
+    for (const Attachment& point : points_) x.emplace_back(point, rest_, state);
+    return x;
 }
 
 double Cavities::volume(const State& state) const {
+    std::vector<Vec3> x;
+    x.reserve(points_.size());
+    for (const Attachment& point : points_) x.push_back(carried_place(point, rest_, state) - origin_);
     double sum = 0;
-    for (const auto& wall : walls_) {
-        const Wall x = at(wall, state);
-        sum -= (x[0].x() - origin_).dot((x[1].x() - origin_).cross(x[2].x() - origin_)) / 6;
-    }
+    for (const auto& [a, b, c] : walls_) sum -= x[a].dot(x[b].cross(x[c])) / 6;
     return sum;
 }
 
-void Cavities::add_gradient(const State& state, double factor, Eigen::VectorXd& sum) const {
-    for (const auto& wall : walls_) {
-        const Wall x = at(wall, state);
-        for (int v = 0; v < 3; ++v) {
-            const Vec3 by_x = (-factor / 6) * (x[(v + 1) % 3].x() - origin_).cross(x[(v + 2) % 3].x() - origin_);
-            for (int i = 0; i < x[v].shares(); ++i)
-                sum.segment<6>(Eigen::Index{6} * x[v].sphere(i)) += x[v].jacobian(i).transpose() * by_x;
+Points Cavities::gradient(const std::vector<CarriedPoint>& x) const {
+    Points by_x = Points::Zero(std::ssize(x), 3);
+    for (const Corners& wall : walls_) {
+        for (std::size_t c = 0; c < 3; ++c) {
+            const Vec3 next = x[wall[(c + 1) % 3]].x() - origin_, last = x[wall[(c + 2) % 3]].x() - origin_;
+            by_x.row(wall[c]) -= next.cross(last).transpose() / 6;
         }
+    }
+    return by_x;
+}
+
+void Cavities::add_gradient(const State& state, double factor, Eigen::VectorXd& sum) const {
+    const std::vector<CarriedPoint> x = at(state);
+    const Points by_x = factor * gradient(x);
+    for (std::size_t p = 0; p < x.size(); ++p) {
+        const Vec3 own = by_x.row(static_cast<Eigen::Index>(p));
+        for (int i = 0; i < x[p].shares(); ++i)
+            sum.segment<6>(Eigen::Index{6} * x[p].sphere(i)) += x[p].jacobian(i).transpose() * own;
     }
 }
 

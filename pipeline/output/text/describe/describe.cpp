@@ -82,7 +82,7 @@ Description describe_set(const fs::path& path) {
     description.lines.push_back(fmt::format("{} states, {} of them loaded; {} markers, {} readings", set.states.size(),
                                             loaded_states(set), set.markers.size(), readings));
     std::ranges::move(rig_in_words(set), std::back_inserter(description.lines));
-    for (const identify::Recording& recording : set.recordings) {
+    for (const identify::MotionRecording& recording : set.recordings) {
         description.lines.push_back(fmt::format("probe {} in motion: {} instants, to {:g} s", recording.probe,
                                                 recording.instants.size(), recording.instants.back().time));
     }
