@@ -41,13 +41,12 @@ TEST_F(RegionFiles, AreReadInMillimetresAndAsKnownOrUnknown) {
 }
 
 TEST_F(RegionFiles, AreToldByLabelsOfTheRestMesh) {
-    // In centimetres; the outer half by its label, which touches the body's surface and the rest.
-    const mesh::VolumeMesh bar = mesh::make_bar({0, 0, 0}, {10, 2, 2}, {10, 2, 2});
+    // The outer half by its label, which touches the body's surface and the rest.
+    const mesh::VolumeMesh bar = mesh::make_bar({0, 0, 0}, {100, 20, 20}, {10, 2, 2});
     Eigen::MatrixXd label(bar.tetrahedra.rows(), 1);
-    for (Eigen::Index e = 0; e < label.rows(); ++e) label(e) = bar.nodes(bar.tetrahedra.row(e), 0).mean() < 5 ? 1 : 2;
+    for (Eigen::Index e = 0; e < label.rows(); ++e) label(e) = bar.nodes(bar.tetrahedra.row(e), 0).mean() < 50 ? 1 : 2;
     mesh::write_vtu(folder / "rest.vtu", bar, {.points = {}, .cells = {{"material", label}}});
     std::string text = second(yaml);
-    text.replace(text.find("length: mm"), 10, "length: cm");
     text.replace(text.find("rest.vtp"), 8, "rest.vtu");
     folder.write("set.yaml", text + "regions:\n  - {name: tip, label: 2, young: null}\n");
     const MeasurementSet set = read();
