@@ -21,7 +21,7 @@ bool is_closed(const mesh::Surface& surface, const std::vector<int>& triangles) 
             runs[std::minmax(from, to)] += from < to ? 1 : -1;
         }
     }
-    return std::ranges::all_of(runs, [](const auto& edge) { return edge.second == 0; });
+    return !std::ranges::any_of(runs, [](const auto& edge) { return edge.second != 0; });
 }
 
 double enclosed(const mesh::Surface& surface, const std::vector<int>& triangles) {
