@@ -114,7 +114,8 @@ double mean_over(const StiffnessField& field, const Sphere& sphere) {
     double softness = 0;
     int count = 0;
     for (int i = 0; i < across * across * across; ++i) {
-        const Vec3 off = (Vec3(i % across, i / across % across, i / across / across).array() + 0.5) * 2.0 / across - 1;
+        const Eigen::Array3i cell(i % across, i / across % across, i / (across * across));
+        const Vec3 off = (cell.cast<double>() + 0.5) * 2.0 / across - 1;
         if (off.norm() > 1) continue;
         softness += 1 / field(sphere.center + sphere.radius * off);
         ++count;
