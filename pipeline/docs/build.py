@@ -2,7 +2,8 @@
 """The documentation as pages without scripts or network: pipeline/docs/build.py -o FOLDER [--palpate PROGRAM]
 
 Every README.md and RESULTS.md, the pages of this folder, CHANGELOG.md, and the help of each command. Links to other
-files of the sources lead to copies of them. It ends with code 1 where a link leads nowhere.
+files of the sources lead to copies of them. It ends with code 1 where a link leads nowhere. Two of Debian's programs are
+optional: blahtexml sets equations (else they stay in TeX), doxygen describes the headers (else their pages are left out).
 """
 
 import argparse
@@ -20,10 +21,10 @@ root = Path(__file__).resolve().parents[2]
 pages = Path("pipeline/docs")  # of this folder
 style = """:root{color-scheme:light dark}body{font:16px/1.55 system-ui,sans-serif;max-width:62em;margin:0 auto;padding:0 1em 4em}nav{padding:1em 0;border-bottom:1px solid #8886}
 nav a{margin-right:1em;white-space:nowrap}pre{overflow-x:auto;background:#8882;padding:.8em;border-radius:6px}code{font-size:.92em}img{max-width:100%;height:auto}
-.wide{overflow-x:auto}table{border-collapse:collapse}th,td{border-bottom:1px solid #8885;padding:.3em .7em;text-align:left;vertical-align:top}
+.wide{overflow-x:auto}.equation{margin:1em 0;overflow-y:hidden}math{font-size:1.12em}table{border-collapse:collapse}th,td{border-bottom:1px solid #8885;padding:.3em .7em;text-align:left;vertical-align:top}
 a{color:#0b57d0}@media(prefers-color-scheme:dark){body{background:#15171a;color:#e4e6e8}a{color:#8ab4f8}}"""
 top = {"Start": "pipeline/docs/start.md", "Overview": "README.md", "Verdicts": "pipeline/docs/verdict.md", "Messages": "pipeline/docs/troubleshooting.md",
-       "Commands": "pipeline/docs/commands.md", "Theory": "identify/README.md", "Runtime": "skeleton/runtime/README.md",
+       "Commands": "pipeline/docs/commands.md", "Theory": "pipeline/docs/theory.md", "Runtime": "skeleton/runtime/README.md",
        "Python": "pipeline/python/README.md", "Challenge": "samples/challenge/README.md", "Changes": "CHANGELOG.md"}
 
 
@@ -40,9 +41,22 @@ def commands(palpate):
     return "# Commands\n\n```\n" + overview + "```\n" + "".join(f"\n## palpate {c}\n\n```\n{told(c)}```\n" for c in listed)
 
 
+def equation(tex):
+    """As MathML, which browsers set without scripts."""
+    if not shutil.which("blahtexml"):
+        return f"<pre><code>{html.escape(tex)}</code></pre>"
+    told = subprocess.run(["blahtexml", "--mathml"], input="\\displaystyle " + tex, capture_output=True, text=True, check=True).stdout
+    markup = re.search(r"<markup>\s*(.*?)\s*</markup>", told, re.S)
+    if not markup:
+        raise SystemExit(f"an equation is not understood: {tex}{told}")
+    set_ = re.sub(r"(<mo[^>]*>)-</mo>", r"\1−</mo>", markup[1])
+    return f'<div class="wide equation"><math display="block">{set_}</math></div>'
+
+
 def page(source, text, where):
     """The page of a text; where: its path in the site."""
     body = MarkdownIt("commonmark", {"html": True}).enable("table").render(text)
+    body = re.sub(r'<pre><code class="language-math">(.*?)</code></pre>', lambda m: equation(html.unescape(m[1])), body, flags=re.S)
     body = re.sub(r"<h([1-4])>(.*?)</h\1>", lambda m: f'<h{m[1]} id="{anchor(m[2])}">{m[2]}</h{m[1]}>', body)
     body = body.replace("<table>", '<div class="wide"><table>').replace("</table>", "</table></div>")
     wanted = []
