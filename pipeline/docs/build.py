@@ -21,7 +21,7 @@ root = Path(__file__).resolve().parents[2]
 pages = Path("pipeline/docs")  # of this folder
 libraries = ("mesh", "fem", "skeleton", "identify")  # whose headers are installed
 style = """:root{color-scheme:light dark}body{font:16px/1.55 system-ui,sans-serif;max-width:62em;margin:0 auto;padding:0 1em 4em}nav{padding:1em 0;border-bottom:1px solid #8886}
-nav a{margin-right:1em;white-space:nowrap}pre{overflow-x:auto;background:#8882;padding:.8em;border-radius:6px}code{font-size:.92em}img{max-width:100%;height:auto}
+nav a{margin-right:1em;white-space:nowrap}pre{overflow-x:auto;background:#8882;padding:.8em;border-radius:6px}code{font-size:.92em}pre:has(.language-text){white-space:pre-wrap}img{max-width:100%;height:auto}
 .wide{overflow-x:auto}.equation{margin:1em 0;overflow-y:hidden}math{font-size:1.12em}table{border-collapse:collapse}th,td{border-bottom:1px solid #8885;padding:.3em .7em;text-align:left;vertical-align:top}
 a{color:#0b57d0}@media(prefers-color-scheme:dark){body{background:#15171a;color:#e4e6e8}a{color:#8ab4f8}}"""
 top = {"Start": "pipeline/docs/start.md", "Overview": "README.md", "Your data": "pipeline/docs/measurements.md", "Planning": "pipeline/docs/planning.md",

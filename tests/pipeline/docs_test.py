@@ -6,9 +6,11 @@ A block marked "message=NAME" is what the program prints where docs_messages.py 
 
 import os
 import re
+import struct
 import subprocess
 import sys
 import tempfile
+from importlib.util import find_spec
 from pathlib import Path
 
 from docs_messages import exits, scripts
@@ -53,5 +55,11 @@ with tempfile.TemporaryDirectory() as scratch:
             assert run.returncode == code, f"{page.name}: {block}ends with {run.returncode}: {run.stderr}"
             assert said in run.stdout + run.stderr, f"{page.name}: {block}does not say '{said}': {run.stderr}"
             ran += 1
+    if find_spec("vtkmodules") and find_spec("matplotlib"):
+        drawn = subprocess.run([sys.executable, source / "pipeline" / "docs" / "gallery.py", "-o", here / "pictures", "--palpate", palpate, "gravity"],
+                               capture_output=True, text=True)
+        assert drawn.returncode == 0, drawn.stderr
+        width, height = struct.unpack(">II", (here / "pictures" / "gravity.png").read_bytes()[16:24])
+        assert width == 960 and 100 < height < 400, (width, height)
 assert ran >= 6, ran
 assert messages == set(scripts), messages ^ set(scripts)
