@@ -13,6 +13,7 @@ import re
 import shutil
 import subprocess
 import sys
+import tempfile
 from pathlib import Path
 
 from markdown_it import MarkdownIt
@@ -60,17 +61,23 @@ def headers(output):
     if not shutil.which("doxygen"):
         return False
     output.mkdir(parents=True, exist_ok=True)
-    (output / "more.css").write_text(
+    with tempfile.TemporaryDirectory() as folder:
+        return run_doxygen(output, Path(folder))
+
+
+def run_doxygen(output, own):
+    """Pages in output; own: a folder for what only Doxygen reads."""
+    (own / "more.css").write_text(
         "@media(prefers-color-scheme:dark){html{background:#fff;filter:invert(.88) hue-rotate(180deg)}}\n"
         "@media(max-width:50em){.memberdecls td{display:block;text-align:left;white-space:normal!important}.contents{overflow-x:auto}}\n")
-    first = output / "first.md"
+    first = own / "first.md"
     first.write_text((root / "samples/consumer/README.md").read_text() + '\n<a href="../pipeline/docs/start.html">The other pages</a>\n')
     settings = {
         "PROJECT_NAME": "Palpate", "OUTPUT_DIRECTORY": output, "HTML_OUTPUT": ".", "INPUT": " ".join(map(str, [*(root / f for f in libraries), first])),
         "USE_MDFILE_AS_MAINPAGE": first,
         "FILE_PATTERNS": "*.h", "RECURSIVE": "YES", "EXTRACT_ALL": "YES", "STRIP_FROM_PATH": root, "STRIP_FROM_INC_PATH": root,
         "FULL_PATH_NAMES": "YES", "JAVADOC_AUTOBRIEF": "YES", "HIDE_UNDOC_RELATIONS": "YES", "GENERATE_LATEX": "NO", "SEARCHENGINE": "NO",
-        "HTML_DYNAMIC_MENUS": "NO", "HTML_EXTRA_STYLESHEET": output / "more.css", "SOURCE_BROWSER": "NO", "VERBATIM_HEADERS": "NO",
+        "HTML_DYNAMIC_MENUS": "NO", "HTML_EXTRA_STYLESHEET": own / "more.css", "SOURCE_BROWSER": "NO", "VERBATIM_HEADERS": "NO",
         "HAVE_DOT": "NO", "CLASS_GRAPH": "NO", "QUIET": "YES", "WARNINGS": "NO", "WARN_IF_DOC_ERROR": "NO", "WARN_IF_INCOMPLETE_DOC": "NO", "HTML_TIMESTAMP": "NO"}
     subprocess.run(["doxygen", "-"], input="".join(f"{k} = {v}\n" for k, v in settings.items()), text=True, check=True)
     return True
