@@ -110,7 +110,8 @@ TEST_F(ProbeRegions, AStiffOneStiffensTheBody) {
         }
         return sum;
     };
-    EXPECT_LT(compliance(with_a_lump), 0.95 * compliance(as_the_rest));
+    // An eighth of what a load at the tip bends is where the ball is, and sections there are stiffer by a seventh.
+    EXPECT_LT(compliance(with_a_lump), 0.985 * compliance(as_the_rest));
 }
 
 TEST_F(ProbeRegions, OfACaseAreInTheDeckOfAnotherSolver) {
