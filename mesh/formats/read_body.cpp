@@ -108,8 +108,7 @@ BodyFile of_labels(const fs::path& file, const ReadBodyOptions& options) {
         body.surface = surface_of_label(image, choose_label(labels, options.label, image, file), body.notes);
         return body;
     }
-    constexpr int all = 1;
-    body.surface = surface_of_label(with_one_label(image, all), all, body.notes);
+    body.surface = surface_of_all_labels(image, body.notes);
     for (const int label : options.parts)
         body.parts.push_back(surface_of_label(image, choose_label(labels, label, image, file), body.notes));
     return body;

@@ -4,8 +4,8 @@
 
 #include "identify/effects/catalogue.h"
 #include "mesh/text/atomic_file.h"
-#include "pipeline/cli/objects.h"
 #include "pipeline/command_line/flags.h"
+#include "pipeline/command_line/objects.h"
 #include "pipeline/command_line/subcommands.h"
 #include "pipeline/output/json/diagnosis.h"
 #include "pipeline/output/text/diagnosis.h"

@@ -45,9 +45,6 @@ LabelImage read_meta_image(const std::filesystem::path& file);
 /// @throws InvalidInput when its values are no labels: not whole, or more than 1000 different ones.
 std::map<int, std::int64_t> labels_of(const LabelImage& image, const std::filesystem::path& file);
 
-/// The image with all its labels made one.
-LabelImage with_one_label(const LabelImage& image, int label);
-
 /// The label asked for, else the only one. @throws InvalidInput listing those that there are.
 int choose_label(const std::map<int, std::int64_t>& labels, std::optional<int> asked, const LabelImage& image,
                  const std::filesystem::path& file);

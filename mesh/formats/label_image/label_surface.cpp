@@ -216,9 +216,20 @@ void require_body(const Surface& parts, double volume_of_parts, double labelled_
                            thinnest));
 }
 
-}  // namespace
+/// The image with all its labels made one, 1.
+LabelImage with_one_label(const LabelImage& image) {
+    LabelImage one = image;
+    one.type = {VoxelType::Kind::Unsigned, 1, false};
+    one.slope = 1;
+    one.intercept = 0;
+    one.voxels.resize(static_cast<std::size_t>(image.count()));
+    for (std::int64_t v = 0; v < image.count(); ++v)
+        one.voxels[static_cast<std::size_t>(v)] = image.value(v) == 0 ? 0 : 1;
+    return one;
+}
 
-Surface surface_of_label(const LabelImage& image, int label, std::vector<std::string>& notes) {
+/// `name`: "label 3".
+Surface surface_of(const LabelImage& image, int label, const std::string& name, std::vector<std::string>& notes) {
     const Crop crop = crop_to(image, label);
     if (crop.meets_border) notes.push_back("The label reaches the border of the image: the body is cut off there.");
     Shares shares;
@@ -232,10 +243,19 @@ Surface surface_of_label(const LabelImage& image, int label, std::vector<std::st
     const double volume = labelled_volume * signed_volume(steps) / signed_volume(all);
     require_body(steps, signed_volume(steps), labelled_volume, image, label);
     const Surface surface = with_volume(smoothed(steps), volume);
-    notes.push_back(
-        fmt::format("The surface of label {}, {} voxels of {:.3g} mm^3, smoothed; its volume is {:.4g} mm^3.", label,
-                    voxels, image.voxel_volume(), signed_volume(surface)));
+    notes.push_back(fmt::format("The surface of {}, {} voxels of {:.3g} mm^3, smoothed; its volume is {:.4g} mm^3.",
+                                name, voxels, image.voxel_volume(), signed_volume(surface)));
     return surface;
+}
+
+}  // namespace
+
+Surface surface_of_label(const LabelImage& image, int label, std::vector<std::string>& notes) {
+    return surface_of(image, label, fmt::format("label {}", label), notes);
+}
+
+Surface surface_of_all_labels(const LabelImage& image, std::vector<std::string>& notes) {
+    return surface_of(with_one_label(image), 1, "all labels", notes);
 }
 
 }  // namespace palpate::mesh

@@ -15,5 +15,7 @@ namespace palpate::mesh {
 /// took of the volume. Parts and holes of less than 1 % of the largest part are left out; notes tell them, and that
 /// the body is cut where it meets the border of the image.
 Surface surface_of_label(const LabelImage& image, int label, std::vector<std::string>& notes);
+/// The same round all voxels that have any label.
+Surface surface_of_all_labels(const LabelImage& image, std::vector<std::string>& notes);
 
 }  // namespace palpate::mesh

@@ -174,17 +174,6 @@ std::map<int, std::int64_t> labels_of(const LabelImage& image, const std::filesy
     return labels;
 }
 
-LabelImage with_one_label(const LabelImage& image, int label) {
-    LabelImage one = image;
-    one.type = {VoxelType::Kind::Unsigned, 1, false};
-    one.slope = 1;
-    one.intercept = 0;
-    one.voxels.resize(static_cast<std::size_t>(image.count()));
-    for (std::int64_t v = 0; v < image.count(); ++v)
-        one.voxels[static_cast<std::size_t>(v)] = static_cast<char>(image.value(v) == 0 ? 0 : label);
-    return one;
-}
-
 int choose_label(const std::map<int, std::int64_t>& labels, std::optional<int> asked, const LabelImage& image,
                  const std::filesystem::path& file) {
     if (labels.empty()) throw InvalidInput(fmt::format("{}: all its voxels are 0, it labels nothing.", file.string()));

@@ -5,7 +5,7 @@
 #include "mesh/geometry/surface_tree.h"
 #include "mesh/text/atomic_file.h"
 #include "pipeline/analysis/forecast.h"
-#include "pipeline/cli/objects.h"
+#include "pipeline/command_line/objects.h"
 #include "pipeline/output/ladder.h"
 #include "pipeline/output/text/comparison.h"
 #include "pipeline/output/text/diagnosis.h"

@@ -253,6 +253,7 @@ TEST_F(ReadLabels, PartsAreSurfacesWithinAllThatIsLabelled) {
     EXPECT_NEAR(signed_volume(body.parts[0]), voxels(9), close * voxels(9));
     EXPECT_NEAR(signed_volume(body.parts[1]), voxels(1), close * voxels(1));
     EXPECT_TRUE(check_surface(body.parts[0]).sound());
+    EXPECT_TRUE(says(body.notes.front(), {"all labels", "its volume"}));
     EXPECT_TRUE(says(message_of<InvalidInput>([&] { read_body(file, {.label = {}, .parts = {4}}); }),
                      {"three.mha", "no label 4", "9 ("}));
 }
