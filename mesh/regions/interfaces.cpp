@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <numeric>
 
 #include "mesh/errors.h"
 #include "mesh/meshing/remesh.h"
@@ -40,6 +42,23 @@ std::vector<char> clear_ones(const std::vector<Surface>& surfaces, const Surface
     return is_clear;
 }
 
+/// Which elements can follow together, of those that stay clear of the body's surface: from the largest on, each that
+/// meets none of them.
+std::vector<char> followable(const std::vector<Surface>& surfaces, const Surface& body) {
+    std::vector<std::size_t> order(surfaces.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::ranges::stable_sort(order, std::greater{},
+                             [&](std::size_t r) { return std::abs(signed_volume(surfaces[r])); });
+    std::vector<char> is_followed(surfaces.size(), 0);
+    for (const std::size_t r : order) {
+        const auto meets = [&](std::size_t other) {
+            return is_followed[other] && !meeting_places(surfaces[r], surfaces[other]).empty();
+        };
+        is_followed[r] = meeting_places(surfaces[r], body).empty() && std::ranges::none_of(order, meets);
+    }
+    return is_followed;
+}
+
 }  // namespace
 
 std::vector<Surface> Interfaces::followed() const {
@@ -59,7 +78,7 @@ Interfaces remesh_interfaces(const std::vector<MaterialRegion>& regions, const S
         result.surfaces.push_back(region.surface);
         edges.push_back(std::min(edge, across * std::cbrt(std::abs(signed_volume(region.surface)))));
     }
-    result.is_followed = clear_ones(result.surfaces, body);
+    result.is_followed = followable(result.surfaces, body);
     std::vector<char> is_made(regions.size(), 0);
     for (int attempt = 0; attempt < attempts; ++attempt) {
         std::vector<Surface> followed;

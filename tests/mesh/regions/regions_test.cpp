@@ -101,6 +101,11 @@ TEST(Regions, MayTouchTheBodyAndEachOther) {
                                               ball("ball", {15, 10, 10}, 5)};
     EXPECT_EQ(refusal(regions), "");
     const Surface body = remesh(long_bar(), {.edge_length = 5});
+    // Of two that lie side by side within the body the larger one is followed.
+    const std::vector<MaterialRegion> beside{
+        {.name = "small", .surface = make_box({20, 5, 5}, {25, 15, 15}, {1, 1, 1})},
+        {.name = "large", .surface = make_box({25, 5, 5}, {40, 15, 15}, {1, 1, 1})}};
+    EXPECT_EQ(remesh_interfaces(beside, body, 5).is_followed, (std::vector<char>{0, 1}));
     const Interfaces interfaces = remesh_interfaces(regions, body, 5);
     EXPECT_EQ(interfaces.is_followed, (std::vector<char>{0, 0, 1}));
     const VolumeMesh mesh = tetrahedralise_within(body, interfaces.followed(), {.edge_length = 5});
