@@ -6,7 +6,7 @@
 namespace palpate::mesh {
 
 struct ChildLimits {
-    double seconds = 60;      // of wall time, and of processor time
+    double seconds = 60;      // of processor time, and four times as many of wall time, as others may use the machine
     double mebibytes = 8192;  // of memory, on top of what this process holds
 };
 
