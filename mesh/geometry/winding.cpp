@@ -1,5 +1,7 @@
 #include "mesh/geometry/winding.h"
 
+#include <Eigen/Geometry>
+
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_reduce.h>
 

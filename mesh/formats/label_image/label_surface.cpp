@@ -16,6 +16,7 @@
 #include <cmath>
 
 #include "mesh/errors.h"
+#include "mesh/geometry/with_volume.h"
 #include "mesh/topology/shells.h"
 
 namespace palpate::mesh {
@@ -177,15 +178,6 @@ Surface smoothed(const Surface& surface) {
     filter->NonManifoldSmoothingOn();
     filter->Update();
     return from_vtk(filter->GetOutput());
-}
-
-/// Shifted along its normals until it encloses so much: dV = area x shift.
-Surface with_volume(Surface surface, double volume) {
-    for (int step = 0; step < 3; ++step) {
-        const double shift = (volume - signed_volume(surface)) / area(surface);
-        surface.vertices += shift * vertex_normals(surface);
-    }
-    return surface;
 }
 
 /// A body is more than specks, lines and sheets of single voxels, which have no inside to mesh.
