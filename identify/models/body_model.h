@@ -130,7 +130,7 @@ public:
     virtual Eigen::VectorXd advance(const Eigen::VectorXd& q, const Eigen::VectorXd& step,
                                     const ModelSetting& setting) const = 0;
     /// What the body keeps of an equilibrium, and of what it remembered in it; nothing where its material does not
-    /// yield.
+    /// remember.
     virtual std::shared_ptr<const Memory> remember(const Eigen::VectorXd& q, const ModelSetting& setting,
                                                    const Action& action) const = 0;
     /// The generalized force of one contact (dofs).
