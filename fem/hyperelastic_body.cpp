@@ -57,7 +57,7 @@ struct HyperelasticBody::Impl {
     /// All nodes, held ones too.
     const Unknowns& all(const Effects& effects) const;
     /// The tangent over some unknowns. @throws SolverFailure where an element is inside out.
-    LowerMatrix tangent(const Eigen::VectorXd& u, const BodySetting& setting, const PlasticState* before,
+    LowerMatrix tangent(const Eigen::VectorXd& u, const BodySetting& setting, const MaterialState* before,
                         const Unknowns& unknowns) const;
 };
 
@@ -168,20 +168,20 @@ Eigen::VectorXd HyperelasticBody::cavity_push(const Eigen::VectorXd& u, const me
 }
 
 double HyperelasticBody::potential(const Eigen::VectorXd& u, const BodySetting& setting, const Eigen::VectorXd& f,
-                                   const PlasticState* before) const {
+                                   const MaterialState* before) const {
     validate(setting);
     Eigen::VectorXd net;
     return LoadedBody(impl_->shape, setting, f, before).potential(u, net).value;
 }
 
 Eigen::VectorXd HyperelasticBody::residual(const Eigen::VectorXd& u, const BodySetting& setting,
-                                           const Eigen::VectorXd& f, const PlasticState* before) const {
+                                           const Eigen::VectorXd& f, const MaterialState* before) const {
     validate(setting);
     return LoadedBody(impl_->shape, setting, f, before).net_force(u);
 }
 
 LowerMatrix HyperelasticBody::Impl::tangent(const Eigen::VectorXd& u, const BodySetting& setting,
-                                            const PlasticState* before, const Unknowns& unknowns) const {
+                                            const MaterialState* before, const Unknowns& unknowns) const {
     validate(setting);
     const Eigen::VectorXd none = Eigen::VectorXd::Zero(u.size());
     const LoadedBody body(shape, setting, none, before);
@@ -192,19 +192,19 @@ LowerMatrix HyperelasticBody::Impl::tangent(const Eigen::VectorXd& u, const Body
 }
 
 Eigen::SparseMatrix<double> HyperelasticBody::tangent(const Eigen::VectorXd& u, const BodySetting& setting,
-                                                      const PlasticState* before) const {
+                                                      const MaterialState* before) const {
     const LowerMatrix K = impl_->tangent(u, setting, before, impl_->all(setting.effects));
     return LowerMatrix(K.selfadjointView<Eigen::Lower>());
 }
 
 std::shared_ptr<const BodyTangent> HyperelasticBody::factor(const Eigen::VectorXd& u, const BodySetting& setting,
-                                                            const PlasticState* before) const {
+                                                            const MaterialState* before) const {
     const EliminationOrder& order = impl_->order(setting.effects);
     return std::make_shared<FactoredTangent>(order, impl_->tangent(u, setting, before, order.unknowns));
 }
 
 Eigen::MatrixXd HyperelasticBody::modulus_forces(const Eigen::VectorXd& u, const BodySetting& setting,
-                                                 const PlasticState* before) const {
+                                                 const MaterialState* before) const {
     validate(setting);
     const ElementRegions& regions = impl_->shape.regions;
     Eigen::MatrixXd forces = Eigen::MatrixXd::Zero(u.size(), Eigen::Index{2} * (regions.count() + 1));
@@ -220,7 +220,7 @@ Eigen::MatrixXd HyperelasticBody::modulus_forces(const Eigen::VectorXd& u, const
 }
 
 Eigen::MatrixXd HyperelasticBody::element_forces(const Eigen::VectorXd& u, const BodySetting& setting,
-                                                 const Eigen::MatrixXd& W, const PlasticState* before) const {
+                                                 const Eigen::MatrixXd& W, const MaterialState* before) const {
     assert(W.rows() == impl_->shape.mesh.tetrahedra.rows());
     validate(setting);
     const BodyMaterial material(impl_->shape, setting, before);
@@ -237,7 +237,7 @@ Eigen::MatrixXd HyperelasticBody::element_forces(const Eigen::VectorXd& u, const
 
 BodyEquilibrium HyperelasticBody::equilibrium(const BodySetting& setting, const Eigen::VectorXd& f,
                                               const NewtonOptions& options, const Eigen::VectorXd* start,
-                                              const PlasticState* before, const BodyTangent* guide) const {
+                                              const MaterialState* before, const BodyTangent* guide) const {
     validate(setting);
     options.validate();
     const EliminationOrder& order = impl_->order(setting.effects);
@@ -246,12 +246,11 @@ BodyEquilibrium HyperelasticBody::equilibrium(const BodySetting& setting, const 
     return find_equilibrium(impl_->shape, order, setting, f, options, start, before, factor);
 }
 
-std::shared_ptr<const PlasticState> HyperelasticBody::plastic_state(const Eigen::VectorXd& u,
-                                                                    const BodySetting& setting,
-                                                                    const PlasticState* before) const {
+std::shared_ptr<const MaterialState> HyperelasticBody::state_after(const Eigen::VectorXd& u, const BodySetting& setting,
+                                                                   const MaterialState* before) const {
     validate(setting);
-    if (!setting.effects.plasticity) return nullptr;
-    return std::make_shared<PlasticState>(BodyMaterial(impl_->shape, setting, before).after(u));
+    if (!setting.effects.remember()) return nullptr;
+    return std::make_shared<MaterialState>(BodyMaterial(impl_->shape, setting, before).after(u));
 }
 
 }  // namespace palpate::fem

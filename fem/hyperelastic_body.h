@@ -15,8 +15,9 @@
 
 namespace palpate::fem {
 
-/// How far a yielding material has flowed, point by point; made by HyperelasticBody::plastic_state.
-struct PlasticState;
+/// What a material that remembers has been through, point by point: how far it has flowed, and the greatest strain that
+/// it bore; made by HyperelasticBody::state_after.
+struct MaterialState;
 
 /// A body of quadratic tetrahedra in large deformation: its elastic energy, forces, tangent and equilibria under dead
 /// loads. Elements keep their volume in the mean (P2/P0), which does not lock near nu = 0.5. [Simo, Taylor & Pister
@@ -37,33 +38,33 @@ public:
 
     /// Elastic energy and effects less the work of the dead load f (3n) [N mm]; infinite where an element is inside
     /// out.
-    /// `before`, here and below: how far a yielding material had flowed, under the same law; none: it is virgin. While
-    /// it flows forces are no potential's gradient, and this one is near the truth.
+    /// `before`, here and below: what a material that remembers had been through, under the same law; none: it is
+    /// virgin. While it flows forces are no potential's gradient, and this one is near the truth.
     double potential(const Eigen::VectorXd& u, const BodySetting& setting, const Eigen::VectorXd& f,
-                     const PlasticState* before = nullptr) const;
+                     const MaterialState* before = nullptr) const;
     /// Net force f - d(energy)/du on every node (3n) [N]; at held nodes minus the support's reaction.
     /// @throws SolverFailure where an element is inside out.
     Eigen::VectorXd residual(const Eigen::VectorXd& u, const BodySetting& setting, const Eigen::VectorXd& f,
-                             const PlasticState* before = nullptr) const;
+                             const MaterialState* before = nullptr) const;
     /// J of all nodes, held ones too (3n x 3n), symmetric, both halves [N/mm]. Where the body flows, the
     /// consistent tangent's symmetric part.
     Eigen::SparseMatrix<double> tangent(const Eigen::VectorXd& u, const BodySetting& setting,
-                                        const PlasticState* before = nullptr) const;
+                                        const MaterialState* before = nullptr) const;
     /// @throws SolverFailure when J is not positive definite on the free nodes.
     std::shared_ptr<const BodyTangent> factor(const Eigen::VectorXd& u, const BodySetting& setting,
-                                              const PlasticState* before = nullptr) const;
-    /// How far the material has flowed once it stood in u; null without plasticity. @throws as residual.
-    std::shared_ptr<const PlasticState> plastic_state(const Eigen::VectorXd& u, const BodySetting& setting,
-                                                      const PlasticState* before) const;
+                                              const MaterialState* before = nullptr) const;
+    /// What the material has been through once it stood in u; null where it does not remember. @throws as residual.
+    std::shared_ptr<const MaterialState> state_after(const Eigen::VectorXd& u, const BodySetting& setting,
+                                                     const MaterialState* before) const;
 
     /// Internal forces at unit moduli (3n x 2 materials), of the body's own material and then of each region's: the
     /// internal force is the sum of mu * column 2m + K * column 2m + 1. Effects in the material are shares of mu, and
     /// in column 2m.
     Eigen::MatrixXd modulus_forces(const Eigen::VectorXd& u, const BodySetting& setting,
-                                   const PlasticState* before = nullptr) const;
+                                   const MaterialState* before = nullptr) const;
     /// Internal forces of weighted elements (3n x c): column j is sum_e W(e, j) f_e; W (elements x c).
     Eigen::MatrixXd element_forces(const Eigen::VectorXd& u, const BodySetting& setting, const Eigen::MatrixXd& W,
-                                   const PlasticState* before = nullptr) const;
+                                   const MaterialState* before = nullptr) const;
 
     /// The displacement in which the net force vanishes at the free nodes: Newton's method on the potential with line
     /// search, started from the linear answer or a neighbouring state `start`, factors reused while they serve;
@@ -72,7 +73,7 @@ public:
     /// with iterations and residual when none was found.
     /// `guide`: the tangent of a state nearby, factored by this body; steps are taken by it for as long as they serve.
     BodyEquilibrium equilibrium(const BodySetting& setting, const Eigen::VectorXd& f, const NewtonOptions& options = {},
-                                const Eigen::VectorXd* start = nullptr, const PlasticState* before = nullptr,
+                                const Eigen::VectorXd* start = nullptr, const MaterialState* before = nullptr,
                                 const BodyTangent* guide = nullptr) const;
 
     // Tools and tendons in a displacement u.

@@ -15,6 +15,7 @@ set(shared_skeleton_sources
   links/rest_direction.cpp
   links/shear.cpp
   links/fibres/link_fibre.cpp
+  links/fibres/history_law.cpp
   links/fibres/plastic_fibre.cpp
   links/fibres/uniaxial.cpp
   links/placed/placed_links.cpp

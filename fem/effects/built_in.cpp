@@ -42,6 +42,14 @@ KnownEffect known_plasticity() {
             }};
 }
 
+KnownEffect known_damage() {
+    return {"damage",
+            {{"share", "1", Range::share}, {"strain", "1", Range::positive}},
+            [](const EffectNumbers& numbers) -> Effects {
+                return {.damage = Damage{numbers["share"], numbers["strain"]}};
+            }};
+}
+
 // Recorded only: a solid has Poisson's ratio in its law, and links have no volume that could resist.
 KnownEffect known_volume() {
     return {.name = "volume",
@@ -56,11 +64,13 @@ KnownEffect fault(std::string name) { return {std::move(name), {}, {}, EffectKin
 
 std::vector<KnownEffect> built_in_effects() {
     return {
-        known_gravity(),       known_compliant_support(), known_stiffening(), known_anisotropy(),
-        known_inclusion(),     known_contact(),           known_pressure(),   known_prestress(),
-        known_swelling(),      known_viscosity(),         known_plasticity(), known_volume(),
-        fault("misalignment"), fault("force-gain"),       fault("slip"),      fault("actuation-gain"),
-        fault("clock"),        fault("outliers"),
+        known_gravity(),    known_compliant_support(), known_stiffening(),
+        known_anisotropy(), known_inclusion(),         known_contact(),
+        known_pressure(),   known_prestress(),         known_swelling(),
+        known_viscosity(),  known_plasticity(),        known_damage(),
+        known_volume(),     fault("misalignment"),     fault("force-gain"),
+        fault("slip"),      fault("actuation-gain"),   fault("clock"),
+        fault("outliers"),
     };
 }
 

@@ -19,6 +19,13 @@ struct Plasticity {
     double hardening = 0;  // d Mises stress / d equivalent plastic strain / (3 mu) [-], >= 0
 };
 
+/// The material is softer after its first large strain (the Mullins effect): damage_energy. What it bears while it is
+/// strained further than ever stays as it is without.
+struct Damage {
+    double share = 0;   // of its resistance to distortion that it may lose [-], 0 <= share < 1
+    double strain = 1;  // equivalent strain which leaves it a good deal softer [-], > 0
+};
+
 /// The material creeps: under a load that is held since time 0 its compliance grows as
 ///   J(t) / J(0) = 1 + creep (1 - exp(-t / tau)),
 /// all moduli alike, so that a body bears loads as an elastic one bears them times J.
@@ -44,6 +51,7 @@ struct Effects {
     double pressure = 0;  // in closed cavities, above that outside [MPa]
     double growth = 0;    // of every free length of the material since its rest shape was taken [-], > -1
     std::optional<Plasticity> plasticity{};
+    std::optional<Damage> damage{};
     std::optional<CreepLaw> creep{};  // used where loads are applied in time; ignored by an equilibrium
     std::vector<std::shared_ptr<const ModelSpecificEffect>> of_model{};
     std::vector<std::shared_ptr<const ToolPotential>> tools{};  // where they are
@@ -53,9 +61,11 @@ struct Effects {
     bool empty() const {
         const auto is_nothing = [](const auto& effect) { return effect->is_nothing(); };
         return points.empty() && material.empty() && surface.empty() && pressure == 0 && growth == 0 && !plasticity &&
-               !creep && tools.empty() && cavities.empty() && tendons.empty() &&
+               !damage && !creep && tools.empty() && cavities.empty() && tendons.empty() &&
                std::all_of(of_model.begin(), of_model.end(), is_nothing);
     }
+    /// Does what the material has been through matter?
+    bool remember() const { return plasticity || damage; }
     /// Puts others in force besides; numbers add up.
     void add(const Effects& more) {
         points.insert(points.end(), more.points.begin(), more.points.end());
@@ -64,6 +74,7 @@ struct Effects {
         pressure += more.pressure;
         growth += more.growth;
         if (more.plasticity) plasticity = more.plasticity;
+        if (more.damage) damage = more.damage;
         if (more.creep) creep = more.creep;
         of_model.insert(of_model.end(), more.of_model.begin(), more.of_model.end());
         tools.insert(tools.end(), more.tools.begin(), more.tools.end());

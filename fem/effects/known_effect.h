@@ -32,7 +32,7 @@ enum class EffectKind {
 inline const char* kind_name(EffectKind kind) { return kind == EffectKind::body ? "body" : "measurement"; }
 
 /// What a parameter may be.
-enum class Range { any, positive, not_negative, poisson, above_minus_one };
+enum class Range { any, positive, not_negative, poisson, above_minus_one, share };
 
 struct KnownParameter {
     std::string name, unit;  // unit "1": none

@@ -24,6 +24,8 @@ bool is_in(Range range, double value) {
             return value > -1 && value < 0.5;
         case Range::above_minus_one:
             return value > -1;
+        case Range::share:
+            return value >= 0 && value < 1;
         case Range::any:
             break;
     }
@@ -31,8 +33,8 @@ bool is_in(Range range, double value) {
 }
 
 // In the order of Range.
-constexpr std::array<const char*, 5> range_words{"a number", "above 0", "at least 0", "above -1 and below 0.5",
-                                                 "above -1"};
+constexpr std::array<const char*, 6> range_words{
+    "a number", "above 0", "at least 0", "above -1 and below 0.5", "above -1", "at least 0 and below 1"};
 
 // " N/mm", or nothing.
 std::string unit_words(const std::string& unit) { return unit == "1" ? "" : " " + unit; }

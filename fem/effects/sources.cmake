@@ -3,6 +3,7 @@ set(effect_sources
   built_in.cpp
   registry.cpp
   material/anisotropy.cpp
+  material/damage.cpp
   material/inclusion.cpp
   material/prestress.cpp
   material/stiffening.cpp

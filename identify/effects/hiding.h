@@ -33,6 +33,7 @@ struct TrueConditions {
 /// Requirements on the load histories of a synthetic set for an effect to be observable.
 struct SynthesisNeeds {
     bool release = false;            // one body goes through all probes, let go after each: it shows in what stays
+    bool reloads = false;            // one body goes through all probes, and each probe back to less than it bore
     bool changing_loads = false;     // a probe presses more and less hard, one state after the other
     bool dwells = false;             // loads are read at several times after they were put on
     bool noise = false;              // its numbers are told in sigmas

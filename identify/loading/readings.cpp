@@ -36,8 +36,8 @@ std::vector<StateReadings> collect_readings(const skeleton::Model& model, const 
     const MeasurementSet elastic_set = creep ? as_elastic(set, *creep) : set;
     const std::vector<skeleton::Attachment> markers = marker_attachments(model, set.markers);
     const ContactLoads loads(model);
-    const bool yields = skeleton::physics_of(model.effects).plasticity.has_value();
-    const bool always_loaded = is_always_loaded(model) || yields;
+    const bool remembers = skeleton::physics_of(model.effects).remember();
+    const bool always_loaded = is_always_loaded(model) || remembers;
     std::vector<StateReadings> result;
     struct ProbeHistory {
         int last = -1;
@@ -55,10 +55,10 @@ std::vector<StateReadings> collect_readings(const skeleton::Model& model, const 
         }
         ProbeHistory& history = histories[set.continuous ? 0 : state.probe];
         if (readings.rows.empty()) {
-            if (yields) history.since.push_back(loads(elastic_set, elastic_set.states[s]));
+            if (remembers) history.since.push_back(loads(elastic_set, elastic_set.states[s]));
             continue;
         }
-        if (yields) {
+        if (remembers) {
             readings.before = history.last;
             readings.unmeasured = std::move(history.since);
             history = {.last = static_cast<int>(result.size()), .since = {}};

@@ -121,7 +121,7 @@ public:
     virtual Eigen::MatrixXd piece_force(const Eigen::VectorXd& q, const ModelSetting& setting, const Action& action,
                                         const Eigen::MatrixXd& W) const = 0;
     /// What the body keeps of an equilibrium, and of what it remembered in it; nothing where its material does not
-    /// yield.
+    /// remember.
     virtual std::shared_ptr<const Memory> remember(const Eigen::VectorXd& q, const ModelSetting& setting,
                                                    const Action& action) const = 0;
 

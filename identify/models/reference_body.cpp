@@ -100,11 +100,11 @@ bool in_small_strain(const ModelSetting& setting) {
 
 class FemMemory : public Memory {
 public:
-    explicit FemMemory(std::shared_ptr<const fem::PlasticState> the_state) : state(std::move(the_state)) {}
-    std::shared_ptr<const fem::PlasticState> state;
+    explicit FemMemory(std::shared_ptr<const fem::MaterialState> the_state) : state(std::move(the_state)) {}
+    std::shared_ptr<const fem::MaterialState> state;
 };
 
-const fem::PlasticState* memory_of(const Action& action) {
+const fem::MaterialState* memory_of(const Action& action) {
     const auto* own = dynamic_cast<const FemMemory*>(action.memory.get());
     return own ? own->state.get() : nullptr;
 }
@@ -306,7 +306,7 @@ double ReferenceBody::young(const ModelSetting& setting) const { return std::exp
 bool ReferenceBody::is_nonlinear(const ModelSetting& setting) const {
     const bool one_sided =
         std::ranges::any_of(setting.effects.points, [](const auto& potential) { return potential->is_one_sided(); });
-    return static_cast<fem::MaterialLaw>(setting.law) != fem::MaterialLaw::linear || setting.effects.plasticity ||
+    return static_cast<fem::MaterialLaw>(setting.law) != fem::MaterialLaw::linear || setting.effects.remember() ||
            one_sided || impl_->rig.is_nonlinear();
 }
 const fem::HyperelasticBody& ReferenceBody::body() const { return impl_->body; }
@@ -409,10 +409,9 @@ Eigen::VectorXd ReferenceBody::advance(const Eigen::VectorXd& q, const Eigen::Ve
 
 std::shared_ptr<const Memory> ReferenceBody::remember(const Eigen::VectorXd& q, const ModelSetting& setting,
                                                       const Action& action) const {
-    if (!setting.effects.plasticity) return nullptr;
+    if (!setting.effects.remember()) return nullptr;
     if (has_free_coordinates(action)) return remember(q, setting, posed(*this, q, setting, action));
-    return std::make_shared<FemMemory>(
-        impl_->body.plastic_state(q, impl_->setting(setting, action), memory_of(action)));
+    return std::make_shared<FemMemory>(impl_->body.state_after(q, impl_->setting(setting, action), memory_of(action)));
 }
 
 Eigen::VectorXd ReferenceBody::contact_force(const Eigen::VectorXd&, const ModelSetting&,

@@ -62,7 +62,7 @@ private:
     int dofs_;
 };
 
-/// How far the links' fibres have flowed.
+/// What the links' fibres have been through.
 class FibreMemory : public Memory {
 public:
     explicit FibreMemory(skeleton::FibreStates states) : fibres(std::move(states)) {}
@@ -317,7 +317,7 @@ Eigen::VectorXd SkeletonBody::advance(const Eigen::VectorXd& q, const Eigen::Vec
 
 std::shared_ptr<const Memory> SkeletonBody::remember(const Eigen::VectorXd& q, const ModelSetting& setting,
                                                      const Action& action) const {
-    if (!setting.effects.plasticity) return nullptr;
+    if (!setting.effects.remember()) return nullptr;
     if (has_free_coordinates(action)) return remember(q, setting, posed(*this, q, setting, action));
     return std::make_shared<FibreMemory>(
         skeleton::flowed(impl_->model(setting), impl_->equilibrium_of(q, setting, action), setting.effects));

@@ -152,7 +152,7 @@ std::vector<LoadSequence> load_sequences(const skeleton::Model& model, const std
     const identify::ContactLoads to_load(model);
     std::vector<LoadSequence> sequences;
     for (std::size_t s = 0; s < states.size(); ++s) {
-        const bool goes_on = physics.plasticity && s > 0 && states[s].probe == states[s - 1].probe;
+        const bool goes_on = physics.remember() && s > 0 && states[s].probe == states[s - 1].probe;
         if (!goes_on) sequences.emplace_back();
         sequences.back().push_back(to_load(set.states[s].contacts));
     }

@@ -227,6 +227,8 @@ void add_sequence_flags(CLI::App* command, BlindSetOptions& synthesis) {
         ->group("Probing");
     auto* unload = add("--unload", synthesis.unload, true, "Let the body go after each load, and read it");
     add("--no-unload", synthesis.unload, false, "Do not, though a hidden effect needs it")->excludes(unload);
+    auto* back = add("--back", synthesis.back, true, "Go back through the loads of each probe, and let the body go");
+    add("--no-back", synthesis.back, false, "Do not, though a hidden effect needs it")->excludes(back);
     command->add_option("--dwell", synthesis.dwell, "Read each held load so long after it was put on, T1,T2,... [s]")
         ->delimiter(',')
         ->check(CLI::PositiveNumber)
@@ -302,12 +304,13 @@ void add_solver_flags(CLI::App* command, commands::ProbeCommandOptions& probe) {
                                    "Write what is to be computed, in place of computing it: body.inp for Abaqus or\n"
                                    "CalculiX, a step for each state, and probes.csv");
     to->check(CLI::IsMember({"inp"}))->excludes(from)->group("Another solver");
-    for (const char* own : {"--hide", "--law", "--linear", "--levels", "--unload", "--no-unload", "--dwell",
-                            "--continuous", "--no-continuous", "--probes", "--displacement", "--tell-material",
-                            "--edge-length", "--linear-elements", "--tool", "--pressure", "--tendon"})
+    for (const char* own :
+         {"--hide", "--law", "--linear", "--levels", "--unload", "--no-unload", "--back", "--no-back", "--dwell",
+          "--continuous", "--no-continuous", "--probes", "--displacement", "--tell-material", "--edge-length",
+          "--linear-elements", "--tool", "--pressure", "--tendon"})
         from->excludes(command->get_option(own));
-    for (const char* own : {"--hide", "--noise", "--missing", "--unlabelled", "--dwell", "--unload", "--continuous",
-                            "--tool", "--pressure", "--tendon"})
+    for (const char* own : {"--hide", "--noise", "--missing", "--unlabelled", "--dwell", "--unload", "--back",
+                            "--continuous", "--tool", "--pressure", "--tendon"})
         to->excludes(command->get_option(own));
 }
 

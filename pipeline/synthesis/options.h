@@ -31,6 +31,7 @@ struct BlindSetOptions {
     int levels = 0;                         // loads that each probe presses with, [0, 100]; 0: one, 1/3, 2/3, 1 in turn
     std::vector<double> dwell{};            // each held load is read so long after it was put on [s], > 0, ascending
     std::optional<bool> unload{};      // after each load the body is let go; absent: where a hidden effect needs it
+    std::optional<bool> back{};        // each probe goes back through its loads; absent: likewise
     std::optional<bool> continuous{};  // one body goes through all probes; absent: likewise
     std::optional<double> noise{};     // 1 sigma [mm], >= 0; absent: 2 % of the rms displacement where something is
                                        // hidden, else none

@@ -223,7 +223,7 @@ void Body::reset() {
         contact.lagged_force.setZero();
     }
     impl_->solver.forget_contacts();
-    impl_->field.forget_flow();
+    impl_->field.forget();
 }
 
 Eigen::Vector3d Body::position(int sphere) const {

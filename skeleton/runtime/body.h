@@ -64,7 +64,7 @@ public:
     int vertex_count() const;
 
     // --- Where it is ---------------------------------------------------------------------------------------------
-    /// Back to rest: at rest, without contacts; nothing has flowed.
+    /// Back to rest: at rest, without contacts, and as new.
     void reset();
     Eigen::Vector3d position(int sphere) const;
     Eigen::Quaterniond orientation(int sphere) const;

@@ -26,21 +26,21 @@ struct Equilibrium {
     int iterations = 0;
     double residual = 0;   // largest force left [N], torques over the mean link length
     Eigen::VectorXd step;  // from rest (6N); law linear: the answer itself, linear in the load
-    FibreStates before{};  // how far the links' fibres had flowed in the states before (12L); empty: not at all
+    FibreStates before{};  // what the links' fibres had been through in the states before (12L); empty: nothing
 };
 
 /// The configuration in which all net forces vanish, by the model's law: one linear step from rest, or Newton on the
 /// potential, globalised so that it ends in a stable equilibrium; load stepping when it fails at once. The model's
 /// effects are in force; the linear law takes them as they are at rest, to first order.
-/// `start`: a neighbouring state, rest by default. `before`: how far a yielding material had flowed before.
+/// `start`: a neighbouring state, rest by default. `before`: what a material that remembers had been through.
 /// @throws SolverFailure with iterations and residual when none was found, or naming an unconstrained sphere;
 /// InvalidInput when no sphere is held or some hang on no held one.
 Equilibrium equilibrium(const Model& model, const Load& load, const EquilibriumOptions& options = {},
                         const State* start = nullptr, const FibreStates& before = {});
 
-/// How far the fibres of the links have flowed after an equilibrium, `before` the next one (12L). The linear law takes
-/// the material as it is at rest: in it nothing flows. Empty when nothing yields. `extra`, here and below: effects in
-/// force beyond the model's own.
+/// What the fibres of the links have been through after an equilibrium, `before` the next one (12L). The linear law
+/// takes the material as it is at rest: in it nothing flows or softens. Empty when nothing remembers. `extra`, here and
+/// below: effects in force beyond the model's own.
 FibreStates flowed(const Model& model, const Equilibrium& equilibrium, const fem::Effects& extra = {});
 
 /// Positions of attached points in an equilibrium, by the model's law (m x 3) [mm]: linear in the step for the

@@ -37,7 +37,7 @@ public:
 
     /// How much of the effects is in force, but of those that hold the supports; 1 if not told otherwise.
     void scale_effects(double share) { effect_share_ = share; }
-    /// How far the links' fibres had flowed (12L); empty, as it is if not told otherwise: not at all.
+    /// What the links' fibres had been through (12L); empty, as it is if not told otherwise: nothing.
     void remember(const FibreStates& before);
     const FibreStates& before() const { return before_; }
 

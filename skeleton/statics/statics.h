@@ -9,7 +9,7 @@
 
 namespace palpate::skeleton {
 
-// All here with the model's effects in force, and `extra` ones; nothing has flowed before.
+// All here with the model's effects in force, and `extra` ones; nothing was borne before.
 
 /// Force signatures (6N x stiffnesses, in their order): each column the force on the spheres at unit stiffness. The net
 /// force is external_force + effect_force + link_forces * k, linear in the stiffnesses. [Burion 2008, eqs. 7-8 with
@@ -33,7 +33,7 @@ double potential(const Model& model, const State& state, const Load& load, const
 Eigen::VectorXd residual(const Model& model, const State& state, const Load& load, const fem::Effects& extra = {});
 
 /// Second derivative of the potential by the step, in exponential coordinates (6N x 6N), symmetric [N/mm, N, N mm];
-/// in equilibrium it is -d residual / d step. `before`: how far the links' fibres had flowed.
+/// in equilibrium it is -d residual / d step. `before`: what the links' fibres had been through.
 Eigen::SparseMatrix<double> tangent(const Model& model, const State& state, const Load& load,
                                     const fem::Effects& extra = {}, const FibreStates& before = {});
 

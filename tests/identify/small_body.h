@@ -131,6 +131,22 @@ struct SmallBody {
         return states;
     }
 
+    /// Pushes, each to half of it, all of it, back to half and taken off.
+    static std::vector<LoadState> returns(double force = 0.1, int count = 4) {
+        std::vector<LoadState> states{LoadState{.probe = 0}};
+        for (LoadState state : probes(force, count)) {
+            if (state.contacts.empty()) continue;
+            const Vec3 whole = state.contacts.front().force;
+            for (const double share : {0.5, 1.0, 0.5}) {
+                state.contacts.front().force = share * whole;
+                states.push_back(state);
+                state.time += 1;
+            }
+            states.push_back({.probe = state.probe, .time = state.time});
+        }
+        return states;
+    }
+
     /// Pushes, each put on in two steps and taken off again, read right after each change and some time later.
     static std::vector<LoadState> steps(double force = 0.1, int count = 4) {
         std::vector<LoadState> states{LoadState{.probe = 0}};
@@ -190,6 +206,7 @@ inline Eigen::VectorXd example(const EffectHypothesis& effect, const std::vector
         {"prestress", {0.01, -0.006, 0.004, 0.006, -0.004, 0.002}},
         {"viscosity", {0.5, std::log(3)}},
         {"plasticity", {std::log(0.02), std::log(0.3)}},
+        {"damage", {0.9, std::log(0.05)}},
         {"torsion", {0.3}},
         {"shear", {0.3}}};
     const auto found = chosen.find(effect.name());

@@ -12,6 +12,9 @@ struct MaterialTerms {
     Mat3 first = Mat3::Zero();       // dw/dF
     Second second = Second::Zero();  // d^2 w / dF_ca dF_db at (3 c + a, 3 d + b), symmetric; filled on demand
 };
+inline MaterialTerms operator+(const MaterialTerms& a, const MaterialTerms& b) {
+    return {a.w + b.w, a.first + b.first, a.second + b.second};
+}
 
 /// A physical effect in the material itself: what it adds to the body's law at a point, or how much stiffer it makes
 /// it. The energy density at X becomes

@@ -25,6 +25,16 @@ void validate(const Plasticity& plasticity) {
     }
 }
 
+void validate(const Damage& damage) {
+    if (!(damage.share < 1)) {  // derivatives at 0 ask for a little less than that
+        throw InvalidInput(
+            fmt::format("Damage: the share of stress that it may take is {}; allowed: less than 1.", damage.share));
+    }
+    if (!(damage.strain > 0)) {
+        throw InvalidInput(fmt::format("Damage: the strain that does it is {}; allowed: more than 0.", damage.strain));
+    }
+}
+
 std::vector<ElementModel> models_of(const BodyShape& body, const BodySetting& setting) {
     assert(setting.regions.empty() || std::ssize(setting.regions) == body.regions.count());
     std::vector<ElementModel> models(static_cast<std::size_t>(body.regions.count() + 1), {setting, body.dilatation});
@@ -38,18 +48,20 @@ Mat3 gradient_at(const ElementShape& shape, const NodeVectors& u, int q) {
 
 }  // namespace
 
-BodyMaterial::BodyMaterial(const BodyShape& body, const BodySetting& setting, const PlasticState* before, bool flows)
+BodyMaterial::BodyMaterial(const BodyShape& body, const BodySetting& setting, const MaterialState* before, bool flows)
     : body_(body),
       models_(models_of(body, setting)),
       growth_(setting.effects.growth),
       plasticity_(setting.effects.plasticity),
+      damage_(setting.effects.damage),
       before_(before),
       flows_(flows) {
     if (plasticity_) validate(*plasticity_);
+    if (damage_) validate(*damage_);
     if (const double g = 1 + growth_; setting.law != MaterialLaw::linear) scale_ = {g * g * g, g * g, g};
     assert(!before || (before->law == setting.law && before->points.size() == element_points * body.elements.size()));
     const auto& all = setting.effects.material;
-    if (all.empty() && !plasticity_) return;
+    if (all.empty() && !plasticity_ && !damage_) return;
     for (const auto& effect : all) {
         if (!effect->is_scale()) energies_.push_back(effect.get());
     }
@@ -59,6 +71,7 @@ BodyMaterial::BodyMaterial(const BodyShape& body, const BodySetting& setting, co
         ElementEffects own;
         own.energies = energies_;
         if (plasticity_) own.plasticity = &*plasticity_;
+        if (damage_) own.damage = &*damage_;
         if (before_) own.before = &before_->points[element_points * e];
         own.flows = flows_;
         own.X = body.quadrature_points(e);
@@ -109,16 +122,17 @@ void BodyMaterial::tangent(const Eigen::VectorXd& u, std::size_t element, Elemen
     for (ElementTangent::NodePairs& block : K.blocks) block *= scale_.tangent;
 }
 
-PlasticState BodyMaterial::after(const Eigen::VectorXd& u) const {
-    assert(plasticity_);
-    PlasticState result{law(), std::vector<PlasticPoint>(element_points * body_.elements.size())};
+MaterialState BodyMaterial::after(const Eigen::VectorXd& u) const {
+    assert(plasticity_ || damage_);
+    MaterialState result{law(), std::vector<MaterialPoint>(element_points * body_.elements.size())};
     for (std::size_t e = 0; e < body_.elements.size(); ++e) {
         force(u, e);  // refuses elements that are inside out
         const NodeVectors moved = elastic_displacements(u, e);
         for (int q = 0; q < element_points; ++q) {
             const std::size_t k = element_points * e + static_cast<std::size_t>(q);
-            result.points[k] = plastic_point(law(), *plasticity_, before_ ? before_->points[k] : PlasticPoint{},
-                                             gradient_at(body_.elements[e], moved, q));
+            const MaterialPoint had = before_ ? before_->points[k] : MaterialPoint{};
+            result.points[k] =
+                material_point(law(), plasticity_, damage_, had, gradient_at(body_.elements[e], moved, q));
         }
     }
     return result;

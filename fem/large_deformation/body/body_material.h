@@ -8,10 +8,10 @@
 
 namespace palpate::fem {
 
-/// Plastic state of every quadrature point of a body.
-struct PlasticState {
-    MaterialLaw law;                   // what it was found with, and goes with
-    std::vector<PlasticPoint> points;  // that of point q in element e is 4 e + q
+/// What every quadrature point of a body has been through.
+struct MaterialState {
+    MaterialLaw law;                    // what it was found with, and goes with
+    std::vector<MaterialPoint> points;  // that of point q in element e is 4 e + q
 };
 
 /// What a body is made of: how each of its elements answers, with the effects in its material.
@@ -21,9 +21,10 @@ struct PlasticState {
 /// is less by g - 1. [Rodriguez, Hoger, McCulloch 1994]
 class BodyMaterial {
 public:
-    /// `before`: nullptr: virgin; of no account without plasticity. `flows`: does plastic strain change from there?
-    /// @pre body, effects and `before` outlive it. @throws InvalidInput for plasticity out of range.
-    BodyMaterial(const BodyShape& body, const BodySetting& setting, const PlasticState* before = nullptr,
+    /// `before`: nullptr: virgin; of no account where nothing remembers. `flows`: does plastic strain change from
+    /// there?
+    /// @pre body, effects and `before` outlive it. @throws InvalidInput for plasticity or damage out of range.
+    BodyMaterial(const BodyShape& body, const BodySetting& setting, const MaterialState* before = nullptr,
                  bool flows = true);
     BodyMaterial(const BodyMaterial&) = delete;
     BodyMaterial& operator=(const BodyMaterial&) = delete;
@@ -44,7 +45,7 @@ public:
     void tangent(const Eigen::VectorXd& u, std::size_t element, ElementTangent& K) const;
 
     /// What the body has been through once it has stood in u.
-    PlasticState after(const Eigen::VectorXd& u) const;
+    MaterialState after(const Eigen::VectorXd& u) const;
 
     /// Shear modulus times volume, which energies are small differences of [N mm].
     double energy_scale() const;
@@ -69,7 +70,8 @@ private:
     } scale_;
     std::vector<const MaterialEffect*> energies_;
     std::optional<Plasticity> plasticity_;
-    const PlasticState* before_;
+    std::optional<Damage> damage_;
+    const MaterialState* before_;
     bool flows_;
     std::vector<int> place_;  // of each element among effects_, -1: it has none; empty: no element has any
     std::vector<ElementEffects> effects_;

@@ -5,7 +5,7 @@
 namespace palpate::fem {
 
 LoadedBody::LoadedBody(const BodyShape& body, const BodySetting& setting, const Eigen::VectorXd& f,
-                       const PlasticState* before, double share, bool flows)
+                       const MaterialState* before, double share, bool flows)
     : body_(body),
       material_(body, setting, before, flows),
       surface_(setting.effects.surface),

@@ -22,7 +22,7 @@ class LoadedBody {
 public:
     /// `before`, `flows`: as BodyMaterial takes them. @pre body, setting and `before` outlive it.
     LoadedBody(const BodyShape& body, const BodySetting& setting, const Eigen::VectorXd& f,
-               const PlasticState* before = nullptr, double share = 1, bool flows = true);
+               const MaterialState* before = nullptr, double share = 1, bool flows = true);
 
     /// Are its forces the gradient of a potential?
     bool conservative() const { return material_.conservative(); }

@@ -23,18 +23,16 @@ MaterialTerms ElementEffects::added(MaterialLaw law, int q, const Mat3& F, bool 
     const auto of = [&](const MaterialEffect& effect) {
         return law == MaterialLaw::linear ? linear_terms(effect, at, F) : effect.terms(at, F, with_second);
     };
-    const auto flow = [&] {
-        return plastic_terms(law, *plasticity, before ? before[q] : PlasticPoint{}, F, flows, with_second);
+    const auto history = [&] {
+        const MaterialPoint had = before ? before[q] : MaterialPoint{};
+        MaterialTerms terms;
+        if (plasticity) terms = plastic_terms(law, *plasticity, had.plastic, F, flows, with_second);
+        return damage ? terms + damage_terms(law, *damage, had.most, F, terms, with_second) : terms;
     };
-    if (energies.empty()) return flow();
+    if (energies.empty()) return history();
     MaterialTerms sum = of(*energies.front());
-    const auto add = [&](const MaterialTerms& terms) {
-        sum.w += terms.w;
-        sum.first += terms.first;
-        if (with_second) sum.second += terms.second;
-    };
-    for (const MaterialEffect* effect : energies.subspan(1)) add(of(*effect));
-    if (plasticity) add(flow());
+    for (const MaterialEffect* effect : energies.subspan(1)) sum = sum + of(*effect);
+    if (plasticity || damage) sum = sum + history();
     return sum;
 }
 

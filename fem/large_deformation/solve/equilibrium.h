@@ -11,6 +11,6 @@ namespace palpate::fem {
 /// @throws SolverFailure with iterations and residual when all fail.
 BodyEquilibrium find_equilibrium(const BodyShape& body, const EliminationOrder& order, const BodySetting& setting,
                                  const Eigen::VectorXd& f, const NewtonOptions& options, const Eigen::VectorXd* start,
-                                 const PlasticState* before, const Cholesky* guide = nullptr);
+                                 const MaterialState* before, const Cholesky* guide = nullptr);
 
 }  // namespace palpate::fem

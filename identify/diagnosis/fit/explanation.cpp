@@ -93,12 +93,12 @@ ForwardSolution solve_forward(const BodyModel& model, const Problem& problem, co
     // A linear law: one factorisation, one step from rest.
     std::shared_ptr<const Tangent> linear;
     if (!model.is_nonlinear(setting)) linear = model.tangent(rest, setting, {});
-    const bool yields = setting.effects.plasticity.has_value();
+    const bool remembers = setting.effects.remember();
     std::vector<std::shared_ptr<const Memory>> after(count);
-    for_each_in_parallel(count, yields ? 1 : threads, [&](int k) {
+    for_each_in_parallel(count, remembers ? 1 : threads, [&](int k) {
         Action& action = result.actions[k];
         action = explanation.act(problem, k);
-        if (yields && problem.before(k) >= 0) action.memory = after[problem.before(k)];
+        if (remembers && problem.before(k) >= 0) action.memory = after[problem.before(k)];
         if (at_rest(setting, action)) {
             result.q[k] = rest;
         } else if (linear) {
@@ -107,7 +107,7 @@ ForwardSolution solve_forward(const BodyModel& model, const Problem& problem, co
             result.q[k] =
                 model.equilibrium(setting, action, start ? &(*start)[k] : nullptr, guides ? guides->kept(k) : nullptr);
         }
-        if (yields) after[k] = model.remember(result.q[k], setting, action);
+        if (remembers) after[k] = model.remember(result.q[k], setting, action);
         result.stand[k] = channels_of(model, problem, setting, action, result.q[k]);
         result.markers[k] = explanation.read(problem, result.stand[k]);
     });

@@ -88,11 +88,11 @@ Eigen::MatrixXd felt_of_stiffness(const BodyModel& model, const ModelSetting& se
     return model.reaction_slopes(q, setting, action).by_parameter;
 }
 
-/// d net force / d all numbers in every action of a body that yields (K of dofs x numbers). What it remembers depends
-/// on the numbers too: for each parameter two perturbed load histories are followed, with a slightly larger and a
-/// slightly smaller value.
-std::vector<Eigen::MatrixXd> yielding_forces(const BodyModel& model, const Problem& problem,
-                                             const Explanation& explanation, const ForwardSolution& forward) {
+/// d net force / d all numbers in every action of a body that remembers (K of dofs x numbers). What it remembers
+/// depends on the numbers too: for each parameter two perturbed load histories are followed, with a slightly larger and
+/// a slightly smaller value.
+std::vector<Eigen::MatrixXd> remembering_forces(const BodyModel& model, const Problem& problem,
+                                                const Explanation& explanation, const ForwardSolution& forward) {
     struct PerturbedHistory {
         ModelSetting setting;
         Explanation explanation;
@@ -255,17 +255,17 @@ std::vector<Eigen::MatrixXd> sensitivities(const BodyModel& model, const Problem
 Signatures own_signatures(const BodyModel& model, const Problem& problem, const Explanation& explanation,
                           const ForwardSolution& forward) {
     const ModelSetting setting = explanation.setting();
-    std::vector<Eigen::MatrixXd> yielding;
-    if (setting.effects.plasticity) yielding = yielding_forces(model, problem, explanation, forward);
+    std::vector<Eigen::MatrixXd> remembering;
+    if (setting.effects.remember()) remembering = remembering_forces(model, problem, explanation, forward);
     return {explanation.numbers(),
-            [&model, &problem, explanation, setting, &forward, yielding](int k, const Eigen::VectorXd& q) {
+            [&model, &problem, explanation, setting, &forward, remembering](int k, const Eigen::VectorXd& q) {
                 const Action& action = forward.actions[k];
                 const Eigen::Index numbers = explanation.numbers(), P = explanation.theta.size();
                 AtOnce all{Eigen::MatrixXd(model.dofs(), numbers),
                            Eigen::MatrixXd::Zero(6 * std::ssize(action.motions), numbers)};
                 all.reactions.leftCols(P) = felt_of_stiffness(model, setting, action, q);
-                if (!yielding.empty()) {
-                    all.forces = yielding[k];
+                if (!remembering.empty()) {
+                    all.forces = remembering[k];
                     return as_signatures(all);
                 }
                 all.forces.leftCols(P) = model.parameter_force(q, setting, action);

@@ -156,7 +156,8 @@ std::string asks(const NextProbe& probe) {
         return fmt::format("hold one load, and read it after {:.3g} s and after {:.3g} s", probe.times[0],
                            probe.times[1]);
     }
-    if (probe.kind == "unload") return "load once more, stronger, and read the body again once the load is off";
+    if (probe.kind == "unload")
+        return "load once more, stronger, and read the body again at half the load and once it is off";
     if (probe.kind == "orientation") {
         return fmt::format("read the unloaded body turned by {:.0f} degrees about {}, with its support",
                            probe.turn->degrees, listed(probe.turn->axis));

@@ -93,12 +93,14 @@ private:
                         .states = {under(contacts, soon), under(contacts, late)}});
     }
 
-    /// The strongest half as strong again, and taken off.
+    /// The strongest half as strong again, half of that, and nothing.
     void add_release() {
         std::vector<mesh::Contact> contacts = own_.front().action.contacts;
         for (mesh::Contact& contact : contacts) contact.force *= 1.5;
-        all_.push_back(
-            {.probe = {.kind = "unload", .contact = contacts.front()}, .states = {under(contacts, 1), unloaded(2)}});
+        std::vector<mesh::Contact> half = contacts;
+        for (mesh::Contact& contact : half) contact.force *= 0.5;
+        all_.push_back({.probe = {.kind = "unload", .contact = contacts.front()},
+                        .states = {under(contacts, 1), under(half, 2), unloaded(3)}});
     }
 
     void add_turns() {

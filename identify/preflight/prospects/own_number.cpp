@@ -19,6 +19,7 @@ const std::map<std::string, ScreenedNumber>& screened_numbers() {
         {"anisotropy", {"k", "1", [](double k) { return std::abs(k); }}},
         {"inclusion", {"ratio", "1", [](double logarithm) { return std::exp(std::abs(logarithm)); }}},
         {"viscosity", {"creep", "1", [](double creep) { return creep; }}},
+        {"damage", {"share", "1", [](double value) { return -std::expm1(-value); }}},
         {"compliant-support", {"stiffness", "N/mm", [](double compliance) { return 1 / compliance; }, true}}};
     return known;
 }

@@ -44,6 +44,7 @@ pipeline::BlindSetOptions synthesis_of(const py::dict& given) {
         if (name == "levels") how.levels = value.cast<int>();
         if (name == "dwell") how.dwell = value.cast<std::vector<double>>();
         if (name == "unload") how.unload = value.cast<bool>();
+        if (name == "back") how.back = value.cast<bool>();
         if (name == "continuous") how.continuous = value.cast<bool>();
         if (name == "missing") how.missing = value.cast<double>();
         if (name == "unlabelled") how.unlabelled = value.cast<double>();

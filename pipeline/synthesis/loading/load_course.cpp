@@ -57,11 +57,15 @@ LoadCourse unloaded_history() { return {.probe = 0, .contact = {}, .rows = {{}}}
 std::vector<Row> rows_of(const std::vector<double>& forces, const LoadTiming& timing) {
     const std::vector<double> dwell = timing.dwell.empty() ? std::vector<double>{1} : timing.dwell;
     std::vector<Row> rows;
+    std::vector<double> all = forces;
+    if (timing.back && !forces.empty()) all.insert(all.end(), forces.rbegin() + 1, forces.rend());
     double begin = 0;
-    for (const double force : forces) {
+    for (std::size_t i = 0; i < all.size(); ++i) {
+        const double force = all[i];
         for (const double time : dwell) rows.push_back({begin + time, force});
         begin += dwell.back();
-        if (!timing.unload) continue;
+        const bool is_last = i + 1 == all.size();
+        if (!timing.unload && !(timing.back && is_last)) continue;
         begin += dwell.front();
         rows.push_back({begin, 0});
     }

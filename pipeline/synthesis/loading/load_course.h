@@ -50,9 +50,11 @@ struct LoadCourse {
 /// Probe 0: nothing touches the body.
 LoadCourse unloaded_history();
 
-/// Whether the body is let go after each load, and read how long after a load was put on.
+/// Whether the body is let go after each load, whether it goes back through them, and how long after a load was put on
+/// it is read.
 struct LoadTiming {
     bool unload = false;
+    bool back = false;          // after the last load those before it again, and nothing
     std::vector<double> dwell;  // [s]; empty: once, after a second
 };
 

@@ -19,18 +19,28 @@ Sequence sequence_of(const BlindSetOptions& options, const std::vector<EffectSpe
     const EffectSpec* stays = first_with(&identify::SynthesisNeeds::release, specs);
     const EffectSpec* creeps = first_with(&identify::SynthesisNeeds::dwells, specs);
     const EffectSpec* changes = first_with(&identify::SynthesisNeeds::changing_loads, specs);
-    const bool released = stays != nullptr;
-    Sequence sequence{{.unload = options.unload.value_or(released || changes != nullptr), .dwell = options.dwell},
-                      options.levels,
-                      options.continuous.value_or(released),
-                      {}};
+    const EffectSpec* returns = first_with(&identify::SynthesisNeeds::reloads, specs);
+    const bool released = stays != nullptr, back = options.back.value_or(returns != nullptr);
+    Sequence sequence{
+        {.unload = options.unload.value_or(released || changes != nullptr), .back = back, .dwell = options.dwell},
+        options.levels,
+        options.continuous.value_or(released || returns),
+        {}};
+    if (back && sequence.levels == 0) sequence.levels = 2;
+    if (returns && !(options.back && options.continuous)) {
+        sequence.notes.push_back(
+            fmt::format("{} shows where less is borne after more: one body goes through all probes, each to half and "
+                        "all of its load, back to half, and let go (--levels, --no-back, --no-continuous say "
+                        "otherwise).",
+                        as_first_word(returns->effect)));
+    }
     if (stays && !(options.unload && options.continuous)) {
         sequence.notes.push_back(
             fmt::format("{} shows in what stays: one body goes through all probes, let go after each (--no-unload, "
                         "--no-continuous say otherwise).",
                         as_first_word(stays->effect)));
     }
-    if (changes && options.levels == 0) {
+    if (changes && sequence.levels == 0) {
         sequence.levels = 3;
         sequence.notes.push_back(
             fmt::format("{} shows where loads change: each probe presses at three levels, let go after each (--levels "

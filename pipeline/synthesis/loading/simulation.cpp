@@ -125,7 +125,7 @@ std::vector<EquilibriumPath> simulate(const Specimen& specimen, const TrueCondit
     std::vector<EquilibriumPath> paths(histories.size());
     BodyHistory body_history;
     std::atomic<int> failures = 0;
-    const bool in_order = options.continuous && conditions.setting.effects.plasticity;
+    const bool in_order = options.continuous && conditions.setting.effects.remember();
     identify::for_each_in_parallel(static_cast<int>(histories.size()), in_order ? 1 : options.threads, [&](int c) {
         if (failures > options.most_failures) return;
         BodyHistory fresh;

@@ -17,7 +17,7 @@ double flowed(const fem::Plasticity& plasticity, const FibreState& before, doubl
 
 FibreState flow(const fem::Plasticity& plasticity, const FibreState& before, double lambda) {
     const double more = flowed(plasticity, before, lambda);
-    return {before.strain + std::copysign(more, lambda - 1 - before.strain), before.accumulated + more};
+    return {before.strain + std::copysign(more, lambda - 1 - before.strain), before.accumulated + more, before.most};
 }
 
 Eigen::Matrix<double, 2, 3> flow_derivatives(const fem::Plasticity& plasticity, const FibreState& before,

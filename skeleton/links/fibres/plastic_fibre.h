@@ -7,13 +7,14 @@
 
 namespace palpate::skeleton {
 
-/// How far a fibre has flowed.
+/// What a fibre has been through.
 struct FibreState {
     double strain = 0;       // plastic, as it is now [-]
     double accumulated = 0;  // sum of its changes' magnitudes [-]
+    double most = 0;         // greatest energy of elastic strain that it has borne, over the shear modulus [-]
 };
 
-/// Of all fibres of all links (12L), link by link; empty: none has flowed.
+/// Of all fibres of all links (12L), link by link; empty: all are new.
 using FibreStates = std::vector<FibreState>;
 
 /// What a fibre has flowed to once its strain was lambda - 1: the return mapping of one dimension.

@@ -23,10 +23,10 @@ PlacedLinks::PlacedLinks(const Model& model, const fem::Effects& effects)
       links_(grown(model.links, effects.growth)),
       rest_(rest_state(model)),
       natural_(grown(rest_, effects.growth)),
-      plasticity_(effects.plasticity),
+      history_(effects),
       torsion_(link_effects(effects).torsion),
       shear_(link_effects(effects).shear),
-      plain_(effects.material.empty() && !plasticity_ && torsion_ == 0 && shear_ == 0) {
+      plain_(effects.material.empty() && !history_ && torsion_ == 0 && shear_ == 0) {
     directions_.reserve(links_.size());
     for (const Link& link : links_) directions_.push_back(rest_direction(model, link));
     if (plain_) return;
@@ -34,7 +34,7 @@ PlacedLinks::PlacedLinks(const Model& model, const fem::Effects& effects)
                          [](const auto& effect) { return !effect->is_scale(); });
     laws_ = section_laws(model, effects);
     for (const auto& effect : material_) in_sections_.push_back(acts_in_sections(*effect, Vec3(rest_.x.row(0))));
-    const bool has_fibres = !material_.empty() || plasticity_;
+    const bool has_fibres = !material_.empty() || history_;
     for (size_t l = 0; l < links_.size(); ++l) {
         const FibreOffsets offsets = fibre_offsets(links_[l], directions_[l]);
         scales_.push_back(scale_of(links_[l], offsets, effects));
@@ -76,9 +76,9 @@ StretchTerms PlacedLinks::fibre_terms(size_t link, int j, double stretch, bool w
         const Vec3 X = middle(links_[link], rest_);
         sum += (1.0 / 3) * uniaxial(*material_[e], X, directions_[link], stretch, with_second);
     }
-    if (plasticity_) {
+    if (history_) {
         const FibreState had = before.empty() ? FibreState() : before[fibres_per_link * link + j];
-        sum += plastic_terms(*plasticity_, had, stretch);
+        sum += history_terms(history_, had, stretch);
     }
     return links_[link].length * links_[link].length * sum;
 }
@@ -209,12 +209,12 @@ Eigen::SparseMatrix<double> PlacedLinks::linear_forces(const Eigen::VectorXd& st
 FibreStates PlacedLinks::flowed(const State& state, const FibreStates& before) const {
     assert(before.empty() || before.size() == fibres_per_link * links_.size());
     FibreStates now;
-    if (!plasticity_) return now;
+    if (!history_) return now;
     now.reserve(fibres_per_link * links_.size());
     for (size_t l = 0; l < links_.size(); ++l)
         for (int j = 0; j < fibres_per_link; ++j) {
             const FibreState had = before.empty() ? FibreState() : before[fibres_per_link * l + j];
-            now.push_back(flow(*plasticity_, had, fibre(l, j, state).stretch()));
+            now.push_back(after_stretch(history_, had, fibre(l, j, state).stretch()));
         }
     return now;
 }
@@ -226,27 +226,27 @@ FlowDerivatives PlacedLinks::flow_derivatives(const Eigen::VectorXd& k, const St
         const Eigen::Matrix<double, fibres_per_link, 1> strengths =
             shares_[l] * order_.link(k, static_cast<Eigen::Index>(l));
         for (int j = 0; j < fibres_per_link; ++j) {
-            const int z = 2 * static_cast<int>(fibres_per_link * l + j);
-            const FibreState had = before.empty() ? FibreState() : before[z / 2];
+            const int z = 3 * static_cast<int>(fibres_per_link * l + j);
+            const FibreState had = before.empty() ? FibreState() : before[z / 3];
             const LinkFibre one = fibre(l, j, state);
-            const Eigen::Matrix<double, 2, 3> slopes = skeleton::flow_derivatives(*plasticity_, had, one.stretch());
+            const HistorySlopes slopes = history_slopes(history_, had, one.stretch());
             Vec12 stretches = Vec12::Zero();
             one.add_gradient({.energy = 0, .first = 1, .second = 0}, stretches);
-            // The energy's derivative is -strain, so what has flowed pulls with it.
             const double stiffness = scales_[l] * strengths[j] * links_[l].length * links_[l].length;
-            for (int c = 0; c < 2; ++c) {
-                for (int r = 0; r < 2; ++r)
-                    if (slopes(r, 1 + c) != 0) flow_by_flow.emplace_back(z + r, z + c, slopes(r, 1 + c));
+            for (int c = 0; c < 3; ++c) {
+                for (int r = 0; r < 3; ++r)
+                    if (slopes.state(r, 1 + c) != 0) flow_by_flow.emplace_back(z + r, z + c, slopes.state(r, 1 + c));
                 for (int i = 0; i < 12; ++i) {
                     const int row = i < 6 ? 6 * links_[l].a + i : 6 * links_[l].b + i - 6;
-                    if (slopes(0, 1 + c) != 0)
-                        force_by_flow.emplace_back(row, z + c, stiffness * slopes(0, 1 + c) * stretches[i]);
-                    if (slopes(c, 0) != 0) flow_by_step.emplace_back(z + c, row, slopes(c, 0) * stretches[i]);
+                    if (slopes.stress[c] != 0)
+                        force_by_flow.emplace_back(row, z + c, -stiffness * slopes.stress[c] * stretches[i]);
+                    if (slopes.state(c, 0) != 0)
+                        flow_by_step.emplace_back(z + c, row, slopes.state(c, 0) * stretches[i]);
                 }
             }
         }
     }
-    const Eigen::Index dofs = 6 * rest_.x.rows(), flows = 2 * fibres_per_link * std::ssize(links_);
+    const Eigen::Index dofs = 6 * rest_.x.rows(), flows = 3 * fibres_per_link * std::ssize(links_);
     FlowDerivatives result{Eigen::SparseMatrix<double>(dofs, flows), Eigen::SparseMatrix<double>(flows, dofs),
                            Eigen::SparseMatrix<double>(flows, flows)};
     result.force_by_flow.setFromTriplets(force_by_flow.begin(), force_by_flow.end());

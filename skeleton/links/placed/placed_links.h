@@ -3,7 +3,7 @@
 #include <Eigen/SparseCore>
 #include <vector>
 
-#include "skeleton/links/fibres/plastic_fibre.h"
+#include "skeleton/links/fibres/history_law.h"
 #include "skeleton/links/full_link.h"
 #include "skeleton/links/placed/placed_volumes.h"
 #include "skeleton/links/sections/section_law.h"
@@ -11,13 +11,13 @@
 
 namespace palpate::skeleton {
 
-/// Propagation of plastic flow from one state to the next, to first order. With z the strain and the sum of each fibre
-/// (24L), as FibreState orders them,
+/// Propagation of what fibres have been through from one state to the next, to first order. With z the three numbers
+/// of each fibre (36L), as FibreState orders them,
 ///   d net force = force_by_flow dz_before, dz = flow_by_step step + flow_by_flow dz_before.
 struct FlowDerivatives {
-    Eigen::SparseMatrix<double> force_by_flow;  // [N] (6N x 24L)
-    Eigen::SparseMatrix<double> flow_by_step;   // (24L x 6N)
-    Eigen::SparseMatrix<double> flow_by_flow;   // (24L x 24L)
+    Eigen::SparseMatrix<double> force_by_flow;  // [N] (6N x 36L)
+    Eigen::SparseMatrix<double> flow_by_step;   // (36L x 6N)
+    Eigen::SparseMatrix<double> flow_by_flow;   // (36L x 36L)
 };
 
 /// A model's links, with the effects in force that are in the material or in the links themselves. At stiffness
@@ -25,17 +25,17 @@ struct FlowDerivatives {
 ///   s (kE e_E + kF e_F + kT e_T + torsion kF e_T + shear kE e_S + L^2 sum_j K_j (w(lambda_j) / 3 + p(lambda_j)))
 /// with e_E, e_F, e_T as link_terms has them (a full link's as full_link_terms, with those of its other stiffnesses),
 /// e_S of Shear, and over the fibres, of stiffnesses K_j (fibre_shares), w of the material
-/// effects at the link's middle (uniaxial) and p of yielding (plastic_terms). The factor of w is mu V = kE L^2 / 3 for
-/// kE = E A / L, and E = 3 mu as the material keeps its volume. s is the material's scale: the mean over the fibres in
-/// each slice of the link, whose softnesses add up. Where effects make a section's law (SectionLaw) of a link, that is
-/// its law for what they do, with no fibres of theirs. So all is linear in the stiffnesses, conservative, and the same
-/// after any rigid motion. Full links come with what keeps their spheres' volumes (PlacedVolumes).
+/// effects at the link's middle (uniaxial) and p of yielding and damage (history_terms). The factor of w is mu V = kE
+/// L^2 / 3 for kE = E A / L, and E = 3 mu as the material keeps its volume. s is the material's scale: the mean over
+/// the fibres in each slice of the link, whose softnesses add up. Where effects make a section's law (SectionLaw) of a
+/// link, that is its law for what they do, with no fibres of theirs. So all is linear in the stiffnesses, conservative,
+/// and the same after any rigid motion. Full links come with what keeps their spheres' volumes (PlacedVolumes).
 class PlacedLinks {
 public:
     PlacedLinks(const Model& model, const fem::Effects& effects);
 
-    /// Energies at unit stiffness, each with all that goes with it. `before`, here and below: how far the fibres had
-    /// flowed. @throws SolverFailure when ends of the link or of a fibre coincide.
+    /// Energies at unit stiffness, each with all that goes with it. `before`, here and below: what the fibres had
+    /// been through. @throws SolverFailure when ends of the link or of a fibre coincide.
     LinkTerms terms(size_t link, const State& state, bool with_hessian, const FibreStates& before = {}) const;
     /// The sum of their second derivatives at stiffness k, at a third of the cost.
     Mat12 hessian(size_t link, const Stiffnesses& k, const State& state, const FibreStates& before = {}) const;
@@ -52,9 +52,9 @@ public:
     /// The same after a step from rest (6N), to first order; how forces change is that of `natural`.
     Eigen::SparseMatrix<double> linear_forces(const Eigen::VectorXd& step, const FibreStates& before = {}) const;
 
-    /// How far the fibres have flowed once they stood in a state (12L); empty when nothing yields.
+    /// What the fibres have been through once they stood in a state (12L); empty when nothing remembers.
     FibreStates flowed(const State& state, const FibreStates& before = {}) const;
-    /// Its derivatives in a state at stiffnesses k. @pre the material yields.
+    /// Its derivatives in a state at stiffnesses k. @pre the material remembers.
     FlowDerivatives flow_derivatives(const Eigen::VectorXd& k, const State& state,
                                      const FibreStates& before = {}) const;
 
@@ -81,7 +81,7 @@ private:
     std::vector<Vec3> directions_;  // at rest (L)
     State rest_, natural_;
     std::vector<std::shared_ptr<const fem::MaterialEffect>> material_;  // those with an energy of their own
-    std::optional<fem::Plasticity> plasticity_;
+    HistoryLaw history_;
     double torsion_, shear_;
     bool plain_;                         // no effect is in force
     std::vector<double> scales_;         // s (L); empty when plain

@@ -12,7 +12,7 @@ namespace palpate::runtime {
 
 Fibres::Fibres(const skeleton::Model& model, const fem::Effects& effects, const std::vector<skeleton::Stiffnesses>& k,
                const std::vector<skeleton::SectionLaw>& laws)
-    : plasticity_(effects.plasticity) {
+    : history_(effects) {
     std::ranges::copy_if(effects.material, std::back_inserter(material_),
                          [](const auto& effect) { return !effect->is_scale(); });
     for (const auto& effect : material_)
@@ -32,13 +32,13 @@ Fibres::Fibres(const skeleton::Model& model, const fem::Effects& effects, const 
         own.strengths = skeleton::fibre_shares(link) * k[l];
         links_.push_back(own);
     }
-    if (plasticity_) flowed_.resize(skeleton::fibres_per_link * links_.size());
+    if (history_) borne_.resize(skeleton::fibres_per_link * links_.size());
 }
 
 bool Fibres::needed(const skeleton::Model& model, const fem::Effects& effects,
                     const std::vector<skeleton::SectionLaw>& laws) {
     const bool all_by_law = !laws.empty() && !std::ranges::any_of(laws, [](const auto& law) { return !law.in_force; });
-    return skeleton::link_effects(effects).shear != 0 || effects.plasticity ||
+    return skeleton::link_effects(effects).shear != 0 || effects.remember() ||
            std::ranges::any_of(effects.material, [&](const auto& effect) {
                return !effect->is_scale() &&
                       !(all_by_law && skeleton::acts_in_sections(*effect, model.spheres.front().center));
@@ -58,8 +58,8 @@ skeleton::StretchTerms Fibres::terms(std::size_t l, int j, double stretch, bool 
         if (link.by_law && in_sections_[e]) continue;
         sum += (share / 3) * skeleton::uniaxial(*material_[e], link.middle, link.direction, stretch, with_second);
     }
-    if (plasticity_) {
-        sum += share * skeleton::plastic_terms(*plasticity_, flowed_[skeleton::fibres_per_link * l + j], stretch);
+    if (history_) {
+        sum += share * skeleton::history_terms(history_, borne_[skeleton::fibres_per_link * l + j], stretch);
     }
     return sum;
 }
@@ -75,7 +75,7 @@ double Fibres::add_forces(const Poses& poses, double* force) const {
             energy += link.shear * shear.energy();
             shear.add_gradient(link.shear, g);
         }
-        if (!material_.empty() || plasticity_) {
+        if (!material_.empty() || history_) {
             for (int j = 0; j < skeleton::fibres_per_link; ++j) {
                 const skeleton::LinkFibre one = fibre(link, j, poses);
                 const skeleton::StretchTerms its = terms(l, j, one.stretch(), false);
@@ -100,7 +100,7 @@ void Fibres::add_hessian(std::size_t l, const Poses& poses, skeleton::Mat12& H) 
         skeleton::Shear(link.length, link.direction, poses.x[link.a], poses.R[link.a], poses.x[link.b], poses.R[link.b])
             .add_hessian(link.shear, H);
     }
-    if (material_.empty() && !plasticity_) return;
+    if (material_.empty() && !history_) return;
     for (int j = 0; j < skeleton::fibres_per_link; ++j) {
         const skeleton::LinkFibre one = fibre(link, j, poses);
         one.add_hessian(terms(l, j, one.stretch(), true), H);
@@ -108,15 +108,15 @@ void Fibres::add_hessian(std::size_t l, const Poses& poses, skeleton::Mat12& H) 
 }
 
 void Fibres::settle(const Poses& poses) {
-    if (!plasticity_) return;
+    if (!history_) return;
     for (std::size_t l = 0; l < links_.size(); ++l) {
         for (int j = 0; j < skeleton::fibres_per_link; ++j) {
-            skeleton::FibreState& had = flowed_[skeleton::fibres_per_link * l + j];
-            had = skeleton::flow(*plasticity_, had, fibre(links_[l], j, poses).stretch());
+            skeleton::FibreState& had = borne_[skeleton::fibres_per_link * l + j];
+            had = skeleton::after_stretch(history_, had, fibre(links_[l], j, poses).stretch());
         }
     }
 }
 
-void Fibres::forget_flow() { std::ranges::fill(flowed_, skeleton::FibreState()); }
+void Fibres::forget() { std::ranges::fill(borne_, skeleton::FibreState()); }
 
 }  // namespace palpate::runtime

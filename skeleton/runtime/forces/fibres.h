@@ -22,9 +22,9 @@ public:
     /// Adds the second derivative of a link's.
     void add_hessian(std::size_t link, const Poses& poses, skeleton::Mat12& H) const;
 
-    bool yield() const { return plasticity_.has_value(); }
+    bool remember() const { return static_cast<bool>(history_); }
     void settle(const Poses& poses);
-    void forget_flow();
+    void forget();
 
 private:
     struct OfLink {
@@ -40,9 +40,9 @@ private:
 
     std::vector<std::shared_ptr<const fem::MaterialEffect>> material_;
     std::vector<char> in_sections_;  // of each: it acts by the law of a section that has one
-    std::optional<fem::Plasticity> plasticity_;
+    skeleton::HistoryLaw history_;
     std::vector<OfLink> links_;
-    skeleton::FibreStates flowed_;
+    skeleton::FibreStates borne_;
 };
 
 }  // namespace palpate::runtime

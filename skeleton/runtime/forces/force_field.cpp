@@ -224,13 +224,13 @@ void ForceField::add_cell_curvature() {
 }
 
 void ForceField::settle(const double* pose) {
-    if (!yields()) return;
+    if (!remembers()) return;
     poses_.assign(pose);
     fibres_->settle(poses_);
 }
 
-void ForceField::forget_flow() {
-    if (fibres_) fibres_->forget_flow();
+void ForceField::forget() {
+    if (fibres_) fibres_->forget();
 }
 
 }  // namespace palpate::runtime

@@ -36,10 +36,10 @@ public:
     /// the points' arms, and of the skin's area and of pressure none.
     const std::vector<Block>& curvature(const double* pose);
 
-    /// Lets a material that yields flow as it stands: from then on it rests there.
+    /// Lets a material that remembers have borne how it stands: what flows rests there from then on.
     void settle(const double* pose);
-    void forget_flow();
-    bool yields() const { return fibres_ && fibres_->yield(); }
+    void forget();
+    bool remembers() const { return fibres_ && fibres_->remember(); }
 
 private:
     struct Cell {

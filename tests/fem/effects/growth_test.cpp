@@ -88,7 +88,7 @@ TEST(Growth, FlowsByWhatIsStrained) {
         const BodySetting setting = has_grown(law, yielding);
         const double confined = body.residual(bar.none, setting, bar.none).norm();
         const auto left_after = [&](const Eigen::VectorXd& u) {
-            const auto flowed = body.plastic_state(u, setting, nullptr);
+            const auto flowed = body.state_after(u, setting, nullptr);
             return body.residual(bar.larger(), setting, bar.none, flowed.get()).norm();
         };
         EXPECT_LT(left_after(bar.larger()), 1e-13 * confined);  // rounding: it was strained by nothing

@@ -86,7 +86,7 @@ TEST_P(Screening, OfEffectsThatAreNeutralAtTheirStartIsTheDerivativeThere) {
     const ForwardSolution forward = solve_forward(*model_, all, bare_, 1);
     // neutral at no compliance, at no fibres, ...: none of which is a number to start with
     const std::set<std::string> with_alternatives{"compliant-support", "anisotropy", "inclusion", "contact",
-                                                  "viscosity",         "plasticity", "stiffening"};
+                                                  "viscosity",         "plasticity", "damage",    "stiffening"};
     int tested = 0;
     for (const auto& effect : catalogue()) {
         const auto numbers = effect->numbers(*model_, all);
@@ -195,6 +195,29 @@ TEST_P(Screening, OfViscosityIsTheDerivativeByTheCreep) {
             (seen(all, effect, ahead, forward) - seen(all, effect, behind, forward)) / (2 * h);
         EXPECT_GT(difference.norm(), 1);
         EXPECT_LT((found.columns.col(tau) - difference).norm(), 1e-3 * difference.norm()) << tau;  // as above
+    }
+}
+
+TEST_P(Screening, OfDamageIsTheDerivativeByItsShare) {
+    // Links by the linear law take the material as it is at rest.
+    if (GetParam().is_skeleton && GetParam().law == 0) return;
+    const Problem all =
+        make_problem(make_twin(*model_, body_.set(SmallBody::returns(0.1, 3)), bare_, 0), 0.05).stage_by_stage();
+    const ForwardSolution forward = solve_forward(*model_, all, bare_, 1);
+    const auto effect = find_effect("damage");
+    const ScreenPlan plan = screen_plan(*effect, *model_, all, bare_, forward);
+    const ScreenColumns found = plan.columns(sensitivities(*model_, all, bare_, forward, {plan.signatures}, 1).front());
+    EXPECT_TRUE(found.one_sided);
+    EXPECT_EQ(found.alternatives(), 6);
+    const Eigen::VectorXd none = all.pick(forward.markers).cwiseQuotient(all.sigma);
+    for (const Eigen::Index strain : {1, 3, 5}) {
+        Eigen::VectorXd little = plan.start(strain, Eigen::VectorXd::Ones(1));
+        constexpr double h = 2e-3;
+        little[0] = h;
+        const Eigen::VectorXd difference = (seen(all, effect, little, forward) - none) / h;
+        EXPECT_GT(difference.norm(), 1);
+        EXPECT_LT((found.columns.col(strain) - difference).norm(), 0.01 * difference.norm())
+            << strain;  // its second order
     }
 }
 

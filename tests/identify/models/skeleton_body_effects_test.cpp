@@ -27,6 +27,7 @@ const std::vector<skeleton::EffectRecord> link_effects{
      {{"sxx", 0.1, "1"}, {"syy", 0.05, "1"}, {"szz", 0, "1"}, {"sxy", 0, "1"}, {"syz", 0, "1"}, {"sxz", 0, "1"}}},
     {"inclusion", {{"cx", 40, "mm"}, {"cy", 40, "mm"}, {"cz", 0, "mm"}, {"radius", 30, "mm"}, {"ratio", 3, "1"}}},
     {"plasticity", {{"yield", 0.05, "1"}, {"hardening", 0.5, "1"}}},
+    {"damage", {{"share", 0.5, "1"}, {"strain", 0.05, "1"}}},
     {"torsion", {{"torsion", 0.4, "1"}}},
     {"shear", {{"shear", 0.3, "1"}}}};
 
@@ -132,6 +133,7 @@ protected:
                                          std::make_shared<fem::Inclusion>(fem::Inclusion::sphere({22, 5, 5}, 8, 3))},
                             .pressure = 0.01,
                             .plasticity = fem::Plasticity{0.02, 0.5},
+                            .damage = fem::Damage{0.5, 0.05},
                             .of_model = {skeleton::in_links({.torsion = 0.4, .shear = 0.3})}};
         Action pushed{.contacts = {SmallBody::probes(0.12)[1].contacts[0]}};
         action_.memory = model_.remember(model_.equilibrium(setting_, pushed, nullptr), setting_, pushed);

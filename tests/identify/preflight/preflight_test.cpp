@@ -56,6 +56,8 @@ TEST_F(Judged, WhatCannotShowSaysWhy) {
     EXPECT_THAT(preflight.prospect_of("pressure")->why_not, HasSubstr("no closed cavity"));
     EXPECT_THAT(preflight.prospect_of("viscosity")->why_not, HasSubstr("two times"));
     EXPECT_THAT(preflight.prospect_of("plasticity")->why_not, HasSubstr("follows a load"));
+    EXPECT_THAT(preflight.prospect_of("damage")->why_not,
+                HasSubstr("no body bears less, or something else, after more"));
     EXPECT_THAT(preflight.prospect_of("torsion")->why_not, HasSubstr("skeleton"));
     EXPECT_THAT(preflight.prospect_of("slip")->why_not, HasSubstr("no tool"));
     EXPECT_THAT(preflight.prospect_of("volume")->why_not, HasSubstr("Poisson's ratio"));

@@ -171,6 +171,7 @@ TEST_P(EachEffect, IsSeenAndCanBeToldAgain) {
     BlindSetOptions nothing{.hide = {"none"}, .dwell = {}, .noise = noise};
     if (effect == "viscosity") nothing.dwell = {0.1, 4, 20};
     if (effect == "plasticity") nothing.unload = nothing.continuous = true;
+    if (effect == "damage") nothing.back = nothing.continuous = true;
     const MeasurementSet bare = probe(nothing, "bare");
     EXPECT_TRUE(text("bare/probes.csv") == text("hidden/probes.csv"));
     const double change = rms_difference(bare, hidden);
@@ -186,8 +187,8 @@ std::string effect_name(const ::testing::TestParamInfo<const char*>& info) {
 }
 INSTANTIATE_TEST_SUITE_P(Probe, EachEffect,
                          ::testing::Values("gravity", "compliant-support", "stiffening", "anisotropy", "inclusion",
-                                           "contact", "prestress", "viscosity", "plasticity", "volume", "misalignment",
-                                           "force-gain", "outliers"),
+                                           "contact", "prestress", "viscosity", "plasticity", "damage", "volume",
+                                           "misalignment", "force-gain", "outliers"),
                          effect_name);
 
 /// Pressure acts in a closed shell within the body.

@@ -69,6 +69,17 @@ TEST(LoadCourse, HoldsAndLetsGo) {
     }
 }
 
+TEST(LoadCourse, GoesBackAsItCame) {
+    const auto forces = [](const LoadTiming& timing) {
+        std::vector<double> all;
+        for (const Row& row : rows_of({1.0, 2.0, 3.0}, timing)) all.push_back(row.force);
+        return all;
+    };
+    EXPECT_THAT(forces({.back = true, .dwell = {}}), ::testing::ElementsAre(1, 2, 3, 2, 1, 0));
+    EXPECT_THAT(forces({.unload = true, .back = true, .dwell = {}}),
+                ::testing::ElementsAre(1, 0, 2, 0, 3, 0, 2, 0, 1, 0));
+}
+
 TEST(LoadCourse, IsReadOnceAfterASecondUnlessTold) {
     const auto rows = rows_of({2.0, 3.0}, {});
     ASSERT_EQ(rows.size(), 2U);
@@ -119,6 +130,25 @@ TEST(Sequence, AnErrorOfClocksIsGivenLoadsThatChange) {
     told.unload = false;
     EXPECT_EQ(sequence_of(told, read_specs({"clock"})).levels, 5);
     EXPECT_FALSE(sequence_of(told, read_specs({"clock"})).timing.unload);
+}
+
+TEST(Sequence, DamageIsLedBackToLessThanItBore) {
+    const Sequence damage = sequence_of({}, read_specs({"damage"}));
+    EXPECT_EQ(damage.levels, 2);
+    EXPECT_TRUE(damage.timing.back && damage.continuous);
+    EXPECT_FALSE(damage.timing.unload);
+    ASSERT_EQ(damage.notes.size(), 1U);
+    EXPECT_THAT(damage.notes.front(), HasSubstr("Damage shows where less is borne after more"));
+    BlindSetOptions told;
+    told.levels = 4;
+    told.back = true;
+    told.continuous = false;
+    EXPECT_EQ(sequence_of(told, read_specs({"damage"})).levels, 4);
+    EXPECT_TRUE(sequence_of(told, read_specs({"damage"})).notes.empty());
+    EXPECT_EQ(sequence_of(told, read_specs({"stiffening"})).continuous, false);
+    EXPECT_TRUE(sequence_of(told, read_specs({"stiffening"})).timing.back);
+    told.back = false;
+    EXPECT_FALSE(sequence_of(told, read_specs({"damage"})).timing.back);
 }
 
 TEST(Sequence, EffectsThatRememberAreGivenTime) {

@@ -26,12 +26,15 @@ TEST(EffectMessages, EveryFaultIsNamed) {
     EXPECT_EQ(complaint({"gravitty", {}})
                   .rfind("effect 'gravitty' is not known (did you mean 'gravity'?); known are 'gravity', "
                          "'compliant-support', 'stiffening', 'anisotropy', 'inclusion', 'contact', 'pressure', "
-                         "'prestress', 'swelling', 'viscosity', 'plasticity', 'volume', 'torsion', 'shear', ",
+                         "'prestress', 'swelling', 'viscosity', 'plasticity', 'damage', 'volume', 'torsion', "
+                         "'shear', ",
                          0),
               0u);
     EXPECT_EQ(complaint({"outliers", {}}),
               "effect 'outliers' is about the measurement, not the body: no model can play it");
     EXPECT_EQ(complaint({"swelling", {{"growth", -1, ""}}}), "effect 'swelling': growth is -1, but must be above -1");
+    EXPECT_EQ(complaint({"damage", {{"share", 1, ""}, {"strain", 0.1, ""}}}),
+              "effect 'damage': share is 1, but must be at least 0 and below 1");
     EXPECT_EQ(complaint({"gravity", {{"gx", 0, ""}, {"gy", 0, ""}}}),
               "effect 'gravity': the parameter 'gz' [mm/s^2] is missing");
     EXPECT_EQ(

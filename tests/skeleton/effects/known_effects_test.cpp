@@ -29,6 +29,7 @@ const std::vector<EffectRecord> all_effects{
     {"swelling", {{"growth", -0.02, "1"}}},
     {"viscosity", {{"creep", 0.7, "1"}, {"tau", 20, "s"}}},
     {"plasticity", {{"yield", 0.05, "1"}, {"hardening", 0.1, "1"}}},
+    {"damage", {{"share", 0.4, "1"}, {"strain", 0.07, "1"}}},
     {"volume", {{"poisson", 0.3, "1"}}},
     {"torsion", {{"torsion", 0.5, "1"}}},
     {"shear", {{"shear", 0.5, "1"}}},
@@ -54,6 +55,8 @@ TEST(KnownEffects, TellTheirNumbers) {
     EXPECT_EQ(physics.creep->tau, 20);
     EXPECT_EQ(physics.plasticity->yield, 0.05);
     EXPECT_EQ(physics.plasticity->hardening, 0.1);
+    EXPECT_EQ(physics.damage->share, 0.4);
+    EXPECT_EQ(physics.damage->strain, 0.07);
 
     const auto w = [](const EffectRecord& effect, const Mat3& F) {
         return make_physics(effect).material[0]->terms(Vec3::Zero(), F, false).w;

@@ -185,6 +185,7 @@ INSTANTIATE_TEST_SUITE_P(
         InForce{"Prestress", {}, {.material = {prestress}}}, InForce{"Inclusion", {}, {.material = {inclusion}}},
         InForce{"Swelling", {{"swelling", {{"growth", 0.04, ""}}}}, {}},
         InForce{"Plasticity", {}, {.plasticity = fem::Plasticity{0.02, 0.3}}},
+        InForce{"Damage", {}, {.damage = fem::Damage{0.6, 0.05}}},
         InForce{"TorsionAndShear", {}, {.of_model = {in_links({.torsion = 0.7, .shear = 0.4})}}},
         InForce{"Area", {}, {.surface = {tension, area_spring}}}, InForce{"Pressure", {}, {.pressure = 0.05}},
         InForce{"CavityPressure", {}, {.cavities = {{cavity, 0.05}}}},
@@ -197,6 +198,7 @@ INSTANTIATE_TEST_SUITE_P(
                  .surface = {tension, area_spring},
                  .pressure = 0.05,
                  .plasticity = fem::Plasticity{0.02, 0.3},
+                 .damage = fem::Damage{0.6, 0.05},
                  .of_model = {in_links({.torsion = 0.7, .shear = 0.4})}}}),
     [](const auto& tested) { return tested.param.name; });
 

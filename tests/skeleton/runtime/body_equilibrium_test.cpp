@@ -159,6 +159,30 @@ TEST(LiveEquilibrium, YieldsAndRemembersAsTheModelDoes) {
     EXPECT_LT((body.position(6) - model.spheres[6].center).norm(), 1e-9);
 }
 
+TEST(LiveEquilibrium, IsSofterAfterMoreAsTheModelIs) {
+    skeleton::Model model = make_chain(6);
+    give_skin(model);
+    model.effects = {{"damage", {{"share", 0.6, ""}, {"strain", 0.03, ""}}}};
+    const auto pulled = [&](double force) {
+        skeleton::Load load;
+        load.forces.push_back({model.skin[100], Vec3(force, 0, 0)});
+        return load;
+    };
+    const skeleton::Equilibrium most = skeleton::equilibrium(model, pulled(0.3));
+    const skeleton::Equilibrium less =
+        skeleton::equilibrium(model, pulled(0.1), {}, &most.state, skeleton::flowed(model, most));
+    ASSERT_GT((less.state.x - skeleton::equilibrium(model, pulled(0.1)).state.x).norm(), 0.1);
+
+    Body body(model);
+    body.push(body.touch(model.surface.vertices.row(100).transpose()), {0.3, 0, 0});
+    body.equilibrium();
+    body.push(0, {0.1, 0, 0});
+    body.equilibrium();
+    for (int i = 0; i < body.sphere_count(); ++i) {
+        EXPECT_LT((body.position(i) - less.state.x.row(i).transpose()).norm(), 1e-6) << i;
+    }
+}
+
 TEST(LiveEquilibriumMessages, ABodyThatNothingHoldsHasNone) {
     skeleton::Model model = make_chain(3);
     model.spheres[0].held = false;

@@ -76,6 +76,7 @@ std::vector<skeleton::EffectRecord> playable_effects() {
         {"torsion", {{"torsion", 0.7, ""}}},
         {"shear", {{"shear", 0.4, ""}}},
         {"plasticity", {{"yield", 0.02, ""}, {"hardening", 0.1, ""}}},
+        {"damage", {{"share", 0.6, ""}, {"strain", 0.03, ""}}},
         {"contact", {{"nx", 0, ""}, {"ny", 0, ""}, {"nz", 1, ""}, {"offset", -3.5, ""}, {"stiffness", 0.01, ""}}},
         {"compliant-support", {{"stiffness", 20, ""}}}};
 }

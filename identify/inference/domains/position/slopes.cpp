@@ -75,7 +75,7 @@ fem::MultiVector ErrorJacobian::pulled(const States& states, const fem::MultiVec
 }
 
 std::vector<fem::MultiVector> ErrorJacobian::moved_through(int last, const fem::MultiVector& K) const {
-    std::vector<fem::MultiVector> X(last + 1), Z(last + 1);  // Z: of what has flowed (24L x n)
+    std::vector<fem::MultiVector> X(last + 1), Z(last + 1);  // Z: of what has flowed (36L x n)
     for (int s = 0; s <= last; ++s) {
         const FlowHistory& history = *states_[s].history;
         fem::MultiVector F = states_[s].G.times(K);
@@ -88,7 +88,7 @@ std::vector<fem::MultiVector> ErrorJacobian::moved_through(int last, const fem::
 }
 
 fem::MultiVector ErrorJacobian::pulled_through(std::vector<fem::MultiVector> F) const {
-    std::vector<fem::MultiVector> Z(F.size());  // what the states after it make of what has flowed (24L x n)
+    std::vector<fem::MultiVector> Z(F.size());  // what the states after it make of what has flowed (36L x n)
     fem::MultiVector sum = fem::MultiVector::Zero(dk_.rows(), F.front().cols());
     for (int s = static_cast<int>(F.size()) - 1; s >= 0; --s) {
         const FlowHistory& history = *states_[s].history;

@@ -5,8 +5,7 @@
 #include "fem/large_deformation/elements/plastic_point.h"
 #include "fem/large_deformation/elements/point_law.h"
 #include "mesh/errors.h"
-#include "tests/fem/beam.h"
-#include "tests/fem/point_potentials.h"
+#include "tests/fem/pulled_bar.h"
 #include "tests/messages.h"
 
 namespace palpate::fem {
@@ -119,41 +118,13 @@ TEST(PlasticPoint, KeepsItsVolume) {
     EXPECT_GT(point.alpha, 0.1);
 }
 
-/// A bar that is pulled and let go; weak springs [N/mm] keep it from floating away.
-struct Pulled {
-    Beam beam{{3, 1, 1}, {3, 1, 1}};
-    HyperelasticBody body = beam.body();
-    BodySetting setting;
-
-    Pulled(MaterialLaw law, const Material& material, const Plasticity& plasticity, double springs)
-        : setting{law, material, {}} {
-        setting.effects.points = {std::make_shared<Springs>(ActsOn::support, springs, 0.0)};
-        setting.effects.plasticity = plasticity;
-    }
-    Eigen::VectorXd at(double stress, const PlasticState* before = nullptr,
-                       const Eigen::VectorXd* start = nullptr) const {
-        return body.equilibrium(setting, beam.pull(stress), {.tolerance = 1e-9}, start, before).u;
-    }
-    /// Stretches along and across.
-    Eigen::Vector2d stretch(const Eigen::VectorXd& u) const {
-        Vec3 low = Vec3::Zero(), high = low;
-        for (Eigen::Index i = 0; i < beam.mesh.nodes.rows(); ++i) {
-            const Vec3 X = beam.mesh.nodes.row(i);
-            if (X.norm() < 1e-9) low = u.segment<3>(3 * i);
-            if ((X - beam.size).norm() < 1e-9) high = u.segment<3>(3 * i);
-        }
-        const Vec3 F = Vec3::Ones() + (high - low).cwiseQuotient(beam.size);
-        return {F.x(), F.y()};
-    }
-};
-
 TEST(Plasticity, BarYieldsHardensAndStaysSet) {
     const Material material{.young = 0.5, .poisson = 0.3, .density = 0};
     const double mu = 0.5 / 2.6, E = 0.5;
     const Plasticity plasticity{.yield = 1e-5, .hardening = 0.25};
     const double yield_stress = 3 * mu * plasticity.yield, H = 3 * mu * plasticity.hardening;
     for (const MaterialLaw law : laws) {
-        const Pulled bar(law, material, plasticity, 1e-7);
+        const PulledBar bar(law, material, {.plasticity = plasticity}, 1e-7);
         const auto strain = [&](const Eigen::VectorXd& u) { return bar.stretch(u).x() - 1; };
         // Strains are up to 1e-4: the laws part by that share of them or some times it, and springs take a millionth.
         const auto expect = [&](double found, double theory) { EXPECT_NEAR(found, theory, 1e-3 * std::abs(theory)); };
@@ -163,7 +134,7 @@ TEST(Plasticity, BarYieldsHardensAndStaysSet) {
         expect(strain(u), load / E + plastic);
 
         // Let go: the plastic strain stays, and volume is kept.
-        const auto after = bar.body.plastic_state(u, bar.setting, nullptr);
+        const auto after = bar.body.state_after(u, bar.setting, nullptr);
         const Eigen::VectorXd set = bar.at(0, after.get(), &u);
         expect(strain(set), plastic);
         expect(bar.stretch(set).y() - 1, -plastic / 2);
@@ -180,13 +151,13 @@ TEST(Plasticity, LargeStrainFollowsItsFlowRule) {
     const Material material{.young = 0.5, .poisson = 0.4, .density = 0};
     const double mu = 0.5 / 2.8, pull = 0.04;
     const Plasticity plasticity{.yield = 0.02, .hardening = 0.3};
-    const Pulled bar(MaterialLaw::neo_hookean, material, plasticity, 1e-5);
-    std::shared_ptr<const PlasticState> state;
+    const PulledBar bar(MaterialLaw::neo_hookean, material, {.plasticity = plasticity}, 1e-5);
+    std::shared_ptr<const MaterialState> state;
     Eigen::VectorXd u = Eigen::VectorXd::Zero(bar.beam.mesh.nodes.size());
     constexpr int steps = 40;
     for (int k = 1; k <= steps; ++k) {
         u = bar.at(pull * k / steps, state.get(), &u);
-        state = bar.body.plastic_state(u, bar.setting, state.get());
+        state = bar.body.state_after(u, bar.setting, state.get());
     }
     const double tau = pull * bar.stretch(u).x(), alpha = (tau / (3 * mu) - plasticity.yield) / plasticity.hardening;
     double plastic = 0;
@@ -215,12 +186,12 @@ TEST(Plasticity, ForcesAreConsistent) {
         const HyperelasticBody body(mesh, held, dilatation);
         for (const MaterialLaw law : laws) {
             BodySetting setting{law, {.young = 0.7, .poisson = 0.4, .density = 0}, {}};
-            EXPECT_EQ(body.plastic_state(u, setting, nullptr), nullptr);
+            EXPECT_EQ(body.state_after(u, setting, nullptr), nullptr);
             const Eigen::VectorXd elastic = body.residual(u, setting, none);
             setting.effects.plasticity = mild;
             EXPECT_GT(relative(body.residual(u, setting, none), elastic), 0.1);
-            const auto state = body.plastic_state(u, setting, nullptr);
-            for (const PlasticState* before : {static_cast<const PlasticState*>(nullptr), state.get()}) {
+            const auto state = body.state_after(u, setting, nullptr);
+            for (const MaterialState* before : {static_cast<const MaterialState*>(nullptr), state.get()}) {
                 const auto force = [&](const Eigen::VectorXd& at) { return body.residual(at, setting, none, before); };
                 const Eigen::MatrixXd J = body.tangent(back, setting, before), change = -differences(force, back, 1e-6);
                 EXPECT_EQ(J, J.transpose());
@@ -244,7 +215,7 @@ TEST(Plasticity, BeamBentFarFindsItsBalanceAndComesBackBent) {
     BodySetting setting{MaterialLaw::neo_hookean, {.young = 0.1, .poisson = 0.4, .density = 0}, {}};
     setting.effects.plasticity = {.yield = 0.03, .hardening = 0.1};
     const Eigen::VectorXd f = beam.end_force({0, 0, -0.003}), none = Eigen::VectorXd::Zero(f.size());
-    const auto unbalanced = [&](const Eigen::VectorXd& u, const Eigen::VectorXd& load, const PlasticState* before) {
+    const auto unbalanced = [&](const Eigen::VectorXd& u, const Eigen::VectorXd& load, const MaterialState* before) {
         Eigen::VectorXd r = body.residual(u, setting, load, before);
         for (std::size_t i = 0; i < beam.held.size(); ++i) {
             if (beam.held[i]) r.segment<3>(3 * i).setZero();
@@ -254,7 +225,7 @@ TEST(Plasticity, BeamBentFarFindsItsBalanceAndComesBackBent) {
     const Eigen::VectorXd u = body.equilibrium(setting, f).u;
     EXPECT_LT(unbalanced(u, f, nullptr), 1e-8 * f.norm());  // Newton's tolerance
     EXPECT_LT(beam.tip(u).z(), -10);                        // half its length
-    const auto state = body.plastic_state(u, setting, nullptr);
+    const auto state = body.state_after(u, setting, nullptr);
     const BodyEquilibrium released = body.equilibrium(setting, none, {}, &u, state.get());
     EXPECT_LT(unbalanced(released.u, none, state.get()), 1e-6 * f.norm());  // its tolerance is by residual stress
     EXPECT_LT(beam.tip(released.u).z(), -2);

@@ -33,6 +33,7 @@ protected:
         // the readings matter to the size of an effect's numbers only
         const double force = GetParam().effect == "stiffening" ? 0.2 : 0.03;  // which strains the bar enough
         MeasurementSet set = body_.set(GetParam().effect == "plasticity" ? SmallBody::releases(0.1, 3)
+                                       : GetParam().effect == "damage"   ? SmallBody::returns(0.1, 3)
                                        : has_memory                      ? SmallBody::dwells(force, 3)
                                                                          : SmallBody::probes(force, 4));
         set.material = MaterialGuess{.poisson = 0.45};
@@ -80,8 +81,8 @@ TEST_P(Signature, OfEveryNumberIsTheDerivativeOfWhatIsSeen) {
 }
 
 TEST_P(Signature, OfTheLastEffectIsItsOwnPartOfAll) {
-    // of a body that yields it is without what it remembers
-    if (truth_.effects.empty() || GetParam().effect == "plasticity") return;
+    // of a body that remembers it is without what it was through
+    if (truth_.effects.empty() || truth_.setting().effects.remember()) return;
     const ForwardSolution forward = solve_forward(*model_, problem_, truth_, 1);
     const Eigen::Index own = truth_.values.front().size();
     const Signatures all = own_signatures(*model_, problem_, truth_, forward);
@@ -137,6 +138,8 @@ std::vector<SignatureCase> signature_cases() {
     // In small strain this bar buckles under its stress.
     for (const int law : {1, 2}) cases.push_back({"prestress", false, law});
     cases.push_back({"plasticity", false, 2});
+    for (const int law : {0, 1, 2}) cases.push_back({"damage", false, law});
+    cases.push_back({"damage", true, 1});
     for (const char* effect : {"torsion", "shear"}) add(effect, true);
     // small strain knows no stiffening
     for (const int law : {1, 2}) cases.push_back({"stiffening", false, law});

@@ -61,6 +61,13 @@ TEST_F(NextProbes, UnloadForPlasticity) {
     EXPECT_GT(probe.sigmas, 10);
 }
 
+TEST_F(NextProbes, GoBackToLessForDamage) {
+    const NextProbe probe = next(SmallBody::returns(0.1, 2), "damage", numbers({0.7, std::log(0.05)}), "stiffening");
+    EXPECT_EQ(probe.kind, "unload");
+    EXPECT_GT(probe.sigmas, 3);
+    EXPECT_THAT(probe.why, testing::HasSubstr("read the body again at half the load"));
+}
+
 TEST_F(NextProbes, RepeatForASensorsGain) {
     Eigen::VectorXd gains = Eigen::VectorXd::Zero(8);
     gains[4] = 0.5;

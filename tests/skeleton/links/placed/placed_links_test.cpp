@@ -38,7 +38,7 @@ class LinksWith : public ::testing::TestWithParam<Tested> {
 protected:
     LinksWith() {
         for (Link& link : model.links) link.gyration = 2;
-        if (GetParam().effects.plasticity) before = links.flowed(random_state(model, engine, 2, 0.3));
+        if (GetParam().effects.remember()) before = links.flowed(random_state(model, engine, 2, 0.3));
     }
     size_t size() const { return model.links.size(); }
     // A state after a step of one link's two ends.
@@ -177,11 +177,13 @@ INSTANTIATE_TEST_SUITE_P(Effects, LinksWith,
                                            Tested{"Prestress", {.material = {prestress}}},
                                            Tested{"Inclusion", {.material = {inclusion}}},
                                            Tested{"Plasticity", {.plasticity = fem::Plasticity{0.02, 0.3}}},
+                                           Tested{"Damage", {.damage = fem::Damage{0.6, 0.05}}},
                                            Tested{"Torsion", {.of_model = {in_links({.torsion = 0.7})}}},
                                            Tested{"Shear", {.of_model = {in_links({.shear = 0.4})}}},
                                            Tested{"All",
                                                   {.material = {stiffening, fibres, prestress, inclusion},
                                                    .plasticity = fem::Plasticity{0.02, 0.3},
+                                                   .damage = fem::Damage{0.6, 0.05},
                                                    .of_model = {in_links({.torsion = 0.7, .shear = 0.4})}}}),
                          [](const auto& tested) { return tested.param.name; });
 

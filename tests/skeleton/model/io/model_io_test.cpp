@@ -75,6 +75,7 @@ TEST_F(ModelFile, IsReadBackEqual) {
          {{"sxx", 0.1, "1"}, {"syy", 0, "1"}, {"szz", 0, "1"}, {"sxy", 0, "1"}, {"syz", 0, "1"}, {"sxz", 0, "1"}}},
         {"viscosity", {{"creep", 0.7, "1"}, {"tau", 20, "s"}}},
         {"plasticity", {{"yield", 0.05, "1"}, {"hardening", 0, "1"}}},
+        {"damage", {{"share", 0.5, "1"}, {"strain", 0.05, "1"}}},
         {"volume", {{"poisson", 0.3, "1"}}},
         {"torsion", {{"torsion", 0.5, "1"}}},
         {"shear", {{"shear", 0.5, "1"}}},
