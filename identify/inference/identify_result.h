@@ -47,9 +47,12 @@ struct IdentifyResult {
     std::optional<DampingResult> damping;  // for identify_damping to fill
     int states = 0, coordinates = 0;       // that were weighed
     double log_evidence = 0;
-    double acceptance = 0;           // of the moves
-    int equilibria = 0;              // solved
-    std::vector<std::string> notes;  // what a user should know, in words
+    double log_evidence_sd = missing;  // by how much it may be off; NaN: not estimated
+    double effective_samples = 0;      // independent draws that the particles are worth
+    double r_hat = missing;            // of two independent clouds of particles, 1: they agree; NaN: there is but one
+    double acceptance = 0;             // of the moves
+    int equilibria = 0;                // solved
+    std::vector<std::string> notes;    // what a user should know, in words
 };
 
 }  // namespace palpate::identify

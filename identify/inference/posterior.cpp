@@ -127,6 +127,9 @@ void report_particles(const Parameters& parameters, const LogNormalPrior& prior,
         result.history.push_back(std::move(step));
     }
     result.log_evidence = filter.log_evidence;
+    result.log_evidence_sd = filter.log_evidence_sd;
+    result.effective_samples = independent;
+    result.r_hat = filter.r_hat;
     result.acceptance = filter.acceptance;
 }
 

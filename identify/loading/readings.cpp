@@ -6,6 +6,7 @@
 
 #include "identify/loading/creep.h"
 #include "identify/loading/loads.h"
+#include "identify/loading/read_state.h"
 #include "skeleton/model/attach.h"
 
 namespace palpate::identify {
@@ -31,6 +32,32 @@ double rms(const Points& difference) {
     return count > 0 ? std::sqrt(sum / count) : 0;
 }
 
+StateReadings read_state(const MeasurementSet& set, const LoadState& state, const ContactLoads& loads,
+                         const std::vector<skeleton::Attachment>& markers, bool always_loaded) {
+    StateReadings readings;
+    for (int row = 0; row < static_cast<int>(state.readings.size()); ++row) {
+        const Reading& reading = state.readings[row];
+        if (reading.marker >= 0 && !reading.position.array().isNaN().all()) readings.rows.push_back(row);
+    }
+    const auto m = static_cast<Eigen::Index>(readings.rows.size());
+    readings.rest.resize(m, 3);
+    readings.measured.resize(m, 3);
+    readings.noise.resize(m);
+    for (Eigen::Index i = 0; i < m; ++i) {
+        const Reading& reading = state.readings[readings.rows[i]];
+        readings.markers.push_back(reading.marker);
+        readings.points.push_back(markers[reading.marker]);
+        readings.rest.row(i) = set.markers[reading.marker].rest;
+        readings.measured.row(i) = reading.position;
+        readings.noise[i] = std::isnan(reading.sigma) ? set.position_noise.value_or(missing) : reading.sigma;
+    }
+    readings.coordinates = static_cast<int>((!readings.measured.array().isNaN()).count());
+    readings.displacement = rms(readings.measured - readings.rest);
+    readings.load = loads(set, state);
+    readings.informs_stiffness = always_loaded || is_known_to_act(set, state);
+    return readings;
+}
+
 std::vector<StateReadings> collect_readings(const skeleton::Model& model, const MeasurementSet& set) {
     const std::optional<fem::CreepLaw> creep = skeleton::physics_of(model.effects).creep;
     const MeasurementSet elastic_set = creep ? as_elastic(set, *creep) : set;
@@ -47,12 +74,8 @@ std::vector<StateReadings> collect_readings(const skeleton::Model& model, const 
 
     for (int s = 0; s < static_cast<int>(set.states.size()); ++s) {
         const LoadState& state = set.states[s];
-        StateReadings readings;
+        StateReadings readings = read_state(set, state, loads, markers, always_loaded);
         readings.state = s;
-        for (int row = 0; row < static_cast<int>(state.readings.size()); ++row) {
-            const Reading& reading = state.readings[row];
-            if (reading.marker >= 0 && !reading.position.array().isNaN().all()) readings.rows.push_back(row);
-        }
         ProbeHistory& history = histories[set.continuous ? 0 : state.probe];
         if (readings.rows.empty()) {
             if (remembers) history.since.push_back(loads(elastic_set, elastic_set.states[s]));
@@ -63,23 +86,7 @@ std::vector<StateReadings> collect_readings(const skeleton::Model& model, const 
             readings.unmeasured = std::move(history.since);
             history = {.last = static_cast<int>(result.size()), .since = {}};
         }
-
-        const auto m = static_cast<Eigen::Index>(readings.rows.size());
-        readings.rest.resize(m, 3);
-        readings.measured.resize(m, 3);
-        readings.noise.resize(m);
-        for (Eigen::Index i = 0; i < m; ++i) {
-            const Reading& reading = state.readings[readings.rows[i]];
-            readings.markers.push_back(reading.marker);
-            readings.points.push_back(markers[reading.marker]);
-            readings.rest.row(i) = set.markers[reading.marker].rest;
-            readings.measured.row(i) = reading.position;
-            readings.noise[i] = std::isnan(reading.sigma) ? set.position_noise.value_or(missing) : reading.sigma;
-        }
-        readings.coordinates = static_cast<int>((!readings.measured.array().isNaN()).count());
-        readings.displacement = rms(readings.measured - readings.rest);
-        readings.load = loads(elastic_set, elastic_set.states[s]);
-        readings.informs_stiffness = always_loaded || is_known_to_act(set, state);
+        if (creep) readings.load = loads(elastic_set, elastic_set.states[s]);
         result.push_back(std::move(readings));
     }
     return result;

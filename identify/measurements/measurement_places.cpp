@@ -20,24 +20,28 @@ namespace {
         what, fmt::join(place, ", "), distance, allowed, fmt::join(body.min, ", "), fmt::join(body.max, ", "), hint));
 }
 
+/// [mm]
+double allowed_off(const RestBody& rest) { return 0.05 * rest.box.longest_side(); }
+
 }  // namespace
+
+void check_contacts(const RestBody& rest, const LoadState& state, const std::string& source) {
+    for (const mesh::Contact& contact : state.contacts) {
+        const double distance = rest.tree.closest(contact.point).distance, allowed = contact.radius + allowed_off(rest);
+        if (distance > allowed)
+            refuse(fmt::format("{}: the contact of probe {} at time {}", source, state.probe, state.time),
+                   contact.point, distance, allowed, rest.box);
+    }
+}
 
 void check_places(const MeasurementSet& set) {
     const RestBody rest(set.rest_surface);
     const mesh::Box& body = rest.box;
-    const double allowed = 0.05 * body.longest_side();
+    const double allowed = allowed_off(rest);
 
-    const auto check_contacts = [&](const LoadState& state, const char* file) {
-        for (const mesh::Contact& contact : state.contacts) {
-            const double distance = rest.tree.closest(contact.point).distance;
-            if (distance > contact.radius + allowed)
-                refuse(fmt::format("{}: the contact of probe {} at time {}", file, state.probe, state.time),
-                       contact.point, distance, contact.radius + allowed, body);
-        }
-    };
-    for (const LoadState& state : set.states) check_contacts(state, "probes.csv");
+    for (const LoadState& state : set.states) check_contacts(rest, state, "probes.csv");
     for (const MotionRecording& recording : set.recordings)
-        for (const LoadState& load : recording.loads) check_contacts(load, "motion_probes.csv");
+        for (const LoadState& load : recording.loads) check_contacts(rest, load, "motion_probes.csv");
 
     for (const Marker& marker : set.markers) {
         const Vec3 place = marker.anchor.value_or(marker.rest);

@@ -1,11 +1,14 @@
 #include <fmt/format.h>
 
+#include <memory>
+
 #include "identify/identify.h"
 #include "mesh/errors.h"
 #include "mesh/text/atomic_file.h"
 #include "pipeline/command_line/flags.h"
 #include "pipeline/command_line/objects.h"
 #include "pipeline/command_line/subcommands.h"
+#include "pipeline/live/follow.h"
 #include "pipeline/output/identification.h"
 #include "pipeline/output/json/comparison.h"
 #include "pipeline/output/json/reference_comparison.h"
@@ -42,11 +45,30 @@ Outcome identify(const IdentifyCommandOptions& options, const Common& common) {
     return outcome;
 }
 
+/// What follows a set, or standard input, with the options that the command shares.
+Outcome follow(FollowOptions options, const IdentifyCommandOptions& shared, const std::string& from,
+               const Common& common) {
+    options.model = shared.model;
+    options.standard_input = from == "-";
+    options.set = options.standard_input ? shared.set : fs::path(from);
+    options.output = shared.output.empty() ? fs::path("identified") : shared.output;
+    const bool goes_on = fs::exists(options.output / "cloud.json");
+    if (!goes_on) refuse_to_overwrite(options.output, common.force);
+    options.how = shared.overrides.on_defaults().identify;
+    options.how.seed = common.seed.value_or(options.how.seed);
+    options.how.threads = common.threads;
+    options.filter.seed = options.how.seed;
+    if (options.how.particles > 0) options.filter.particles = options.how.particles;
+    return follow(options, common);
+}
+
 }  // namespace palpate::pipeline::commands
 
 namespace palpate::pipeline {
 
 void Subcommands::add_identify(CLI::App& app) {
+    auto live = std::make_shared<commands::FollowOptions>();
+    auto from = std::make_shared<std::string>();
     auto* sub =
         subcommand(app, "identify", "Stiffness per link by particle filter.",
                    "  palpate identify model.json set/ -o fitted --parameters zones\n"
@@ -54,12 +76,33 @@ void Subcommands::add_identify(CLI::App& app) {
                    "Prior: each stiffness is log-normal about the model's own, which follows from its sections\n"
                    "and the material ('palpate skeleton --young'); posterior.csv tells its mean and sd. To move\n"
                    "it, edit model.json. burion2008 takes an even one from --search-low to --search-high times\n"
-                   "the model's own.\n",
-                   [this] { return commands::identify(identify, common); });
+                   "the model's own.\n\n"
+                   "  palpate identify model.json --follow set/ -o live    # while another program appends rows\n"
+                   "  rig | palpate identify model.json set/ --follow - -o live --json\n\n"
+                   "It calibrates with the first readings that are there, then takes in each new one and tells what\n"
+                   "became of it. Killed and begun again it goes on from live/cloud.json. Lines of --follow - are\n"
+                   "{\"probe\": 3, \"time\": 0, \"contacts\": [{\"at\": [x,y,z], \"force\": [fx,fy,fz]}],\n"
+                   "\"markers\": {\"12\": [x,y,z]}} in mm, N and s.\n",
+                   [this, live, from] {
+                       if (!from->empty()) return commands::follow(*live, identify, *from, common);
+                       return commands::identify(identify, common);
+                   });
     sub->add_option("MODEL", identify.model, "model.json")->required();
-    sub->add_option("SET", identify.set, "The measurements")->required();
+    sub->add_option("SET", identify.set, "The measurements");
+    sub->add_option("--follow", *from, "Take in readings as they come: a SET that grows, or - for standard input");
+    sub->add_option("--follow-timeout", live->timeout, "End after so long without a reading [s]; 0: never")
+        ->check(CLI::NonNegativeNumber);
+    sub->add_option("--forgetting", live->filter.forgetting,
+                    "With --follow: the share of what is known that each reading leaves; 1: nothing is forgotten");
     sub->add_option("-o,--output", identify.output,
                     "Folder for model.json, posterior.csv, history.pvd; identified by default");
+    sub->parse_complete_callback([this, from] {
+        const bool follows_a_set = !from->empty() && *from != "-";
+        if (identify.set.empty() && !follows_a_set) throw CLI::RequiredError("SET");
+        if (!identify.set.empty() && follows_a_set) {
+            throw CLI::ValidationError("--follow", "names a set, and so does SET; give one of them, or --follow -");
+        }
+    });
     add_flags_of(sub, identify.overrides, "Identification");
 }
 

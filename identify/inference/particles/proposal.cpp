@@ -17,6 +17,13 @@ constexpr double centred = 0.1;                    // of ln pi, that the next st
 constexpr double centred_each = 1e-3;              // or so much for each number
 constexpr std::uint64_t centring_round = 1 << 30;  // of the random streams, beyond any move's
 
+/// (1 + A)^(-1/2) Z = Z - V (1 - (1 + values)^(-1/2)) V^T Z
+Eigen::MatrixXd narrowed(const Spectrum& spectrum, const Eigen::MatrixXd& Z) {
+    if (spectrum.values.size() == 0) return Z;
+    const Eigen::VectorXd share = 1 - (1 + spectrum.values.array()).rsqrt();
+    return Z - spectrum.vectors * (share.asDiagonal() * (spectrum.vectors.transpose() * Z));
+}
+
 /// Averages over pairs of draws on either side of a mean.
 struct PairAverages {
     int stand = 0;                        // pairs with equilibria
@@ -63,13 +70,11 @@ PairAverages look_round(const Eigen::VectorXd& mean, const Eigen::MatrixXd& offs
 }  // namespace
 
 Eigen::MatrixXd GaussianProposal::parameters(const Eigen::MatrixXd& z) const {
-    // (1 + A)^(-1/2) z = z - V (1 - (1 + values)^(-1/2)) V^T z
-    Eigen::MatrixXd v = z;
-    if (spectrum.values.size() > 0) {
-        const Eigen::VectorXd share = 1 - (1 + spectrum.values.array()).rsqrt();
-        v -= spectrum.vectors * (share.asDiagonal() * (spectrum.vectors.transpose() * z));
-    }
-    return (std::sqrt(wider) * prior.coloured(v)).colwise() + mean;
+    return (std::sqrt(wider) * prior.coloured(narrowed(spectrum, z))).colwise() + mean;
+}
+
+Eigen::MatrixXd GaussianProposal::gradients_by_z(const Eigen::MatrixXd& gradients) const {
+    return std::sqrt(wider) * narrowed(spectrum, prior.gradients_by_v(gradients));
 }
 
 Eigen::VectorXd GaussianProposal::whitened(const Eigen::VectorXd& theta) const {

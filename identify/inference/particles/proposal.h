@@ -16,6 +16,8 @@ struct GaussianProposal {
     Eigen::MatrixXd parameters(const Eigen::MatrixXd& z) const;
     /// z of theta.
     Eigen::VectorXd whitened(const Eigen::VectorXd& theta) const;
+    /// Gradients by z, from those by theta (P x n).
+    Eigen::MatrixXd gradients_by_z(const Eigen::MatrixXd& gradients) const;
     /// The density's logarithm where z = 0; it falls by |z|^2 / 2.
     double log_peak() const;
 };

@@ -288,7 +288,13 @@ TemperedResult tempered_filter(const LogDensity& log_density, const std::vector<
     result.log_weights = equal_weights(options.particles);
     result.history.push_back(filter.record(cloud, 0, result.log_weights));
 
-    result.weighed = temper(filter, options, mover, cloud, result, progress);
+    if (options.at_once) {
+        result.weighed = weigh_draws(filter, options, cloud, result);
+        result.evaluations = cloud.size();
+        if (!result.weighed) return result;
+    } else {
+        result.weighed = temper(filter, options, mover, cloud, result, progress);
+    }
     if (!result.weighed) {
         // all of them again, unweighed, by the posterior's own moves; those without density wait for their first one
         cloud = drawn;

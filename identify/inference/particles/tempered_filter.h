@@ -6,6 +6,7 @@
 
 #include "identify/inference/particles/filter_step.h"
 #include "identify/inference/particles/proposal.h"
+#include "identify/measurements/measurement_set.h"
 #include "mesh/progress.h"
 
 namespace palpate::identify {
@@ -19,21 +20,24 @@ struct TemperedOptions {
     int moves = 10;                // per temperature at most, >= 1
     double least_effective = 0.5;  // of N, sets the temperatures, (0, 1)
     int temperatures = 500;        // at most
+    bool at_once = false;          // draws that can be weighed at once, or nothing
     std::uint64_t seed = 1;
     int threads = 1;
 };
 
 struct TemperedResult {
-    Eigen::MatrixXd particles;        // (N x P); more than N where more draws made moves needless
-    Eigen::VectorXd log_weights;      // (N), normalised
-    Eigen::VectorXd log_density;      // of each particle (N)
-    std::vector<int> mode;            // of each particle: the Gaussian of q that is densest there (N)
-    double log_evidence = 0;          // ln of the integral of the density
-    bool weighed = true;              // false: too many parameters for that, see below
-    int independent = 0;              // draws that the particles mix; 0: each is its own
-    double acceptance = 0;            // of all moves
-    int evaluations = 0;              // of the density
-    std::vector<FilterStep> history;  // a step per temperature, the proposal's particles first
+    Eigen::MatrixXd particles;         // (N x P); more than N where more draws made moves needless
+    Eigen::VectorXd log_weights;       // (N), normalised
+    Eigen::VectorXd log_density;       // of each particle (N)
+    std::vector<int> mode;             // of each particle: the Gaussian of q that is densest there (N)
+    double log_evidence = 0;           // ln of the integral of the density
+    double log_evidence_sd = missing;  // by how much that may be off; NaN: not estimated
+    double r_hat = missing;            // of two independent clouds, 1: they agree; NaN: there is but one
+    bool weighed = true;               // false: too many parameters for that, see below
+    int independent = 0;               // draws that the particles mix; 0: each is its own
+    double acceptance = 0;             // of all moves
+    int evaluations = 0;               // of the density
+    std::vector<FilterStep> history;   // a step per temperature, the proposal's particles first
 };
 
 /// Particles of a posterior pi, tempered from a proposal q, a mixture of equal parts of Gaussians q_k, one a mode that
@@ -56,6 +60,8 @@ struct TemperedResult {
 /// q in many of its parameters), resampling would leave a handful of particles in many copies, and intervals far too
 /// narrow. Then nothing is weighed: all particles of q are moved by the posterior's own rule, twice `moves`, and stay
 /// equal; the evidence is then Laplace's, pi / q at the mean.
+///
+/// With `at_once` it ends where the draws cannot be weighed at once, `weighed` false.
 ///
 /// The numbers depend on the seed, not on the threads.
 /// @throws SolverFailure when no particle has a density, or `temperatures` do not reach the posterior.

@@ -25,6 +25,11 @@ Eigen::SparseMatrix<double> LogNormalPrior::precision() const {
     return sd.cwiseInverse().asDiagonal() * inner * sd.cwiseInverse().asDiagonal();
 }
 
+Eigen::VectorXd LogNormalPrior::precision_times(const Eigen::VectorXd& X) const {
+    const Eigen::VectorXd scaled = X.cwiseQuotient(sd);
+    return (field ? field->precision_times(scaled) : scaled).cwiseQuotient(sd);
+}
+
 Eigen::MatrixXd LogNormalPrior::coloured(const Eigen::MatrixXd& V) const {
     return sd.asDiagonal() * (field ? field->coloured(V) : V);
 }

@@ -21,6 +21,7 @@ struct LogNormalPrior {
     double log_density(const Eigen::VectorXd& theta) const;
     double log_root() const;                                                // ln |det C|
     Eigen::SparseMatrix<double> precision() const;                          // (C C^T)^-1
+    Eigen::VectorXd precision_times(const Eigen::VectorXd& X) const;        // (C C^T)^-1 X
     Eigen::MatrixXd coloured(const Eigen::MatrixXd& V) const;               // C V, from v to theta (P x any)
     Eigen::MatrixXd gradients_by_v(const Eigen::MatrixXd& jacobian) const;  // C^T X, from slopes by theta
 };

@@ -63,6 +63,10 @@ MarkovField::MarkovField(int n, const std::vector<Edge>& edges, double own) : Ma
 
 Sparse MarkovField::precision() const { return d_.asDiagonal() * Q_ * d_.asDiagonal(); }
 
+Eigen::VectorXd MarkovField::precision_times(const Eigen::VectorXd& X) const {
+    return d_.cwiseProduct(Q_ * d_.cwiseProduct(X));
+}
+
 Eigen::MatrixXd MarkovField::coloured(const Eigen::MatrixXd& V) const {
     fem::MultiVector X = V;
     factor_->solve_upper(X);

@@ -26,11 +26,12 @@ public:
     /// >= 0.
     MarkovField(int n, const std::vector<Edge>& edges, double own);
 
-    Eigen::MatrixXd coloured(const Eigen::MatrixXd& V) const;    // C V (n x any)
-    Eigen::MatrixXd transposed(const Eigen::MatrixXd& X) const;  // C^T X
-    Eigen::MatrixXd whitened(const Eigen::MatrixXd& X) const;    // C^-1 X
-    double log_root() const;                                     // ln |det C|
-    Eigen::SparseMatrix<double> precision() const;               // D Q D
+    Eigen::MatrixXd coloured(const Eigen::MatrixXd& V) const;         // C V (n x any)
+    Eigen::MatrixXd transposed(const Eigen::MatrixXd& X) const;       // C^T X
+    Eigen::MatrixXd whitened(const Eigen::MatrixXd& X) const;         // C^-1 X
+    Eigen::VectorXd precision_times(const Eigen::VectorXd& X) const;  // D Q D X
+    double log_root() const;                                          // ln |det C|
+    Eigen::SparseMatrix<double> precision() const;                    // D Q D
 
 private:
     Eigen::SparseMatrix<double> Q_;

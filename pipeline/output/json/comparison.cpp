@@ -198,6 +198,8 @@ json summary_json(const identify::IdentifyResult& result) {
             {"posterior", posterior},
             {"modes", modes},
             {"log_evidence", known(result.log_evidence)},
+            {"log_evidence_sd", known(result.log_evidence_sd)},
+            {"r_hat", known(result.r_hat)},
             {"effective_samples", result.history.empty() ? 0.0 : result.history.back().effective_samples},
             {"acceptance", known(result.acceptance)},
             {"model_error", known(result.model_error)},

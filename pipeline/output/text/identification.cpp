@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <string>
 
@@ -69,8 +70,10 @@ std::string identification_in_words(const identify::IdentifyResult& found) {
         const identify::FilterStep& last = found.history.back();
         text += fmt::format("  Particles: {}, of which {:.0f} effective after {} steps", last.particles.rows(),
                             last.effective_samples, found.history.size() - 1);
+        if (!std::isnan(found.r_hat)) text += fmt::format("; R-hat {:.3f} of two clouds", found.r_hat);
         if (found.acceptance > 0) text += fmt::format("; {:.0f} % of moves accepted", 100 * found.acceptance);
         if (found.log_evidence != 0) text += fmt::format("; ln evidence {:.6g}", found.log_evidence);
+        if (!std::isnan(found.log_evidence_sd)) text += fmt::format(" ± {:.2g}", found.log_evidence_sd);
         text += ".\n";
     }
     if (found.equilibria > 0)

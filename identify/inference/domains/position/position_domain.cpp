@@ -46,36 +46,54 @@ bool effects_have_stiffness(const skeleton::Model& model) {
 PositionDomain::PositionDomain(const skeleton::Model& model, skeleton::EquilibriumLaw law, Parameters parameters,
                                const std::vector<StateReadings>& readings, int threads)
     : model_(with_law(model, law)), parameters_(std::move(parameters)), threads_(threads) {
-    std::ranges::copy_if(readings, std::back_inserter(states_), &StateReadings::informs_stiffness);
-
     take_law();
+    G_rest_ = skeleton::link_forces(*model_, rest_state(*model_));
+    goes_as_inverse_ = !effects_have_stiffness(*model_);
+    dent_ = model_->dent;
+    take_states(readings);
+    std::vector<double> displacements(states_.size());
+    std::ranges::transform(states_, displacements.begin(), &StateReadings::displacement);
+    typical_displacement_ = median(displacements);
+    set_model_error(0.03);
+}
 
+/// Those that are informative, with what acts in each and where their markers hang.
+void PositionDomain::take_states(const std::vector<StateReadings>& readings) {
+    states_.clear();
+    std::ranges::copy_if(readings, std::back_inserter(states_), &StateReadings::informs_stiffness);
     const skeleton::State rest = rest_state(*model_);
     const Eigen::VectorXd effects = skeleton::effect_force(*model_, rest);
-    G_rest_ = skeleton::link_forces(*model_, rest);
-    goes_as_inverse_ = !effects_have_stiffness(*model_);
     F_.resize(model_->dofs(), static_cast<Eigen::Index>(states_.size()));
-    std::vector<double> displacements;
+    P_.clear();
+    offsets_.clear();
+    dents_.clear();
     for (int s = 0; s < static_cast<int>(states_.size()); ++s) {
         P_.push_back(std::make_shared<Eigen::SparseMatrix<double>>(
             skeleton::observation_jacobian(*model_, rest, states_[s].points)));
         F_.col(s) = skeleton::external_force(*model_, rest, states_[s].load) + effects;
         offsets_.emplace_back(Points::Zero(states_[s].rest.rows(), 3));
-        displacements.push_back(states_[s].displacement);
         dents_.push_back(skeleton::dent_motions(states_[s].load, states_[s].rest));
+        offsets_[s] += dented(s, dent_);
     }
-    dent_ = model_->dent;
-    for (int s = 0; s < static_cast<int>(states_.size()); ++s) offsets_[s] += dented(s, dent_);
-    typical_displacement_ = median(displacements);
-    set_model_error(0.03);
+}
+
+PositionDomain PositionDomain::over(const std::vector<StateReadings>& readings, double model_error) const {
+    PositionDomain result = *this;
+    result.take_states(readings);
+    result.set_model_error(model_error);
+    return result;
 }
 
 /// What the model's law is solved with.
 void PositionDomain::take_law() {
     solvers_ = std::make_shared<SolverPool>(*model_, states_);
+    strains_ = nullptr;
     if (law() == skeleton::EquilibriumLaw::linear) {
         linear_statics_ = std::make_shared<LinearStatics>(*model_);
         links_ = linear_statics_->links();
+        if (std::optional<Strains> found = strains_of(*links_)) {
+            strains_ = std::make_shared<const Strains>(std::move(*found));
+        }
     } else {
         links_ = std::make_shared<LinksAtRest>(*model_);
     }

@@ -3,6 +3,7 @@
 #include <memory>
 #include <vector>
 
+#include "identify/inference/domains/position/linear/strains.h"
 #include "identify/inference/domains/position/rest_law.h"
 #include "identify/inference/domains/position/slopes.h"
 #include "identify/inference/domains/position/solver_pool.h"
@@ -65,7 +66,15 @@ public:
     /// ln of the likelihood's constant: - sum ln(sigma sqrt(2 pi)).
     double log_constant() const { return log_constant_; }
     /// Of the errors, at theta with its equilibria.
-    ErrorJacobian jacobian(const Eigen::VectorXd& theta, const Prediction& prediction) const;
+    ErrorJacobian jacobian(const Eigen::VectorXd& theta, const Prediction& prediction) const {
+        return jacobian(theta, prediction, threads_);
+    }
+    ErrorJacobian jacobian(const Eigen::VectorXd& theta, const Prediction& prediction, int threads) const;
+
+    /// Half of chi^2 and its gradient by theta (P), for about the price of two predictions. `start`: as for predict.
+    /// Safe from several threads. @throws SolverFailure where there is no equilibrium.
+    double half_chi_squared(const Eigen::VectorXd& theta, Eigen::VectorXd& gradient,
+                            const Prediction* start = nullptr) const;
 
     /// The dents' amplitudes that explain most of what a prediction leaves, in force from then on: linear least
     /// squares, and a prior sd of what a half space of the links' modulus gives way by, 1 / E. `prediction`, at theta,
@@ -82,9 +91,14 @@ public:
     /// there: a cheap stand-in for large rotations near theta.
     PositionDomain linearised(const Eigen::VectorXd& theta, const Prediction& prediction) const;
 
+    /// The same law, with what it has factored so far, for other readings of the body; u_0 stays.
+    PositionDomain over(const std::vector<StateReadings>& readings, double model_error) const;
+
 private:
+    void take_states(const std::vector<StateReadings>& readings);
     void take_law();
     Prediction predict_linear(const Eigen::VectorXd& k) const;
+    double half_chi_squared_linear(const Eigen::VectorXd& theta, Eigen::VectorXd& gradient) const;
     TangentSolve linear_tangent(const Eigen::VectorXd& k) const;
     struct Borrowed;
     std::shared_ptr<Borrowed> borrow() const;
@@ -96,6 +110,7 @@ private:
     std::shared_ptr<SolverPool> solvers_;
     std::shared_ptr<const LinearStatics> linear_statics_;  // linear law alone
     std::shared_ptr<const LinksAtRest> links_;
+    std::shared_ptr<const Strains> strains_;  // linear law alone, where its volumes are at rest
     Parameters parameters_;
     std::vector<StateReadings> states_;
     std::vector<Points> offsets_;         // added to the modelled markers (m x 3) [mm]

@@ -37,7 +37,7 @@ std::vector<PredictedStage> stages_of(const std::vector<StateReadings>& states, 
 
 }  // namespace
 
-ErrorJacobian PositionDomain::jacobian(const Eigen::VectorXd& theta, const Prediction& prediction) const {
+ErrorJacobian PositionDomain::jacobian(const Eigen::VectorXd& theta, const Prediction& prediction, int threads) const {
     const Eigen::VectorXd k = parameters_.stiffness(theta);
     const bool linear = law() == skeleton::EquilibriumLaw::linear;
 
@@ -49,7 +49,7 @@ ErrorJacobian PositionDomain::jacobian(const Eigen::VectorXd& theta, const Predi
     if (linear) tangents[0] = prediction.tangents.empty() ? linear_tangent(k) : prediction.tangents.front();
     const skeleton::PlacedLinks* const yielding = !linear && is_history_dependent(states_) ? &links_->placed : nullptr;
     std::vector<std::optional<ErrorJacobian::State>> found(count);
-    for_each_in_parallel(count, threads_, [&](int i) {
+    for_each_in_parallel(count, threads, [&](int i) {
         const PredictedStage& stage = stages[i];
         const int s = stage.state;
         const bool is_factored = stage.is_read && !prediction.tangents.empty();
@@ -68,7 +68,7 @@ ErrorJacobian PositionDomain::jacobian(const Eigen::VectorXd& theta, const Predi
     std::vector<ErrorJacobian::State> all;
     all.reserve(found.size());
     for (auto& state : found) all.push_back(std::move(*state));
-    return {std::move(all), parameters_.derivative(k), std::move(tangents), threads_};
+    return {std::move(all), parameters_.derivative(k), std::move(tangents), threads};
 }
 
 }  // namespace palpate::identify
