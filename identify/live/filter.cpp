@@ -2,9 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/LU>
 #include <algorithm>
-#include <boost/math/special_functions/gamma.hpp>
 #include <cmath>
 
 #include "identify/diagnosis/rigged_skeleton.h"
@@ -20,14 +18,9 @@ namespace palpate::identify {
 namespace {
 
 constexpr Eigen::Index most_directions = 192;  // of the statistic: a reading of an organ in some 50 ms
-constexpr int most_of_a_reading = 32;          // directions that one reading tells about
-constexpr double least_told = 1e-3;            // ratio of data to prior information, that is kept
 constexpr std::size_t few_readings = 64;       // that are kept to be fitted anew
-constexpr int most_steps = 4;                  // of Gauss and Newton, for one reading
+constexpr int most_steps = 4;                  // of Gauss-Newton, for one reading
 constexpr double far = 0.25;                   // squared sd of a step, after which slopes are taken anew
-constexpr double expected = 3, alarming = 15;  // of the cumulative sum of -ln p: what is taken off it, and its bound
-constexpr double most_surprising = 12;         // -ln p of one reading: one alone is a slip, not a change
-constexpr int stuck_after = 2;                 // the same position under another load
 constexpr double informed_share = 0.7;         // of the prior's sd
 
 }  // namespace
@@ -58,15 +51,6 @@ void require_followable(const skeleton::Model& model, const MeasurementSet& set)
     }
 }
 
-/// One reading seen from a mean v.
-struct Filter::Linearisation {
-    Eigen::VectorXd d;         // errors over sigma (3m)
-    Eigen::VectorXd variance;  // of each, beside what is not known: the sigmas let a state's readings count once (3m)
-    Eigen::MatrixXd W;         // orthonormal directions that it tells about (P x k)
-    Eigen::MatrixXd B;         // J W = -B (3m x k)
-    double squared_error = 0;  // of the markers [mm^2], over all coordinates
-};
-
 Filter::Filter(const skeleton::Model& model, MeasurementSet set, Calibration calibration, const FilterOptions& options)
     : model_(model),
       set_(std::move(set)),
@@ -76,7 +60,7 @@ Filter::Filter(const skeleton::Model& model, MeasurementSet set, Calibration cal
       loads_(std::make_unique<ContactLoads>(model_)),
       always_loaded_(is_always_loaded(model_)),
       kept_(calibration_.domain.states()),
-      last_(set_.markers.size()) {
+      faults_(set_.markers.size()) {
     options_.validate();
     require_followable(model_, set_);
     state_.v = calibration_.prior.whitened(calibration_.fit.theta);
@@ -87,115 +71,13 @@ Filter::Filter(const skeleton::Model& model, MeasurementSet set, Calibration cal
     for (const StateReadings& known : kept_) {
         state_.seen.insert({set_.states[known.state].probe, set_.states[known.state].time});
     }
-    state_.off.setZero(std::ssize(set_.markers));
+    state_.change.off.setZero(std::ssize(set_.markers));
     set_.states.clear();  // what follows is not kept
     keeps_all_ = kept_.size() <= few_readings && options_.forgetting == 1;
 }
 
 Eigen::VectorXd Filter::theta(const Eigen::VectorXd& v) const {
     return calibration_.prior.mean + calibration_.prior.coloured(v).col(0);
-}
-
-/// What is wrong with a reading, if it cannot be taken in; what can be mended is.
-std::optional<std::string> Filter::fault_of(LoadState& reading, std::string& mended) {
-    const StateName name{reading.probe, reading.time};
-    if (state_.seen.contains(name)) return "was there already";
-    const auto add = [&](const std::string& words) { mended += (mended.empty() ? "" : "; ") + words; };
-    const auto later = state_.seen.upper_bound(name);
-    if (later != state_.seen.end() && later->probe == name.probe) add("out of order");
-
-    Vec3 load = Vec3::Zero();
-    for (const mesh::Contact& contact : reading.contacts) {
-        if (!contact.force.allFinite() || !contact.point.allFinite()) return "has a force that is no number";
-        load += contact.force;
-    }
-    int infinite = 0, stuck = 0;
-    for (Reading& own : reading.readings) {
-        if (own.marker < 0 || own.marker >= static_cast<int>(last_.size())) continue;
-        for (double& coordinate : own.position) {
-            if (!std::isinf(coordinate)) continue;
-            coordinate = missing;
-            ++infinite;
-        }
-        Stuck& last = last_[own.marker];
-        const bool same = own.position.allFinite() && own.position == last.position && load != last.load;
-        last.times = same ? last.times + 1 : 0;
-        last.position = own.position;
-        last.load = load;
-        if (last.times < stuck_after) continue;
-        own.position.setConstant(missing);
-        ++stuck;
-    }
-    if (infinite > 0) add(fmt::format("{} infinite coordinates count as missing", infinite));
-    if (stuck > 0) add(fmt::format("{} markers are stuck where they were and are left out", stuck));
-    return std::nullopt;
-}
-
-Filter::Linearisation Filter::linearise(const PositionDomain& domain, const Eigen::VectorXd& v) const {
-    const LogNormalPrior& prior = calibration_.prior;
-    const Eigen::VectorXd at = theta(v);
-    const Prediction prediction = domain.predict(at, 1, nullptr, true);
-    const ErrorJacobian jacobian = domain.jacobian(at, prediction, 1);
-    const Spectrum told = leading_spectrum(whitened_curvature(jacobian, prior), domain.parameters().size(),
-                                           {.largest = most_of_a_reading});
-    const Eigen::Index k = (told.values.array() > least_told).count();
-    Linearisation local;
-    local.W = told.vectors.leftCols(k);
-    const Eigen::VectorXd root = jacobian.weights(0).cwiseSqrt();
-    local.B = root.asDiagonal() * jacobian.moved_markers(0, prior.coloured(local.W));
-    local.d = root.cwiseProduct(jacobian.errors(0));
-    local.squared_error = jacobian.errors(0).squaredNorm();
-    const StateReadings& state = domain.states().front();
-    const double of_model = Eigen::numext::abs2(calibration_.model_error) * domain.squared_scale(0);
-    local.variance.setZero(local.d.size());
-    for (Eigen::Index i = 0; i < local.d.size(); ++i) {
-        const double noise = state.noise[i / 3];
-        local.variance[i] = jacobian.weights(0)[i] * ((std::isnan(noise) ? 0 : Eigen::numext::abs2(noise)) + of_model);
-    }
-    return local;
-}
-
-double Filter::p_value(const Linearisation& local) const {
-    // d^T (1 + B M B^T)^-1 d with M = W^T (1 + A)^-1 W, the covariance of what the reading tells about
-    const Eigen::MatrixXd M = local.W.transpose() * state_.spectrum.inverse(1, local.W);
-    const Eigen::VectorXd b = local.B.transpose() * local.d;
-    const Eigen::MatrixXd G = local.B.transpose() * local.B;
-    const Eigen::MatrixXd one = Eigen::MatrixXd::Identity(M.rows(), M.cols());
-    const double explained = M.size() > 0 ? b.dot((one + M * G).partialPivLu().solve(M * b)) : 0;
-    const double chi_squared = std::max(0.0, local.d.squaredNorm() - explained), count = local.variance.sum();
-    return count > 0 ? boost::math::gamma_q(count / 2, chi_squared / 2) : 1;
-}
-
-void Filter::watch(const StateName& name, double p, const StateReadings& readings, const Linearisation& local) {
-    const double surprise = std::min(most_surprising, -std::log(std::max(p, 1e-300)));
-    state_.cusum = std::max(0.0, state_.cusum + surprise - expected);
-    if (state_.cusum == 0) {
-        state_.cusum_since.reset();
-        state_.off.setZero();
-        state_.off_count = 0;
-        return;
-    }
-    if (!state_.cusum_since) state_.cusum_since = name;
-    ++state_.off_count;
-    for (std::size_t i = 0; i < readings.markers.size(); ++i) {
-        const auto row = static_cast<Eigen::Index>(3 * i);
-        const double variance = local.variance.segment<3>(row).sum();
-        if (variance > 0) {
-            state_.off[readings.markers[i]] += 3 * local.d.segment<3>(row).squaredNorm() / variance;
-        }
-    }
-}
-
-std::optional<Alarm> Filter::alarm() const {
-    if (state_.cusum < alarming || !state_.cusum_since) return std::nullopt;
-    Alarm alarm{*state_.cusum_since};
-    if (state_.off.size() == 0) return alarm;
-    Eigen::Index worst = 0;
-    const double most = state_.off.maxCoeff(&worst);
-    alarm.marker = static_cast<int>(worst);
-    alarm.at = set_.markers[alarm.marker].rest;
-    alarm.whitened_rms = std::sqrt(most / (3.0 * std::max(1, state_.off_count)));
-    return alarm;
 }
 
 FilterUpdate Filter::assimilate(const LoadState& given) {
@@ -205,10 +87,10 @@ FilterUpdate Filter::assimilate(const LoadState& given) {
     const auto ends = [&](const std::string& why) {
         update.why = why;
         update.readings = state_.readings;
-        update.alarm = alarm();
+        update.alarm = state_.change.alarm(set_.markers);
         return update;
     };
-    if (const std::optional<std::string> fault = fault_of(reading, update.why)) return ends(*fault);
+    if (const std::optional<std::string> fault = faults_.find(reading, state_.seen, update.why)) return ends(*fault);
     const StateReadings own = read_state(set_, reading, *loads_, attachments_, always_loaded_);
     if (own.rows.empty()) return ends("has no coordinate of a known marker");
     if (!own.informs_stiffness) return ends("nothing acts in it");
@@ -227,21 +109,21 @@ FilterUpdate Filter::assimilate(const LoadState& given) {
 
     // The forecast, and its error.
     const PositionDomain domain = calibration_.domain.over({own}, calibration_.model_error);
-    std::optional<Linearisation> seen;
+    std::optional<LinearisedReading> seen;
     try {
-        seen = linearise(domain, state_.v);
+        seen = linearise(domain, calibration_, state_.v);
     } catch (const SolverFailure& failure) {
         return ends(fmt::format("has no equilibrium by the model ({})", failure.what()));
     }
-    update.p_value = p_value(*seen);
+    update.p_value = p_value(*seen, state_.spectrum);
     update.error = std::sqrt(seen->squared_error / own.coordinates);
-    watch(name, update.p_value, own, *seen);
+    state_.change.add(name, update.p_value, own, *seen);
     if (update.p_value < options_.surprise) {
         update.fate = FilterUpdate::Fate::held_back;
         return ends(update.why);
     }
 
-    // Gauss and Newton on half of |d|^2 and (v - mean) (1 + A) (v - mean), slopes anew while it goes far
+    // Gauss-Newton on half of |d|^2 and (v - mean) (1 + A) (v - mean), slopes anew while it goes far
     const Eigen::VectorXd mean = state_.v;
     Eigen::VectorXd v = mean;
     Spectrum grown;
@@ -254,7 +136,7 @@ FilterUpdate Filter::assimilate(const LoadState& given) {
         v += dv;
         if (length < far || step == most_steps) break;
         try {
-            seen = linearise(domain, v);
+            seen = linearise(domain, calibration_, v);
         } catch (const SolverFailure&) {  // too far: half the way, by the slopes that are known
             v -= dv / 2;
             break;
@@ -339,11 +221,11 @@ skeleton::Model Filter::model() const {
 }
 
 void Filter::resume(FilterState state) {
-    if (state.v.size() != state_.v.size() || state.off.size() != state_.off.size()) {
+    if (state.v.size() != state_.v.size() || state.change.off.size() != state_.change.off.size()) {
         throw InvalidInput(fmt::format(
             "the cloud is of {} numbers and {} markers, the model and the set have {} and {}: it belongs to another "
             "model, set or --parameters; remove the cloud to begin anew",
-            state.v.size(), state.off.size(), state_.v.size(), state_.off.size()));
+            state.v.size(), state.change.off.size(), state_.v.size(), state_.change.off.size()));
     }
     state_ = std::move(state);
     keeps_all_ = false;  // what it has taken in is no longer there to be fitted anew

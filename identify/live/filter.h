@@ -7,6 +7,8 @@
 
 #include "identify/inference/maximum/calibrate.h"
 #include "identify/inference/posterior_row.h"
+#include "identify/live/change_detector.h"
+#include "identify/live/sensor_faults.h"
 #include "identify/loading/loads.h"
 
 namespace palpate::identify {
@@ -22,14 +24,6 @@ struct FilterOptions {
 /// @throws InvalidInput where a reading depends on those before it, as the material remembers, or where tools and
 /// actuators move the body.
 void require_followable(const skeleton::Model& model, const MeasurementSet& set);
-
-/// Since when, and where, a model no longer fits.
-struct Alarm {
-    StateName since;
-    int marker = -1;          // of the set, whose readings are off by most; -1: none
-    Vec3 at = Vec3::Zero();   // where it rests [mm]
-    double whitened_rms = 0;  // of what is off there, in sigmas of the prediction's noise
-};
 
 /// What became of a reading.
 struct FilterUpdate {
@@ -49,28 +43,23 @@ struct FilterState {
     Spectrum spectrum;  // of what readings told, in these
     int readings = 0;
     std::set<StateName> seen;
-    double cusum = 0;  // of surprise, see below
-    std::optional<StateName> cusum_since;
-    Eigen::VectorXd off;  // sums of squares of whitened errors of each marker since then (markers)
-    int off_count = 0;
+    ChangeDetector change;
 };
 
 /// Stiffness while the body is being touched: a posterior that each reading changes, for a price that does not grow.
 ///
 /// The posterior is N(v, (1 + A)^-1) with A, the information of all readings so far, held by its leading eigenpairs: a
 /// sufficient statistic where errors go straight. A reading is forecast at the mean; with its slopes there the mean
-/// moves by Gauss and Newton, twice where it went far, and A grows by J^T J [Bell & Cathey 1993: an iterated Kalman
-/// filter in the form of information]. Particles are drawn from the statistic, anew with every reading, so that they
-/// neither degenerate nor thin out. As long as readings are few they are kept, and `rejuvenate` fits all of them anew,
-/// which takes back what early slopes got wrong; later ones change the mean so little that slopes hold.
+/// takes Gauss-Newton steps, more than one where it goes far, and A grows by J^T J [Bell & Cathey 1993: an iterated
+/// Kalman filter in the form of information]. Particles are drawn from the statistic, anew with every reading, so that
+/// they neither degenerate nor thin out. As long as readings are few they are kept, and `rejuvenate` fits all of them
+/// anew, which takes back what early slopes got wrong; later ones change the mean so little that slopes hold.
 ///
 /// Forgetting counts each reading `forgetting` times as much as the next one, before that is forecast; so what is held
 /// back is forgotten past as well, and a body that changed for good is learnt anew.
 ///
 /// Surprise is the probability of an error at least as large as the forecast's, whitened by noise, model error and what
-/// is not known yet. A reading below `surprise` is held back. -ln p is exponentially distributed as long as the model
-/// fits; its cumulative sum above 3 alarms beyond 15, which chance reaches once in some millions of readings
-/// [Page 1954].
+/// is not known yet. A reading below `surprise` is held back; several in a row raise an alarm (ChangeDetector).
 class Filter {
 public:
     /// From a calibration by readings of the same model, which are all that is known so far. `set`: markers, noise and
@@ -94,12 +83,6 @@ public:
     const MeasurementSet& set() const { return set_; }
 
 private:
-    struct Linearisation;
-    std::optional<std::string> fault_of(LoadState& reading, std::string& mended);
-    Linearisation linearise(const PositionDomain& domain, const Eigen::VectorXd& v) const;
-    double p_value(const Linearisation& local) const;
-    void watch(const StateName& name, double p, const StateReadings& readings, const Linearisation& local);
-    std::optional<Alarm> alarm() const;
     Eigen::VectorXd theta(const Eigen::VectorXd& v) const;
     int informed() const;
 
@@ -114,12 +97,7 @@ private:
     std::vector<StateReadings> kept_;  // all readings, while they are few
     bool keeps_all_ = true;
     bool refitted_ = true;  // nothing was taken in since the last fit
-    struct Stuck {
-        Vec3 position;
-        Vec3 load;  // the sum of the forces then
-        int times = 0;
-    };
-    std::vector<Stuck> last_;  // of each marker
+    SensorFaults faults_;
 };
 
 }  // namespace palpate::identify

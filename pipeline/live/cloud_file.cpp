@@ -40,10 +40,10 @@ void write_cloud(const std::filesystem::path& file, const Cloud& cloud) {
                          {"information", numbers(state.spectrum.values)},
                          {"directions", numbers(state.spectrum.vectors)},
                          {"seen", seen},
-                         {"surprise", state.cusum},
-                         {"since", state.cusum_since ? name_json(*state.cusum_since) : json()},
-                         {"off", numbers(state.off)},
-                         {"off_count", state.off_count}};
+                         {"surprise", state.change.sum},
+                         {"since", state.change.since ? name_json(*state.change.since) : json()},
+                         {"off", numbers(state.change.off)},
+                         {"off_count", state.change.count}};
     mesh::write_text(file, object.dump() + "\n");
 }
 
@@ -61,10 +61,10 @@ Cloud read_cloud(const std::filesystem::path& file) {
         if (directions.size() != state.v.size() * state.spectrum.values.size()) throw InvalidInput("");
         state.spectrum.vectors = directions.reshaped(state.v.size(), state.spectrum.values.size());
         for (const json& name : object.at("seen")) state.seen.insert(name_of(name));
-        state.cusum = object.at("surprise").get<double>();
-        if (!object.at("since").is_null()) state.cusum_since = name_of(object.at("since"));
-        state.off = vector(object.at("off"));
-        state.off_count = object.at("off_count").get<int>();
+        state.change.sum = object.at("surprise").get<double>();
+        if (!object.at("since").is_null()) state.change.since = name_of(object.at("since"));
+        state.change.off = vector(object.at("off"));
+        state.change.count = object.at("off_count").get<int>();
         return cloud;
     } catch (const IoError&) {
         throw;

@@ -346,6 +346,7 @@ def probe(
     levels: int | None = ...,
     dwell: Sequence[float] | None = ...,
     unload: bool | None = ...,
+    back: bool | None = ...,
     continuous: bool | None = ...,
     missing: float | None = ...,
     unlabelled: float | None = ...,

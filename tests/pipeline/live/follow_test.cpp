@@ -217,10 +217,10 @@ TEST(CloudFile, HoldsAllThatAFilterKnows) {
     cloud.state.spectrum = {Eigen::VectorXd::LinSpaced(2, 3, 1), Eigen::MatrixXd::Random(5, 2)};
     cloud.state.readings = 9;
     cloud.state.seen = {{1, 0}, {2, 0.5}};
-    cloud.state.cusum = 4.25;
-    cloud.state.cusum_since = identify::StateName{2, 0.5};
-    cloud.state.off = Eigen::VectorXd::LinSpaced(3, 0, 1);
-    cloud.state.off_count = 2;
+    cloud.state.change.sum = 4.25;
+    cloud.state.change.since = identify::StateName{2, 0.5};
+    cloud.state.change.off = Eigen::VectorXd::LinSpaced(3, 0, 1);
+    cloud.state.change.count = 2;
     write_cloud(folder / "cloud.json", cloud);
     const Cloud read = read_cloud(folder / "cloud.json");
     EXPECT_EQ(read.begun_with, 4);
@@ -228,8 +228,8 @@ TEST(CloudFile, HoldsAllThatAFilterKnows) {
     EXPECT_EQ(read.state.spectrum.values, cloud.state.spectrum.values);
     EXPECT_EQ(read.state.spectrum.vectors, cloud.state.spectrum.vectors);
     EXPECT_EQ(read.state.seen, cloud.state.seen);
-    EXPECT_EQ(read.state.cusum_since, cloud.state.cusum_since);
-    EXPECT_EQ(read.state.off, cloud.state.off);
+    EXPECT_EQ(read.state.change.since, cloud.state.change.since);
+    EXPECT_EQ(read.state.change.off, cloud.state.change.off);
 
     for (const char* text : {"", "{}", R"({"format": "palpate-model/1"})"}) {
         folder.write("cloud.json", text);
