@@ -62,8 +62,7 @@ identify::LoadState read_json_reading(const std::string& line, const identify::M
     const json& markers = member(object, "markers", where);
     if (!markers.is_object()) throw refused(where, "markers is no object of names and places");
     for (const auto& [name, place] : markers.items()) {
-        const auto found =
-            std::ranges::find_if(set.markers, [&](const auto& marker) { return identify::label_of(marker) == name; });
+        const auto found = std::ranges::find(set.markers, name, &identify::label_of);
         if (found == set.markers.end()) throw refused(where, fmt::format("marker '{}' is not in markers.csv", name));
         state.readings.push_back({static_cast<int>(found - set.markers.begin()),
                                   vector(place, where, "a marker", true),

@@ -45,11 +45,15 @@ bool is_too_expensive(const PositionDomain& domain, int particles) {
     return particles * spheres * spheres > expensive_factors;
 }
 
-/// Evaluations of the density with its gradient by the linear law that are affordable: each is a dense factor of n
-/// unknowns, and two solutions for each state.
+/// Evaluations of the density with its gradient that are affordable. By adjoints one takes a dense factor of n unknowns
+/// and two solutions for each state, otherwise some four factors for each state; small models take their time
+/// otherwise.
 int affordable_evaluations(const PositionDomain& domain) {
     const double n = 6.0 * domain.spheres(), states = static_cast<double>(domain.states().size());
-    return static_cast<int>(std::min(1e6, affordable_work / (n * n * n / 3 + 4 * n * n * states)));
+    if (domain.has_adjoint_gradient()) {
+        return static_cast<int>(std::min(20000.0, affordable_work / (n * n * n / 3 + 4 * n * n * states)));
+    }
+    return static_cast<int>(std::min(3000.0, affordable_work / (4 * states * n * n * n / 3)));
 }
 
 /// Do chains come to as many particles within the affordable work?
@@ -135,16 +139,16 @@ Sampled perturbed(const Target& target, const LogDensity& log_density, const Gau
             "with other noise and a prior with another centre, by the slopes at the fit, and the evidence is rough"};
 }
 
-/// Particles by Hamiltonian Monte Carlo; none where that takes too long, or no trajectory is accepted.
+/// Particles by Hamiltonian Monte Carlo; none where that takes too long.
 std::optional<TemperedResult> sampled_by_gradients(const Target& target, const GaussianProposal& proposal,
                                                    const TemperedOptions& how, const Progress& progress) {
-    if (!can_sample_by_gradients(target.domain, how.particles)) return std::nullopt;
+    if (!can_sample_by_gradients(target.surrogate, how.particles)) return std::nullopt;
     try {
         return hamiltonian_filter([&](const Eigen::VectorXd& theta,
                                       Eigen::VectorXd& gradient) { return target.log_density(theta, gradient); },
                                   proposal,
                                   {.particles = how.particles,
-                                   .evaluations = affordable_evaluations(target.domain),
+                                   .evaluations = affordable_evaluations(target.surrogate),
                                    .seed = how.seed,
                                    .threads = how.threads},
                                   progress);
@@ -159,7 +163,7 @@ Sampled sample_surrogate(const Target& target, std::vector<GaussianProposal> pro
     const LogDensity log_density = [&](const Eigen::VectorXd& theta) { return target.log_density(theta); };
     const auto& [domain, surrogate, prior, fit] = target;
     const bool too_expensive = is_too_expensive(domain, how.particles);
-    if (!fit.spectrum.is_whole && !can_sample_by_gradients(domain, how.particles)) {
+    if (!fit.spectrum.is_whole && !can_sample_by_gradients(surrogate, how.particles)) {
         return perturbed(target, log_density, proposals.front(), how);
     }
     const bool has_many = domain.parameters().size() > many_parameters;
@@ -177,7 +181,7 @@ Sampled sample_surrogate(const Target& target, std::vector<GaussianProposal> pro
     }
 
     // draws that can be weighed at once, or else moves: of a few numbers without gradients, from every mode
-    const bool has_chains = has_many && can_sample_by_gradients(domain, how.particles);
+    const bool has_chains = has_many && can_sample_by_gradients(surrogate, how.particles);
     if (fit.spectrum.is_whole) {
         TemperedOptions weighed = how;
         weighed.at_once = has_chains;
@@ -198,8 +202,8 @@ Sampled sample_surrogate(const Target& target, std::vector<GaussianProposal> pro
     const bool is_moved = fit.spectrum.is_whole && !has_chains;
     if (!is_moved) sampled.filter = laplace_particles(log_density, proposals.front(), how);
     sampled.note = !is_moved
-                       ? "particles: the density of the posterior jumps where they are, so that they are not weighed; "
-                         "samples of the Laplace approximation, whose evidence is given"
+                       ? "particles: draws of the posterior are out of reach, as it bends too much for chains to move "
+                         "through; samples of the Laplace approximation, whose evidence is given"
                        : "particles: too many parameters for importance weights; samples of the Laplace approximation, "
                          "moved towards the posterior by MCMC; Laplace evidence";
     return sampled;

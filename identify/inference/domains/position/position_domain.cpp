@@ -300,8 +300,16 @@ double PositionDomain::common_factor(const Eigen::VectorXd& theta) const {
     const Eigen::VectorXd k = parameters_.stiffness(theta);
     Eigen::MatrixXd F(F_.rows(), F_.cols() + 1);
     F << F_, G_rest_ * k;
-    const Eigen::MatrixXd U =
-        linear_statics_ ? Eigen::MatrixXd(linear_tangent(k)(F)) : SolverPool::Loan(*solvers_)->linear_steps(k, F);
+    Eigen::MatrixXd U;
+    if (linear_statics_) {
+        U = linear_tangent(k)(F);
+    } else {
+        try {
+            U = SolverPool::Loan(*solvers_)->linear_steps(k, F);
+        } catch (const SolverFailure&) {
+            return 0;  // stressed so much that it buckles at rest; large rotations may still find where it stands
+        }
+    }
     double up = 0, down = 0;
     for (int s = 0; s < static_cast<int>(states_.size()); ++s) {
         const Eigen::VectorXd modelled = *P_[s] * U.col(s), pulled = *P_[s] * U.rightCols<1>();

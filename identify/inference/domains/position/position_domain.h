@@ -75,6 +75,8 @@ public:
     /// Safe from several threads. @throws SolverFailure where there is no equilibrium.
     double half_chi_squared(const Eigen::VectorXd& theta, Eigen::VectorXd& gradient,
                             const Prediction* start = nullptr) const;
+    /// Does that take but two solutions of linear equations? By the linear law, where volumes are at rest.
+    bool has_adjoint_gradient() const { return law() == skeleton::EquilibriumLaw::linear && strains_ != nullptr; }
 
     /// The dents' amplitudes that explain most of what a prediction leaves, in force from then on: linear least
     /// squares, and a prior sd of what a half space of the links' modulus gives way by, 1 / E. `prediction`, at theta,

@@ -92,6 +92,9 @@ private:
     /// One move; until the chains have settled the angle follows how many are accepted.
     double move(double b) {
         const double accepted = moves_.move(chains_, b, angle_, round_++);
+        if (moves_.evaluations() > options_.evaluations / 2) {
+            throw SolverFailure("the particles move too slowly: the posterior's curvature changes too much");
+        }
         if (!is_settled_) {
             angle_ = std::min(largest_angle, angle_ * std::clamp(std::exp(accepted - wanted_acceptance), 0.6, 1.15));
             if (angle_ < least_angle) {

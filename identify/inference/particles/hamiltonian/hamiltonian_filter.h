@@ -9,7 +9,7 @@ struct HamiltonianOptions {
     int particles = 200;      // at least, >= 10
     int chains = 6;           // of each of two clouds
     double effective = 100;   // independent draws that all of them are worth, where `evaluations` come to it
-    int evaluations = 20000;  // of the density, beyond which chains are not continued
+    int evaluations = 40000;  // of the density at most, >= 10 particles
     std::uint64_t seed = 1;
     int threads = 1;
 };
@@ -24,7 +24,8 @@ struct HamiltonianOptions {
 /// fewer than `effective` independent ones, or R-hat is above 1.1, the chains are continued, twice as far each time,
 /// and what they began with is left out. The integral of ln(pi / q) over b is the logarithm of the evidence; R-hat
 /// compares the two clouds. The numbers depend on the seed, not on the threads.
-/// @throws SolverFailure when no draw has a density, or no trajectory is accepted however short its steps.
+/// @throws SolverFailure when no draw has a density, no trajectory is accepted however short its steps, or those are so
+/// short that `evaluations` do not come to the particles.
 TemperedResult hamiltonian_filter(const DensityWithGradient& density, const GaussianProposal& q,
                                   const HamiltonianOptions& options, const Progress& progress = {});
 

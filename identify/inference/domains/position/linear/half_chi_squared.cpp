@@ -4,7 +4,7 @@ namespace palpate::identify {
 
 double PositionDomain::half_chi_squared(const Eigen::VectorXd& theta, Eigen::VectorXd& gradient,
                                         const Prediction* start) const {
-    if (law() == skeleton::EquilibriumLaw::linear && strains_) return half_chi_squared_linear(theta, gradient);
+    if (has_adjoint_gradient()) return half_chi_squared_linear(theta, gradient);
     const Prediction prediction = predict(theta, 1, start, true);
     gradient = jacobian(theta, prediction, 1).gradient();
     return chi_squared(prediction) / 2;
