@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "identify/inference/maximum/fit_map.h"
+#include "mesh/errors.h"
 #include "tests/identify/domains.h"
 #include "tests/identify/lattice.h"
 
@@ -41,6 +42,22 @@ Eigen::MatrixXd numeric_hessian(const PositionDomain& domain, const Eigen::Vecto
         for (Eigen::Index q = 0; q < P; ++q) H(p, q) = columns[p].dot(columns[q]);
     }
     return H;
+}
+
+TEST(PositionDomain, StressBeyondBucklingAtRestIsLeftToLargeRotations) {
+    // pressed along x, so that links would turn over by themselves at rest; where they stand nothing does
+    skeleton::Model model = make_lattice({3, 3, 1});
+    model.effects.push_back(
+        {"prestress",
+         {{"sxx", -0.5, "1"}, {"sxy", 0, "1"}, {"sxz", 0, "1"}, {"syy", 0, "1"}, {"syz", 0, "1"}, {"szz", 0, "1"}}});
+    const MeasurementSet set = simulate_measurements(
+        with_truth(model, {1.5}, {500}), push_spheres(model, {{0, 0, -2}, {4, 3, 0}}), markers_on_spheres(model), 0.05);
+    const PositionDomain large = make_domain(model, EquilibriumLaw::large_rotation, Scope::uniform, set);
+    const Eigen::VectorXd none = Eigen::VectorXd::Zero(large.parameters().size());
+    EXPECT_EQ(large.common_factor(none), 0);
+    EXPECT_NO_THROW(large.predict(none, 1));
+    const PositionDomain linear = make_domain(model, EquilibriumLaw::linear, Scope::uniform, set);
+    EXPECT_THROW(linear.common_factor(none), SolverFailure);
 }
 
 class BothLaws : public testing::TestWithParam<std::tuple<EquilibriumLaw, Scope>> {};
