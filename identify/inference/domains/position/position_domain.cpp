@@ -46,11 +46,11 @@ bool effects_have_stiffness(const skeleton::Model& model) {
 PositionDomain::PositionDomain(const skeleton::Model& model, skeleton::EquilibriumLaw law, Parameters parameters,
                                const std::vector<StateReadings>& readings, int threads)
     : model_(with_law(model, law)), parameters_(std::move(parameters)), threads_(threads) {
+    dent_ = model_->dent;
+    take_states(readings);
     take_law();
     G_rest_ = skeleton::link_forces(*model_, rest_state(*model_));
     goes_as_inverse_ = !effects_have_stiffness(*model_);
-    dent_ = model_->dent;
-    take_states(readings);
     std::vector<double> displacements(states_.size());
     std::ranges::transform(states_, displacements.begin(), &StateReadings::displacement);
     typical_displacement_ = median(displacements);
@@ -80,6 +80,7 @@ void PositionDomain::take_states(const std::vector<StateReadings>& readings) {
 PositionDomain PositionDomain::over(const std::vector<StateReadings>& readings, double model_error) const {
     PositionDomain result = *this;
     result.take_states(readings);
+    result.solvers_ = std::make_shared<SolverPool>(*model_, result.states_);
     result.set_model_error(model_error);
     return result;
 }
