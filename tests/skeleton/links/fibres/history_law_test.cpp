@@ -5,6 +5,7 @@
 #include <array>
 
 #include "skeleton/statics/equilibrium.h"
+#include "tests/skeleton/links/fibres/history_sensitivity.h"
 #include "tests/skeleton/test_effects.h"
 
 namespace palpate::skeleton {
@@ -90,24 +91,7 @@ TEST(HistoryLaw, ABarIsSofterUntilItIsPulledAsFarAgain) {
 }
 
 TEST(HistoryLaw, SensitivityIsThatOfEquilibriaAfterTheSameHistory) {
-    const Model model = make_lattice({4, 2, 2});
-    const fem::Effects effects{.damage = fem::Damage{0.6, 0.02}};
-    StaticsSolver solver(model, effects);
-    const Eigen::VectorXd k = stiffness_vector(model);
-    const FibreStates before = flowed(model, solver.solve(k, force_at(model, 3, {2, 4, -6}), {1e-12}), effects);
-    const Load load = force_at(model, 3, {1, 2, -3});
-    const Equilibrium found = solver.solve(k, load, {1e-12}, nullptr, before);
-    const Eigen::MatrixXd A = solver.solve_tangent(Eigen::MatrixXd(link_forces(model, found, effects)));
-    for (const int e : {0, 4, 30}) {
-        const double h = 1e-5 * k[e];
-        const Eigen::VectorXd change = h * Eigen::VectorXd::Unit(k.size(), e);
-        const Eigen::VectorXd difference = solver.solve(k + change, load, {1e-13}, nullptr, before).step -
-                                           solver.solve(k - change, load, {1e-13}, nullptr, before).step;
-        for (int i = 0; i < static_cast<int>(model.spheres.size()); ++i) {
-            const Vec3 expected = difference.segment<3>(6 * i) / (2 * h);
-            EXPECT_LT((expected - A.col(e).segment<3>(6 * i)).norm(), 1e-5 * A.col(e).norm() + 1e-7) << e;
-        }
-    }
+    testing::expect_sensitivity_after_history({.damage = fem::Damage{0.6, 0.02}});
 }
 
 }  // namespace
