@@ -17,7 +17,7 @@
 namespace palpate::identify {
 namespace {
 
-constexpr Eigen::Index most_directions = 192;  // of the statistic: a reading of an organ in some 50 ms
+constexpr Eigen::Index most_directions = 192;  // of the statistic: a reading of an organ takes some 0.1 s
 constexpr std::size_t few_readings = 64;       // that are kept to be fitted anew
 constexpr int most_steps = 4;                  // of Gauss-Newton, for one reading
 constexpr double far = 0.25;                   // squared sd of a step, after which slopes are taken anew

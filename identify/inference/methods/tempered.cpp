@@ -36,9 +36,9 @@ constexpr double expensive_evaluations = 3e4;
 /// factor of a body in space takes the square of its spheres.
 constexpr double expensive_factors = 2e8;
 
-/// Work [flop] of chains that is affordable: some ten seconds of one core, as the fit of an organ takes.
+/// Work [flop] of chains that is affordable: ten seconds of one core at 25 Gflop/s, as dense factors of an organ ran.
 constexpr double affordable_work = 2.5e11;
-constexpr int evaluations_per_particle = 15;  // of the density, annealing included; measured on lattices and organs
+constexpr int evaluations_per_particle = 15;  // of the density, annealing included: 11 on lattices, 20 on an organ
 
 bool is_too_expensive(const PositionDomain& domain, int particles) {
     const double spheres = domain.spheres();
@@ -46,8 +46,8 @@ bool is_too_expensive(const PositionDomain& domain, int particles) {
 }
 
 /// Evaluations of the density with its gradient that are affordable. By adjoints one takes a dense factor of n unknowns
-/// and two solutions for each state, otherwise some four factors for each state; small models take their time
-/// otherwise.
+/// and two solutions for each state, otherwise some four factors for each state. The work of small models is not in
+/// their factors, so that there are bounds besides.
 int affordable_evaluations(const PositionDomain& domain) {
     const double n = 6.0 * domain.spheres(), states = static_cast<double>(domain.states().size());
     if (domain.has_adjoint_gradient()) {

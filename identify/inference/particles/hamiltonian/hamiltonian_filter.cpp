@@ -17,7 +17,7 @@ namespace {
 constexpr double first_angle = 0.2;  // of a step: good for curvatures up to a hundred times those of q
 constexpr double least_angle = 0.005, largest_angle = 0.8;
 constexpr double wanted_acceptance = 0.8;          // the best where a step costs much more than a momentum
-constexpr double acceptable = 0.5;                 // while annealing
+constexpr double acceptable = 0.5;                 // while settling
 constexpr int draws_per_chain = 4;                 // of q, that tell its evidence
 constexpr int settled_moves = 3, most_moves = 24;  // at b = 1, before the first particle
 constexpr Eigen::Index watched = 64;               // of the directions that the measurements inform most
@@ -37,17 +37,20 @@ public:
         while (b < 1) {
             b = next_temperature(b);
             move(b);
+            stay_affordable();
             nodes_.push_back(temperature_node(b, chains_.log_ratio, chains_.size()));
             record(b);
             tell(b);
         }
         settle();
     }
-    /// Moves at b = 1.
+    /// Moves at b = 1. The first ones have to be affordable; what continues them is predicted to be.
     void sample(int rounds, const std::function<void(double)>& tell) {
+        const bool are_first = rounds_.empty();
         for (int i = 0; i < rounds; ++i) {
             accepted_.push_back(move(1));
             rounds_.push_back(chains_);
+            if (are_first) stay_affordable();
             tell((i + 1.0) / rounds);
         }
     }
@@ -92,9 +95,6 @@ private:
     /// One move; until the chains have settled the angle follows how many are accepted.
     double move(double b) {
         const double accepted = moves_.move(chains_, b, angle_, round_++);
-        if (moves_.evaluations() > options_.evaluations / 2) {
-            throw SolverFailure("the particles move too slowly: the posterior's curvature changes too much");
-        }
         if (!is_settled_) {
             angle_ = std::min(largest_angle, angle_ * std::clamp(std::exp(accepted - wanted_acceptance), 0.6, 1.15));
             if (angle_ < least_angle) {
@@ -104,10 +104,16 @@ private:
         return accepted;
     }
 
+    void stay_affordable() const {
+        if (moves_.evaluations() <= options_.evaluations / 2) return;
+        throw SolverFailure("the particles move too slowly: the posterior's curvature changes too much");
+    }
+
     void settle() {
         int good = 0;
         for (int i = 0; i < most_moves && good < settled_moves; ++i) {
             if (move(1) >= acceptable) ++good;
+            stay_affordable();
         }
         is_settled_ = true;
     }
@@ -141,6 +147,50 @@ Eigen::MatrixXd watched_quantities(const std::vector<Chains>& rounds, const Gaus
         own.bottomRows<1>() = rounds[i].log_ratio.transpose() - rounds[i].z.colwise().squaredNorm() / 2;
     }
     return quantities;
+}
+
+/// Particles, evidence and diagnostics of both clouds. W: chains of each; `rounds_wanted`: of each cloud, at least.
+TemperedResult gathered(const std::deque<HamiltonianFilter>& clouds, const GaussianProposal& q,
+                        const Convergence& agreed, int W, int rounds_wanted) {
+    TemperedResult result;
+    // particles: every so many rounds, as those in between tell little more
+    const auto rounds = static_cast<int>(clouds.front().rounds().size());
+    const int stride = std::max(1, rounds / rounds_wanted), kept = (rounds + stride - 1) / stride;
+    const int N = 2 * W * kept;
+    result.particles.resize(N, q.mean.size());
+    result.log_density.resize(N);
+    std::vector<Evidence> evidence;
+    int row = 0;
+    for (const HamiltonianFilter& cloud : clouds) {
+        Eigen::VectorXd ratios(W * rounds);
+        for (int i = 0; i < rounds; ++i) {
+            const Chains& at = cloud.rounds()[i];
+            ratios.segment(i * W, W) = at.log_ratio;
+            if (i % stride != 0) continue;
+            result.particles.middleRows(row, W) = q.parameters(at.z).transpose();
+            result.log_density.segment(row, W) =
+                at.log_ratio.array() + q.log_peak() - at.z.colwise().squaredNorm().transpose().array() / 2;
+            row += W;
+        }
+        // the last temperature is seen by all rounds
+        std::vector<TemperatureNode> nodes = cloud.nodes();
+        nodes.back() = temperature_node(1, ratios, agreed.effective / 2);
+        evidence.push_back(integrated_evidence(nodes));
+        result.acceptance += cloud.acceptance() / 2;
+        result.evaluations += cloud.evaluations();
+        result.history.insert(result.history.end(), cloud.history().begin(), cloud.history().end());
+    }
+    const double independent = std::clamp(agreed.effective, 1.0, static_cast<double>(N));
+    std::ranges::stable_sort(result.history, {}, &FilterStep::temperature);
+    result.log_weights = Eigen::VectorXd::Constant(N, -std::log(N));
+    result.mode.assign(static_cast<std::size_t>(N), 0);
+    const Evidence whole = together(evidence[0], evidence[1]);
+    result.log_evidence = whole.log_value;
+    result.log_evidence_sd = whole.sd;
+    result.r_hat = agreed.r_hat;
+    result.independent = static_cast<int>(independent);
+    result.history.push_back({1, independent, result.particles, result.log_weights});
+    return result;
 }
 
 }  // namespace
@@ -179,45 +229,7 @@ TemperedResult hamiltonian_filter(const DensityWithGradient& density, const Gaus
         if (is_enough || evaluations > options.evaluations) break;
     }
 
-    TemperedResult result;
-    // particles: every so many rounds, as those in between tell little more
-    const auto rounds = static_cast<int>(clouds.front().rounds().size());
-    const int W = options.chains, stride = std::max(1, rounds / first), kept = (rounds + stride - 1) / stride;
-    const int N = 2 * W * kept;
-    result.particles.resize(N, q.mean.size());
-    result.log_density.resize(N);
-    std::vector<Evidence> evidence;
-    int row = 0;
-    for (const HamiltonianFilter& cloud : clouds) {
-        Eigen::VectorXd ratios(W * rounds);
-        for (int i = 0; i < rounds; ++i) {
-            const Chains& at = cloud.rounds()[i];
-            ratios.segment(i * W, W) = at.log_ratio;
-            if (i % stride != 0) continue;
-            result.particles.middleRows(row, W) = q.parameters(at.z).transpose();
-            result.log_density.segment(row, W) =
-                at.log_ratio.array() + q.log_peak() - at.z.colwise().squaredNorm().transpose().array() / 2;
-            row += W;
-        }
-        // the last temperature is seen by all rounds
-        std::vector<TemperatureNode> nodes = cloud.nodes();
-        nodes.back() = temperature_node(1, ratios, agreed.effective / 2);
-        evidence.push_back(integrated_evidence(nodes));
-        result.acceptance += cloud.acceptance() / 2;
-        result.evaluations += cloud.evaluations();
-        result.history.insert(result.history.end(), cloud.history().begin(), cloud.history().end());
-    }
-    const double independent = std::clamp(agreed.effective, 1.0, static_cast<double>(N));
-    std::ranges::stable_sort(result.history, {}, &FilterStep::temperature);
-    result.log_weights = Eigen::VectorXd::Constant(N, -std::log(N));
-    result.mode.assign(static_cast<std::size_t>(N), 0);
-    const Evidence whole = together(evidence[0], evidence[1]);
-    result.log_evidence = whole.log_value;
-    result.log_evidence_sd = whole.sd;
-    result.r_hat = agreed.r_hat;
-    result.independent = static_cast<int>(independent);
-    result.history.push_back({1, independent, result.particles, result.log_weights});
-    return result;
+    return gathered(clouds, q, agreed, options.chains, first);
 }
 
 }  // namespace palpate::identify

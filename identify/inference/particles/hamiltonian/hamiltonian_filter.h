@@ -9,7 +9,7 @@ struct HamiltonianOptions {
     int particles = 200;      // at least, >= 10
     int chains = 6;           // of each of two clouds
     double effective = 100;   // independent draws that all of them are worth, where `evaluations` come to it
-    int evaluations = 40000;  // of the density at most, >= 10 particles
+    int evaluations = 40000;  // of the density, half of them for each cloud, that chains are continued within
     std::uint64_t seed = 1;
     int threads = 1;
 };
