@@ -153,9 +153,20 @@ Eigen::MatrixXd HyperelasticBody::tendon_derivative(const Eigen::VectorXd& u, co
 
 Eigen::VectorXd HyperelasticBody::tendon_push(const Eigen::VectorXd& u, const TendonPull& pull,
                                               bool small_strain) const {
-    // By tension -dL/du; by length -dL/du d(tension)/dL.
-    return pull.actuator->by_length ? Eigen::VectorXd(-tendon_derivative(u, pull, small_strain).col(1))
-                                    : Eigen::VectorXd(tendon_derivative(u, pull, small_strain).col(0));
+    const BodyShape& shape = impl_->shape;
+    return PlacedTendon((*shape.tendon_paths)(shape.mesh, pull.actuator), pull, small_strain).push(u);
+}
+
+TendonFriction HyperelasticBody::tendon_friction(const Eigen::VectorXd& u, const TendonPull& pull,
+                                                 bool small_strain) const {
+    const BodyShape& shape = impl_->shape;
+    return PlacedTendon((*shape.tendon_paths)(shape.mesh, pull.actuator), pull, small_strain).friction(u);
+}
+
+TendonSliding HyperelasticBody::tendon_sliding(const Eigen::VectorXd& u, const TendonPull& pull,
+                                               bool small_strain) const {
+    const BodyShape& shape = impl_->shape;
+    return PlacedTendon((*shape.tendon_paths)(shape.mesh, pull.actuator), pull, small_strain).sliding(u);
 }
 
 Eigen::VectorXd HyperelasticBody::cavity_push(const Eigen::VectorXd& u, const mesh::PressureActuator& actuator,

@@ -10,6 +10,7 @@
 #include "fem/large_deformation/body_equilibrium.h"
 #include "fem/large_deformation/body_setting.h"
 #include "fem/large_deformation/body_tangent.h"
+#include "fem/rig/tendon_terms.h"
 #include "fem/rig/tool_potential.h"
 #include "mesh/core/volume_mesh.h"
 
@@ -94,6 +95,10 @@ public:
     Eigen::MatrixXd tendon_derivative(const Eigen::VectorXd& u, const TendonPull& pull, bool small_strain) const;
     /// By how much the forces on the nodes grow with a tendon's value (3n), or with the pressure in a cavity.
     Eigen::VectorXd tendon_push(const Eigen::VectorXd& u, const TendonPull& pull, bool small_strain) const;
+    /// What friction makes of it there, and how the forces of the nodes and friction follow each other: d gradient / d
+    /// number (3n x m), d number / du (m x 3n). Tangents hold friction.
+    TendonFriction tendon_friction(const Eigen::VectorXd& u, const TendonPull& pull, bool small_strain) const;
+    TendonSliding tendon_sliding(const Eigen::VectorXd& u, const TendonPull& pull, bool small_strain) const;
     Eigen::VectorXd cavity_push(const Eigen::VectorXd& u, const mesh::PressureActuator& actuator,
                                 bool small_strain) const;
 

@@ -50,6 +50,13 @@ KnownEffect known_damage() {
             }};
 }
 
+KnownEffect known_friction() {
+    return {.name = "friction",
+            .parameters = {{"tendons", "1", Range::not_negative}},
+            .make = [](const EffectNumbers& numbers) -> Effects { return {.tendon_friction = numbers["tendons"]}; },
+            .not_played = "is of tendons, and a model has none of its own"};
+}
+
 // Recorded only: a solid has Poisson's ratio in its law, and links have no volume that could resist.
 KnownEffect known_volume() {
     return {.name = "volume",
@@ -64,13 +71,16 @@ KnownEffect fault(std::string name) { return {std::move(name), {}, {}, EffectKin
 
 std::vector<KnownEffect> built_in_effects() {
     return {
-        known_gravity(),    known_compliant_support(), known_stiffening(),
-        known_anisotropy(), known_inclusion(),         known_contact(),
-        known_pressure(),   known_prestress(),         known_swelling(),
-        known_viscosity(),  known_plasticity(),        known_damage(),
-        known_volume(),     fault("misalignment"),     fault("force-gain"),
-        fault("slip"),      fault("actuation-gain"),   fault("clock"),
-        fault("outliers"),
+        known_gravity(),       known_compliant_support(),
+        known_stiffening(),    known_anisotropy(),
+        known_inclusion(),     known_contact(),
+        known_pressure(),      known_prestress(),
+        known_swelling(),      known_viscosity(),
+        known_plasticity(),    known_damage(),
+        known_friction(),      known_volume(),
+        fault("misalignment"), fault("force-gain"),
+        fault("slip"),         fault("actuation-gain"),
+        fault("clock"),        fault("outliers"),
     };
 }
 

@@ -57,6 +57,7 @@ struct Effects {
     std::vector<std::shared_ptr<const ToolPotential>> tools{};  // where they are
     std::vector<CavityPressure> cavities{};                     // besides `pressure`
     std::vector<TendonPull> tendons{};
+    double tendon_friction = 0;  // coefficient, of all tendons [-]; those in `tendons` know their own
 
     bool empty() const {
         const auto is_nothing = [](const auto& effect) { return effect->is_nothing(); };
@@ -80,6 +81,7 @@ struct Effects {
         tools.insert(tools.end(), more.tools.begin(), more.tools.end());
         cavities.insert(cavities.end(), more.cavities.begin(), more.cavities.end());
         tendons.insert(tendons.end(), more.tendons.begin(), more.tendons.end());
+        tendon_friction += more.tendon_friction;
     }
 };
 

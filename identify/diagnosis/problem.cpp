@@ -6,6 +6,7 @@
 #include <cmath>
 #include <set>
 
+#include "identify/loading/lagged_load.h"
 #include "identify/loading/loads.h"
 #include "mesh/errors.h"
 
@@ -21,7 +22,7 @@ bool is_same(const Action& a, const Action& b) {
         return x.tool == y.tool && same_or_free(x.translation, y.translation) && same_or_free(x.rotation, y.rotation);
     };
     const auto same_setting = [](const mesh::ActuatorSetting& x, const mesh::ActuatorSetting& y) {
-        return x.actuator == y.actuator && x.value == y.value;
+        return x.actuator == y.actuator && x.value == y.value && x.earlier == y.earlier;
     };
     return a.gravity == b.gravity && a.pressure == b.pressure &&
            std::ranges::equal(a.contacts, b.contacts, same_contact) &&
@@ -57,6 +58,25 @@ std::vector<mesh::ActuatorSetting> settings_of(const LoadState& state) {
         if (one.value != 0) settings.push_back({one.actuator, one.value});
     }
     return settings;
+}
+
+/// Tells tendons on their way back where they come from.
+void tell_earlier_settings(const MeasurementSet& set, std::vector<Stage>& stages) {
+    for (std::size_t a = 0; a < set.actuators.size(); ++a) {
+        if (!mesh::may_rub(set.actuators[a])) continue;
+        std::vector<double> earlier;
+        for (std::size_t s = 0; s < stages.size(); ++s) {
+            if (s > 0 && !set.continuous && stages[s].probe != stages[s - 1].probe) earlier.clear();
+            std::vector<mesh::ActuatorSetting>& settings = stages[s].action.settings;
+            const auto own = std::ranges::find(settings, static_cast<int>(a), &mesh::ActuatorSetting::actuator);
+            if (own == settings.end()) {
+                earlier.clear();  // it hangs loose
+                continue;
+            }
+            own->earlier = since_largest(earlier, own->value);
+            earlier.push_back(own->value);
+        }
+    }
 }
 
 bool is_read(const LoadState& state) { return std::ranges::any_of(state.readings, counts) || !state.reactions.empty(); }
@@ -180,9 +200,13 @@ Problem make_problem(const MeasurementSet& set, double noise) {
     problem.continuous = set.continuous;
     if (set.material) problem.declared_poisson = set.material->poisson;
     for (const LoadState& state : set.states) problem.stages.push_back(stage_of(set, state));
+    tell_earlier_settings(set, problem.stages);
     problem.markers = static_cast<int>(set.markers.size());
     for (const mesh::Tool& tool : set.tools) problem.tools.push_back(tool.name);
-    for (const mesh::Actuator& actuator : set.actuators) problem.actuators.push_back(actuator.name);
+    for (const mesh::Actuator& actuator : set.actuators) {
+        if (mesh::may_rub(actuator)) problem.tendons.push_back(static_cast<int>(problem.actuators.size()));
+        problem.actuators.push_back(actuator.name);
+    }
     problem.rest = Points::Zero(problem.markers + 2 * std::ssize(set.tools), 3);
     for (int m = 0; m < problem.markers; ++m) problem.rest.row(m) = set.markers[m].rest;
     std::vector<int> action(set.states.size(), -1);
@@ -251,6 +275,7 @@ Problem Problem::with_rows(const std::vector<char>& keep) const {
     result.markers = markers;
     result.tools = tools;
     result.actuators = actuators;
+    result.tendons = tendons;
     result.rest = rest;
     std::vector<int> kept;
     int last = -1, number = -1;

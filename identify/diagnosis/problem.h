@@ -35,6 +35,7 @@ struct Problem {
     int markers = 0;                      // of the set (m)
     std::vector<std::string> tools;       // of the set, their names (t)
     std::vector<std::string> actuators;   // the same (a)
+    std::vector<int> tendons;             // of the actuators, those that may rub: mesh::may_rub
     Points rest;                          // of the channels (m + 2t x 3): where the markers rest [mm], 0 of the tools
     std::vector<int> state;               // of each row, in the set (N)
     std::vector<int> action;              // of each row (N)

@@ -25,6 +25,7 @@ std::shared_ptr<const EffectHypothesis> swelling_effect();
 std::shared_ptr<const EffectHypothesis> viscosity_effect();
 std::shared_ptr<const EffectHypothesis> plasticity_effect();
 std::shared_ptr<const EffectHypothesis> damage_effect();
+std::shared_ptr<const EffectHypothesis> friction_effect();
 std::shared_ptr<const EffectHypothesis> misalignment_effect();
 std::shared_ptr<const EffectHypothesis> force_gain_effect();
 std::shared_ptr<const EffectHypothesis> slip_effect();
@@ -52,12 +53,12 @@ std::size_t edits_between(const std::string& a, const std::string& b) {
 
 std::vector<std::shared_ptr<const EffectHypothesis>>& registry() {
     static std::vector<std::shared_ptr<const EffectHypothesis>> all{
-        gravity_effect(),    stiffening_effect(), anisotropy_effect(),     inclusion_effect(),
-        volume_effect(),     torsion_effect(),    shear_effect(),          compliant_support_effect(),
-        contact_effect(),    pressure_effect(),   prestress_effect(),      swelling_effect(),
-        viscosity_effect(),  plasticity_effect(), damage_effect(),         misalignment_effect(),
-        force_gain_effect(), slip_effect(),       actuation_gain_effect(), clock_effect(),
-        outliers_effect()};
+        gravity_effect(),      stiffening_effect(), anisotropy_effect(), inclusion_effect(),
+        volume_effect(),       torsion_effect(),    shear_effect(),      compliant_support_effect(),
+        contact_effect(),      pressure_effect(),   prestress_effect(),  swelling_effect(),
+        viscosity_effect(),    plasticity_effect(), damage_effect(),     friction_effect(),
+        misalignment_effect(), force_gain_effect(), slip_effect(),       actuation_gain_effect(),
+        clock_effect(),        outliers_effect()};
     return all;
 }
 

@@ -33,14 +33,21 @@ std::vector<mesh::ActuatorSetting> between(const std::vector<mesh::ActuatorSetti
     const auto add = [&](const mesh::ActuatorSetting& setting, double factor) {
         const auto there = std::ranges::find(result, setting.actuator, &mesh::ActuatorSetting::actuator);
         if (there == result.end()) {
-            result.push_back({setting.actuator, factor * setting.value});
+            result.push_back({setting.actuator, factor * setting.value, setting.earlier});
         } else {
             there->value += factor * setting.value;
+            there->earlier = setting.earlier;
         }
     };
     for (const mesh::ActuatorSetting& setting : before) add(setting, 1 - share);
     for (const mesh::ActuatorSetting& setting : after) add(setting, share);
     return result;
+}
+
+std::vector<double> since_largest(const std::vector<double>& before, double now) {
+    const auto largest = std::ranges::max_element(before);
+    return largest == before.end() || *largest <= now ? std::vector<double>{}
+                                                      : std::vector<double>(largest, before.end());
 }
 
 std::vector<mesh::ToolMotion> between(const std::vector<mesh::ToolMotion>& before,

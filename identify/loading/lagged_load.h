@@ -24,6 +24,9 @@ std::vector<mesh::Contact> between(const std::vector<mesh::Contact>& before, con
                                    double share);
 std::vector<mesh::ActuatorSetting> between(const std::vector<mesh::ActuatorSetting>& before,
                                            const std::vector<mesh::ActuatorSetting>& after, double share);
+/// What a tendon was set to before that matters to its friction (mesh::ActuatorSetting): from the largest value on,
+/// where that is more than it is set to now.
+std::vector<double> since_largest(const std::vector<double>& before, double now);
 /// The same of tools that touch the body: one that is away before or after stays where it is `now`.
 std::vector<mesh::ToolMotion> between(const std::vector<mesh::ToolMotion>& before,
                                       const std::vector<mesh::ToolMotion>& after, double share,

@@ -15,6 +15,7 @@
 #include "fem/large_deformation/refined_equilibrium.h"
 #include "identify/models/free_tools.h"
 #include "identify/models/marker_frames.h"
+#include "identify/models/tendon_friction.h"
 #include "mesh/errors.h"
 #include "mesh/regions/element_regions.h"
 #include "skeleton/model/state.h"
@@ -198,11 +199,19 @@ struct ReferenceBody::Impl {
         fem::BodySetting result{static_cast<fem::MaterialLaw>(s.law), material, s.effects,
                                 region_materials(s, material)};
         result.effects.pressure += action.pressure;
-        result.effects.add(rig.effects(action, material.young));
+        rig.add(action, material.young, result.effects);
         return result;
     }
     fem::BodySetting setting(const ModelSetting& s, const Action& action) const {
         return setting(s, material_of(s, density), action);
+    }
+    /// Of the tendons that rub.
+    fem::TendonSliding sliding(const Eigen::VectorXd& q, const fem::BodySetting& own) const {
+        std::vector<fem::TendonSliding> each;
+        for (const fem::TendonPull& pull : own.effects.tendons)
+            if (pull.coefficient != 0)
+                each.push_back(body.tendon_sliding(q, pull, own.law == fem::MaterialLaw::linear));
+        return together(each, q.size());
     }
     /// Nodal shares of a contact (n), which add up to 1.
     Eigen::VectorXd shares_of(const mesh::Contact& contact) const;
@@ -329,11 +338,22 @@ Eigen::VectorXd ReferenceBody::equilibrium(const ModelSetting& setting, const Ac
     // What is not found soon next to a known state is no answer for a trial.
     require_material(material(setting));
     const fem::NewtonOptions options{.tolerance = 1e-7, .iterations = start ? 40 : 60, .load_steps = start ? 0 : 16};
-    const auto* nearby = dynamic_cast<const FemTangent*>(guide);
-    return impl_->body
-        .equilibrium(impl_->setting(setting, action), impl_->load(action), options, start, memory_of(action),
-                     nearby ? &nearby->factor() : nullptr)
-        .u;
+    const auto* nearby = guide ? dynamic_cast<const FemTangent*>(&with_friction_held(*guide)) : nullptr;
+    fem::BodySetting own = impl_->setting(setting, action);
+    const Eigen::VectorXd f = impl_->load(action);
+    const auto settle = [&](const Eigen::VectorXd* from) {
+        return impl_->body.equilibrium(own, f, options, from, memory_of(action), nearby ? &nearby->factor() : nullptr)
+            .u;
+    };
+    if (!rub(own.effects.tendons)) return settle(start);
+    const auto with_held = [&](const std::vector<fem::TendonPull>& tendons, const Eigen::VectorXd* from) {
+        own.effects.tendons = tendons;
+        return settle(from);
+    };
+    const auto friction = [&](const fem::TendonPull& pull, const Eigen::VectorXd& q) {
+        return impl_->body.tendon_friction(q, pull, in_small_strain(setting));
+    };
+    return FrictionIteration(own.effects.tendons, with_held, friction).equilibrium(rest(setting), start);
 }
 
 Eigen::VectorXd ReferenceBody::residual(const Eigen::VectorXd& q, const ModelSetting& setting,
@@ -346,7 +366,9 @@ std::shared_ptr<const Tangent> ReferenceBody::tangent(const Eigen::VectorXd& q, 
                                                       const Action& action) const {
     require_material(material(setting));
     if (has_free_coordinates(action)) return tangent_with_free_tools(*this, q, setting, action);
-    return std::make_shared<FemTangent>(impl_->body.factor(q, impl_->setting(setting, action), memory_of(action)));
+    const fem::BodySetting own = impl_->setting(setting, action);
+    auto held = std::make_shared<FemTangent>(impl_->body.factor(q, own, memory_of(action)));
+    return tangent_with_friction(std::move(held), impl_->sliding(q, own));
 }
 
 Eigen::MatrixXd ReferenceBody::parameter_force(const Eigen::VectorXd& q, const ModelSetting& setting,
@@ -389,7 +411,7 @@ std::optional<MeshError> ReferenceBody::discretisation_error(const Eigen::Vector
         if (!given) return Impl::Finer(*impl_, fem::refine(coarse));
         return Impl::Finer(*impl_, {*given, fem::interpolation(coarse, given->nodes)});
     });
-    const auto& factor = dynamic_cast<const FemTangent&>(J).factor();
+    const auto& factor = dynamic_cast<const FemTangent&>(with_friction_held(J)).factor();
     const std::optional<Eigen::VectorXd> u = fem::refined_equilibrium(
         {finer.own->body, finer.interpolation}, q, factor, impl_->setting(setting, action), finer.own->load(action));
     if (!u) return std::nullopt;
@@ -470,7 +492,10 @@ Eigen::MatrixXd ReferenceBody::support_motion(const Vec3& centre) const {
 Eigen::MatrixXd ReferenceBody::tangent_times(const Eigen::VectorXd& q, const ModelSetting& setting,
                                              const Action& action, const Eigen::MatrixXd& steps) const {
     if (has_free_coordinates(action)) return tangent_times_with_free_tools(*this, q, setting, action, steps);
-    return impl_->body.tangent(q, impl_->setting(setting, action), memory_of(action)) * steps;
+    const fem::BodySetting own = impl_->setting(setting, action);
+    const fem::TendonSliding sliding = impl_->sliding(q, own);
+    return impl_->body.tangent(q, own, memory_of(action)) * steps +
+           sliding.by_number * (sliding.number_by_point * steps);
 }
 
 std::vector<mesh::ToolMotion> ReferenceBody::motions(const Eigen::VectorXd& q, const ModelSetting& setting,
@@ -514,7 +539,8 @@ Eigen::MatrixXd ReferenceBody::actuation_force(const Eigen::VectorXd& q, const M
         if (const auto& cavity = impl_->rig.cavity(own.actuator)) {
             column = impl_->body.cavity_push(q, *cavity, small_strain);
         } else {
-            column = impl_->body.tendon_push(q, impl_->rig.tendon(own, young(setting)), small_strain);
+            column = impl_->body.tendon_push(q, impl_->rig.tendon(own, young(setting), setting.effects.tendon_friction),
+                                             small_strain);
         }
     }
     return result;

@@ -17,28 +17,26 @@ PreparedRig::PreparedRig(const Rig& rig) {
     }
 }
 
-fem::Effects PreparedRig::effects(const Action& action, double young) const {
-    fem::Effects result;
-    for (const mesh::ToolMotion& motion : action.motions) result.tools.push_back(tool(motion, young));
+void PreparedRig::add(const Action& action, double young, fem::Effects& effects) const {
+    for (const mesh::ToolMotion& motion : action.motions) effects.tools.push_back(tool(motion, young));
     std::vector<mesh::ActuatorSetting> all(tendons_.size());
     for (std::size_t k = 0; k < all.size(); ++k) all[k].actuator = static_cast<int>(k);
-    for (const mesh::ActuatorSetting& setting : action.settings) all[setting.actuator].value = setting.value;
+    for (const mesh::ActuatorSetting& setting : action.settings) all[setting.actuator] = setting;
     for (const mesh::ActuatorSetting& setting : all) {
         if (tendons_[setting.actuator]) {
-            result.tendons.push_back(tendon(setting, young));
+            effects.tendons.push_back(tendon(setting, young, effects.tendon_friction));
         } else if (setting.value != 0) {
-            result.cavities.push_back({cavities_[setting.actuator], setting.value});
+            effects.cavities.push_back({cavities_[setting.actuator], setting.value});
         }
     }
-    return result;
 }
 
 std::shared_ptr<const fem::ToolPotential> PreparedRig::tool(const mesh::ToolMotion& motion, double young) const {
     return std::make_shared<fem::ToolPotential>(tools_[motion.tool], motion, young);
 }
 
-fem::TendonPull PreparedRig::tendon(const mesh::ActuatorSetting& setting, double young) const {
-    return {tendons_[setting.actuator], setting.value, young};
+fem::TendonPull PreparedRig::tendon(const mesh::ActuatorSetting& setting, double young, double friction) const {
+    return {tendons_[setting.actuator], setting.value, young, friction, setting.earlier};
 }
 
 bool PreparedRig::is_nonlinear() const {

@@ -24,13 +24,14 @@ public:
     /// @throws InvalidInput as fem::RigidTool.
     explicit PreparedRig(const Rig& rig);
 
-    /// Of an action, on a body of the Young's modulus `young` [MPa]. @pre no coordinate of its motions is free.
-    fem::Effects effects(const Action& action, double young) const;
+    /// Puts an action in force on a body of the Young's modulus `young` [MPa]; tendons rub as the effects there say.
+    /// @pre no coordinate of its motions is free.
+    void add(const Action& action, double young, fem::Effects& effects) const;
     /// One tool where it is.
     std::shared_ptr<const fem::ToolPotential> tool(const mesh::ToolMotion& motion, double young) const;
     /// What an actuator does: a pressure in a cavity, or the pull of a tendon; the other is empty.
     const std::shared_ptr<const mesh::PressureActuator>& cavity(int actuator) const { return cavities_[actuator]; }
-    fem::TendonPull tendon(const mesh::ActuatorSetting& setting, double young) const;
+    fem::TendonPull tendon(const mesh::ActuatorSetting& setting, double young, double friction) const;
 
     /// Does the rig make a body nonlinear whatever its law: by tools, which touch or part, or tendons, which go slack?
     bool is_nonlinear() const;

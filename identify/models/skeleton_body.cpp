@@ -9,6 +9,7 @@
 
 #include "identify/loading/loads.h"
 #include "identify/models/free_tools.h"
+#include "identify/models/tendon_friction.h"
 #include "skeleton/effects/placed_effects.h"
 #include "skeleton/model/attach.h"
 #include "skeleton/model/stiffness_order.h"
@@ -110,8 +111,22 @@ struct SkeletonBody::Impl {
     fem::Effects effects(const ModelSetting& setting, const Action& action) const {
         fem::Effects result = setting.effects;
         if (has_cavities) result.pressure += action.pressure;
-        result.add(rig.effects(action, young_of(setting)));
+        rig.add(action, young_of(setting), result);
         return result;
+    }
+    /// Of the tendons that rub.
+    fem::TendonSliding sliding(const Eigen::VectorXd& q, const ModelSetting& setting,
+                               const fem::Effects& effects) const {
+        std::vector<fem::TendonSliding> each;
+        for (const fem::TendonPull& pull : effects.tendons)
+            if (pull.coefficient != 0)
+                each.push_back(skeleton::PlacedTendon(model(setting), pull).sliding(equilibrium_of(q, setting).state));
+        return together(each, by_law[0].dofs());
+    }
+    /// What the linear law expands about rest takes friction as it is in `state`.
+    void hold_friction(const State& state, fem::Effects& effects) const {
+        for (fem::TendonPull& pull : effects.tendons)
+            if (pull.coefficient != 0) pull.friction = skeleton::PlacedTendon(by_law[0], pull).friction(state);
     }
     double young_of(const ModelSetting& setting) const { return young * std::exp(setting.theta.mean()); }
     /// A configuration as the statics know it.
@@ -255,13 +270,25 @@ Eigen::VectorXd SkeletonBody::rest(const ModelSetting& setting) const {
 Eigen::VectorXd SkeletonBody::equilibrium(const ModelSetting& setting, const Action& action,
                                           const Eigen::VectorXd* start, const Tangent*) const {
     if (has_free_coordinates(action)) return equilibrium_with_free_tools(*this, setting, action, start, nullptr);
-    skeleton::StaticsSolver solver(impl_->model(setting), impl_->effects(setting, action));
     const skeleton::Load load = impl_->load(action);
     const skeleton::FibreStates& before = fibres_before(action);
-    if (!in_large_rotation(setting)) return solver.solve(stiffness(setting), load, {}, nullptr, before).step;
-    std::optional<State> from;
-    if (start) from = unpack(*start);
-    return pack(solver.solve(stiffness(setting), load, {}, from ? &*from : nullptr, before).state);
+    fem::Effects effects = impl_->effects(setting, action);
+    const auto settle = [&](const Eigen::VectorXd* near) -> Eigen::VectorXd {
+        skeleton::StaticsSolver solver(impl_->model(setting), effects);
+        if (!in_large_rotation(setting)) return solver.solve(stiffness(setting), load, {}, nullptr, before).step;
+        std::optional<State> from;
+        if (near) from = unpack(*near);
+        return pack(solver.solve(stiffness(setting), load, {}, from ? &*from : nullptr, before).state);
+    };
+    if (!rub(effects.tendons)) return settle(start);
+    const auto with_held = [&](const std::vector<fem::TendonPull>& tendons, const Eigen::VectorXd* near) {
+        effects.tendons = tendons;
+        return settle(near);
+    };
+    const auto friction = [&](const fem::TendonPull& pull, const Eigen::VectorXd& q) {
+        return skeleton::PlacedTendon(impl_->model(setting), pull).friction(impl_->equilibrium_of(q, setting).state);
+    };
+    return FrictionIteration(effects.tendons, with_held, friction).equilibrium(rest(setting), start);
 }
 
 Eigen::VectorXd SkeletonBody::residual(const Eigen::VectorXd& q, const ModelSetting& setting,
@@ -269,9 +296,10 @@ Eigen::VectorXd SkeletonBody::residual(const Eigen::VectorXd& q, const ModelSett
     if (has_free_coordinates(action)) return residual(q, setting, posed(*this, q, setting, action));
     const skeleton::Model& model = impl_->model(setting);
     const Equilibrium at = impl_->equilibrium_of(q, setting, action);
-    const fem::Effects in_force = impl_->effects(setting, action);
-    const skeleton::PlacedEffects effects(model, in_force);
+    fem::Effects in_force = impl_->effects(setting, action);
     const bool linear = !in_large_rotation(setting);
+    if (linear) impl_->hold_friction(at.state, in_force);
+    const skeleton::PlacedEffects effects(model, in_force);
     Eigen::VectorXd net = skeleton::external_force(model, impl_->tangent_state(q, setting), impl_->load(action)) +
                           skeleton::link_forces(model, at, in_force) * stiffness(setting);
     if (!effects.empty()) net += linear ? effects.linear_force(q) : effects.force(at.state);
@@ -281,8 +309,10 @@ Eigen::VectorXd SkeletonBody::residual(const Eigen::VectorXd& q, const ModelSett
 std::shared_ptr<const Tangent> SkeletonBody::tangent(const Eigen::VectorXd& q, const ModelSetting& setting,
                                                      const Action& action) const {
     if (has_free_coordinates(action)) return tangent_with_free_tools(*this, q, setting, action);
-    return std::make_shared<SolverTangent>(impl_->model(setting), impl_->effects(setting, action), stiffness(setting),
-                                           impl_->load(action), impl_->equilibrium_of(q, setting, action));
+    const fem::Effects effects = impl_->effects(setting, action);
+    auto held = std::make_shared<SolverTangent>(impl_->model(setting), effects, stiffness(setting), impl_->load(action),
+                                                impl_->equilibrium_of(q, setting, action));
+    return tangent_with_friction(std::move(held), impl_->sliding(q, setting, effects));
 }
 
 Eigen::MatrixXd SkeletonBody::parameter_force(const Eigen::VectorXd& q, const ModelSetting& setting,
@@ -413,17 +443,20 @@ Eigen::MatrixXd SkeletonBody::tangent_times(const Eigen::VectorXd& q, const Mode
     skeleton::Model model = impl_->model(setting);
     skeleton::set_stiffness(model, stiffness(setting));
     const skeleton::Load load = in_large_rotation(setting) ? impl_->load(action) : skeleton::Load{};
-    return skeleton::tangent(model, impl_->tangent_state(q, setting), load, impl_->effects(setting, action),
-                             fibres_before(action)) *
-           steps;
+    const fem::Effects effects = impl_->effects(setting, action);
+    const fem::TendonSliding sliding = impl_->sliding(q, setting, effects);
+    return skeleton::tangent(model, impl_->tangent_state(q, setting), load, effects, fibres_before(action)) * steps +
+           sliding.by_number * (sliding.number_by_point * steps);
 }
 
 Eigen::VectorXd SkeletonBody::Impl::grip_force(const Eigen::VectorXd& q, const ModelSetting& setting,
                                                const Action& action) const {
-    fem::Effects holding = rig.effects(action, young_of(setting));
+    fem::Effects holding{.tendon_friction = setting.effects.tendon_friction};
+    rig.add(action, young_of(setting), holding);
     holding.cavities.clear();
     std::erase_if(holding.tendons, [](const fem::TendonPull& pull) { return !pull.actuator->by_length; });
     if (holding.empty()) return Eigen::VectorXd::Zero(by_law[0].dofs());
+    if (!in_large_rotation(setting)) hold_friction(equilibrium_of(q, setting).state, holding);
     const skeleton::PlacedEffects placed(model(setting), holding);
     return in_large_rotation(setting) ? placed.force(unpack(q)) : placed.linear_force(q);
 }
@@ -501,10 +534,9 @@ Eigen::MatrixXd SkeletonBody::actuation_force(const Eigen::VectorXd& q, const Mo
         if (const auto& cavity = impl_->rig.cavity(own.actuator)) {
             skeleton::Cavities(model, *cavity).add_gradient(state, 1, column);
         } else {
-            const fem::TendonPull pull = impl_->rig.tendon(own, young(setting));
-            const skeleton::PlacedTendon tendon(model, pull);
-            const fem::TendonTerms terms = tendon.terms(state);
-            tendon.add(state, terms.lengthening, pull.actuator->by_length ? -terms.stiffness : -1, column);
+            const skeleton::PlacedTendon tendon(
+                model, impl_->rig.tendon(own, young(setting), setting.effects.tendon_friction));
+            tendon.add(state, tendon.terms(state).by_value, -1, column);
         }
         result.col(static_cast<Eigen::Index>(a)) = column;
     }

@@ -2,6 +2,7 @@
 
 #include <string>
 #include <variant>
+#include <vector>
 
 #include "mesh/core/surface.h"
 #include "mesh/types.h"
@@ -24,10 +25,24 @@ struct Actuator {
     std::variant<PressureActuator, TendonActuator> kind;
 };
 
+/// Is it a tendon that passes a point between its ends, where it may turn and rub?
+inline bool may_rub(const Actuator& actuator) {
+    const auto* tendon = std::get_if<TendonActuator>(&actuator.kind);
+    return tendon && tendon->path.rows() > 2;
+}
+
 /// What an actuator is set to.
 struct ActuatorSetting {
     int actuator = 0;  // index among the actuators
     double value = 0;  // pressure over that outside [MPa], tension [N], or length drawn in [mm]
+    // What a tendon was set to before, from the largest value on, where that was more: on its way back it rubs the
+    // other way.
+    std::vector<double> earlier = {};
+
+    void scale(double factor) {
+        value *= factor;
+        for (double& one : earlier) one *= factor;
+    }
 };
 
 }  // namespace palpate::mesh

@@ -18,6 +18,9 @@ public:
     const fem::TendonPull& pull() const { return pull_; }
     /// `share`, here and below, scales its value: a load that is put on step by step.
     fem::TendonTerms terms(const State& state, double share = 1) const;
+    fem::TendonFriction friction(const State& state) const;
+    /// By the spheres: (6N x m) and (m x 6N).
+    fem::TendonSliding sliding(const State& state) const;
     /// Adds `factor` times what is at each point to the spheres that carry it: to forces, what a gradient is (6N).
     void add(const State& state, const Points& at_points, double factor, Eigen::Ref<Eigen::VectorXd> sum) const;
     /// d^2 energy / d step^2 in exponential coordinates: calls visit(a, b, block) with a <= b, whose sum over all calls
@@ -27,6 +30,8 @@ public:
 
 private:
     std::vector<CarriedPoint> carried(const State& state) const;  // all but the first
+    Eigen::Matrix<double, 6, 1> step_to(const State& state, int sphere) const;
+    Points path(const State& state) const;  // in small strain to first order
 
     State rest_;
     fem::TendonPull pull_;

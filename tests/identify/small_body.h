@@ -207,6 +207,7 @@ inline Eigen::VectorXd example(const EffectHypothesis& effect, const std::vector
         {"viscosity", {0.5, std::log(3)}},
         {"plasticity", {std::log(0.02), std::log(0.3)}},
         {"damage", {0.9, std::log(0.05)}},
+        {"friction", {0.3}},
         {"torsion", {0.3}},
         {"shear", {0.3}}};
     const auto found = chosen.find(effect.name());

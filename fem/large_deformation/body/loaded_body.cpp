@@ -20,8 +20,7 @@ LoadedBody::LoadedBody(const BodyShape& body, const BodySetting& setting, const 
     }
     for (const auto& tool : setting.effects.tools) tools_.emplace_back(body, share == 1 ? tool : tool->part_way(share));
     for (const TendonPull& pull : setting.effects.tendons) {
-        tendons_.emplace_back(body.tendon_paths->operator()(body.mesh, pull.actuator),
-                              TendonPull{pull.actuator, share * pull.value, pull.young},
+        tendons_.emplace_back(body.tendon_paths->operator()(body.mesh, pull.actuator), pull.part(share),
                               material_.law() == MaterialLaw::linear);
     }
 }

@@ -55,13 +55,19 @@ const TendonPath& TendonPaths::operator()(const mesh::VolumeMesh& mesh,
     return *path;
 }
 
-TendonTerms PlacedTendon::terms(const Eigen::VectorXd& u) const {
+Points PlacedTendon::place(const Eigen::VectorXd& u) const {
     Points x = pull_.actuator->path;
     for (Eigen::Index k = 1; k < x.rows(); ++k) {
         for (const auto& [node, weight] : path_.carriers[k])
             x.row(k) += weight * u.segment<3>(std::int64_t(3) * node).transpose();
     }
-    return tendon_terms(pull_, x, small_strain_);
+    return x;
+}
+
+TendonTerms PlacedTendon::terms(const Eigen::VectorXd& u) const { return tendon_terms(pull_, place(u), small_strain_); }
+
+TendonFriction PlacedTendon::friction(const Eigen::VectorXd& u) const {
+    return tendon_friction(pull_, place(u), small_strain_);
 }
 
 /// Adds what there is at each point to the nodes that carry it.
@@ -84,6 +90,25 @@ Eigen::MatrixXd PlacedTendon::derivative(const Eigen::VectorXd& u) const {
     add(-own.lengthening, result.col(0));
     add(own.stiffness * own.lengthening, result.col(1));
     return result;
+}
+
+Eigen::VectorXd PlacedTendon::push(const Eigen::VectorXd& u) const {
+    Eigen::VectorXd result = Eigen::VectorXd::Zero(u.size());
+    add(-terms(u).by_value, result);
+    return result;
+}
+
+TendonSliding PlacedTendon::sliding(const Eigen::VectorXd& u) const {
+    const TendonSliding own = tendon_sliding(pull_, place(u), small_strain_);
+    const auto by_nodes = [&](const Eigen::MatrixXd& columns) {
+        Eigen::MatrixXd result = Eigen::MatrixXd::Zero(u.size(), columns.cols());
+        for (Eigen::Index c = 0; c < columns.cols(); ++c) {
+            const Eigen::VectorXd column = columns.col(c);
+            add(Eigen::Map<const Points>(column.data(), column.size() / 3, 3), result.col(c));
+        }
+        return result;
+    };
+    return {by_nodes(own.by_number), by_nodes(own.number_by_point.transpose()).transpose()};
 }
 
 void PlacedTendon::add_hessian(const Eigen::VectorXd& u, const Unknowns& unknowns, LowerMatrix& K) const {

@@ -44,8 +44,14 @@ public:
 
     /// d(drawn in)/du and d(tension)/du (3n x 2).
     Eigen::MatrixXd derivative(const Eigen::VectorXd& u) const;
+    /// - d gradient / d value (3n).
+    Eigen::VectorXd push(const Eigen::VectorXd& u) const;
+    TendonFriction friction(const Eigen::VectorXd& u) const;
+    /// By the nodes: (3n x m) and (m x 3n).
+    TendonSliding sliding(const Eigen::VectorXd& u) const;
 
 private:
+    Points place(const Eigen::VectorXd& u) const;
     void add(const Points& at_points, Eigen::Ref<Eigen::VectorXd> sum) const;
 
     const TendonPath& path_;

@@ -90,7 +90,7 @@ Problem with_reduced_loads(const BodyModel& model, const Problem& problem, const
                 motion.translation *= less;
                 motion.rotation *= less;
             }
-            for (mesh::ActuatorSetting& setting_of_one : eased.actions[k].settings) setting_of_one.value *= less;
+            for (mesh::ActuatorSetting& setting_of_one : eased.actions[k].settings) setting_of_one.scale(less);
         }
     }
     return eased;

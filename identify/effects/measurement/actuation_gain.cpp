@@ -41,7 +41,7 @@ public:
         const std::vector<int> actuators = used_actuators(problem);
         for (mesh::ActuatorSetting& setting : action.settings) {
             const auto own = std::ranges::find(actuators, setting.actuator);
-            if (own != actuators.end()) setting.value *= std::exp(values[own - actuators.begin()]);
+            if (own != actuators.end()) setting.scale(std::exp(values[own - actuators.begin()]));
         }
         return action;
     }

@@ -12,6 +12,7 @@ std::string why_unshown(const EffectHypothesis& effect) {
         {"viscosity", "no load is read at two times after it was put on"},
         {"plasticity", "no state without load follows a load on the same body"},
         {"damage", "no body bears less, or something else, after more: under first loads it is as stiff as any"},
+        {"friction", "no tendon that is drawn in passes a point between its ends, where it could turn and rub"},
         {"compliant-support", "no loaded marker tells how stiff the body is as a whole"},
         {"force-gain", "fewer than two probes have forces of their own, and one gain is a stiffness"},
         {"clock", "no load changes from state to state of a probe"},

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "identify/effects/catalogue.h"
+#include "identify/loading/lagged_load.h"
 #include "identify/numerics/parallel.h"
 #include "mesh/errors.h"
 
@@ -41,6 +42,11 @@ public:
         if (history.drive.drives()) {
             action.motions = history.motions(history.lagged_force(row, conditions_.lag, {}));
             action.settings = history.settings(force);
+            std::vector<double> before;
+            for (std::size_t earlier = 0; earlier < row; ++earlier)
+                before.push_back(gain * history.lagged_force(earlier, conditions_.lag, {}));
+            for (mesh::ActuatorSetting& setting : action.settings)
+                setting.earlier = identify::since_largest(before, setting.value);
         } else if (force != 0) {
             action.contacts = {history.contact};
             action.contacts.front().force *= force;

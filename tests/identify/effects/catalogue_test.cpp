@@ -21,10 +21,9 @@ using testing::HasSubstr;
 
 /// Names that users may rely on.
 const std::set<std::string> promised{
-    "gravity",        "stiffening", "anisotropy", "inclusion",    "volume",     "torsion",
-    "shear",          "contact",    "pressure",   "prestress",    "swelling",   "compliant-support",
-    "viscosity",      "plasticity", "damage",     "misalignment", "force-gain", "slip",
-    "actuation-gain", "clock",      "outliers"};
+    "gravity",      "stiffening", "anisotropy", "inclusion",         "volume",    "torsion",    "shear",  "contact",
+    "pressure",     "prestress",  "swelling",   "compliant-support", "viscosity", "plasticity", "damage", "friction",
+    "misalignment", "force-gain", "slip",       "actuation-gain",    "clock",     "outliers"};
 const std::set<std::string> probe_kinds{"load", "orientation", "pressure", "dwell", "unload", "repeat", "fiducials"};
 
 class EveryEffect : public testing::TestWithParam<std::shared_ptr<const EffectHypothesis>> {
@@ -39,7 +38,7 @@ protected:
         if (effect().name() == "damage") set_ = body_.set(SmallBody::returns());
         if (effect().is_of_links()) {
             model_ = body_.skeleton();
-        } else if (effect().name() == "slip" || effect().name() == "actuation-gain") {
+        } else if (std::set<std::string>{"slip", "actuation-gain", "friction"}.contains(effect().name())) {
             put_in_a_rig();
         } else {
             model_ = body_.reference();
@@ -403,7 +402,7 @@ TEST(Catalogue, EachEffectDrawsFromTheStreamThatItAlwaysDid) {  // digits of a s
         {"volume", 4},     {"torsion", 5},           {"shear", 6},       {"stiffening", 7},
         {"anisotropy", 8}, {"viscosity", 9},         {"plasticity", 10}, {"inclusion", 11},
         {"contact", 12},   {"misalignment", 13},     {"force-gain", 14}, {"outliers", 15},
-        {"clock", 16},     {"swelling", 17},         {"damage", 18}};
+        {"clock", 16},     {"swelling", 17},         {"damage", 18},     {"friction", 19}};
     for (const auto& [name, stream] : streams) EXPECT_EQ(find_effect(name)->stream(), stream) << name;
 }
 

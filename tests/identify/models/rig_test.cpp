@@ -22,7 +22,7 @@ constexpr int pull = 0, cable = 1, chamber = 2;
 Rig rig_of_bar() {
     const auto tendon = [](double y, double z, bool by_length) {
         Points path(4, 3);
-        path << 0, y, z, 12, y, z, 24, y, z, 36, y, z;
+        path << 0, y, z, 12, y, z - 1, 24, y, z + 0.5, 36, y, z;
         return mesh::TendonActuator{path, by_length};
     };
     const Vec3 end(40, 5, 5);
@@ -43,6 +43,7 @@ struct RigCase {
     std::string name;
     bool is_skeleton;
     int law;
+    double friction = 0;  // of the tendons
 };
 
 struct NamedAction {
@@ -55,6 +56,7 @@ protected:
     RigLaws() {
         model_ = model(rig_of_bar());
         setting_.law = GetParam().law;
+        setting_.effects.tendon_friction = GetParam().friction;
         setting_.theta.resize(std::ssize(model_->parameters()));
         for (Eigen::Index k = 0; k < setting_.theta.size(); ++k)
             setting_.theta[k] = model_->parameters()[k].start + 0.1;
@@ -75,15 +77,19 @@ protected:
         return action;
     }
     static std::vector<NamedAction> actions() {
-        Action filled;
+        Action filled, back;
         filled.gravity = Vec3(0, 0, -2000);
-        filled.settings = {{pull, 0.2}, {cable, 0.5}, {chamber, 0.01}};
+        filled.settings = {{pull, 0.2}, {cable, 0.8}, {chamber, 0.01}};
+        back.gravity = Vec3(0, 0, -2000);
+        back.settings = {{pull, 0.1, {0.105}}, {cable, 0.6, {1}}};
         std::vector<NamedAction> all{
             {"grip", moved({grip, Vec3(-0.5, 1, -3), Vec3(0.05, 0.12, 0)})},
             {"grip that turns", moved({grip, Vec3(none, 1, -3), Vec3(none, none, none)})},
             {"punch and tendons", moved({punch, Vec3(0.2, 0.5, -1), Vec3(0, 0.03, 0)}, {{pull, 0.1}, {cable, 0.3}})},
             {"punch that shifts", moved({punch, Vec3(none, none, -1), Vec3(0, none, 0)})},
-            {"chamber, weight and tendons", filled}};
+            {"chamber, weight and tendons", filled},
+            // one sticks behind its turns, the other one slides back
+            {"tendons on their way back", back}};
         // The linear law of a skeleton takes effects as they are at rest: nothing parts.
         if (!GetParam().is_skeleton || GetParam().law != 0)
             all.push_back({"ball", moved({ball, Vec3(0.2, 0.1, -1.5), Vec3::Zero()})});
@@ -299,7 +305,11 @@ TEST_P(RigLaws, APlatenThatMayTiltLiesFlat) {
 INSTANTIATE_TEST_SUITE_P(All, RigLaws,
                          testing::Values(RigCase{"ReferenceLinear", false, 0}, RigCase{"ReferenceSvk", false, 1},
                                          RigCase{"ReferenceNeoHooke", false, 2}, RigCase{"SkeletonLinear", true, 0},
-                                         RigCase{"SkeletonLargeRotation", true, 1}),
+                                         RigCase{"SkeletonLargeRotation", true, 1},
+                                         RigCase{"ReferenceLinearRubs", false, 0, 0.4},
+                                         RigCase{"ReferenceNeoHookeRubs", false, 2, 0.4},
+                                         RigCase{"SkeletonLinearRubs", true, 0, 0.4},
+                                         RigCase{"SkeletonLargeRotationRubs", true, 1, 0.4}),
                          [](const auto& each) { return each.param.name; });
 
 TEST(RigOnBody, AFreeToolThatTouchesNothingStaysWhereItIs) {

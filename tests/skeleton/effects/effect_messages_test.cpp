@@ -23,13 +23,14 @@ std::string complaint(const EffectRecord& effect) {
 
 TEST(EffectMessages, EveryFaultIsNamed) {
     // Those of other tests follow, then those of a measurement.
-    EXPECT_EQ(complaint({"gravitty", {}})
-                  .rfind("effect 'gravitty' is not known (did you mean 'gravity'?); known are 'gravity', "
-                         "'compliant-support', 'stiffening', 'anisotropy', 'inclusion', 'contact', 'pressure', "
-                         "'prestress', 'swelling', 'viscosity', 'plasticity', 'damage', 'volume', 'torsion', "
-                         "'shear', ",
-                         0),
-              0u);
+    EXPECT_EQ(
+        complaint({"gravitty", {}})
+            .rfind("effect 'gravitty' is not known (did you mean 'gravity'?); known are 'gravity', "
+                   "'compliant-support', 'stiffening', 'anisotropy', 'inclusion', 'contact', 'pressure', "
+                   "'prestress', 'swelling', 'viscosity', 'plasticity', 'damage', 'friction', 'volume', 'torsion', "
+                   "'shear', ",
+                   0),
+        0u);
     EXPECT_EQ(complaint({"outliers", {}}),
               "effect 'outliers' is about the measurement, not the body: no model can play it");
     EXPECT_EQ(complaint({"swelling", {{"growth", -1, ""}}}), "effect 'swelling': growth is -1, but must be above -1");

@@ -30,6 +30,7 @@ const std::vector<EffectRecord> all_effects{
     {"viscosity", {{"creep", 0.7, "1"}, {"tau", 20, "s"}}},
     {"plasticity", {{"yield", 0.05, "1"}, {"hardening", 0.1, "1"}}},
     {"damage", {{"share", 0.4, "1"}, {"strain", 0.07, "1"}}},
+    {"friction", {{"tendons", 0.2, "1"}}},
     {"volume", {{"poisson", 0.3, "1"}}},
     {"torsion", {{"torsion", 0.5, "1"}}},
     {"shear", {{"shear", 0.5, "1"}}},
@@ -39,7 +40,8 @@ TEST(KnownEffects, AreAllThatABodyMayHave) {
     for (const EffectRecord& effect : all_effects) {
         EXPECT_TRUE(is_body_effect(effect.name));
         ASSERT_NE(find_known_effect(effect.name), nullptr) << effect.name;
-        EXPECT_EQ(make_physics(effect).empty(), effect.name == "volume") << effect.name;
+        // A solid has its ratio in its law, and friction is nothing without tendons.
+        EXPECT_EQ(make_physics(effect).empty(), effect.name == "volume" || effect.name == "friction") << effect.name;
     }
 }
 
@@ -57,6 +59,7 @@ TEST(KnownEffects, TellTheirNumbers) {
     EXPECT_EQ(physics.plasticity->hardening, 0.1);
     EXPECT_EQ(physics.damage->share, 0.4);
     EXPECT_EQ(physics.damage->strain, 0.07);
+    EXPECT_EQ(physics.tendon_friction, 0.2);
 
     const auto w = [](const EffectRecord& effect, const Mat3& F) {
         return make_physics(effect).material[0]->terms(Vec3::Zero(), F, false).w;
