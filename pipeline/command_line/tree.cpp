@@ -47,6 +47,11 @@ std::vector<FlagHelp> flags_of(const CLI::App& app, std::vector<std::string>* po
             flags.push_back(flag_of(*option));
         }
     }
+    // Groups of options that exclude each other are subcommands without a name.
+    for (const CLI::App* group : app.get_subcommands([](const CLI::App* one) { return one->get_name().empty(); })) {
+        const std::vector<FlagHelp> more = flags_of(*group, positionals);
+        flags.insert(flags.end(), more.begin(), more.end());
+    }
     return flags;
 }
 

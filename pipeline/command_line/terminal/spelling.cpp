@@ -2,6 +2,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cctype>
 
 #include "mesh/text/words.h"
 #include "pipeline/command_line/command_tree.h"
@@ -36,13 +37,14 @@ std::string spelling_error(const CommandTree& tree, const std::vector<std::strin
     }
 
     const CommandHelp& command = *found;
-    std::vector<std::string> known{"--help"};
+    std::vector<std::string> known{"--help", "-h"};
     for (const auto* flags : {&command.flags, &tree.common}) {
         for (const FlagHelp& flag : *flags) known.insert(known.end(), flag.names.begin(), flag.names.end());
     }
     for (const std::string& argument : arguments) {
         const std::string name = argument.substr(0, argument.find('='));
-        if (!name.starts_with("--") || std::ranges::find(known, name) != known.end()) continue;
+        const bool is_letter = name.size() == 2 && name[0] == '-' && std::isalpha(static_cast<unsigned char>(name[1]));
+        if (!(name.starts_with("--") || is_letter) || std::ranges::find(known, name) != known.end()) continue;
         return fmt::format("palpate {} has no flag {}{}; 'palpate {} --help' lists them", command.name,
                            mesh::cited(name), mesh::suggestion(name, known), command.name);
     }

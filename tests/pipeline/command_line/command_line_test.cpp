@@ -49,6 +49,12 @@ TEST(CommandLine, ExitCodesTellWhatWentWrong) {
     EXPECT_EQ(palpate("check " + (scratch / "none.stl").string()).code, 3);
 }
 
+/// Those that exclude each other, too.
+TEST(CommandLine, CompletesAllFlagsOfACommand) {
+    const std::string script = palpate("completion bash").out;
+    EXPECT_THAT(script, AllOf(HasSubstr("--auto"), HasSubstr("--add"), HasSubstr("--particles")));
+}
+
 TEST(CommandLine, VersionTellsWhatIsLinkedAndUnderWhichLicence) {
     const std::string text = palpate("--version").out;
     EXPECT_THAT(text, StartsWith("palpate "));

@@ -47,10 +47,11 @@ TEST(Spelling, NamesTheNearestVerbAndFlag) {
                 AllOf(HasSubstr("'rnu'"), HasSubstr("did you mean 'run'")));
     EXPECT_THAT(spelling_error(small_tree(), {"run", "x.stl", "--ouput=y"}),
                 AllOf(HasSubstr("'--ouput'"), HasSubstr("did you mean '--output'")));
+    EXPECT_THAT(spelling_error(small_tree(), {"run", "x.stl", "-f"}), HasSubstr("no flag '-f'"));
 }
 
 TEST(Spelling, FindsNothingWhereAllIsKnown) {
-    EXPECT_THAT(spelling_error(small_tree(), {"run", "x.stl", "-o", "y", "--json", "--help"}), IsEmpty());
+    EXPECT_THAT(spelling_error(small_tree(), {"run", "x.stl", "-o", "y", "--json", "--help", "-1"}), IsEmpty());
     EXPECT_THAT(spelling_error(small_tree(), {"--json"}), IsEmpty());
 }
 
