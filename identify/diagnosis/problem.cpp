@@ -202,11 +202,7 @@ Problem make_problem(const MeasurementSet& set, double noise) {
     for (const LoadState& state : set.states) problem.stages.push_back(stage_of(set, state));
     tell_earlier_settings(set, problem.stages);
     problem.markers = static_cast<int>(set.markers.size());
-    for (const mesh::Tool& tool : set.tools) problem.tools.push_back(tool.name);
-    for (const mesh::Actuator& actuator : set.actuators) {
-        if (mesh::may_rub(actuator)) problem.tendons.push_back(static_cast<int>(problem.actuators.size()));
-        problem.actuators.push_back(actuator.name);
-    }
+    problem.rig = std::make_shared<Rig>(Rig{set.tools, set.actuators});
     problem.rest = Points::Zero(problem.markers + 2 * std::ssize(set.tools), 3);
     for (int m = 0; m < problem.markers; ++m) problem.rest.row(m) = set.markers[m].rest;
     std::vector<int> action(set.states.size(), -1);
@@ -273,9 +269,7 @@ Problem Problem::with_rows(const std::vector<char>& keep) const {
     result.by_stage = by_stage;
     result.declared_poisson = declared_poisson;
     result.markers = markers;
-    result.tools = tools;
-    result.actuators = actuators;
-    result.tendons = tendons;
+    result.rig = rig;
     result.rest = rest;
     std::vector<int> kept;
     int last = -1, number = -1;

@@ -4,6 +4,7 @@
 
 #include "identify/measurements/measurement_set.h"
 #include "identify/models/body_model.h"
+#include "identify/models/rig.h"
 
 namespace palpate::identify {
 
@@ -33,9 +34,7 @@ struct Problem {
     bool continuous = false;              // one body goes through all stages; else each probe finds it as new
     bool by_stage = false;                // the actions are the stages
     int markers = 0;                      // of the set (m)
-    std::vector<std::string> tools;       // of the set, their names (t)
-    std::vector<std::string> actuators;   // the same (a)
-    std::vector<int> tendons;             // of the actuators, those that may rub: mesh::may_rub
+    std::shared_ptr<const Rig> rig;       // of the set, its tools (t) and actuators (a)
     Points rest;                          // of the channels (m + 2t x 3): where the markers rest [mm], 0 of the tools
     std::vector<int> state;               // of each row, in the set (N)
     std::vector<int> action;              // of each row (N)

@@ -57,8 +57,8 @@ ToolNuisances tool_nuisances(const BodyModel& model, const Problem& problem, con
     std::map<int, Range> ranges = ranges_of(problem, forward);
     for (auto& [tool, range] : ranges) {
         range.column = static_cast<int>(result.names.size());
-        result.names.push_back(fmt::format("play of the tool '{}'", problem.tools[tool]));
-        result.names.push_back(fmt::format("compliance of what moves the tool '{}'", problem.tools[tool]));
+        result.names.push_back(fmt::format("play of the tool '{}'", problem.rig->tools[tool].name));
+        result.names.push_back(fmt::format("compliance of what moves the tool '{}'", problem.rig->tools[tool].name));
     }
     result.signatures = {std::ssize(result.names), [&, setting, ranges](int k, const Eigen::VectorXd& q) {
                              const Action& action = forward.actions[k];

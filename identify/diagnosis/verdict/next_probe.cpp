@@ -108,6 +108,8 @@ private:
         for (const auto& rest : markers.rowwise()) {
             set.markers.push_back({static_cast<int>(set.markers.size()), rest.transpose(), {}});
         }
+        set.tools = problem_.rig->tools;
+        set.actuators = problem_.rig->actuators;
         set.states = trial.states;
         for (LoadState& state : set.states) {
             for (const Marker& marker : set.markers) state.readings.push_back({marker.id, marker.rest});
@@ -156,8 +158,11 @@ std::string asks(const NextProbe& probe) {
         return fmt::format("hold one load, and read it after {:.3g} s and after {:.3g} s", probe.times[0],
                            probe.times[1]);
     }
-    if (probe.kind == "unload")
-        return "load once more, stronger, and read the body again at half the load and once it is off";
+    if (probe.kind == "unload") {
+        return fmt::format("{}, and read the body again at half {} and once it is off",
+                           probe.contact ? "load once more, stronger" : "drive it once more as far as ever",
+                           probe.contact ? "the load" : "of that");
+    }
     if (probe.kind == "orientation") {
         return fmt::format("read the unloaded body turned by {:.0f} degrees about {}, with its support",
                            probe.turn->degrees, listed(probe.turn->axis));

@@ -3,17 +3,24 @@
 #include <Eigen/Geometry>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <numbers>
+#include <optional>
 
 #include "mesh/geometry/sampling.h"
 
 namespace palpate::identify {
 namespace {
 
-double force_of(const Action& action) {
-    double force = 0;
+/// How strong an action is among those of its kind; presses before all others.
+std::array<double, 3> strength_of(const Action& action) {
+    double force = 0, value = 0, way = 0;
     for (const mesh::Contact& contact : action.contacts) force += contact.force.norm();
-    return force;
+    for (const mesh::ActuatorSetting& setting : action.settings) value += std::abs(setting.value);
+    for (const mesh::ToolMotion& motion : action.motions)
+        way += motion.translation.array().isNaN().select(0, motion.translation).norm();
+    return {force, value, way};
 }
 
 /// Collects trials that begin like the problem's own probes.
@@ -21,12 +28,12 @@ class Trials {
 public:
     Trials(const BodyModel& model, const Problem& problem) : model_(model), problem_(problem) {
         for (const Stage& stage : problem.stages) {
-            if (!stage.action.contacts.empty()) own_.push_back(stage);
+            if (is_loaded(stage.action)) own_.push_back(stage);
             last_ = std::max(last_, stage.time);
             new_probe_ = std::max(new_probe_, stage.probe + 1);
         }
         // in turn from the strongest, one of a probe
-        std::ranges::stable_sort(own_, std::greater{}, [](const Stage& s) { return force_of(s.action); });
+        std::ranges::stable_sort(own_, std::greater{}, [](const Stage& s) { return strength_of(s.action); });
         std::vector<int> seen;
         std::erase_if(own_, [&](const Stage& stage) {
             if (std::ranges::find(seen, stage.probe) != seen.end()) return true;
@@ -37,7 +44,7 @@ public:
 
     std::vector<CandidateProbe> all() {
         if (!own_.empty()) {
-            add_loads();
+            if (!own_.front().action.contacts.empty()) add_loads();
             add_repeats();
             add_dwell();
             add_release();
@@ -54,6 +61,20 @@ private:
     LoadState unloaded(double time) const { return {.probe = new_probe_, .time = time}; }
     LoadState under(const std::vector<mesh::Contact>& contacts, double time) const {
         return {.probe = new_probe_, .time = time, .contacts = contacts};
+    }
+    /// A share of all that acts.
+    LoadState under(const Action& action, double time, double share = 1) const {
+        LoadState state = under(action.contacts, time);
+        for (mesh::Contact& contact : state.contacts) contact.force *= share;
+        for (const mesh::ToolMotion& motion : action.motions)
+            state.motions.push_back({motion.tool, share * motion.translation, share * motion.rotation});
+        for (const mesh::ActuatorSetting& setting : action.settings)
+            state.actuations.push_back({setting.actuator, share * setting.value});
+        return state;
+    }
+    static std::optional<mesh::Contact> contact_of(const Stage& stage) {
+        if (stage.action.contacts.empty()) return std::nullopt;
+        return stage.action.contacts.front();
     }
 
     /// Inwards and outwards at places over the markers, as strong as the own ones are on average.
@@ -80,27 +101,27 @@ private:
 
     void add_repeats() {
         for (const Stage& stage : own_) {
-            all_.push_back({.probe = {.kind = "repeat", .contact = stage.action.contacts.front(), .probe = stage.probe},
-                            .states = {under(stage.action.contacts, stage.time)}});
+            all_.push_back({.probe = {.kind = "repeat", .contact = contact_of(stage), .probe = stage.probe},
+                            .states = {under(stage.action, stage.time)}});
         }
     }
 
     /// The strongest held, read at once and ten times as late as any so far.
     void add_dwell() {
         const double late = last_ > 0 ? 10 * last_ : 100, soon = 1e-3 * late;
-        const std::vector<mesh::Contact>& contacts = own_.front().action.contacts;
-        all_.push_back({.probe = {.kind = "dwell", .contact = contacts.front(), .times = {soon, late}},
-                        .states = {under(contacts, soon), under(contacts, late)}});
+        const Stage& stage = own_.front();
+        all_.push_back({.probe = {.kind = "dwell", .contact = contact_of(stage), .times = {soon, late}},
+                        .states = {under(stage.action, soon), under(stage.action, late)}});
     }
 
-    /// The strongest half as strong again, half of that, and nothing.
+    /// The strongest half as strong again, half of that, and nothing; what is driven goes as far as it did.
     void add_release() {
-        std::vector<mesh::Contact> contacts = own_.front().action.contacts;
-        for (mesh::Contact& contact : contacts) contact.force *= 1.5;
-        std::vector<mesh::Contact> half = contacts;
-        for (mesh::Contact& contact : half) contact.force *= 0.5;
-        all_.push_back({.probe = {.kind = "unload", .contact = contacts.front()},
-                        .states = {under(contacts, 1), under(half, 2), unloaded(3)}});
+        const Stage& stage = own_.front();
+        const double most = stage.action.contacts.empty() ? 1 : 1.5;
+        CandidateProbe trial{.probe = {.kind = "unload", .contact = contact_of(stage)},
+                             .states = {under(stage.action, 1, most), under(stage.action, 2, most / 2), unloaded(3)}};
+        if (trial.probe.contact) trial.probe.contact->force *= most;
+        all_.push_back(std::move(trial));
     }
 
     void add_turns() {

@@ -36,7 +36,7 @@ public:
     std::vector<EffectNumber> numbers(const BodyModel&, const Problem& problem) const override {
         const auto pulls = [&](const Stage& stage) {
             return std::ranges::any_of(stage.action.settings, [&](const mesh::ActuatorSetting& setting) {
-                return setting.value > 0 && std::ranges::count(problem.tendons, setting.actuator) > 0;
+                return setting.value > 0 && mesh::may_rub(problem.rig->actuators[setting.actuator]);
             });
         };
         if (std::ranges::none_of(problem.stages, pulls)) return {};

@@ -30,8 +30,10 @@ public:
         std::vector<EffectNumber> result;
         for (const int actuator : used_actuators(problem)) {
             // as for a force sensor
-            result.push_back(
-                {.name = "gain of " + problem.actuators[actuator], .unit = "1", .prior_sd = 0.3, .logarithm = true});
+            result.push_back({.name = "gain of " + problem.rig->actuators[actuator].name,
+                              .unit = "1",
+                              .prior_sd = 0.3,
+                              .logarithm = true});
         }
         const bool is_common = result.size() == 1 && !tells_stiffness_otherwise(problem);
         return is_common ? std::vector<EffectNumber>{} : result;

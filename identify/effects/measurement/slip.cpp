@@ -32,7 +32,7 @@ public:
         for (const int tool : moved_tools(problem)) {
             // a third of the motion or so: a tool that slips by more is seen to
             result.push_back(
-                {.name = "share of " + problem.tools[tool], .unit = "1", .prior_sd = 0.3, .logarithm = true});
+                {.name = "share of " + problem.rig->tools[tool].name, .unit = "1", .prior_sd = 0.3, .logarithm = true});
         }
         return result;
     }
@@ -72,7 +72,7 @@ private:
 
     /// In their order; at rest in all states a tool cannot slip.
     static std::vector<int> moved_tools(const Problem& problem) {
-        std::vector<char> is_moved(problem.tools.size(), 0);
+        std::vector<char> is_moved(problem.rig->tools.size(), 0);
         for (const Stage& stage : problem.stages) {
             for (const mesh::ToolMotion& motion : stage.action.motions) {
                 if (is_off_rest(motion)) is_moved[motion.tool] = 1;

@@ -20,7 +20,11 @@ protected:
     /// An effect that is there, and another, both fitted to what the first one shows.
     NextProbe next(const std::vector<LoadState>& states, const std::string& one, const Eigen::VectorXd& values,
                    const std::string& other) const {
-        const Problem problem = make_problem(make_twin(*model_, body_.set(states), truth(one, values), sigma), sigma);
+        return next(body_.set(states), one, values, other);
+    }
+    NextProbe next(const MeasurementSet& set, const std::string& one, const Eigen::VectorXd& values,
+                   const std::string& other) const {
+        const Problem problem = make_problem(make_twin(*model_, set, truth(one, values), sigma), sigma);
         const auto numbers = find_effect(other)->numbers(*model_, problem);
         Eigen::VectorXd start(std::ssize(numbers));
         for (Eigen::Index j = 0; j < start.size(); ++j) start[j] = numbers[j].start;
@@ -66,6 +70,25 @@ TEST_F(NextProbes, GoBackToLessForDamage) {
     EXPECT_EQ(probe.kind, "unload");
     EXPECT_GT(probe.sigmas, 3);
     EXPECT_THAT(probe.why, testing::HasSubstr("read the body again at half the load"));
+}
+
+TEST_F(NextProbes, LetATendonBackForItsFriction) {
+    Points path(5, 3);
+    for (int k = 0; k < 5; ++k) path.row(k) = Eigen::RowVector3d(9 * k, 5, 8);
+    MeasurementSet set = body_.set(std::vector<LoadState>(4));
+    set.actuators = {{.name = "cable", .kind = mesh::TendonActuator{path, false}}};
+    for (int k = 1; k < 4; ++k) {
+        set.states[k].probe = k;
+        set.states[k].actuations = {{.actuator = 0, .value = 0.5 * k}};  // up to half a radian
+    }
+    model_ = std::make_unique<ReferenceBody>(
+        body_.mesh, body_.supports, body_.markers,
+        ReferenceBodyOptions{.young = 0.1, .measured_on_mesh = true, .rig = {{}, set.actuators}});
+    const NextProbe probe = next(set, "friction", numbers({0.4}), "stiffening");
+    EXPECT_EQ(probe.kind, "unload");
+    EXPECT_FALSE(probe.contact);
+    EXPECT_GT(probe.sigmas, 3);
+    EXPECT_THAT(probe.why, testing::HasSubstr("drive it once more as far as ever, and read the body again at half"));
 }
 
 TEST_F(NextProbes, RepeatForASensorsGain) {
