@@ -91,6 +91,7 @@ std::optional<commands::ExitCode> CommandLine::parse(int argc, char** argv) {
     subcommands.add_effects(app);
     subcommands.add_simulate(app);
     subcommands.add_report(app);
+    subcommands.add_pool(app);
     subcommands.add_new(app);
     subcommands.add_info(app);
     subcommands.add_completion(app);

@@ -133,6 +133,12 @@ struct ReportOptions {
 };
 Outcome report(const ReportOptions& options, const Common& common);
 
+struct PoolOptions {
+    std::vector<std::filesystem::path> runs;
+    std::filesystem::path output;  // empty: nothing is written
+};
+Outcome pool(const PoolOptions& options, const Common& common);
+
 struct PlayOptions {
     std::filesystem::path model, output;  // no output: it is served
     std::filesystem::path set = {};       // measurements; empty: the run's own, where it has some

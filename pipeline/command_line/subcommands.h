@@ -30,6 +30,7 @@ struct Subcommands {
     commands::SimulateOptions simulate;
     commands::ExportOptions exports;
     commands::ReportOptions report;
+    commands::PoolOptions pool;
     commands::PlayOptions play;
     commands::NewOptions new_case;
     commands::InfoOptions info;
@@ -48,6 +49,7 @@ struct Subcommands {
     void add_simulate(CLI::App& app);
     void add_export(CLI::App& app);
     void add_play(CLI::App& app);
+    void add_pool(CLI::App& app);
     void add_report(CLI::App& app);
 
     // Around the work, in pipeline/cli/shell.

@@ -98,6 +98,11 @@ with tempfile.TemporaryDirectory() as scratch:
                        "set": "measurements/set.yaml"}.items():
         check(name, at / "run" / file)
 
+    palpate("run", at / "case/case.yaml", "-o", at / "second", "--probes", 6, "--spheres", 8, "--parameters",
+            "uniform", "--particles", 40, "--edge-length", 8, "--seed", 2)
+    palpate("pool", at / "run", at / "second", "-o", at / "pooled")
+    check("population", at / "pooled/population.json")
+
     model, blind = at / "run/identify/model.json", at / "blind"
     palpate("probe", model, "-o", blind, "--hide", "gravity", "--probes", 5, "--markers", 25)
     check("truth", blind / "truth.json")

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "identify/population/population.h"
+
+namespace palpate::pipeline {
+
+/// What is pooled of a number: itself, its logarithm, or ln(1 - 2 nu) of a Poisson's ratio, which stays below 0.5.
+enum class PoolScale { linear, logarithmic, compressibility };
+/// As files have it.
+const char* scale_name(PoolScale scale);
+/// The number that is pooled as x.
+double number_at(PoolScale scale, double x);
+
+/// A number that several runs tell, each of its own specimen.
+struct SharedNumber {
+    std::string name;  // "young", "gravity:gx", "flexion"
+    std::string unit;  // "1": none
+    std::string of;    // what tells it: "finite elements", "the skeleton"
+    PoolScale scale = PoolScale::linear;
+    double most_spread = 0;  // as identify::pool takes it
+    std::vector<identify::SpecimenNumber> specimens;
+    std::vector<std::string> without;  // runs that do not tell it
+};
+
+/// What two runs or more tell: stiffness of the body in finite elements and of the skeleton, and the numbers of the
+/// effects that their diagnoses name. @throws IoError, InvalidInput naming the run, for less than two runs, one that is
+/// told twice, or runs that share no number.
+std::vector<SharedNumber> shared_numbers(const std::vector<std::filesystem::path>& runs);
+
+}  // namespace palpate::pipeline

@@ -1,0 +1,97 @@
+// Runs of several specimens together.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "mesh/formats/surface/read_surface.h"
+#include "mesh/text/atomic_file.h"
+#include "pipeline/command_line/commands.h"
+#include "tests/messages.h"
+#include "tests/temporary_folder.h"
+
+namespace palpate::pipeline {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+using testing::AllOf;
+using testing::HasSubstr;
+
+/// A run, and copies of it whose bodies are as many times as stiff in finite elements.
+class Pool : public testing::Test {
+protected:
+    static void SetUpTestSuite() {
+        scratch_ = std::make_unique<TemporaryFolder>();
+        mesh::write_surface(*scratch_ / "beam.stl", mesh::make_box({0, 0, 0}, {100, 20, 20}, {10, 2, 2}));
+        commands::RunOptions options{.input = *scratch_ / "beam.stl", .output = *scratch_ / "run", .overrides = {}};
+        options.overrides.set("volume.edge_length", 12);
+        options.overrides.set("skeleton.spheres", 8);
+        options.overrides.set("probing.probes", 10);
+        options.overrides.set("identify.particles", 40);
+        options.overrides.set("identify.parameters", "uniform");
+        commands::run(options, {});
+    }
+    static void TearDownTestSuite() { scratch_.reset(); }
+
+    static fs::path specimen(const std::string& name, double young, double sd) {
+        const fs::path run = *scratch_ / name;
+        fs::remove_all(run);
+        fs::copy(*scratch_ / "run", run, fs::copy_options::recursive);
+        json compare = json::parse(mesh::read_text(run / "compare/compare.json"));
+        compare["baseline"] = {{"young_mpa", young},
+                               {"young_sd_mpa", sd},
+                               {"poisson", 0.45},
+                               {"poisson_sd", 0.0},
+                               {"poisson_declared", true}};
+        mesh::write_text(run / "compare/compare.json", compare.dump());
+        return run;
+    }
+
+    static inline std::unique_ptr<TemporaryFolder> scratch_;
+};
+
+TEST_F(Pool, TellsTheMeanTheSpreadAndWhoIsUnlikeTheOthers) {
+    std::vector<fs::path> runs;
+    for (const double young : {0.29, 0.31, 0.3, 0.295, 0.305, 0.302, 0.6})
+        runs.push_back(specimen("s" + std::to_string(runs.size()), young, 0.003));
+    const fs::path output = *scratch_ / "population";
+    const commands::Outcome outcome = commands::pool({runs, output}, {});
+    EXPECT_EQ(outcome.code, commands::done);
+    EXPECT_EQ(json::parse(mesh::read_text(output / "population.json")), outcome.json);
+    const json& young = outcome.json["numbers"][0];
+    EXPECT_EQ(young["name"], "young");
+    EXPECT_EQ(young["scale"], "logarithmic");
+    ASSERT_EQ(young["specimens"].size(), 7u);
+    for (const json& one : young["specimens"]) EXPECT_EQ(one["outlying"], one["run"] == "s6") << one;
+    EXPECT_NEAR(young["specimens"][0]["own"]["value"].get<double>(), 0.29, 1e-9);
+    EXPECT_THAT(outcome.text, AllOf(HasSubstr("Young's modulus [MPa], by finite elements"),
+                                    HasSubstr("Unlike the others: s6."), HasSubstr("population.html")));
+    // The ratio was told, and nobody found it; the skeleton's stiffness is shared, by its particles.
+    const auto names = [&] {
+        std::vector<std::string> all;
+        for (const json& number : outcome.json["numbers"]) all.push_back(number["name"]);
+        return all;
+    }();
+    EXPECT_THAT(names, AllOf(testing::Contains("flexion"), testing::Not(testing::Contains("poisson"))));
+    const std::string page = mesh::read_text(output / "population.html");
+    EXPECT_THAT(page, AllOf(HasSubstr("✱ s6"), HasSubstr("next specimen"), testing::Not(HasSubstr("http"))));
+    EXPECT_THAT(message_of([&] { commands::pool({runs, *scratch_ / "beam.stl"}, {}); }), HasSubstr("beam.stl"));
+}
+
+TEST_F(Pool, RefusesWhatIsNoPopulation) {
+    const fs::path one = specimen("one", 0.3, 0.01);
+    EXPECT_THAT(message_of([&] { commands::pool({{one}, {}}, {}); }), HasSubstr("two specimens at least"));
+    EXPECT_THAT(message_of([&] {
+                    commands::pool({{one, one / "."}, {}}, {});
+                }),
+                AllOf(HasSubstr("is told twice"), HasSubstr("leave one out")));
+    EXPECT_THAT(message_of([&] {
+                    commands::pool({{one, *scratch_ / "beam.stl"}, {}}, {});
+                }),
+                AllOf(HasSubstr("beam.stl"), HasSubstr("no run folder")));
+}
+
+}  // namespace
+}  // namespace palpate::pipeline
