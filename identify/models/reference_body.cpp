@@ -411,11 +411,24 @@ std::optional<MeshError> ReferenceBody::discretisation_error(const Eigen::Vector
         if (!given) return Impl::Finer(*impl_, fem::refine(coarse));
         return Impl::Finer(*impl_, {*given, fem::interpolation(coarse, given->nodes)});
     });
-    const auto& factor = dynamic_cast<const FemTangent&>(with_friction_held(J)).factor();
-    const std::optional<Eigen::VectorXd> u = fem::refined_equilibrium(
-        {finer.own->body, finer.interpolation}, q, factor, impl_->setting(setting, action), finer.own->load(action));
-    if (!u) return std::nullopt;
     const bool small_strain = in_small_strain(setting);
+    // A cable that holds its length pulls by what each step stretches it, and where it is fixed gives way ever more in
+    // finer meshes: it is let go, under the tension that it has.
+    fem::BodySetting own = impl_->setting(setting, action);
+    bool lets_go = false;
+    for (fem::TendonPull& pull : own.effects.tendons) {
+        if (!pull.actuator->by_length) continue;
+        lets_go = true;
+        pull.friction = impl_->body.tendon_friction(q, pull, small_strain);
+        pull.value = impl_->body.tendon_state(q, pull, small_strain).tension;
+        pull.actuator = impl_->rig.by_tension(pull);
+    }
+    std::shared_ptr<const fem::BodyTangent> let_go;
+    if (lets_go) let_go = impl_->body.factor(q, own, memory_of(action));
+    const auto& factor = lets_go ? *let_go : dynamic_cast<const FemTangent&>(with_friction_held(J)).factor();
+    const std::optional<Eigen::VectorXd> u =
+        fem::refined_equilibrium({finer.own->body, finer.interpolation}, q, factor, own, finer.own->load(action));
+    if (!u) return std::nullopt;
     MeshError error{finer.own->frames.positions(*u, small_strain) - impl_->frames.positions(q, small_strain),
                     -reactions(q, setting, action)};
     for (std::size_t t = 0; t < action.motions.size(); ++t)

@@ -14,6 +14,7 @@ PreparedRig::PreparedRig(const Rig& rig) {
         const auto* tendon = std::get_if<mesh::TendonActuator>(&actuator.kind);
         cavities_.push_back(pressure ? std::make_shared<mesh::PressureActuator>(*pressure) : nullptr);
         tendons_.push_back(tendon ? std::make_shared<mesh::TendonActuator>(*tendon) : nullptr);
+        by_tension_.push_back(tendon ? std::make_shared<mesh::TendonActuator>(tendon->path, false) : nullptr);
     }
 }
 
@@ -37,6 +38,11 @@ std::shared_ptr<const fem::ToolPotential> PreparedRig::tool(const mesh::ToolMoti
 
 fem::TendonPull PreparedRig::tendon(const mesh::ActuatorSetting& setting, double young, double friction) const {
     return {tendons_[setting.actuator], setting.value, young, friction, setting.earlier};
+}
+
+std::shared_ptr<const mesh::TendonActuator> PreparedRig::by_tension(const fem::TendonPull& pull) const {
+    const auto own = std::ranges::find(tendons_, pull.actuator);
+    return own == tendons_.end() ? nullptr : by_tension_[own - tendons_.begin()];
 }
 
 bool PreparedRig::is_nonlinear() const {

@@ -32,6 +32,8 @@ public:
     /// What an actuator does: a pressure in a cavity, or the pull of a tendon; the other is empty.
     const std::shared_ptr<const mesh::PressureActuator>& cavity(int actuator) const { return cavities_[actuator]; }
     fem::TendonPull tendon(const mesh::ActuatorSetting& setting, double young, double friction) const;
+    /// The same tendon by tension, where a pull of the rig's is by length; null: it is none of the rig's.
+    std::shared_ptr<const mesh::TendonActuator> by_tension(const fem::TendonPull& pull) const;
 
     /// Does the rig make a body nonlinear whatever its law: by tools, which touch or part, or tendons, which go slack?
     bool is_nonlinear() const;
@@ -40,6 +42,7 @@ private:
     std::vector<std::shared_ptr<const fem::RigidTool>> tools_;
     std::vector<std::shared_ptr<const mesh::PressureActuator>> cavities_;  // of the actuators, null: it is a tendon
     std::vector<std::shared_ptr<const mesh::TendonActuator>> tendons_;     // of the actuators, null: it is a cavity
+    std::vector<std::shared_ptr<const mesh::TendonActuator>> by_tension_;  // the same, all by tension
 };
 
 }  // namespace palpate::identify

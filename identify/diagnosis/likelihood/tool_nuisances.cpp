@@ -49,6 +49,44 @@ Eigen::Matrix<double, 6, 2> shortfalls(const mesh::ToolMotion& motion, const Vec
     return errors;
 }
 
+/// A cable is let out by some slack, and gives way, with its anchors, in proportion to its pull, which grows about with
+/// what is drawn in. Elements add to that: an anchor at a point sinks in the more the finer they are.
+constexpr double of_give = 2.5;  // times as much as play: of braided cables and their knots, some 5 %
+
+/// The largest length that is drawn in of each cable [mm].
+std::map<int, double> cables_of(const Problem& problem, const ForwardSolution& forward) {
+    std::map<int, double> most;
+    for (const Action& action : forward.actions) {
+        for (const mesh::ActuatorSetting& setting : action.settings) {
+            const auto* tendon = std::get_if<mesh::TendonActuator>(&problem.rig->actuators[setting.actuator].kind);
+            if (tendon && tendon->by_length) most[setting.actuator] = std::max(most[setting.actuator], setting.value);
+        }
+    }
+    std::erase_if(most, [](const auto& cable) { return !(cable.second > 0); });
+    return most;
+}
+
+/// What cables do that are drawn in by less: columns of their slack and of their give.
+void add_cables(const BodyModel& model, const ModelSetting& setting, const Action& action, const Eigen::VectorXd& q,
+                const std::map<int, double>& most, int first, Signatures::InAction& own) {
+    const bool any = std::ranges::any_of(action.settings, [&](const auto& one) { return most.contains(one.actuator); });
+    if (!any) return;
+    const Eigen::MatrixXd pull = model.actuation_force(q, setting, action);
+    for (std::size_t a = 0; a < action.settings.size(); ++a) {
+        const auto cable = most.find(action.settings[a].actuator);
+        if (cable == most.end() || !(action.settings[a].value > 0)) continue;
+        const int column = first + 2 * static_cast<int>(std::distance(most.begin(), cable));
+        const Eigen::Index at = own.forces.cols();
+        own.forces.conservativeResize(pull.rows(), at + 2);
+        own.forces.col(at) = -cable->second * pull.col(static_cast<Eigen::Index>(a));
+        own.forces.col(at + 1) = -of_give * action.settings[a].value * pull.col(static_cast<Eigen::Index>(a));
+        own.columns.insert(own.columns.end(), {column, column + 1});
+    }
+    const Eigen::Index felt = own.reactions.cols(), tools = 6 * std::ssize(action.motions);
+    own.reactions.conservativeResize(tools, own.forces.cols());
+    own.reactions.rightCols(own.forces.cols() - felt).setZero();
+}
+
 }  // namespace
 
 ToolNuisances tool_nuisances(const BodyModel& model, const Problem& problem, const ModelSetting& setting,
@@ -60,25 +98,35 @@ ToolNuisances tool_nuisances(const BodyModel& model, const Problem& problem, con
         result.names.push_back(fmt::format("play of the tool '{}'", problem.rig->tools[tool].name));
         result.names.push_back(fmt::format("compliance of what moves the tool '{}'", problem.rig->tools[tool].name));
     }
-    result.signatures = {std::ssize(result.names), [&, setting, ranges](int k, const Eigen::VectorXd& q) {
-                             const Action& action = forward.actions[k];
-                             Signatures::InAction own;
-                             if (action.motions.empty()) return own;
-                             const auto tools = std::ssize(action.motions);
-                             Eigen::MatrixXd poses = Eigen::MatrixXd::Zero(6 * tools, 2 * tools);
-                             for (Eigen::Index i = 0; i < tools; ++i) {
-                                 const mesh::ToolMotion& motion = action.motions[static_cast<std::size_t>(i)];
-                                 const Range& range = ranges.at(motion.tool);
-                                 const Vec3 felt =
-                                     force_on_body(problem, forward, static_cast<std::size_t>(k), motion.tool);
-                                 poses.block<6, 2>(6 * i, 2 * i) = shortfalls(motion, felt, range);
-                                 own.columns.insert(own.columns.end(), {range.column, range.column + 1});
-                             }
-                             const ReactionSlopes slopes = model.reaction_slopes(q, setting, action);
-                             own.forces = -slopes.by_step.transpose() * poses;
-                             own.reactions = slopes.by_pose * poses;
-                             return own;
-                         }};
+    const std::map<int, double> cables = cables_of(problem, forward);
+    const auto first_cable = static_cast<int>(result.names.size());
+    for (const auto& [cable, most] : cables) {
+        result.names.push_back(fmt::format("slack of the tendon '{}'", problem.rig->actuators[cable].name));
+        result.names.push_back(fmt::format("give of the tendon '{}'", problem.rig->actuators[cable].name));
+    }
+    result.signatures = {
+        std::ssize(result.names), [&, setting, ranges, cables, first_cable](int k, const Eigen::VectorXd& q) {
+            const Action& action = forward.actions[k];
+            Signatures::InAction own;
+            if (action.motions.empty()) {
+                add_cables(model, setting, action, q, cables, first_cable, own);
+                return own;
+            }
+            const auto tools = std::ssize(action.motions);
+            Eigen::MatrixXd poses = Eigen::MatrixXd::Zero(6 * tools, 2 * tools);
+            for (Eigen::Index i = 0; i < tools; ++i) {
+                const mesh::ToolMotion& motion = action.motions[static_cast<std::size_t>(i)];
+                const Range& range = ranges.at(motion.tool);
+                const Vec3 felt = force_on_body(problem, forward, static_cast<std::size_t>(k), motion.tool);
+                poses.block<6, 2>(6 * i, 2 * i) = shortfalls(motion, felt, range);
+                own.columns.insert(own.columns.end(), {range.column, range.column + 1});
+            }
+            const ReactionSlopes slopes = model.reaction_slopes(q, setting, action);
+            own.forces = -slopes.by_step.transpose() * poses;
+            own.reactions = slopes.by_pose * poses;
+            add_cables(model, setting, action, q, cables, first_cable, own);
+            return own;
+        }};
     return result;
 }
 
