@@ -14,7 +14,8 @@ PreparedRig::PreparedRig(const Rig& rig) {
         const auto* tendon = std::get_if<mesh::TendonActuator>(&actuator.kind);
         cavities_.push_back(pressure ? std::make_shared<mesh::PressureActuator>(*pressure) : nullptr);
         tendons_.push_back(tendon ? std::make_shared<mesh::TendonActuator>(*tendon) : nullptr);
-        by_tension_.push_back(tendon ? std::make_shared<mesh::TendonActuator>(tendon->path, false) : nullptr);
+        by_tension_.push_back(tendon ? std::make_shared<mesh::TendonActuator>(mesh::TendonActuator{tendon->path, false})
+                                     : nullptr);
     }
 }
 
