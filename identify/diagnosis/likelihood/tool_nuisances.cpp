@@ -49,6 +49,25 @@ Eigen::Matrix<double, 6, 2> shortfalls(const mesh::ToolMotion& motion, const Vec
     return errors;
 }
 
+/// What tools do that fall short of their motions in action k: columns of their play and of their compliance.
+Signatures::InAction of_tools(const ReactionSlopes& slopes, const Problem& problem, const ForwardSolution& forward,
+                              int k, const std::map<int, Range>& ranges) {
+    Signatures::InAction own;
+    const std::vector<mesh::ToolMotion>& motions = forward.actions[k].motions;
+    const auto tools = std::ssize(motions);
+    Eigen::MatrixXd poses = Eigen::MatrixXd::Zero(6 * tools, 2 * tools);
+    for (Eigen::Index i = 0; i < tools; ++i) {
+        const mesh::ToolMotion& motion = motions[static_cast<std::size_t>(i)];
+        const Range& range = ranges.at(motion.tool);
+        const Vec3 felt = force_on_body(problem, forward, static_cast<std::size_t>(k), motion.tool);
+        poses.block<6, 2>(6 * i, 2 * i) = shortfalls(motion, felt, range);
+        own.columns.insert(own.columns.end(), {range.column, range.column + 1});
+    }
+    own.forces = -slopes.by_step.transpose() * poses;
+    own.reactions = slopes.by_pose * poses;
+    return own;
+}
+
 /// A cable is let out by some slack, and gives way, with its anchors, in proportion to its pull, which grows about with
 /// what is drawn in. Elements add to that: an anchor at a point sinks in the more the finer they are.
 constexpr double of_give = 2.5;  // times as much as play: of braided cables and their knots, some 5 %
@@ -104,29 +123,15 @@ ToolNuisances tool_nuisances(const BodyModel& model, const Problem& problem, con
         result.names.push_back(fmt::format("slack of the tendon '{}'", problem.rig->actuators[cable].name));
         result.names.push_back(fmt::format("give of the tendon '{}'", problem.rig->actuators[cable].name));
     }
-    result.signatures = {
-        std::ssize(result.names), [&, setting, ranges, cables, first_cable](int k, const Eigen::VectorXd& q) {
-            const Action& action = forward.actions[k];
-            Signatures::InAction own;
-            if (action.motions.empty()) {
-                add_cables(model, setting, action, q, cables, first_cable, own);
-                return own;
-            }
-            const auto tools = std::ssize(action.motions);
-            Eigen::MatrixXd poses = Eigen::MatrixXd::Zero(6 * tools, 2 * tools);
-            for (Eigen::Index i = 0; i < tools; ++i) {
-                const mesh::ToolMotion& motion = action.motions[static_cast<std::size_t>(i)];
-                const Range& range = ranges.at(motion.tool);
-                const Vec3 felt = force_on_body(problem, forward, static_cast<std::size_t>(k), motion.tool);
-                poses.block<6, 2>(6 * i, 2 * i) = shortfalls(motion, felt, range);
-                own.columns.insert(own.columns.end(), {range.column, range.column + 1});
-            }
-            const ReactionSlopes slopes = model.reaction_slopes(q, setting, action);
-            own.forces = -slopes.by_step.transpose() * poses;
-            own.reactions = slopes.by_pose * poses;
-            add_cables(model, setting, action, q, cables, first_cable, own);
-            return own;
-        }};
+    result.signatures = {std::ssize(result.names),
+                         [&, setting, ranges, cables, first_cable](int k, const Eigen::VectorXd& q) {
+                             const Action& action = forward.actions[k];
+                             Signatures::InAction own;
+                             if (!action.motions.empty())
+                                 own = of_tools(model.reaction_slopes(q, setting, action), problem, forward, k, ranges);
+                             add_cables(model, setting, action, q, cables, first_cable, own);
+                             return own;
+                         }};
     return result;
 }
 
