@@ -56,6 +56,9 @@ struct HyperelasticBody::Impl {
     const EliminationOrder& order(const Effects& effects) const;
     /// All nodes, held ones too.
     const Unknowns& all(const Effects& effects) const;
+    PlacedTendon placed(const TendonPull& pull, bool small_strain) const {
+        return {(*shape.tendon_paths)(shape.mesh, pull.actuator), pull, small_strain};
+    }
     /// The tangent over some unknowns. @throws SolverFailure where an element is inside out.
     LowerMatrix tangent(const Eigen::VectorXd& u, const BodySetting& setting, const MaterialState* before,
                         const Unknowns& unknowns) const;
@@ -141,32 +144,27 @@ Eigen::VectorXd HyperelasticBody::grip_forces(const Eigen::VectorXd& u, const Bo
 }
 
 TendonState HyperelasticBody::tendon_state(const Eigen::VectorXd& u, const TendonPull& pull, bool small_strain) const {
-    const BodyShape& shape = impl_->shape;
-    return PlacedTendon((*shape.tendon_paths)(shape.mesh, pull.actuator), pull, small_strain).terms(u).state;
+    return impl_->placed(pull, small_strain).terms(u).state;
 }
 
 Eigen::MatrixXd HyperelasticBody::tendon_derivative(const Eigen::VectorXd& u, const TendonPull& pull,
                                                     bool small_strain) const {
-    const BodyShape& shape = impl_->shape;
-    return PlacedTendon((*shape.tendon_paths)(shape.mesh, pull.actuator), pull, small_strain).derivative(u);
+    return impl_->placed(pull, small_strain).derivative(u);
 }
 
 Eigen::VectorXd HyperelasticBody::tendon_push(const Eigen::VectorXd& u, const TendonPull& pull,
                                               bool small_strain) const {
-    const BodyShape& shape = impl_->shape;
-    return PlacedTendon((*shape.tendon_paths)(shape.mesh, pull.actuator), pull, small_strain).push(u);
+    return impl_->placed(pull, small_strain).push(u);
 }
 
 TendonFriction HyperelasticBody::tendon_friction(const Eigen::VectorXd& u, const TendonPull& pull,
                                                  bool small_strain) const {
-    const BodyShape& shape = impl_->shape;
-    return PlacedTendon((*shape.tendon_paths)(shape.mesh, pull.actuator), pull, small_strain).friction(u);
+    return impl_->placed(pull, small_strain).friction(u);
 }
 
 TendonSliding HyperelasticBody::tendon_sliding(const Eigen::VectorXd& u, const TendonPull& pull,
                                                bool small_strain) const {
-    const BodyShape& shape = impl_->shape;
-    return PlacedTendon((*shape.tendon_paths)(shape.mesh, pull.actuator), pull, small_strain).sliding(u);
+    return impl_->placed(pull, small_strain).sliding(u);
 }
 
 Eigen::VectorXd HyperelasticBody::cavity_push(const Eigen::VectorXd& u, const mesh::PressureActuator& actuator,

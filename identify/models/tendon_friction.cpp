@@ -11,7 +11,7 @@ namespace palpate::identify {
 namespace {
 
 constexpr double friction_tolerance = 1e-7;  // of shares, and of a length drawn in: as well as equilibria are known
-constexpr int most_friction_rounds = 40;     // three to six do for coefficients up to 0.5 and turns up to 180 degrees
+constexpr int most_friction_rounds = 40;     // what has come to no rest by then wanders
 
 /// The next iterate of x = g(x), from those before and what g made of them. [Anderson 1965; Walker & Ni 2011]
 class Acceleration {
@@ -78,7 +78,8 @@ FrictionIteration::FrictionIteration(std::vector<fem::TendonPull> tendons, Settl
     : tendons_(std::move(tendons)), settle_(std::move(settle)), follow_(std::move(follow)), unit_(0) {
     for (const fem::TendonPull& one : tendons_)
         if (one.actuator->by_length) unit_ = std::max(unit_, std::abs(one.value));
-    // A cable is longer by its tension over its stiffness, some 1e-5 of what is drawn in: known as well as a tension.
+    // A cable of the length L in a body of the section A is longer than drawn in by some A / L^2 over a thousand: its
+    // tension is known as well as that.
     unit_ = unit_ > 0 ? 1e-4 * unit_ : 1;
 }
 
@@ -112,7 +113,9 @@ Eigen::VectorXd FrictionIteration::equilibrium(const Eigen::VectorXd& first, con
         if ((made - x).cwiseAbs().maxCoeff() <= friction_tolerance) return q;
         x = acceleration.next(x, made);
     }
-    throw SolverFailure("the friction of tendons and the body's shape come to no rest together");
+    throw SolverFailure(
+        "the friction of tendons and the body's shape come to no rest together; take a smaller coefficient, or draw in "
+        "less");
 }
 
 fem::TendonSliding together(const std::vector<fem::TendonSliding>& tendons, Eigen::Index dofs) {

@@ -8,7 +8,7 @@
 namespace palpate::identify {
 namespace {
 
-constexpr int mean_steps = 41, spread_steps = 81;  // of the grid: 0.3 deviations, and a tenth of an octave or so
+constexpr int mean_steps = 41, spread_steps = 81;  // of the grid: 0.3 deviations, and a sixth of an octave or so
 constexpr Eigen::Index most_parts = 128;           // of a mixture
 constexpr double surely_wide = 1e100;              // a prior that tells nothing
 

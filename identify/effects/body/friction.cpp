@@ -72,8 +72,7 @@ public:
         const double mu = record.parameters[0].value;
         return fmt::format(
             "The tendons rub where they turn: the coefficient of friction is {}, and a turn of 90 degrees leaves "
-            "{:.0f} "
-            "% of the pull.",
+            "{:.0f} % of the pull.",
             mesh::with_sd(mu, std::sqrt(covariance(0, 0))), 100 * std::exp(-mu * quarter_turn));
     }
 

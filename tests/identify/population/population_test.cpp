@@ -43,7 +43,7 @@ TEST(Pool, OfEquallyKnownSpecimensIsTheTextbooks) {
         shrunken += p * t * t / v;
     }
     EXPECT_NEAR(pooled.mean, 0, 1e-9);
-    // The grid's steps of a tenth of an octave.
+    // The grid's steps of a sixth of an octave.
     EXPECT_NEAR(pooled.mean_sd, std::sqrt(variance / all), 0.01);
     EXPECT_NEAR(pooled.specimens[2].mean, shrunken / all, 0.02);
     EXPECT_NEAR(pooled.specimens[0].mean, -pooled.specimens[2].mean, 1e-9);
