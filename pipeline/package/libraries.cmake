@@ -18,6 +18,7 @@ string(REGEX REPLACE "^.*Version ([0-9.]+).*$" "\\1" tetgen_VERSION "${tetgen_VE
 file(STRINGS "${CBLAS_INCLUDE_DIR}/openblas_config.h" openblas_VERSION REGEX "OPENBLAS_VERSION")
 string(REGEX REPLACE "^.*OpenBLAS ([0-9.]+).*$" "\\1" openblas_VERSION "${openblas_VERSION}")
 pkg_check_modules(matio QUIET matio)
+pkg_check_modules(netcdf QUIET netcdf)
 
 # name|version|licence|what it is for
 set(palpate_libraries
@@ -27,6 +28,7 @@ set(palpate_libraries
   "OpenBLAS|${openblas_VERSION}|BSD-3-Clause|dense linear algebra"
   "VTK|${VTK_VERSION}|BSD-3-Clause|VTK files"
   "matio|${matio_VERSION}|BSD-2-Clause|MATLAB files"
+  "netCDF|${netcdf_VERSION}|BSD-3-Clause|Exodus files"
   "oneTBB|${TBB_VERSION}|Apache-2.0|threads"
   "Eigen|${Eigen3_VERSION}|MPL-2.0|matrices"
   "Spectra|${spectra_VERSION}|MPL-2.0|eigenvalues"

@@ -89,7 +89,7 @@ std::string table_lines(const std::filesystem::path& file) {
 }
 
 constexpr const char* further =
-    "    # format: table       # c3d, trc, motive, vicon, machine, dic, mat, scan, table or sheets\n"
+    "    # format: table       # c3d, trc, motive, vicon, machine, dic, mat, exodus, scan, table or sheets\n"
     "    # encoding: latin-1   # utf-8, utf-16\n"
     "    # header_lines: 5     # lines before the first row of numbers; names_line: the one that names the columns\n"
     "    # rate: 200           # frames a second, where no column tells the time; time_unit: ms\n"

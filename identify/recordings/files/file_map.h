@@ -71,8 +71,8 @@ struct FileMap {
 };
 
 /// What `format` may say.
-inline const std::vector<std::string> format_names{"c3d", "trc", "motive", "vicon", "machine",
-                                                   "dic", "mat", "scan",   "table", "sheets"};
+inline const std::vector<std::string> format_names{"c3d", "trc",    "motive", "vicon", "machine", "dic",
+                                                   "mat", "exodus", "scan",   "table", "sheets"};
 
 /// Reads one entry of `files` in a map.yaml, all but its `file` (which file, or pattern of names, it is for) and what
 /// the caller reads further, who then finishes it. @throws InvalidInput.

@@ -7,6 +7,7 @@
 
 #include "identify/recordings/files/c3d/read_c3d.h"
 #include "identify/recordings/files/draft_map.h"
+#include "identify/recordings/files/exodus/read_exodus.h"
 #include "identify/recordings/files/mat/read_mat.h"
 #include "identify/recordings/files/mocap/mocap_files.h"
 #include "identify/recordings/files/scans/read_scan.h"
@@ -33,9 +34,6 @@ constexpr KnownOther known_others[]{
     {"\xD0\xCF\x11\xE0", "a spreadsheet or document of old Office. Save the sheet as CSV"},
     {"%PDF", "a PDF. Export the data as CSV"},
     {"\x1F\x8B", "packed by gzip. Unpack it"},
-    {"\x89HDF", "an HDF5 file that is not MATLAB's. Export the data as CSV"},
-    {"CDF\x01", "a netCDF file, as Exodus is. Write it as VTU in ParaView"},
-    {"CDF\x02", "a netCDF file, as Exodus is. Write it as VTU in ParaView"},
     {"solid ", "a surface (STL). A mesh at rest is no recording: give it as the set's body"},
     {"\x93NUMPY", "an array of NumPy. Write it as CSV (numpy.savetxt)"},
     {"TDSm", "a TDMS file of LabVIEW. Export it as CSV or TXT"},
@@ -48,9 +46,10 @@ std::string map_to_start_from(const fs::path& file) { return "A map to start fro
     for (const KnownOther& other : known_others)
         if (bytes.starts_with(other.begin))
             throw InvalidInput(fmt::format("{}: this is {}.", file.filename().string(), other.advice));
-    throw InvalidInput(fmt::format(
-        "{}: it is binary, and none of C3D, MATLAB (5 to 7.3), PLY and VTK, which are read. Export it as CSV or C3D.",
-        file.filename().string()));
+    throw InvalidInput(
+        fmt::format("{}: it is binary, and none of C3D, MATLAB (5 to 7.3), Exodus, PLY and VTK, which are read. Export "
+                    "it as CSV or C3D.",
+                    file.filename().string()));
 }
 
 std::vector<Recording> read_text_file(const TextFile& text, const FileMap& map) {
@@ -79,6 +78,7 @@ std::vector<Recording> read_file(const fs::path& file, const FileMap& map) {
     };
     if (is("c3d", is_c3d)) return read_c3d(bytes, file, map);
     if (is("mat", is_mat)) return {read_mat(file, map)};
+    if (is("exodus", is_exodus)) return {read_exodus(file, map)};
     if (is("scan", is_scan)) return {read_scan(bytes, file, map)};
     if (bytes.starts_with("solid ") && bytes.find("facet") != bytes.npos) refuse_binary(file, bytes);
     const auto text = try_text(file, bytes, map);

@@ -10,6 +10,7 @@
 #include "mesh/text/atomic_file.h"
 #include "tests/fuzz/mutations.h"
 #include "tests/identify/recordings/c3d_sample.h"
+#include "tests/identify/recordings/exodus_sample.h"
 #include "tests/identify/recordings/mat_sample.h"
 #include "tests/identify/recordings/text_samples.h"
 #include "tests/temporary_folder.h"
@@ -62,9 +63,9 @@ TEST_P(BrokenFiles, AreReadOrRefused) {
     EXPECT_GT(refused, 0);
 }
 
-std::string mat(const std::function<std::filesystem::path(const std::filesystem::path&)>& write) {
+std::string bytes_of(const std::function<std::filesystem::path(const std::filesystem::path&)>& write) {
     const TemporaryFolder folder;
-    return mesh::read_text(write(folder / "a.mat"));
+    return mesh::read_text(write(folder / "a"));
 }
 
 std::string c3d(C3dSample::Processor processor, bool has_reals) {
@@ -79,21 +80,21 @@ std::function<std::string()> text(const std::string& content) {
 
 INSTANTIATE_TEST_SUITE_P(
     Of, BrokenFiles,
-    testing::Values(Sample{"c3d", "run.c3d", [] { return c3d(C3dSample::Processor::intel, true); }},
-                    Sample{"c3d_dec", "run.c3d", [] { return c3d(C3dSample::Processor::dec, false); }},
-                    Sample{"c3d_mips", "run.c3d", [] { return c3d(C3dSample::Processor::mips, true); }},
-                    Sample{"trc", "run.trc", text(trc_sample)}, Sample{"motive", "take.csv", text(motive_sample)},
-                    Sample{"vicon", "trial.csv", text(vicon_sample)},
-                    Sample{"bluehill", "pull.csv", text(bluehill_sample)},
-                    Sample{"zwick", "zug.tra", text(zwick_sample)}, Sample{"dice", "dice.txt", text(dice_sample)},
-                    Sample{"aramis", "aramis.txt", text(aramis_sample)}, Sample{"vic", "vic.csv", text(vic_sample)},
-                    Sample{"long_table", "long.csv", text(long_sample)}, Sample{"ply", "scan.ply", text(ply_sample)},
-                    Sample{"vtk", "scan.vtk", text(vtk_sample)},
-                    Sample{"table", "t.csv", text("0,0.000,1,2,3,4,5,6\n1,0.005,1,2,3,4,5,6\n2,0.010,1,2,3,4,5,7\n")},
-                    Sample{"clock", "t.csv", text("time;F [N]\n12:00:01,5;1,5\n12:00:02,5;2,5\n12:00:03,5;2,25\n")},
-                    Sample{"ncorr", "dic.mat", [] { return mat([](const auto& file) { return write_ncorr(file); }); }},
-                    Sample{"multidic", "dic.mat",
-                           [] { return mat([](const auto& file) { return write_multidic(file); }); }}),
+    testing::Values(
+        Sample{"c3d", "run.c3d", [] { return c3d(C3dSample::Processor::intel, true); }},
+        Sample{"c3d_dec", "run.c3d", [] { return c3d(C3dSample::Processor::dec, false); }},
+        Sample{"c3d_mips", "run.c3d", [] { return c3d(C3dSample::Processor::mips, true); }},
+        Sample{"trc", "run.trc", text(trc_sample)}, Sample{"motive", "take.csv", text(motive_sample)},
+        Sample{"vicon", "trial.csv", text(vicon_sample)}, Sample{"bluehill", "pull.csv", text(bluehill_sample)},
+        Sample{"zwick", "zug.tra", text(zwick_sample)}, Sample{"dice", "dice.txt", text(dice_sample)},
+        Sample{"aramis", "aramis.txt", text(aramis_sample)}, Sample{"vic", "vic.csv", text(vic_sample)},
+        Sample{"long_table", "long.csv", text(long_sample)}, Sample{"ply", "scan.ply", text(ply_sample)},
+        Sample{"vtk", "scan.vtk", text(vtk_sample)},
+        Sample{"table", "t.csv", text("0,0.000,1,2,3,4,5,6\n1,0.005,1,2,3,4,5,6\n2,0.010,1,2,3,4,5,7\n")},
+        Sample{"clock", "t.csv", text("time;F [N]\n12:00:01,5;1,5\n12:00:02,5;2,5\n12:00:03,5;2,25\n")},
+        Sample{"ncorr", "dic.mat", [] { return bytes_of([](const auto& file) { return write_ncorr(file); }); }},
+        Sample{"exodus", "dic.e", [] { return bytes_of([](const auto& file) { return write_exodus(file, {}); }); }},
+        Sample{"multidic", "dic.mat", [] { return bytes_of([](const auto& file) { return write_multidic(file); }); }}),
     [](const testing::TestParamInfo<Sample>& each) { return each.param.name; });
 
 }  // namespace

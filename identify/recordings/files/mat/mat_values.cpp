@@ -7,9 +7,8 @@
 #include <memory>
 #include <utility>
 
+#include "identify/recordings/files/read_in_child.h"
 #include "mesh/errors.h"
-#include "mesh/system/bytes.h"
-#include "mesh/system/child_process.h"
 
 namespace palpate::identify {
 
@@ -113,7 +112,7 @@ std::vector<Eigen::MatrixXd> cells_in(mat_t* file, matvar_t* cells) {
     return matrices;
 }
 
-MatCorrelation read_here(const std::filesystem::path& file) {
+MatCorrelation read_mat_here(const std::filesystem::path& file) {
     MatCorrelation result;
     const MatFile in(Mat_Open(file.c_str(), MAT_ACC_RDONLY));
     if (!in)
@@ -134,35 +133,8 @@ MatCorrelation read_here(const std::filesystem::path& file) {
 }  // namespace
 
 MatCorrelation read_mat_correlation(const std::filesystem::path& file) {
-    // matio trusts what a file says of its sizes, and may not come to an end of a broken one.
-    constexpr double seconds = 5, bytes_a_second = 5e6;   // a slow disk's
-    constexpr double mebibytes = 1024, most_packed = 20;  // zlib packs matrices of numbers no denser
-    std::error_code unreadable;
-    const double bytes = static_cast<double>(std::filesystem::file_size(file, unreadable));
-    const mesh::ChildLimits limits{.seconds = seconds + bytes / bytes_a_second,
-                                   .mebibytes = mebibytes + most_packed * bytes / (1 << 20)};
-    mesh::ChildResult child = mesh::run_in_child(
-        [&] {
-            std::string refusal;
-            MatCorrelation data;
-            try {
-                data = read_here(file);
-            } catch (const InvalidInput& error) {
-                refusal = error.what();
-            }
-            return mesh::to_bytes(refusal, data);
-        },
-        limits);
-    if (child.end != mesh::ChildResult::End::Answered)
-        throw InvalidInput(
-            fmt::format("{}: breaks what reads MATLAB files, or keeps it busy without end. The file is broken: "
-                        "save it again.",
-                        file.filename().string()));
-    std::string refusal;
-    MatCorrelation data;
-    mesh::from_bytes(std::move(child.answer), refusal, data);
-    if (!refusal.empty()) throw InvalidInput(refusal);
-    return data;
+    constexpr double most_packed = 20;  // zlib packs matrices of numbers no denser
+    return read_in_child<MatCorrelation>(file, "MATLAB", most_packed, read_mat_here);
 }
 
 }  // namespace palpate::identify
