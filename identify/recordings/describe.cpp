@@ -22,11 +22,11 @@ std::string frames_in_words(const Recording& recording) {
     Eigen::VectorXd steps = times.tail(n - 1) - times.head(n - 1);
     std::ranges::sort(steps);
     const double middle = steps[(n - 2) / 2];
-    if (middle > 0) text += fmt::format(", {:.5g} a second", 1 / middle);
-    constexpr double jitter = 0.1;  // of a step
-    const double least = steps[0], most = steps[n - 2];
-    if (most > (1 + jitter) * middle || least < (1 - jitter) * middle)
-        text += fmt::format(", not steady (steps of {:.3g} to {:.3g} s)", least, most);
+    constexpr double jitter = 0.1;  // of a step: clocks are written with few digits, which their mean evens out
+    const double least = steps[0], most = steps[n - 2], mean = (times[n - 1] - times[0]) / static_cast<double>(n - 1);
+    const bool is_steady = most <= (1 + jitter) * middle && least >= (1 - jitter) * middle;
+    if (middle > 0) text += fmt::format(", {:.5g} a second", 1 / (is_steady ? mean : middle));
+    if (!is_steady) text += fmt::format(", not steady (steps of {:.3g} to {:.3g} s)", least, most);
     return text;
 }
 

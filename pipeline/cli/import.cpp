@@ -43,7 +43,8 @@ constexpr const char* map_tail =
     "register: auto                 # fiducials, icp (points on the surface), none, or a file of name,x,y,z\n"
     "# frame: {x: [1, 0, 0], y: [0, 0, 1]}        # the mesh's axes in the recording's frame; scale: true; each: "
     "state\n"
-    "rest: first                    # none: no recording shows the body at rest; or the number of a probe\n"
+    "rest: auto                     # file: where displacements count from; first: the first state; none; or a "
+    "probe's number\n"
     "states: plateaus               # every=0.5s, all\n"
     "# plateaus: {shortest: 0.5, within: 0.2}     # s, mm\n"
     "clock: {lag: auto}             # trigger: CHANNEL, common: CHANNEL, or lag: 0.1\n"
@@ -56,6 +57,11 @@ constexpr const char* map_tail =
     "# actuators: [{name: chamber, kind: pressure, cavity: {near: [50, 10, 10]}}]\n"
     "# actuations: [{actuator: chamber, channel: pressure}]\n"
     "# quantities: [{name: extension, points: [a], minus: [b], along: [1, 0, 0]}]\n";
+
+/// "1 state", "2 states"
+std::string number_of(std::size_t count, const char* thing) {
+    return fmt::format("{} {}{}", count, thing, count == 1 ? "" : "s");
+}
 
 /// What is in the files, and a map of them.
 Outcome describe_files(const ImportCommandOptions& options, const Common& common) {
@@ -105,15 +111,16 @@ Outcome describe_files(const ImportCommandOptions& options, const Common& common
     return outcome;
 }
 
-/// map.yaml beside the first file, or in the first folder.
+/// map.yaml beside the first file, or in the first folder. @throws InvalidInput where there is none; before that what
+/// speaks against the file, whatever a map says.
 fs::path map_beside(const fs::path& file) {
     const fs::path map = (fs::is_directory(file) ? file : file.parent_path()) / "map.yaml";
-    if (!fs::exists(map))
-        throw InvalidInput(
-            fmt::format("{}: no map says what this is of. 'palpate import {} --describe -o map.yaml' writes "
-                        "one to edit; name it with --map.",
-                        file.string(), file.string()));
-    return map;
+    if (fs::exists(map)) return map;
+    if (fs::is_regular_file(file)) identify::read_recordings(file);
+    throw InvalidInput(
+        fmt::format("{}: no map says what this is of. 'palpate import {} --describe -o map.yaml' writes "
+                    "one to edit; name it with --map.",
+                    file.string(), file.string()));
 }
 
 nlohmann::json report_json(const identify::ImportReport& report) {
@@ -188,8 +195,9 @@ Outcome import(const ImportCommandOptions& options, const Common& common) {
         mesh::write_text(folder / "import.json", outcome.json.dump(2) + "\n");
     });
     outcome.text = identify::describe(imported.report);
-    outcome.text += fmt::format("{0}: {1} states, {2} markers.\nNext: palpate check {0}\n", options.output.string(),
-                                imported.set.states.size(), imported.set.markers.size());
+    outcome.text +=
+        fmt::format("{0}: {1}, {2}.\nNext: palpate check {0}\n", options.output.string(),
+                    number_of(imported.set.states.size(), "state"), number_of(imported.set.markers.size(), "marker"));
     return outcome;
 }
 

@@ -30,7 +30,7 @@ Vec3 registered(const ProbeRecording& probe, const RigidMotion& frame, Vec3 at) 
 
 class SetFiller {
 public:
-    SetFiller(const ImportMap& map, const std::vector<ProbeStates>& probes, const ProbeStates& rest,
+    SetFiller(const ImportMap& map, const std::vector<ProbeStates>& probes, const RestState& rest,
               const StateFrames& frames, ImportReport& report)
         : map_(map), probes_(probes), rest_(rest), frames_(frames), report_(report), set_(map.set) {}
 
@@ -50,7 +50,7 @@ private:
     const RigidMotion& rest_frame() const {
         std::size_t before = 0;
         for (const ProbeStates& probe : probes_) {
-            if (&probe == &rest_) break;
+            if (probe.probe == rest_.probe) break;
             before += probe.states.size();
         }
         return frames_.of_state[before];
@@ -105,7 +105,7 @@ private:
         if (told != map_.places.end() && told->at) return told->at;
         const auto point = std::ranges::find(rest_.probe->points, name, &RecordedPoint::name);
         if (!map_.is_rest_seen || point == rest_.probe->points.end()) return std::nullopt;
-        Vec3 at = rest_.states.front().points[static_cast<std::size_t>(point - rest_.probe->points.begin())].at;
+        Vec3 at = rest_.state.points[static_cast<std::size_t>(point - rest_.probe->points.begin())].at;
         if (rest_.probe->is_planar) at.z() = 0;
         if (!at.allFinite()) return std::nullopt;
         return rest_frame()(at);
@@ -163,10 +163,12 @@ private:
 
     void add_state(const ProbeStates& probe, const ImportedState& imported, const RigidMotion& frame) {
         LoadState state{.probe = imported.probe, .time = imported.time};
-        const StateName rest{rest_.states.front().probe, rest_.states.front().time};
+        const StateName rest{rest_.state.probe, rest_.state.time};
+        // Places that files tell are the marker's own: what has moved from there is a position.
+        const bool counts_from_state = map_.reads_displacements && !rest_.is_of_files;
         const bool is_rest = state.probe == rest.probe && state.time == rest.time;
         for (std::size_t p = 0; p < imported.points.size(); ++p) {
-            if (map_.reads_displacements && is_rest) break;  // they count from here
+            if (counts_from_state && is_rest) break;  // they count from here
             const auto marker = index_of_.find(probe.probe->points[p].name);
             const SteadyPoint& point = imported.points[p];
             if (marker == index_of_.end() || point.at.array().isNaN().all()) continue;
@@ -177,7 +179,7 @@ private:
                 {.marker = marker->second,
                  .position = at,
                  .sigma = is_known ? std::max(least_position_noise, frame.scale * point.sigma) : missing,
-                 .since = map_.reads_displacements ? std::optional(rest) : std::nullopt});
+                 .since = counts_from_state ? std::optional(rest) : std::nullopt});
         }
         for (std::size_t u = 0; u < map_.uses.size(); ++u) add_use(probe, imported, frame, u, state);
         set_.states.push_back(std::move(state));
@@ -268,7 +270,7 @@ private:
     /// A tool goes where points on it go.
     void add_motion_of_points(const ProbeStates& probe, const ImportedState& imported, const RigidMotion& frame,
                               const MappedUse& use, LoadState& state) const {
-        const Points before = places_of(use.points, *rest_.probe, rest_.states.front(), rest_frame()),
+        const Points before = places_of(use.points, *rest_.probe, rest_.state, rest_frame()),
                      after = places_of(use.points, *probe.probe, imported, frame);
         if (!before.allFinite() || !after.allFinite()) return;
         mesh::ToolMotion& motion = motion_of(use, state);
@@ -308,7 +310,7 @@ private:
 
     const ImportMap& map_;
     const std::vector<ProbeStates>& probes_;
-    const ProbeStates& rest_;
+    const RestState& rest_;
     const StateFrames& frames_;
     ImportReport& report_;
     MeasurementSet set_;
@@ -317,7 +319,7 @@ private:
 
 }  // namespace
 
-MeasurementSet filled_set(const ImportMap& map, const std::vector<ProbeStates>& probes, const ProbeStates& rest,
+MeasurementSet filled_set(const ImportMap& map, const std::vector<ProbeStates>& probes, const RestState& rest,
                           const StateFrames& frames, ImportReport& report) {
     return SetFiller(map, probes, rest, frames, report).filled();
 }

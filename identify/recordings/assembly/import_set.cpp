@@ -186,20 +186,6 @@ void check_names(const ImportMap& map, const std::vector<ProbeRecording>& probes
     }
 }
 
-const ProbeStates& rest_of(const ImportMap& map, const std::vector<ProbeStates>& probes) {
-    if (!map.rest_probe) {
-        const auto with_points =
-            std::ranges::find_if(probes, [](const ProbeStates& probe) { return !probe.probe->points.empty(); });
-        return with_points == probes.end() ? probes.front() : *with_points;
-    }
-    const auto found =
-        std::ranges::find_if(probes, [&](const ProbeStates& probe) { return probe.probe->probe == *map.rest_probe; });
-    if (found == probes.end())
-        throw InvalidInput(fmt::format("{}: rest: there is no probe {}. Name one of 'files'.",
-                                       map.file.filename().string(), *map.rest_probe));
-    return *found;
-}
-
 }  // namespace
 
 ImportedSet import_set(const ImportOptions& options) {
@@ -217,6 +203,9 @@ ImportedSet import_set(const ImportOptions& options) {
     std::vector<std::string> of_readers;
     std::vector<FileRecordings> files = read_files(map, options, all_folders, of_readers);
     mend(map, files, report);
+    PlacesOfFiles places;
+    for (const FileRecordings& file : files)
+        for (const Recording& recording : file.recordings) add_places_at_rest(recording, places);
     const std::vector<ProbeRecording> recordings = merge_recordings(map, std::move(files), report);
     check_names(map, recordings);
 
@@ -230,7 +219,7 @@ ImportedSet import_set(const ImportOptions& options) {
                                  static_cast<int>(recording.points.size()), static_cast<int>(recording.channels.size()),
                                  static_cast<int>(probes.back().states.size())});
     }
-    const ProbeStates& rest = rest_of(map, probes);
+    const RestState rest = rest_state(map, probes, places, report.notes);
     const StateFrames frames = register_states(map, probes, rest, report);
     imported.set = filled_set(map, probes, rest, frames, report);
     report.notes.insert(report.notes.end(), of_readers.begin(), of_readers.end());

@@ -13,6 +13,7 @@ set(assembly_sources
   assembly/map/read_import_map.cpp
   assembly/states/imported_state.cpp
   assembly/states/plateaus.cpp
+  assembly/states/rest_state.cpp
   assembly/tracks/assignment.cpp
   assembly/tracks/mend_tracks.cpp
   assembly/tracks/name_points.cpp)

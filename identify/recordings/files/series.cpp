@@ -44,31 +44,82 @@ bool is_before(const fs::path& a, const fs::path& b) {
     return left.size() - i < right.size() - j;
 }
 
-/// What stands before and after the '*', or the last number, of a name.
+/// What stands before and after the '*', or a number, of a name.
 struct NameParts {
     std::string before, after;
 };
 
-NameParts parts_of(const std::string& name) {
-    if (const std::size_t star = name.find('*'); star != name.npos)
-        return {name.substr(0, star), name.substr(star + 1)};
+/// Around each number of a name, the last one first.
+std::vector<NameParts> around_numbers(const std::string& name) {
+    std::vector<NameParts> parts;
     std::size_t end = name.rfind('.') == name.npos ? name.size() : name.rfind('.');
-    while (end > 0 && !is_decimal_digit(name[end - 1])) --end;
-    std::size_t begin = end;
-    while (begin > 0 && is_decimal_digit(name[begin - 1])) --begin;
-    return {name.substr(0, begin), name.substr(end)};
+    while (true) {
+        while (end > 0 && !is_decimal_digit(name[end - 1])) --end;
+        if (end == 0) return parts;
+        std::size_t begin = end;
+        while (begin > 0 && is_decimal_digit(name[begin - 1])) --begin;
+        parts.push_back({name.substr(0, begin), name.substr(end)});
+        end = begin;
+    }
 }
 
-/// A place at rest, rounded so that copies of one number are one.
-using Place = std::array<double, 3>;
-
-Place rest_of(const RecordedPoint& point, Eigen::Index frame) {
-    Place place{};
-    constexpr double grid = 1e-4;  // [mm]; programs write coordinates to a micrometre or finer
-    for (int k = 0; k < 3; ++k)
-        place[static_cast<std::size_t>(k)] = std::round((point.at(k, frame) - point.displacement(k, frame)) / grid);
-    return place;
+/// Files of a folder whose names begin and end so; in between whatever, or a number.
+std::vector<fs::path> files_between(const fs::path& folder, const NameParts& parts, bool is_number) {
+    std::vector<fs::path> files;
+    std::error_code error;
+    for (const auto& entry : fs::directory_iterator(folder, error)) {
+        const std::string name = entry.path().filename().string();
+        if (!entry.is_regular_file() || name.starts_with('.')) continue;
+        const bool fits = name.size() >= parts.before.size() + parts.after.size() && name.starts_with(parts.before) &&
+                          name.ends_with(parts.after);
+        if (!fits) continue;
+        const std::string middle =
+            name.substr(parts.before.size(), name.size() - parts.before.size() - parts.after.size());
+        if (!is_number || (!middle.empty() && std::ranges::all_of(middle, is_decimal_digit)))
+            files.push_back(entry.path());
+    }
+    return files;
 }
+
+/// Those that differ from this name in one number only: the last of its numbers in which any do.
+std::vector<fs::path> numbered_alike(const fs::path& folder, const std::string& name) {
+    for (const NameParts& parts : around_numbers(name))
+        if (auto files = files_between(folder, parts, true); files.size() > 1) return files;
+    throw InvalidInput(
+        fmt::format("{}: 'series: true', but no file beside it differs from it in one number only. Name "
+                    "the series with '*', or leave 'series' out.",
+                    name));
+}
+
+/// Places at rest, by which points are known again: within half a cell of a grid, whichever cell they fall into.
+class PlacesAtRest {
+public:
+    /// The index of a place that was met before, or `next`.
+    std::size_t index_of(const Eigen::Vector3d& place, std::size_t next) {
+        const Cell own = cell_of(place);
+        for (int i = 0; i < 27; ++i) {
+            const auto found = places_.find({own[0] + i % 3 - 1, own[1] + i / 3 % 3 - 1, own[2] + i / 9 - 1});
+            if (found != places_.end() && (found->second.place - place).cwiseAbs().maxCoeff() <= grid / 2)
+                return found->second.index;
+        }
+        places_.try_emplace(own, Known{place, next});
+        return next;
+    }
+
+private:
+    static constexpr double grid = 1e-4;  // [mm]; programs write coordinates to a micrometre or finer
+    using Cell = std::array<double, 3>;
+    struct Known {
+        Eigen::Vector3d place;
+        std::size_t index;
+    };
+
+    static Cell cell_of(const Eigen::Vector3d& place) {
+        return {std::round(place[0] / grid), std::round(place[1] / grid), std::round(place[2] / grid)};
+    }
+
+    std::map<Cell, Known> places_;
+};
 
 /// Of each file: which of the joint points each of its own is.
 struct JointPoints {
@@ -79,7 +130,7 @@ struct JointPoints {
 
 JointPoints by_rest(const std::vector<Recording>& frames) {
     JointPoints joint;
-    std::map<Place, std::size_t> index_of;
+    PlacesAtRest places;
     for (const Recording& frame : frames) {
         auto& index = joint.index.emplace_back();
         for (const RecordedPoint& point : frame.points) {
@@ -87,9 +138,8 @@ JointPoints by_rest(const std::vector<Recording>& frames) {
                 index.push_back(JointPoints::none);
                 continue;
             }
-            const auto [found, is_new] = index_of.try_emplace(rest_of(point, 0), joint.names.size());
-            if (is_new) joint.names.push_back(fmt::format("{}", joint.names.size() + 1));
-            index.push_back(found->second);
+            index.push_back(places.index_of(point.at.col(0) - point.displacement.col(0), joint.names.size()));
+            if (index.back() == joint.names.size()) joint.names.push_back(fmt::format("{}", joint.names.size() + 1));
         }
     }
     return joint;
@@ -142,20 +192,12 @@ std::vector<fs::path> files_of_series(const fs::path& file, bool is_series) {
     const bool is_folder = fs::is_directory(file), has_star = file.filename().string().find('*') != std::string::npos;
     if (!is_folder && !has_star && !is_series) return {file};
     const fs::path folder = is_folder ? file : file.has_parent_path() ? file.parent_path() : fs::path(".");
-    const NameParts parts = is_folder ? NameParts{} : parts_of(file.filename().string());
-    std::vector<fs::path> files;
-    std::error_code error;
-    for (const auto& entry : fs::directory_iterator(folder, error)) {
-        const std::string name = entry.path().filename().string();
-        if (!entry.is_regular_file() || name.starts_with('.')) continue;
-        const bool fits = name.size() >= parts.before.size() + parts.after.size() && name.starts_with(parts.before) &&
-                          name.ends_with(parts.after);
-        if (!fits) continue;
-        const std::string middle =
-            name.substr(parts.before.size(), name.size() - parts.before.size() - parts.after.size());
-        if (is_folder || has_star || (!middle.empty() && std::ranges::all_of(middle, is_decimal_digit)))
-            files.push_back(entry.path());
-    }
+    const std::string name = file.filename().string();
+    const std::size_t star = name.find('*');
+    std::vector<fs::path> files = is_folder ? files_between(folder, {}, false)
+                                  : has_star
+                                      ? files_between(folder, {name.substr(0, star), name.substr(star + 1)}, false)
+                                      : numbered_alike(folder, name);
     if (files.empty())
         throw IoError(fmt::format("{}: {}.", file.string(),
                                   is_folder ? "there are no files in this folder" : "there is no file of such a name"));

@@ -169,6 +169,8 @@ NameAndUnit name_and_unit(std::string_view cell) {
         const std::size_t open = cell.find_last_of(cell.back() == ')' ? '(' : '[');
         if (open != cell.npos && open > 0) {
             const std::string_view unit = cell.substr(open + 1, cell.size() - open - 2);
+            // "C7[0]": a component
+            if (unit.find_first_not_of("0123456789") == unit.npos) return {std::string(cell), ""};
             if (cell.back() == ']' || unit_in_ours(unit) || unit.size() <= 4) return split(open, unit);
         }
     }

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <iterator>
 
+#include "pipeline/output/actuator_unit.h"
 #include "pipeline/output/damping.h"
 #include "pipeline/output/json/json_values.h"
 
@@ -22,11 +23,6 @@ json pressed_at(const identify::MeasurementSet& set, int probe, double time) {
     for (const mesh::Contact& contact : state->contacts)
         if (!contact.force.isZero(0)) return numbers(contact.point);
     return nullptr;
-}
-
-std::string unit_of(const mesh::Actuator& actuator) {
-    const auto* tendon = std::get_if<mesh::TendonActuator>(&actuator.kind);
-    return !tendon ? "MPa" : tendon->by_length ? "mm" : "N";
 }
 
 /// What moves or drives the body in a state, besides forces: "pad by 3.2 mm, t1 at 6 N"; null where nothing does.

@@ -57,7 +57,7 @@ double spacing_of(const mesh::Surface& surface) {
     return *middle;
 }
 
-Points rows_of(const std::vector<Vec3>& points) {
+Points as_points(const std::vector<Vec3>& points) {
     Points rows(std::ssize(points), 3);
     for (std::size_t i = 0; i < points.size(); ++i) rows.row(static_cast<Eigen::Index>(i)) = points[i];
     return rows;
@@ -173,7 +173,7 @@ private:
                 fmt::format("{}: {} node stays where it is; say in a case.yaml where the body is held "
                             "('supports').",
                             options_.folder.string(), in.empty() ? "no" : "every"));
-        settings_.supports = {held_region(rows_of(in), rows_of(out), 0.6 * spacing_of(first_.surface))};
+        settings_.supports = {held_region(as_points(in), as_points(out), 0.6 * spacing_of(first_.surface))};
         made_.notes.push_back(fmt::format(
             "Held at {} nodes {}.", in.size(),
             is_given ? "that *BOUNDARY holds in " + deck->file.filename().string() : "that no field moves"));
@@ -184,7 +184,9 @@ private:
         const double size = mesh::bounding_box(body.vertices).longest_side();
         const double its_size = mesh::bounding_box(first_.surface.vertices).longest_side();
         const double furthest = std::max(furthest_from(body, first_.surface), furthest_from(first_.surface, body));
-        constexpr double allowed = 0.03;  // of the size: chords of coarse elements
+        // Of the size: chords of coarse elements. A sharp edge that elements cut off lies within half a side of them; sides
+        // are up to twice their median.
+        const double allowed = std::max(0.03, spacing_of(first_.surface) / size);
         if (furthest <= allowed * size) return;
         std::string cause = "are they of this body, at rest and not warped by their displacement?";
         for (const double factor : {10.0, 25.4, 1000.0, 0.1, 1 / 25.4, 0.001})

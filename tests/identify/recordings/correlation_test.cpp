@@ -206,6 +206,52 @@ TEST(Series, CorrelatedPointsAreMatchedByTheirPlaceAtRest) {
     EXPECT_EQ(run.points[1].at.col(1), Eigen::Vector3d(4, 5, 7));
 }
 
+TEST(Series, PlacesThatRoundToNeighbouringCellsAreOne) {
+    const TemporaryFolder folder;
+    // -1.68305 lies on the border of two cells of the grid, as does what it is read back as.
+    folder.write("B1.csv", "X,Y,Z,U,V,W,sigma\n-1.68305,2,3,0,0,0,0.1\n4,5,6,0,0,0,0.1\n");
+    folder.write("B2.csv", "X,Y,Z,U,V,W,sigma\n-1.68305,2,3,0.30001,0,0,0.1\n4,5,6,0,0,0,0.1\n");
+    EXPECT_EQ(read_recordings(folder / "B*.csv")[0].points.size(), 2u);
+}
+
+TEST(Series, IsOfTheNumberInWhichFilesDiffer) {
+    const TemporaryFolder folder;
+    FileMap map;
+    map.series = true;
+    for (const char* name : {"def_0_vic3d.ply", "def_1_vic3d.ply"}) folder.write(name, ply_sample);
+    EXPECT_EQ(read_recordings(folder / "def_0_vic3d.ply", map)[0].times.size(), 2);
+    folder.write("alone_7.ply", ply_sample);
+    EXPECT_TRUE(
+        says(message_of([&] { read_recordings(folder / "alone_7.ply", map); }), {"alone_7.ply", "'series: true'"}));
+}
+
+TEST(Correlation, OneSubsetIsARowAFrame) {
+    const Recording run = read_sample(
+        "*** Digital Image Correlation Engine (DICe)\nFRAME,COORDINATE_X,COORDINATE_Y,DISPLACEMENT_X,DISPLACEMENT_Y,"
+        "SIGMA,GAMMA,BETA\n4837,266,376,0,0,0.01,0,0\n4838,266,376,0.5,0.25,0.01,0,0\n");
+    EXPECT_EQ(run.format, "DICe, image correlation");
+    ASSERT_EQ(run.points.size(), 1u);
+    EXPECT_EQ(run.points[0].at.col(1), Eigen::Vector3d(266.5, 376.25, 0));
+}
+
+TEST(Correlation, NodesOfASimulationHaveTheirColumnsNames) {
+    const Recording run = read_sample(
+        "#   index   ;    x_undf  ;    y_undf  ;    z_undf  ;    ux      ;    uy      ;    uz      ;    eps_x   ;   "
+        "eps_y\n"
+        "         1;   -100.0;      2.0;      3.0;      0.5;       0.0;      0.25;      0.1;   0.2\n"
+        "         2;   -99.0;      2.0;      3.0;      0.5;       0.0;      0.25;      0.1;   0.2\n"
+        "         3;   -98.0;      2.0;      3.0;      0.5;       0.0;      0.25;      0.1;   0.2\n");
+    ASSERT_EQ(run.points.size(), 3u);
+    EXPECT_EQ(run.points[2].name, "3");
+    EXPECT_EQ(run.points[2].at.col(0), Eigen::Vector3d(-97.5, 2, 3.25));
+}
+
+TEST(Correlation, AMatrixOverTheImageIsNoMotionCapture) {
+    const TemporaryFolder folder;
+    const auto file = folder.write("plate_1.tif_U[mm].csv", "-0,1;0,2;Non un numero reale\n0,1;0,2;0,3\n0,1;0,2;0,3\n");
+    EXPECT_TRUE(says(message_of([&] { read_recordings(file); }), {"MatchID", "3 rows and 3 columns", "x, y, u, v"}));
+}
+
 TEST(Series, CollectionTellsItsFilesAndTimes) {
     const TemporaryFolder folder;
     folder.write("a.vtk", vtk_sample);

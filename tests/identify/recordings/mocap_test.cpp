@@ -23,6 +23,14 @@ TEST(Trc, HoldsMarkersAndTimes) {
     EXPECT_TRUE(run.has_clock);
 }
 
+TEST(Trc, MayBeSeparatedByTwoTabs) {
+    const Recording run = read_sample(
+        "PathFileType\t4\t(X/Y/Z)\trun.trc\nDataRate\tCameraRate\tNumFrames\tNumMarkers\tUnits\n"
+        "100.0\t\t100.0\t\t2\t\t1\t\tcm\nFrame#\tTime\tBase\t\t\n\t\tX1\tY1\tZ1\n\n1\t0\t1\t2\t3\n2\t0.01\t1\t2\t4\n");
+    ASSERT_EQ(run.points.size(), 1u);
+    EXPECT_EQ(run.points[0].at.col(1), Eigen::Vector3d(10, 20, 40));
+}
+
 TEST(Trc, SaysWhereItIsBroken) {
     EXPECT_TRUE(says(refusal_of("PathFileType\t4\n"), {"cut off"}));
     EXPECT_TRUE(says(refusal_of(replaced(trc_sample, "\t2\tcm", "\t3\tcm")), {"3 markers", "names 2"}));
@@ -47,14 +55,33 @@ TEST(Motive, TakesMarkersAndLeavesBodiesOut) {
     EXPECT_TRUE(notes_tell(take, "Rigid Body"));
 }
 
+TEST(Motive, TimecodesAreNoNumbers) {
+    const Recording take = read_sample(
+        "Format Version,1.24,Length Units,Centimeters\n\n,Type,,Marker,Marker,Marker\n,Name,,a,a,a\n,ID,,1,1,1\n"
+        ",,,Position,Position,Position\nFrame,Time (Seconds),TimeCode,X,Y,Z\n0,0.0,15:26:46:12.02,1,2,3\n"
+        "1,0.01,15:26:46:12.03,1,2,4\n");
+    ASSERT_EQ(take.points.size(), 1u);
+    EXPECT_EQ(take.points[0].at.col(1), Eigen::Vector3d(10, 20, 40));
+}
+
+TEST(Motive, PivotsOfBodiesStandInForMarkers) {
+    const Recording take = read_sample(
+        "Format Version,1.23,Length Units,Meters\n\n,Type,Rigid Body,Rigid Body,Rigid Body,Rigid Body,Rigid Body,Rigid "
+        "Body,Rigid Body\n,Name,pad,pad,pad,pad,pad,pad,pad\n,ID,1,1,1,1,1,1,1\n"
+        ",,Rotation,Rotation,Rotation,Rotation,Position,Position,Position\nFrame,Time "
+        "(Seconds),X,Y,Z,W,X,Y,Z\n0,0.0,0,0,0,1,0.1,0.2,0.3\n1,0.01,0,0,0,1,0.1,0.2,0.4\n");
+    ASSERT_EQ(take.points.size(), 1u);
+    EXPECT_EQ(take.points[0].name, "pad");
+    EXPECT_TRUE(take.points[0].at.col(1).isApprox(Eigen::Vector3d(100, 200, 400)));
+    EXPECT_TRUE(notes_tell(take, "pivots of rigid bodies"));
+}
+
 TEST(Motive, SaysWhatIsMissing) {
     EXPECT_TRUE(says(refusal_of(replaced(motive_sample, ",Type,", ",Kind,")), {"'Type'", "header information"}));
     EXPECT_TRUE(says(refusal_of(replaced(motive_sample, "Meters", "Feetish")), {"Feetish", "no unit of length"}));
     std::string no_markers = motive_sample;
-    for (const char* kind : {"Rigid Body Marker", "Marker,Marker,Marker,Marker,Marker,Marker"})
-        for (std::size_t at; (at = no_markers.find(kind)) != std::string::npos;)
-            no_markers.replace(at, std::string(kind).size(),
-                               std::string(kind) == "Rigid Body Marker" ? "Bone" : "Bone,Bone,Bone,Bone,Bone,Bone");
+    for (const char* kind : {"Rigid Body Marker", "Rigid Body", "Marker"})
+        while (no_markers.find(kind) != std::string::npos) no_markers = replaced(no_markers, kind, "Bone");
     EXPECT_TRUE(says(refusal_of(no_markers), {"holds no markers", "Bone"}));
 }
 

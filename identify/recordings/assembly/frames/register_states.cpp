@@ -115,13 +115,13 @@ double off_surface(const mesh::SurfaceTree& tree, const Points& points, double s
     return std::sqrt(squares / static_cast<double>(std::max<Eigen::Index>(points.rows(), 1)));
 }
 
-Registration fit_by_surface(const ImportMap& map, const ProbeStates& rest, std::string& how) {
+Registration fit_by_surface(const ImportMap& map, const RestState& rest, std::string& how) {
     if (rest.probe->is_planar)
         throw InvalidInput(
             fmt::format("{}: points in a plane cannot be registered to a surface. Name two of them whose place "
                         "on the mesh is known (fiducials).",
                         map.file.filename().string()));
-    const Points points = seen_in(*rest.probe, rest.states.front());
+    const Points points = seen_in(*rest.probe, rest.state);
     if (points.rows() == 0)
         throw InvalidInput(
             fmt::format("{}: no point was seen in the first state of probe {}, so there is nothing to register "
@@ -132,7 +132,7 @@ Registration fit_by_surface(const ImportMap& map, const ProbeStates& rest, std::
     const mesh::SurfaceTree tree(map.set.rest_surface);
     const double off = off_surface(tree, points, map.registration.stand_off);
     if (map.registration.kind == RegisterRule::Kind::automatic && off < nearly_there * longest) {
-        how = fmt::format("not at all: the points lie {:.3g} mm rms off the surface as they are", off);
+        how = fmt::format("nothing: the points lie {:.3g} mm rms off the surface as they are", off);
         Registration as_it_is;
         as_it_is.rms = off;
         as_it_is.points = static_cast<int>(points.rows());
@@ -144,10 +144,10 @@ Registration fit_by_surface(const ImportMap& map, const ProbeStates& rest, std::
 
 }  // namespace
 
-StateFrames register_states(const ImportMap& map, const std::vector<ProbeStates>& probes, const ProbeStates& rest,
+StateFrames register_states(const ImportMap& map, const std::vector<ProbeStates>& probes, const RestState& rest,
                             ImportReport& report) {
     StateFrames frames;
-    const ImportedState& first = rest.states.front();
+    const ImportedState& first = rest.state;
     const Counterparts found = counterparts_in(map, *rest.probe, first, map.is_rest_seen);
     const RegisterRule& rule = map.registration;
     const bool is_by_names = rule.kind != RegisterRule::Kind::none && rule.kind != RegisterRule::Kind::surface &&
@@ -155,9 +155,9 @@ StateFrames register_states(const ImportMap& map, const std::vector<ProbeStates>
     bool has_points = false;
     for (const ProbeStates& probe : probes) has_points = has_points || !probe.probe->points.empty();
     if (!has_points) {
-        report.registered_by = "not at all: no points were recorded";
+        report.registered_by = "nothing: no points were recorded";
     } else if (rule.kind == RegisterRule::Kind::none) {
-        report.registered_by = "not at all, as the map says";
+        report.registered_by = "nothing, as the map says";
         report.registration = Registration{};
         if (rule.axes) report.registration->motion.R = *rule.axes;
     } else if (is_by_names) {

@@ -5,7 +5,7 @@
 #include "identify/recordings/assembly/frames/rigid_motion.h"
 #include "identify/recordings/assembly/import_report.h"
 #include "identify/recordings/assembly/map/import_map.h"
-#include "identify/recordings/assembly/states/imported_state.h"
+#include "identify/recordings/assembly/states/rest_state.h"
 
 namespace palpate::identify {
 
@@ -14,15 +14,9 @@ struct StateFrames {
     std::vector<RigidMotion> of_state;  // of each probe's states, one after the other
 };
 
-/// What is registered: the states of all probes.
-struct ProbeStates {
-    const ProbeRecording* probe = nullptr;
-    std::vector<ImportedState> states;
-};
-
-/// Registers by the map's rule, and tells residual and uncertainty in the report. `rest`: the probe whose first state
-/// shows the body at rest. @throws InvalidInput where there is nothing to register by, and for a slip of units.
-StateFrames register_states(const ImportMap& map, const std::vector<ProbeStates>& probes, const ProbeStates& rest,
+/// Registers by the map's rule, and tells residual and uncertainty in the report. @throws InvalidInput where there is
+/// nothing to register by, and for a slip of units.
+StateFrames register_states(const ImportMap& map, const std::vector<ProbeStates>& probes, const RestState& rest,
                             ImportReport& report);
 
 }  // namespace palpate::identify

@@ -112,6 +112,8 @@ struct ImportMap {
     bool names_markers = false;     // `markers` stands there: other points are none
     std::optional<int> rest_probe;  // whose first state shows the body at rest; absent: the first one's
     bool is_rest_seen = true;
+    /// Points rest where the files' displacements count from; absent: where the first frames show them elsewhere.
+    std::optional<bool> is_rest_of_files;
     bool reads_displacements = false;  // readings count from the rest's first state
     ClockRule clock;
     StateRule states;

@@ -103,21 +103,24 @@ void read_registration(const YamlFields& yaml, const std::vector<fs::path>& fold
     frame.finish();
 }
 
-/// "first": the first state of the first probe; "none": no state; or the number of a probe.
+/// "auto"; "file": where displacements count from; "first": the first state of the first probe; "none": no state; or
+/// the number of a probe.
 void read_rest(const YamlFields& yaml, ImportMap& map) {
     if (!yaml.has("rest")) return;
     const std::string rest = yaml.text("rest");
-    if (rest == "first") return;
+    if (rest == "auto") return;
+    map.is_rest_of_files = rest == "file";
+    if (rest == "first" || rest == "file") return;
     if (rest == "none") {
         map.is_rest_seen = false;
         return;
     }
     map.rest_probe = mesh::parse_integer(rest);
     if (!map.rest_probe)
-        throw InvalidInput(
-            fmt::format("{}: {} is not allowed. Allowed: 'first', 'none', or the number of the probe whose "
-                        "first state shows the body at rest.",
-                        yaml.where("rest"), mesh::cited(rest)));
+        throw InvalidInput(fmt::format(
+            "{}: {} is not allowed. Allowed: 'auto', 'file' (where displacements count from), 'first', 'none', "
+            "or the number of the probe whose first state shows the body at rest.",
+            yaml.where("rest"), mesh::cited(rest)));
 }
 
 /// The body at rest, of the map or of the command line.

@@ -88,7 +88,8 @@ C3dLayout layout_of(const C3dBytes& bytes, const C3dParameters& parameters) {
     layout.scale = std::abs(scale);
     layout.rate = parameters.number("POINT:RATE", static_cast<double>(bytes.real(20)));
     layout.first = bytes.word(6);
-    const double start = parameters.number("POINT:DATA_START", bytes.word(16));
+    double start = parameters.number("POINT:DATA_START", bytes.word(16));
+    if (start == 0) start = bytes.word(16);  // some programs tell it in the header alone
     const std::size_t start_block = checked("POINT:DATA_START", start < 0 ? start + 65536 : start, 2, 65535);
     layout.at = block * (start_block - 1);
 

@@ -54,7 +54,8 @@ struct Markers {
     std::set<std::string> left_out;  // types of columns that are no markers
 };
 
-Markers markers_in(const TextFile& text, const MotiveHead& head) {
+/// @param takes_bodies pivots of rigid bodies, too
+Markers markers_in(const TextFile& text, const MotiveHead& head, bool takes_bodies) {
     const auto types = text.cells(head.types), names = text.cells(head.names), quantities = text.cells(head.quantities),
                axes = text.cells(head.axes);
     const auto cell = [](const std::vector<std::string_view>& cells, std::size_t c) {
@@ -63,9 +64,10 @@ Markers markers_in(const TextFile& text, const MotiveHead& head) {
     Markers markers;
     for (std::size_t c = 2; c < axes.size(); ++c) {
         const std::string type = lower_case(cell(types, c)), axis = lower_case(axes[c]);
+        const bool is_body = type == "rigid body";
         const bool is_marker = type == "marker" || type == "rigid body marker" || type == "bone marker" ||
                                type == "skeleton marker" || type == "asset marker";
-        if (!is_marker) {
+        if (!is_marker && !(is_body && takes_bodies)) {
             markers.left_out.insert(std::string(cell(types, c)));
             continue;
         }
@@ -98,11 +100,17 @@ bool is_motive(const TextFile& text) {
 Recording read_motive(const TextFile& text, const FileMap& map) {
     const std::string file = text.file().filename().string();
     const MotiveHead head = head_of(text);
-    const Markers markers = markers_in(text, head);
+    Markers markers = markers_in(text, head, false);
+    const bool has_bodies_alone = markers.order.empty();
+    if (has_bodies_alone) markers = markers_in(text, head, true);
     auto settings = motive_settings(text);
     std::vector<std::string> columns;
-    for (const std::string_view cell : text.cells(head.axes)) columns.emplace_back(cell);
-    const NumberRows rows = read_number_rows(text, head.axes + 1, text.lines(), columns);
+    std::vector<char> are_texts;
+    for (const std::string_view cell : text.cells(head.axes)) {
+        columns.emplace_back(cell);
+        are_texts.push_back(lower_case(cell) == "timecode");  // of 1.24 and later: 15:26:46:12.02
+    }
+    const NumberRows rows = read_number_rows(text, head.axes + 1, text.lines(), columns, are_texts);
     if (rows.lines.empty()) throw InvalidInput(fmt::format("{}: holds no frame. Export the take again.", file));
 
     Recording recording = begun(file, "OptiTrack Motive, CSV");
@@ -128,6 +136,8 @@ Recording read_motive(const TextFile& text, const FileMap& map) {
         set_times(
             time, map, [&](Eigen::Index r) { return text.where(rows.lines[static_cast<std::size_t>(r)]); }, recording);
     }
+    if (has_bodies_alone)
+        recording.notes.emplace_back("no markers: points are the pivots of rigid bodies, whose turns are left out");
     for (const std::string& type : markers.left_out)
         if (!type.empty()) recording.notes.push_back(fmt::format("columns of type {}: left out", mesh::cited(type)));
     if (!settings["coordinate space"].empty() && lower_case(settings["coordinate space"]) != "global")

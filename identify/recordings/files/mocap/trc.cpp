@@ -13,9 +13,16 @@
 namespace palpate::identify {
 namespace {
 
+/// Cells with something in them: some programs separate by two tabs.
+std::vector<std::string_view> filled_cells(const TextFile& text, int line) {
+    std::vector<std::string_view> cells = text.cells(line);
+    std::erase_if(cells, [](std::string_view cell) { return cell.empty(); });
+    return cells;
+}
+
 /// The two lines of settings: names above values.
 std::map<std::string, std::string> settings_of(const TextFile& text) {
-    const auto names = text.cells(1), values = text.cells(2);
+    const auto names = filled_cells(text, 1), values = filled_cells(text, 2);
     std::map<std::string, std::string> settings;
     for (std::size_t c = 0; c < std::min(names.size(), values.size()); ++c)
         settings[lower_case(names[c])] = std::string(values[c]);

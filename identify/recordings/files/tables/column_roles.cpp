@@ -57,7 +57,7 @@ bool is_other_vector(const std::string& point) {
         "f",     "force",    "forces", "moment",       "moments",  "torque",      "acc",        "gyro",   "mag",
         "vel",   "velocity", "rot",    "acceleration", "rotation", "orientation", "quaternion", "quat",   "q",
         "angle", "euler",    "omega",  "linear",       "angular",  "wrench",      "kraft",      "strain", "stress",
-        "load",  "normal",   "std",    "sigma",        "error",    "err",         "covariance"};
+        "load",  "normal",   "std",    "sigma",        "error",    "err",         "covariance", "eps",    "epsilon"};
     // The last word counts: "imu.linear_acceleration", "F 2".
     std::string bare = lower_case(point);
     bare.erase(bare.find_last_not_of("0123456789_ .:-/") + 1);
@@ -123,6 +123,9 @@ void find_points(const NumberTable& table, std::vector<char>& used, ColumnRoles&
         if (point.at[0] < 0 || point.at[1] < 0) continue;
         for (const int c : point.at)
             if (c >= 0) used[static_cast<std::size_t>(c)] = 1;
+        // "C7[3]" beside "C7[0]" to "C7[2]": the 1 of homogeneous coordinates
+        for (std::size_t c = 0; c < used.size(); ++c)
+            if (!name.empty() && table.columns[c].name == name + "[3]") used[c] = 1;
         roles.points.push_back(point);
         if (roles.points.back().name.empty()) roles.points.back().name = "1";
     }
@@ -181,6 +184,10 @@ CoordinateName coordinate_in(const std::string& name) {
         return text;
     };
     if (name.empty()) return {};
+    if (name.ends_with(']') && name.size() > 3 && name[name.size() - 3] == '[' && is_digit(name[name.size() - 2])) {
+        const int component = name[name.size() - 2] - '0';
+        return {name.substr(0, name.size() - 3), component < 3 ? component : -1};
+    }
     if (name.size() == 1) return {"", axis_of(name[0])};
     const char before = name[name.size() - 2];
     // "tip-px" beside "tip-qx", of a pose

@@ -15,6 +15,7 @@ constexpr std::string_view coordinate_names[]{"model_coordinates_@",
                                               "coordinate_@",
                                               "@_undef",
                                               "@ undef",
+                                              "@_undf",
                                               "@_undeformed",
                                               "undeformed @",
                                               "@_ref",
@@ -166,8 +167,10 @@ std::optional<PointRowColumns> point_rows_in(const NumberTable& table, const Tex
     columns.quality = find_any(table, {"sigma"});
     const bool is_moving = columns.frame >= 0 || columns.time >= 0;
     const bool has_displacement = columns.displacement[0] >= 0;
-    // With instants and without names it is one point that moves.
-    if (is_moving && columns.point < 0) return std::nullopt;
+    // "index" names points as well as rows: where nothing else does, and they do not move within the table
+    if (has_displacement && columns.point < 0 && !is_moving) columns.point = find_any(table, {"index"});
+    // With instants and without names it is one point that moves; image correlation tells from where.
+    if (is_moving && columns.point < 0 && !has_displacement) return std::nullopt;
     columns.format = has_displacement ? program_of(table) : "table, a row for each point";
     take_stage(table, columns);
     return columns;

@@ -176,9 +176,13 @@ Recording rows_of_instants(const NumberTable& table, const TextFile& text, const
         add_found_channels(table, roles, recording);
     }
     name_points(map, file, recording);
-    for (const NumberColumn& column : table.columns)
-        if (column.is_text && &column != time)
-            recording.notes.push_back(fmt::format("column {} holds texts: left out", mesh::cited(column.name)));
+    for (std::size_t c = 0; c < table.columns.size(); ++c) {
+        const NumberColumn& column = table.columns[c];
+        if (!column.is_text || &column == time) continue;
+        recording.notes.push_back(fmt::format("column {} holds texts: left out", column.name.empty()
+                                                                                     ? fmt::format("{}", c + 1)
+                                                                                     : mesh::cited(column.name)));
+    }
     return recording;
 }
 

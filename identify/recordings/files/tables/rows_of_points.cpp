@@ -175,13 +175,28 @@ Recording rows_of_points(const NumberTable& table, const PointRowColumns& column
     return recording;
 }
 
+/// "plate_0001.tif_U[mm].csv": MatchID writes a coordinate over the image into a file each.
+bool is_matrix_of_image(const std::string& file) {
+    for (const char quantity : {'U', 'V', 'W', 'X', 'Y', 'Z'})
+        for (const char* unit : {"mm", "pixel"})
+            if (file.find(fmt::format("_{}[{}]", quantity, unit)) != file.npos) return true;
+    return false;
+}
+
 Recording read_table(const TextFile& text, const FileMap& map) {
     const NumberTable table = read_number_table(text, map);
+    const std::string file = text.file().filename().string();
+    if (!table.has_names && map.points.empty() && map.channels.empty() && is_matrix_of_image(file))
+        throw InvalidInput(fmt::format(
+            "{}: one quantity over the image, {} rows and {} columns, as MatchID writes it, and no places that "
+            "it belongs to. Export the points instead: a row for each, with columns x, y, u, v.",
+            file, table.rows(), table.columns.size()));
     if (const auto columns = point_rows_in(table, text, map)) return rows_of_points(table, *columns, text, map);
     Recording recording = rows_of_instants(table, text, map);
     const auto tells = [&](const char* word) { return table.preamble.find(word) != std::string::npos; };
     const bool is_zwick = tells("standardkraft") || tells("standard force") || tells("testxpert") || tells("zwick") ||
-                          tells("standardweg") || tells("traversenweg");
+                          tells("standardweg") || tells("traversenweg") ||
+                          (tells("force standard") && tells("traverse"));
     const bool is_bluehill =
         tells("bluehill") || tells("instron") || tells("specimen label") || (tells("extension") && tells("load"));
     recording.format = is_zwick                  ? "testing machine, Zwick testXpert"

@@ -44,9 +44,11 @@ std::string plain_number(std::string_view cell, const Dialect& dialect) {
 }
 
 bool is_missing_word(const std::string& word) {
-    static constexpr std::array words{"nan",  "na",   "n/a",  "n.a.",      "null",    "none",     "-",       "--",
-                                      "---",  "----", "#n/a", "#value!",   "#div/0!", "1.#qnan",  "-1.#ind", "1.#ind",
-                                      "-nan", "+nan", "nil",  "-nan(ind)", "missing", "(missing)"};
+    static constexpr std::array words{"nan", "na", "n/a", "n.a.", "null", "none", "-", "--", "---", "----", "#n/a",
+                                      "#value!", "#div/0!", "1.#qnan", "-1.#ind", "1.#ind", "-nan", "+nan", "nil",
+                                      "-nan(ind)", "missing", "(missing)",
+                                      // as .NET writes it in Italian, German, Spanish, French
+                                      "non un numero reale", "n. def.", "neun", "non num\xC3\xA9rique"};
     return std::ranges::find(words, word) != words.end();
 }
 

@@ -9,7 +9,8 @@
 
 namespace palpate::identify {
 
-NumberRows read_number_rows(const TextFile& text, int first, int end, const std::vector<std::string>& columns) {
+NumberRows read_number_rows(const TextFile& text, int first, int end, const std::vector<std::string>& columns,
+                            const std::vector<char>& are_texts) {
     NumberRows rows;
     const std::size_t width = columns.size();
     std::size_t cells_there = 0;
@@ -36,6 +37,7 @@ NumberRows read_number_rows(const TextFile& text, int first, int end, const std:
     for (std::size_t r = 0; r < rows.lines.size(); ++r) {
         const auto cells = text.cells(rows.lines[r]);
         for (std::size_t c = 0; c < std::min(cells.size(), width); ++c) {
+            if (c < are_texts.size() && are_texts[c]) continue;
             const CellValue cell = value_of(cells[c], text.dialect());
             if (cell.kind == CellValue::Kind::number)
                 rows.values(static_cast<Eigen::Index>(r), static_cast<Eigen::Index>(c)) = cell.value;

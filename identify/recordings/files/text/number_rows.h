@@ -15,8 +15,10 @@ struct NumberRows {
 
 /// Those in lines `first` to `end` - 1; blank lines are skipped, cells that are missing at the end of a row may be left
 /// out. @param columns their names, for messages; their number is the width
+/// @param are_texts which columns are left out; may be empty
 /// @throws InvalidInput naming the cell that is no number, or the line that has too many.
-NumberRows read_number_rows(const TextFile& text, int first, int end, const std::vector<std::string>& columns);
+NumberRows read_number_rows(const TextFile& text, int first, int end, const std::vector<std::string>& columns,
+                            const std::vector<char>& are_texts = {});
 
 /// @throws InvalidInput naming line and column of a cell that is no number.
 [[noreturn]] void refuse_cell(const TextFile& text, int line, const std::string& column, std::string_view cell);

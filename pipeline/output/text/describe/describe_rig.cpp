@@ -9,6 +9,7 @@
 #include "identify/loading/loads.h"
 #include "identify/measurements/rig/cavities.h"
 #include "identify/measurements/rig/fittable.h"
+#include "pipeline/output/actuator_unit.h"
 
 namespace palpate::pipeline {
 namespace {
@@ -127,11 +128,6 @@ struct ActuatorInWords {
                            path_length(tendon.path), tendon.by_length ? "length" : "tension");
     }
 };
-
-const char* unit_of(const mesh::Actuator& actuator) {
-    const auto* tendon = std::get_if<mesh::TendonActuator>(&actuator.kind);
-    return !tendon ? "MPa" : tendon->by_length ? "mm" : "N";
-}
 
 std::string actuator_in_words(const identify::MeasurementSet& set, int number) {
     const mesh::Actuator& actuator = set.actuators[static_cast<std::size_t>(number)];

@@ -16,7 +16,7 @@ namespace {
 
 using testing::HasSubstr;
 
-constexpr Damage soft{.share = 0.6, .strain = 0.1};
+constexpr Damage damaged{.share = 0.6, .strain = 0.1};
 constexpr Plasticity yielding{.yield = 0.06, .hardening = 0.2};
 const Mat3 strained = (Mat3() << 1.1, 0.1, -0.05, 0.03, 0.95, 0.08, -0.1, 0.04, 1.02).finished();
 
@@ -28,7 +28,7 @@ Eigen::VectorXd as_rows(const Mat3& A) { return A.reshaped<Eigen::RowMajor>(); }
 
 TEST(Damage, LeavesTheFirstCurveAsItIs) {
     for (const double D : {0.0, 0.003, 0.2}) {
-        const DamageTerms terms = damage_energy(soft, 0.003, std::max(D, 0.003));
+        const DamageTerms terms = damage_energy(damaged, 0.003, std::max(D, 0.003));
         EXPECT_EQ(terms.first, 0);
         EXPECT_EQ(terms.second, 0);
     }
@@ -37,9 +37,9 @@ TEST(Damage, LeavesTheFirstCurveAsItIs) {
 TEST(Damage, TermsAreDerivatives) {
     constexpr double most = 0.02, h = 1e-6;
     for (const double D : {0.0, 0.004, 0.015, 0.0199}) {
-        const DamageTerms at = damage_energy(soft, most, D), up = damage_energy(soft, most, D + h),
-                          down = damage_energy(soft, most, D - h), beyond = damage_energy(soft, most + h, D),
-                          within = damage_energy(soft, most - h, D);
+        const DamageTerms at = damage_energy(damaged, most, D), up = damage_energy(damaged, most, D + h),
+                          down = damage_energy(damaged, most, D - h), beyond = damage_energy(damaged, most + h, D),
+                          within = damage_energy(damaged, most - h, D);
         // Truncation: h^2 / m^2 with m = 0.015.
         EXPECT_NEAR((up.energy - down.energy) / (2 * h), at.first, 1e-8);
         EXPECT_NEAR((up.first - down.first) / (2 * h), at.second, 1e-6 * at.second);
@@ -48,18 +48,18 @@ TEST(Damage, TermsAreDerivatives) {
 }
 
 TEST(Damage, TakesItsShareOfAPointThatBoreMuch) {
-    const double m = 1.5 * soft.strain * soft.strain;
-    EXPECT_DOUBLE_EQ(damage_energy(soft, m, 0).first, -soft.share * std::erf(1.0));
-    EXPECT_NEAR(damage_energy(soft, 100 * m, 0).first, -soft.share, 1e-15);
-    EXPECT_EQ(damage_energy(soft, m, 0).energy, 0);  // no energy at rest
+    const double m = 1.5 * damaged.strain * damaged.strain;
+    EXPECT_DOUBLE_EQ(damage_energy(damaged, m, 0).first, -damaged.share * std::erf(1.0));
+    EXPECT_NEAR(damage_energy(damaged, 100 * m, 0).first, -damaged.share, 1e-15);
+    EXPECT_EQ(damage_energy(damaged, m, 0).energy, 0);  // no energy at rest
 }
 
 TEST(MaterialPoint, DamageHasAPotentialAndItsTangent) {
     for (const MaterialLaw law : laws) {
-        const MaterialPoint used = material_point(law, {}, soft, {}, strained);
+        const MaterialPoint used = material_point(law, {}, damaged, {}, strained);
         for (const double share : {0.3, 0.9, 1.4}) {
             const auto terms = [&](const Mat3& F, bool with_second) {
-                return damage_terms(law, soft, used.most, F, {}, with_second);
+                return damage_terms(law, damaged, used.most, F, {}, with_second);
             };
             const auto energy = [&](const Eigen::VectorXd& at) {
                 return Eigen::VectorXd::Constant(1, terms(as_square(at), false).w).eval();
@@ -78,24 +78,24 @@ TEST(MaterialPoint, DamageHasAPotentialAndItsTangent) {
 
 TEST(MaterialPoint, DamageIsThatOfElasticStrain) {
     for (const MaterialLaw law : laws) {
-        const MaterialPoint flowed = material_point(law, yielding, soft, {}, strained);
+        const MaterialPoint flowed = material_point(law, yielding, damaged, {}, strained);
         EXPECT_GT(flowed.plastic.alpha, 0.01);
         // Less than the law's own energy there: the rest has flowed. Standing there again is nothing new.
-        EXPECT_LT(flowed.most, 0.9 * material_point(law, {}, soft, {}, strained).most);
-        EXPECT_NEAR(material_point(law, yielding, soft, flowed, strained).most, flowed.most, 1e-14);
-        EXPECT_EQ(material_point(law, yielding, soft, flowed, share_of(0.8)).most, flowed.most);
+        EXPECT_LT(flowed.most, 0.9 * material_point(law, {}, damaged, {}, strained).most);
+        EXPECT_NEAR(material_point(law, yielding, damaged, flowed, strained).most, flowed.most, 1e-14);
+        EXPECT_EQ(material_point(law, yielding, damaged, flowed, share_of(0.8)).most, flowed.most);
         // Where it flowed to it stands on its first curve.
         const MaterialTerms flow = plastic_terms(law, yielding, flowed.plastic, strained, false, false);
-        EXPECT_LT(damage_terms(law, soft, flowed.most, strained, flow, false).first.norm(), 1e-7);
+        EXPECT_LT(damage_terms(law, damaged, flowed.most, strained, flow, false).first.norm(), 1e-7);
         const Mat3 back = share_of(0.8);
         const MaterialTerms then = plastic_terms(law, yielding, flowed.plastic, back, false, true);
         const auto first = [&](const Eigen::VectorXd& at) {
             const Mat3 F = as_square(at);
-            return as_rows(damage_terms(law, soft, flowed.most, F,
+            return as_rows(damage_terms(law, damaged, flowed.most, F,
                                         plastic_terms(law, yielding, flowed.plastic, F, false, false), false)
                                .first);
         };
-        const MaterialTerms terms = damage_terms(law, soft, flowed.most, back, then, true);
+        const MaterialTerms terms = damage_terms(law, damaged, flowed.most, back, then, true);
         EXPECT_LT((differences(first, as_rows(back), 1e-6) - terms.second).norm(), 1e-7);
     }
 }
@@ -103,8 +103,8 @@ TEST(MaterialPoint, DamageIsThatOfElasticStrain) {
 TEST(MaterialPoint, TurnsWithTheBody) {
     const Mat3 R = Eigen::AngleAxisd(2, Vec3(1, 2, -1).normalized()).toRotationMatrix();
     for (const MaterialLaw law : {MaterialLaw::svk, MaterialLaw::neo_hookean}) {
-        EXPECT_NEAR(material_point(law, {}, soft, {}, R * strained).most,
-                    material_point(law, {}, soft, {}, strained).most, 1e-14);
+        EXPECT_NEAR(material_point(law, {}, damaged, {}, R * strained).most,
+                    material_point(law, {}, damaged, {}, strained).most, 1e-14);
     }
 }
 
@@ -195,7 +195,7 @@ TEST(DamagedBar, ForcesAreConsistent) {
             BodySetting setting{law, {.young = 0.7, .poisson = 0.4, .density = 0}, {}};
             setting.effects.material = {std::make_shared<Stiffening>(0.5, 2.0)};
             const Eigen::VectorXd elastic = body.residual(back, setting, none);
-            setting.effects.damage = soft;
+            setting.effects.damage = damaged;
             EXPECT_EQ(relative(body.residual(back, setting, none), elastic), 0);  // strained for the first time
             const auto state = body.state_after(u, setting, nullptr);
             EXPECT_GT(relative(body.residual(back, setting, none, state.get()), elastic), 0.05);

@@ -164,5 +164,43 @@ TEST_F(RigOfABar, NamesItsPointsByTheirDistances) {
     EXPECT_TRUE(says(all_notes(got), {"by their distances", "'clamp4'"}));
 }
 
+/// A file of image correlation: places at rest and the way from there.
+struct CorrelatedBar : ::testing::Test {
+    TemporaryFolder folder;
+    ImportedSet imported(const std::string& rest, double first_way) const {
+        mesh::write_surface(folder / "bar.stl", mesh::make_box({0, 0, 0}, {100, 20, 20}, {20, 4, 4}));
+        std::string text = "frame,id,x,y,z,u,v,w\n";
+        for (const auto& [frame, way] : {std::pair(0, first_way), std::pair(1, 2.0)})
+            for (int p = 1; p <= 4; ++p)
+                text += std::to_string(frame) + "," + std::to_string(p) + "," + std::to_string(20 * p) + ",10,20,0,0," +
+                        std::to_string(-way * p) + "\n";
+        folder.write("dic.csv", text);
+        folder.write("map.yaml",
+                     "name: bar\nmesh: bar.stl\nsupports:\n  - box: {min: [-1, -1, -1], max: [1, 21, 21]}\n"
+                     "files:\n  - {file: dic.csv, rate: 1}\nregister: none\nstates: all\n" +
+                         rest);
+        return import_set({.map = folder / "map.yaml", .files = {}});
+    }
+};
+
+TEST_F(CorrelatedBar, RestsWhereItsDisplacementsCountFrom) {
+    const ImportedSet got = imported("", 0.5);
+    ASSERT_EQ(got.set.markers.size(), 4u);
+    EXPECT_TRUE(got.set.markers[1].rest.isApprox(Vec3(40, 10, 20)));
+    ASSERT_EQ(got.set.states.size(), 2u);
+    ASSERT_EQ(got.set.states[0].readings.size(), 4u);
+    EXPECT_TRUE(got.set.states[0].readings[1].position.isApprox(Vec3(40, 10, 19)));
+    // Where displacements are asked for they count from there, too.
+    const ImportedSet displaced = imported("readings: displacements\n", 0.5);
+    EXPECT_EQ(displaced.set.states[0].readings.size(), 4u);
+    EXPECT_FALSE(displaced.set.states[0].readings[0].since);
+}
+
+TEST_F(CorrelatedBar, RestsInItsFirstStateWhereThatIsMeantOrTheSame) {
+    EXPECT_TRUE(imported("rest: first\n", 0.5).set.markers[1].rest.isApprox(Vec3(40, 10, 19)));
+    EXPECT_EQ(imported("", 0).set.states[0].readings.size(), 4u);  // the reference is a reading, with its noise
+    EXPECT_TRUE(imported("rest: file\n", 0).set.markers[1].rest.isApprox(Vec3(40, 10, 20)));
+}
+
 }  // namespace
 }  // namespace palpate::identify

@@ -29,8 +29,8 @@ std::string head(const char* version, const char* encoding, const char* dataset)
 }
 
 /// The corners of a cube of 2 mm, as VTK counts those of a hexahedron.
-const char* const cube = "0 0 0  2 0 0  2 2 0  0 2 0  0 0 2  2 0 2  2 2 2  0 2 2\n";
-const std::string grid = head("3.0", "ASCII", "UNSTRUCTURED_GRID") + "POINTS 8 float\n" + cube;
+const char* const corners_of_cube = "0 0 0  2 0 0  2 2 0  0 2 0  0 0 2  2 0 2  2 2 2  0 2 2\n";
+const std::string grid = head("3.0", "ASCII", "UNSTRUCTURED_GRID") + "POINTS 8 float\n" + corners_of_cube;
 
 /// A number as legacy binary files hold it, big end first.
 template <class Number>
@@ -62,7 +62,7 @@ TEST_F(ReadLegacyVtk, HexahedraAndWedgesAreCut) {
 }
 
 TEST_F(ReadLegacyVtk, VersionFiveCountsCellsByOffsets) {
-    const BodyFile body = read(head("5.1", "ASCII", "UNSTRUCTURED_GRID") + "POINTS 8 float\n" + cube +
+    const BodyFile body = read(head("5.1", "ASCII", "UNSTRUCTURED_GRID") + "POINTS 8 float\n" + corners_of_cube +
                                "CELLS 2 8\nOFFSETS vtktypeint64\n0 8\nCONNECTIVITY vtktypeint64\n0 1 2 3 4 5 6 "
                                "7\nCELL_TYPES 1\n12\n");
     EXPECT_NEAR(element_volumes(*body.volume).sum(), 8, 1e-9);
@@ -70,7 +70,7 @@ TEST_F(ReadLegacyVtk, VersionFiveCountsCellsByOffsets) {
 
 TEST_F(ReadLegacyVtk, PolygonsStripsAndFlatCellsAreASurface) {
     const std::string sides = "POLYGONS 6 30\n4 0 3 2 1\n4 4 5 6 7\n4 0 1 5 4\n4 1 2 6 5\n4 2 3 7 6\n4 3 0 4 7\n";
-    const BodyFile poly = read(head("3.0", "ASCII", "POLYDATA") + "POINTS 8 float\n" + cube + sides);
+    const BodyFile poly = read(head("3.0", "ASCII", "POLYDATA") + "POINTS 8 float\n" + corners_of_cube + sides);
     EXPECT_FALSE(poly.volume);
     EXPECT_NEAR(signed_volume(poly.surface), 8, 1e-9);
     const BodyFile flat = read(grid +
