@@ -18,6 +18,8 @@
 #include "samples/lattice.h"
 #include "skeleton/model/io/model_io.h"
 #include "tests/identify/recordings/c3d_sample.h"
+#include "tests/identify/recordings/exodus_sample.h"
+#include "tests/identify/recordings/mat_sample.h"
 #include "tests/identify/recordings/text_samples.h"
 #include "tests/temporary_folder.h"
 
@@ -223,6 +225,13 @@ Reader recording(const char* name, const std::string& file, const std::string& c
     return written(name, file, content, [](const fs::path& f) { identify::read_recordings(f); });
 }
 
+/// What `write` writes into a file.
+std::string bytes_of(const std::function<void(const fs::path&)>& write) {
+    const TemporaryFolder folder;
+    write(folder / "sample");
+    return mesh::read_text(folder / "sample");
+}
+
 }  // namespace
 
 std::vector<Reader> all_readers() {
@@ -265,6 +274,11 @@ std::vector<Reader> all_readers() {
         recording("testxpert", "pull.tra", identify::zwick_sample),
         recording("aramis", "frame.txt", identify::aramis_sample),
         recording("dice", "frame.csv", identify::dice_sample),
+        recording("vic", "frame.csv", identify::vic_sample),
+        recording("scan", "scan.ply", identify::ply_sample),
+        recording("exodus", "frames.e", bytes_of([](const fs::path& f) { identify::write_exodus(f, {}); })),
+        recording("ncorr", "frames.mat", bytes_of([](const fs::path& f) { identify::write_ncorr(f); })),
+        recording("multidic", "frames.mat", bytes_of([](const fs::path& f) { identify::write_multidic(f); })),
         recording("long_table", "long.csv", identify::long_sample)};
     for (const mesh::SurfaceFormat& format : mesh::surface_formats())
         if (format.write) readers.push_back(surface(format.extension));

@@ -145,6 +145,12 @@ private:
                 fmt::format("Left out, as nobody knows where they rest (no place 'at' in the map, and {}): "
                             "{}.",
                             map_.is_rest_seen ? "not seen in the first state" : "'rest: none'", not_seen));
+        if (!names.empty() && set_.markers.empty())
+            throw InvalidInput(fmt::format(
+                "{}: no point has a place at rest: {}, and no marker has one ('at'). Say 'rest: auto', or give "
+                "the markers their places.",
+                map_.file.filename().string(),
+                map_.is_rest_seen ? "the first state shows none" : "the map says 'rest: none'"));
         if (standing_off > 0)
             report_.notes.push_back(
                 fmt::format("{} of {} markers stand off the surface, by {:.3g} mm at most; each is tied to "
