@@ -184,8 +184,8 @@ private:
         const double size = mesh::bounding_box(body.vertices).longest_side();
         const double its_size = mesh::bounding_box(first_.surface.vertices).longest_side();
         const double furthest = std::max(furthest_from(body, first_.surface), furthest_from(first_.surface, body));
-        // Of the size: chords of coarse elements. A sharp edge that elements cut off lies within half a side of them; sides
-        // are up to twice their median.
+        // Of the size: chords of coarse elements. A sharp edge that elements cut off lies within half a side of them;
+        // sides are up to twice their median.
         const double allowed = std::max(0.03, spacing_of(first_.surface) / size);
         if (furthest <= allowed * size) return;
         std::string cause = "are they of this body, at rest and not warped by their displacement?";
