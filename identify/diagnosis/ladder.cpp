@@ -143,7 +143,10 @@ public:
             }
             added.pop_back();
             near_ = near;
-            result_.verdict = verdict;
+            // Without an effect that was named noise may hide that it is missing.
+            const bool is_named = diagnosis && std::ranges::find(diagnosis->explanation, effects[number - 1]) !=
+                                                   diagnosis->explanation.end();
+            result_.verdict = is_named && verdict == Verdict::adequate ? Verdict::missing_effect : verdict;
         }
         finish(added, diagnosis);
         return std::move(result_);
@@ -157,8 +160,8 @@ private:
             return false;
         } catch (const SolverFailure& failure) {
             if (!options_.only_better) throw;
-            result_.notes.push_back(fmt::format("{} is not added: with it a state of the set has no equilibrium: {}",
-                                                added.back(), failure.what()));
+            result_.not_added.push_back(
+                {added.back(), fmt::format("with it a state of the set has no equilibrium: {}", failure.what())});
             return true;
         }
     }
@@ -170,13 +173,14 @@ private:
         constexpr double chance = 1.1;
         const auto worse = [&](const char* what, const StepError& then, const StepError& since) {
             if (!(since.held_out_rms_mm > chance * then.held_out_rms_mm)) return false;
-            result_.notes.push_back(fmt::format(
-                "{} is not added: with it the {} is off by {:.3g} mm on probes held out, {:.3g} mm without it.", name,
-                what, since.held_out_rms_mm, then.held_out_rms_mm));
+            result_.not_added.push_back(
+                {name, fmt::format("with it the {} is off by {:.3g} mm on held-out probes, {:.3g} mm without it", what,
+                                   since.held_out_rms_mm, then.held_out_rms_mm)});
             return true;
         };
-        return (now.reference && before.reference && worse("body", *before.reference, *now.reference)) ||
-               worse("model", before.skeleton, now.skeleton);
+        return (now.reference && before.reference &&
+                worse("finite-element model", *before.reference, *now.reference)) ||
+               worse("skeleton", before.skeleton, now.skeleton);
     }
 
     /// The body explained with these effects and no others.

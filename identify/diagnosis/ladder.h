@@ -32,8 +32,14 @@ struct LadderStep {
     MeasurementSet set;                 // measurements without the faults that are among the effects
 };
 
+/// An effect that would have made the model worse.
+struct EffectNotAdded {
+    std::string effect, why;
+};
+
 struct Ladder {
-    std::vector<LadderStep> steps;        // nothing added first
+    std::vector<LadderStep> steps;  // nothing added first
+    std::vector<EffectNotAdded> not_added;
     IdentifyResult identified;            // of the last step, on all states
     Diagnosis whole;                      // of the body with the last step's effects, on all states
     std::vector<int> held_out_probes;     // empty where there are too few to spare one
@@ -44,8 +50,7 @@ struct Ladder {
 struct LadderOptions {
     IdentifyOptions identify;
     DiagnoseOptions diagnose;
-    /// An effect that makes held-out probes worse, or leaves a state without equilibrium, is told in the notes and not
-    /// added.
+    /// An effect that makes held-out probes worse, or leaves a state without equilibrium, is not added.
     bool only_better = false;
     std::vector<skeleton::EffectRecord> start = {};  // numbers of effects to begin with, where no diagnosis has any
 };

@@ -65,7 +65,9 @@ std::string step_in_words(const json& step) {
 }
 
 /// The verdict is on the body in finite elements, where there is one: a skeleton may be coarse besides.
-const char* verdict_in_words(const std::string& verdict, bool reference) {
+std::string verdict_in_words(const std::string& verdict, bool reference, const std::vector<std::string>& not_added) {
+    if (verdict == "missing-effect" && !not_added.empty())
+        return fmt::format("The model still lacks {}.", listed(not_added));
     if (verdict == "adequate")
         return reference ? "The residual of the finite-element model is noise." : "What is left is noise.";
     if (verdict == "unexplained") return "Something is still missing that the catalogue does not hold.";
@@ -76,21 +78,28 @@ const char* verdict_in_words(const std::string& verdict, bool reference) {
 }  // namespace
 
 json to_json(const identify::Ladder& ladder) {
-    json steps = json::array();
+    json steps = json::array(), not_added = json::array();
     for (const identify::LadderStep& step : ladder.steps) steps.push_back(to_json(step));
-    return {{"format", "palpate-ladder/1"},
-            {"steps", steps},
-            {"held_out_probes", ladder.held_out_probes},
-            {"model", "model.json"},
-            {"verdict", identify::verdict_names[static_cast<std::size_t>(ladder.verdict)]},
-            {"notes", ladder.notes}};
+    for (const identify::EffectNotAdded& one : ladder.not_added)
+        not_added.push_back({{"effect", one.effect}, {"why", one.why}});
+    return {
+        {"format", "palpate-ladder/1"}, {"steps", steps},
+        {"not_added", not_added},       {"held_out_probes", ladder.held_out_probes},
+        {"model", "model.json"},        {"verdict", identify::verdict_names[static_cast<std::size_t>(ladder.verdict)]},
+        {"notes", ladder.notes}};
 }
 
 std::string ladder_in_words(const json& ladder) {
     std::string text;
     for (const json& step : ladder["steps"]) text += step_in_words(step) + "\n";
+    std::vector<std::string> not_added;
+    for (const json& one : ladder.value("not_added", json::array())) {
+        not_added.push_back(one["effect"]);
+        text += fmt::format("{} is not added: {}.\n", not_added.back(), one["why"].get<std::string>());
+    }
     return text +
-           verdict_in_words(ladder["verdict"].get<std::string>(), ladder["steps"].back()["reference"].is_object()) +
+           verdict_in_words(ladder["verdict"].get<std::string>(), ladder["steps"].back()["reference"].is_object(),
+                            not_added) +
            "\n";
 }
 

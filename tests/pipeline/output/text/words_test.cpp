@@ -190,6 +190,12 @@ TEST(LadderInWords, TellsEveryStepAndTheVerdict) {
                       HasSubstr("With gravity: 0.9 mm rms; in finite elements 0.8 mm rms (0.85 on held-out probes), "
                                 "where the screen had expected 1, with E = 0.242 ± 0.012 MPa, ν = 0.499 (the set's)."),
                       HasSubstr("The residual of the finite-element model is noise.")));
+    json worse = ladder;
+    worse["verdict"] = "missing-effect";
+    worse["not_added"] = {{{"effect", "friction"}, {"why", "with it the skeleton is off by 2 mm"}}};
+    EXPECT_THAT(ladder_in_words(worse),
+                AllOf(HasSubstr("friction is not added: with it the skeleton is off by 2 mm.\n"),
+                      HasSubstr("The model still lacks friction.")));
 }
 
 TEST(Words, ACertaintyIsToldAsABound) {
