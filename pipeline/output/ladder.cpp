@@ -67,7 +67,8 @@ std::string step_in_words(const json& step) {
 /// The verdict is on the body in finite elements, where there is one: a skeleton may be coarse besides.
 std::string verdict_in_words(const std::string& verdict, bool reference, const std::vector<std::string>& not_added) {
     if (verdict == "missing-effect" && !not_added.empty())
-        return fmt::format("The model still lacks {}.", listed(not_added));
+        return fmt::format("The model still lacks {}; a skeleton of more spheres (--spheres) may carry it.",
+                           listed(not_added));
     if (verdict == "adequate")
         return reference ? "The residual of the finite-element model is noise." : "What is left is noise.";
     if (verdict == "unexplained") return "Something is still missing that the catalogue does not hold.";

@@ -25,9 +25,9 @@ std::string spread_words(const json& number) {
         return share < 0.1 ? fmt::format("{:.2g}", 100 * share) : fmt::format("{:.0f}", 100 * share);
     };
     if (number["scale"] != "linear")
-        return fmt::format("{}{} % ({} to {} %)", number["scale"] == "compressibility" ? "1 - 2 nu by " : "",
+        return fmt::format("{}by {} % ({} to {} %)", number["scale"] == "compressibility" ? "in 1 - 2 nu " : "",
                            percent(value), percent(low), percent(high));
-    return fmt::format("{:.2g} ({:.2g} to {:.2g})", value, low, high);
+    return fmt::format("by {:.2g} ({:.2g} to {:.2g})", value, low, high);
 }
 
 }  // namespace
@@ -42,7 +42,7 @@ std::string title_of_number(const json& number) {
 
 std::string population_in_words(const json& number) {
     std::string words = fmt::format(
-        "The mean of {} specimens is {}. They differ by {}, one standard deviation. Expect a next one "
+        "The mean of {} specimens is {}. They differ {}, one standard deviation. Expect a next one "
         "between {:.4g} and {:.4g}.",
         number["specimens"].size(), interval_words(number["mean"]), spread_words(number),
         number["next"]["low"].get<double>(), number["next"]["high"].get<double>());

@@ -184,11 +184,12 @@ private:
         const double size = mesh::bounding_box(body.vertices).longest_side();
         const double its_size = mesh::bounding_box(first_.surface.vertices).longest_side();
         const double furthest = std::max(furthest_from(body, first_.surface), furthest_from(first_.surface, body));
-        // Of the size: chords of coarse elements. A sharp edge that elements cut off lies within half a side of them;
-        // sides are up to twice their median.
-        const double allowed = std::max(0.03, spacing_of(first_.surface) / size);
+        constexpr double allowed = 0.03;  // of the size: chords of coarse elements
         if (furthest <= allowed * size) return;
-        std::string cause = "are they of this body, at rest and not warped by their displacement?";
+        std::string cause =
+            "are they of this body, at rest and not warped by their displacement? Elements longer than a rim is thick "
+            "cut "
+            "it off: shorter ones (--edge-length) follow it.";
         for (const double factor : {10.0, 25.4, 1000.0, 0.1, 1 / 25.4, 0.001})
             if (std::abs(its_size / size - factor) < 0.05 * factor)
                 cause = fmt::format(

@@ -195,7 +195,7 @@ TEST(LadderInWords, TellsEveryStepAndTheVerdict) {
     worse["not_added"] = {{{"effect", "friction"}, {"why", "with it the skeleton is off by 2 mm"}}};
     EXPECT_THAT(ladder_in_words(worse),
                 AllOf(HasSubstr("friction is not added: with it the skeleton is off by 2 mm.\n"),
-                      HasSubstr("The model still lacks friction.")));
+                      HasSubstr("The model still lacks friction; a skeleton of more spheres")));
 }
 
 TEST(Words, ACertaintyIsToldAsABound) {
