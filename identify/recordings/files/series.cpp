@@ -97,11 +97,13 @@ public:
     /// The index of a place that was met before, or `next`.
     std::size_t index_of(const Eigen::Vector3d& place, std::size_t next) {
         const Cell own = cell_of(place);
-        for (int i = 0; i < 27; ++i) {
-            const auto found = places_.find({own[0] + i % 3 - 1, own[1] + i / 3 % 3 - 1, own[2] + i / 9 - 1});
-            if (found != places_.end() && (found->second.place - place).cwiseAbs().maxCoeff() <= grid / 2)
-                return found->second.index;
-        }
+        for (const double x : {-1, 0, 1})
+            for (const double y : {-1, 0, 1})
+                for (const double z : {-1, 0, 1}) {
+                    const auto found = places_.find({own[0] + x, own[1] + y, own[2] + z});
+                    if (found != places_.end() && (found->second.place - place).cwiseAbs().maxCoeff() <= grid / 2)
+                        return found->second.index;
+                }
         places_.try_emplace(own, Known{place, next});
         return next;
     }
