@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "identify/recordings/files/read_in_child.h"
+#include "identify/recordings/files/text/cell.h"
 #include "mesh/errors.h"
 
 namespace palpate::identify {
@@ -28,7 +29,11 @@ class NetcdfFile {
 public:
     explicit NetcdfFile(const std::filesystem::path& file) : name_(file.filename().string()) {
         if (nc_open(file.c_str(), NC_NOWRITE, &id_) != NC_NOERR)
-            throw InvalidInput(fmt::format("{}: this is no whole Exodus file. Write it again.", name_));
+            throw InvalidInput(
+                fmt::format("{}: this is no whole Exodus file, of netCDF and HDF5 files the only kind that is read "
+                            "besides MATLAB's. "
+                            "Write it again, or export the data as CSV.",
+                            name_));
     }
     NetcdfFile(const NetcdfFile&) = delete;
     NetcdfFile& operator=(const NetcdfFile&) = delete;
@@ -119,25 +124,37 @@ Eigen::MatrixXd coordinates_in(const NetcdfFile& in, std::size_t nodes, std::siz
     return coordinates;
 }
 
+/// DICe writes some sixty quantities: of most the name is enough.
+bool is_wanted(const std::string& name) {
+    const std::string lower = lower_case(name);
+    return lower == "sigma" || lower.starts_with("u_") || lower.find("disp") != lower.npos;
+}
+
 ExodusNodes read_exodus_here(const std::filesystem::path& file) {
     const NetcdfFile in(file);
     const std::size_t nodes = in.size("num_nodes"), dimensions = in.size("num_dim"), frames = in.size("time_step");
     if (nodes == 0 || dimensions < 2 || dimensions > 3)
-        throw InvalidInput(
-            fmt::format("{}: a netCDF file with {} nodes in {} dimensions; an Exodus file has 1 or more in 2 or 3. "
-                        "Write the points as VTU, PLY or CSV.",
-                        in.name(), nodes, dimensions));
+        throw InvalidInput(fmt::format(
+            "{}: a netCDF or HDF5 file with {} nodes in {} dimensions; an Exodus file has 1 or more in 2 or 3. "
+            "Write the points as VTU, PLY or CSV.",
+            in.name(), nodes, dimensions));
     ExodusNodes result{.coordinates = coordinates_in(in, nodes, dimensions)};
     if (const auto times = in.matrix("time_whole", frames)) result.times = *times;
-    if (const auto ids = in.matrix("node_num_map", nodes))
+    constexpr double most = 2e9;  // an int holds it
+    if (const auto ids = in.matrix("node_num_map", nodes); ids && (ids->array().abs() < most).all())
         for (const double id : ids->reshaped()) result.ids.push_back(static_cast<int>(id));
     const std::size_t count = in.size("num_nod_var");
     std::size_t width = in.size("len_name");
     if (width == 0) width = in.size("len_string");
     const std::vector<std::string> names = in.texts("name_nod_var", count, width);
-    for (std::size_t v = 0; v < names.size(); ++v)
+    for (std::size_t v = 0; v < names.size(); ++v) {
+        result.fields.push_back({names[v], {}});
+        if (!is_wanted(names[v])) continue;
         if (const auto values = in.matrix(fmt::format("vals_nod_var{}", v + 1), frames, nodes))
-            result.fields.push_back({names[v], values->transpose()});
+            result.fields.back().values = values->transpose();
+        else
+            result.fields.pop_back();
+    }
     return result;
 }
 

@@ -10,7 +10,7 @@ namespace palpate::identify {
 /// A quantity of all nodes over time.
 struct NodalField {
     std::string name;
-    Eigen::MatrixXd values;  // (nodes x frames)
+    Eigen::MatrixXd values;  // (nodes x frames); empty where it is no displacement and no sigma
 };
 
 /// What an Exodus II file tells of its nodes [Schoof & Yarberry 1994].
