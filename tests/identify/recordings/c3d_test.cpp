@@ -20,6 +20,16 @@ struct Kind {
 
 class C3d : public testing::TestWithParam<Kind> {};
 
+TEST(C3dFile, MayTellWhereItsDataBeginInTheHeaderAlone) {
+    const C3dSample sample;
+    std::string bytes = sample.bytes();
+    bytes.replace(bytes.find("DATA_START") + 10 + 2 + 2, 2, 2, '\0');
+    const TemporaryFolder folder;
+    const Recording told = read_recordings(folder.write("a.c3d", sample.bytes()))[0],
+                    untold = read_recordings(folder.write("b.c3d", bytes))[0];
+    EXPECT_EQ(untold.points[1].at.col(2), told.points[1].at.col(2));
+}
+
 TEST_P(C3d, HoldsPointsAnalogsAndEventsWhateverWroteIt) {
     C3dSample sample(GetParam().processor);
     sample.has_reals = GetParam().has_reals;

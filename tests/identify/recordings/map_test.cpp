@@ -117,6 +117,10 @@ TEST(Descriptions, TellPointsFramesClockAndChannels) {
 TEST(Descriptions, TellThatAClockIsMissingOrUneven) {
     const TemporaryFolder folder;
     EXPECT_NE(describe(read_recordings(folder.write("a.csv", "F\n1\n2\n"))[0]).find("no clock"), std::string::npos);
+    // 60 a second, written with three digits
+    EXPECT_NE(describe(read_recordings(folder.write("a.csv", "t,F\n0,1\n0.017,2\n0.033,2\n0.050,2\n"))[0])
+                  .find("60 a second"),
+              std::string::npos);
     EXPECT_NE(describe(read_recordings(folder.write("a.csv", "t,F\n0,1\n1,2\n5,2\n"))[0]).find("not steady"),
               std::string::npos);
 }

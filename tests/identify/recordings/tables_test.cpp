@@ -288,5 +288,14 @@ TEST(Tables, ComponentsInBracketsAreCoordinates) {
     EXPECT_EQ(run.channels[0].unit, "N");
 }
 
+TEST(Machines, OfZwickSpeakFrench) {
+    const Recording pull = read_sample(
+        "\"Temps\",\"Traverse absolue\",\"Force standard\",\"Course standard\"\n\"s\",\"mm\",\"N\",\"mm\"\n"
+        "0.1,-794,1,0\n0.2,-794,2,0.1\n0.3,-794,n. def.,0.2\n");
+    EXPECT_EQ(pull.format, "testing machine, Zwick testXpert");
+    ASSERT_EQ(pull.channels.size(), 3u);
+    EXPECT_TRUE(std::isnan(pull.channels[1].values[2]));
+}
+
 }  // namespace
 }  // namespace palpate::identify
