@@ -169,8 +169,10 @@ NameAndUnit name_and_unit(std::string_view cell) {
         const std::size_t open = cell.find_last_of(cell.back() == ')' ? '(' : '[');
         if (open != cell.npos && open > 0) {
             const std::string_view unit = cell.substr(open + 1, cell.size() - open - 2);
-            // "C7[0]": a component
-            if (unit.find_first_not_of("0123456789") == unit.npos) return {std::string(cell), ""};
+            // "C7[0]" is a component, "strain [1]" has no dimension.
+            const bool is_component = cell.back() == ']' && cell[open - 1] != ' ' && !unit.empty() &&
+                                      unit.find_first_not_of("0123456789") == unit.npos;
+            if (is_component) return {std::string(cell), ""};
             if (cell.back() == ']' || unit_in_ours(unit) || unit.size() <= 4) return split(open, unit);
         }
     }

@@ -280,12 +280,14 @@ TEST(Unknown, SaysWhatWasRecognisedAndGivesAMap) {
 }
 
 TEST(Tables, ComponentsInBracketsAreCoordinates) {
-    const Recording run = read_sample("Time,C7[0],C7[1],C7[2],C7[3],F[N]\n0,1,2,3,1,5\n0.1,1,2,4,1,6\n0.2,1,2,5,1,7\n");
+    const Recording run = read_sample(
+        "Time,C7[0],C7[1],C7[2],C7[3],F[N],strain [1]\n0,1,2,3,1,5,0\n0.1,1,2,4,1,6,0.1\n0.2,1,2,5,1,7,0.2\n");
     ASSERT_EQ(run.points.size(), 1u);
     EXPECT_EQ(run.points[0].name, "C7");
     EXPECT_EQ(run.points[0].at.col(2), Eigen::Vector3d(1, 2, 5));
-    ASSERT_EQ(run.channels.size(), 1u);
+    ASSERT_EQ(run.channels.size(), 2u);
     EXPECT_EQ(run.channels[0].unit, "N");
+    EXPECT_EQ(run.channels[1].name, "strain");
 }
 
 TEST(Machines, OfZwickSpeakFrench) {

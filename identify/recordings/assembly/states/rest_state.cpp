@@ -55,9 +55,8 @@ RestState rest_state(const ImportMap& map, const std::vector<ProbeStates>& probe
         ++told;
     }
     notes.push_back(
-        fmt::format("At rest {} points are where their displacements count from, as the files tell; 'rest: first' in a "
-                    "map takes the "
-                    "first state.",
+        fmt::format("At rest {} points are where their displacements count from, as the files tell; 'rest: "
+                    "first' in a map takes the first state.",
                     told));
     return rest;
 }
