@@ -143,11 +143,13 @@ public:
             }
             added.pop_back();
             near_ = near;
-            // Without an effect that was named noise may hide that it is missing.
-            const bool is_named = diagnosis && std::ranges::find(diagnosis->explanation, effects[number - 1]) !=
-                                                   diagnosis->explanation.end();
-            result_.verdict = is_named && verdict == Verdict::adequate ? Verdict::missing_effect : verdict;
+            result_.verdict = verdict;
         }
+        // What was named is missing, however little is left without it.
+        if (diagnosis && std::ranges::any_of(result_.not_added, [&](const EffectNotAdded& one) {
+                return std::ranges::find(diagnosis->explanation, one.effect) != diagnosis->explanation.end();
+            }))
+            result_.verdict = Verdict::missing_effect;
         finish(added, diagnosis);
         return std::move(result_);
     }
@@ -171,16 +173,20 @@ private:
         const LadderStep& now = result_.steps.back();
         const LadderStep& before = result_.steps[result_.steps.size() - 2];
         constexpr double chance = 1.1;
-        const auto worse = [&](const char* what, const StepError& then, const StepError& since) {
+        const auto worse = [&](const char* what, const StepError& then, const StepError& since, std::string besides) {
             if (!(since.held_out_rms_mm > chance * then.held_out_rms_mm)) return false;
             result_.not_added.push_back(
-                {name, fmt::format("with it the {} is off by {:.3g} mm on held-out probes, {:.3g} mm without it", what,
-                                   since.held_out_rms_mm, then.held_out_rms_mm)});
+                {name, fmt::format("with it the {} is off by {:.3g} mm on held-out probes, {:.3g} mm without it{}",
+                                   what, since.held_out_rms_mm, then.held_out_rms_mm, besides)});
             return true;
         };
-        return (now.reference && before.reference &&
-                worse("finite-element model", *before.reference, *now.reference)) ||
-               worse("skeleton", before.skeleton, now.skeleton);
+        std::string body;
+        if (now.reference && before.reference) {
+            if (worse("finite-element model", *before.reference, *now.reference, "")) return true;
+            body = fmt::format(" (finite elements: {:.3g} mm with it, {:.3g} mm without)",
+                               now.reference->held_out_rms_mm, before.reference->held_out_rms_mm);
+        }
+        return worse("skeleton", before.skeleton, now.skeleton, body);
     }
 
     /// The body explained with these effects and no others.

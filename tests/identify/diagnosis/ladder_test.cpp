@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "identify/comparison/compare.h"
+#include "identify/diagnosis/diagnose.h"
 #include "identify/effects/catalogue.h"
 #include "mesh/errors.h"
 #include "skeleton/model/state.h"
@@ -189,6 +190,21 @@ TEST_F(Climbed, NoRungButTheFirstWithoutEffects) {
     ASSERT_EQ(ladder.steps.size(), 1u);
     EXPECT_EQ(ladder.verdict, Verdict::adequate);
     EXPECT_THAT(ladder.steps[0].model.effects, IsEmpty());
+}
+
+TEST_F(Climbed, WhatWasNamedAndIsNotAddedIsStillMissing) {
+    // Nothing is hidden: anisotropy overfits three probes, which hardly feel stiffening.
+    const MeasurementSet set = twin({}, 3);
+    Diagnosis diagnosis = diagnose(*reference_, set, options_.diagnose);
+    diagnosis.explanation = {"anisotropy", "stiffening"};
+    options_.only_better = true;
+    const Ladder ladder =
+        identify::build_ladder(body_.chain(), *reference_, set, diagnosis.explanation, options_, &diagnosis);
+    ASSERT_EQ(ladder.not_added.size(), 1u);
+    EXPECT_EQ(ladder.not_added[0].effect, "anisotropy");
+    EXPECT_TRUE(says(ladder.not_added[0].why, {"held-out probes"}));
+    EXPECT_THAT(names_of(ladder.steps.back().effects), ElementsAre("stiffening"));
+    EXPECT_EQ(ladder.verdict, Verdict::missing_effect);
 }
 
 TEST_F(Climbed, AnUnknownEffectIsRefused) { EXPECT_THROW(build_ladder(twin({}), {"gravty"}), InvalidInput); }
