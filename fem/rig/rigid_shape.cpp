@@ -48,10 +48,15 @@ public:
         return {distance, n, (along * along.transpose() + beside * turning) / distance};
     }
     Gap gap(const Vec3& y, const Vec3& rest) const override {
-        const Vec3 arm = y - centre_, from = rest - centre_;
-        const auto beside = [&](const Vec3& r) { return (r - axis_.dot(r) * axis_).norm() - radius_; };
-        if (beside(arm) <= 0 && beside(from) <= 0) return {axis_.dot(arm), axis_, Mat3::Zero()};
-        return gap(y);
+        const auto across = [&](const Vec3& r) -> Vec3 { return r - axis_.dot(r) * axis_; };
+        const Vec3 arm = y - centre_, out = across(arm);
+        if (across(rest - centre_).norm() > radius_) return gap(y);
+        const double ahead = axis_.dot(arm), rho = out.norm(), beside = rho - radius_;
+        if (beside <= 0) return {ahead, axis_, Mat3::Zero()};
+        // A slope of 45 degrees leads out over the rim: a gap that leapt there would let no step lead back in.
+        if (ahead + beside >= 0) return gap(y);
+        const Vec3 n = out / rho;
+        return {ahead + beside, axis_ + n, (Mat3::Identity() - axis_ * axis_.transpose() - n * n.transpose()) / rho};
     }
     double radius() const override { return radius_; }
 

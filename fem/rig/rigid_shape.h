@@ -9,7 +9,7 @@ namespace palpate::fem {
 /// How far a point is from a rigid shape, below 0 inside of it, and the derivatives by where the point is.
 struct Gap {
     double value = 0;             // [mm]
-    Vec3 normal = Vec3::Zero();   // d value / d y: the way out, unit
+    Vec3 normal = Vec3::Zero();   // d value / d y: the way out, unit but on the slope over a punch's rim
     Mat3 hessian = Mat3::Zero();  // d^2 value / d y^2 [1/mm]
 };
 

@@ -45,6 +45,23 @@ TEST(RigidShape, GapsAreDistances) {
     EXPECT_NEAR(punch->gap(Vec3(2.3, 0, -0.4)).value, 0.5, 1e-14);
 }
 
+TEST(RigidShape, APointThatLeavesAPunchOverItsRimMeetsNoLeap) {
+    const auto punch = flat_tool(Vec3::Zero(), 2)->shape;
+    const Vec3 before(1.5, 0, 0);  // where the point would be: on the face
+    EXPECT_EQ(punch->gap(Vec3(1.9, 0, 0.5), before).value, -0.5);
+    for (const double beside : {-1e-12, 1e-12})
+        EXPECT_NEAR(punch->gap(Vec3(2 + beside, 0, 0.5), before).value, -0.5, 1e-11);
+    EXPECT_NEAR(punch->gap(Vec3(2.3, 0, 0.5), before).value, -0.2, 1e-14);
+    EXPECT_NEAR(punch->gap(Vec3(2.6, 0, 0.5), before).value, 0.6, 1e-14);            // free of it
+    EXPECT_NEAR(punch->gap(Vec3(1.9, 0, 0.5), Vec3(2.1, 0, 0)).value, -0.1, 1e-14);  // it came in through the side
+    const Eigen::VectorXd y = Vec3(2.1, 0.3, 0.5);
+    const Gap gap = punch->gap(y, before);
+    const auto value = [&](const Eigen::VectorXd& x) { return one(punch->gap(x, before).value); };
+    const auto normal = [&](const Eigen::VectorXd& x) { return Eigen::VectorXd(punch->gap(x, before).normal); };
+    EXPECT_LT((differences(value, y, 1e-5).transpose() - gap.normal).norm(), 1e-8);
+    EXPECT_LT((differences(normal, y, 1e-5) - gap.hessian).norm(), 1e-6);
+}
+
 /// A bar with a tool of each kind at it.
 struct Rigged {
     Beam beam{{6, 2, 2}, {4, 2, 2}};
