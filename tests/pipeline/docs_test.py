@@ -2,6 +2,7 @@
 
 A block marked "run" is typed into a shell, in a folder where samples/ is; "exit=3 says=..." tells how its last command ends.
 A block marked "message=NAME" is what the program prints where docs_messages.py provokes it.
+The gallery has a section and a picture for each effect, in the order of `palpate effects`.
 """
 
 import os
@@ -55,6 +56,12 @@ with tempfile.TemporaryDirectory() as scratch:
             assert run.returncode == code, f"{page.name}: {block}ends with {run.returncode}: {run.stderr}"
             assert said in run.stdout + run.stderr, f"{page.name}: {block}does not say '{said}': {run.stderr}"
             ran += 1
+    listed = subprocess.run([palpate, "effects"], capture_output=True, text=True, check=True).stdout
+    effects = re.findall(r"^(\S+) +(?:body|measurement) ", listed, re.M)
+    gallery = (source / "pipeline" / "docs" / "gallery.md").read_text()
+    pictures = re.findall(r"^## (.+)\n\n!\[\1: .*\]\(gallery/(.+)\.png\)$", gallery, re.M)
+    assert len(effects) > 20 and pictures == [(e.capitalize().replace("-", " "), e) for e in effects], pictures
+    assert {p.stem for p in (source / "pipeline" / "docs" / "gallery").glob("*.png")} == set(effects)
     if find_spec("vtkmodules") and find_spec("matplotlib"):
         drawn = subprocess.run([sys.executable, source / "pipeline" / "docs" / "gallery.py", "-o", here / "pictures", "--palpate", palpate, "gravity"],
                                capture_output=True, text=True)
