@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
 #include <set>
 
 #include "identify/comparison/compare.h"
@@ -88,6 +89,18 @@ MeasurementSet understood(const MeasurementSet& set, const std::vector<skeleton:
     MeasurementSet result = without_readings(set, outliers);
     for (const skeleton::EffectRecord& effect : effects) result = find_effect(effect.name)->corrected(result, effect);
     return result;
+}
+
+/// A rig's identification fits all effects of a model anew, and a set that is corrected has no faults left: these are
+/// added afterwards, as they were found.
+skeleton::Model without_faults(skeleton::Model model) {
+    std::erase_if(model.effects, [](const auto& effect) { return !find_effect(effect.name)->is_of_body(); });
+    return model;
+}
+
+void add_faults(const std::vector<skeleton::EffectRecord>& effects, skeleton::Model& model) {
+    std::ranges::copy_if(effects, std::back_inserter(model.effects),
+                         [](const auto& effect) { return !find_effect(effect.name)->is_of_body(); });
 }
 
 /// Is one among these effects that sets readings aside?
@@ -325,7 +338,11 @@ private:
     /// The same from the last rung's, to other readings.
     skeleton::Model refitted_skeleton(const skeleton::Model& model, const MeasurementSet& set) const {
         const IdentifyOptions& how = options_.identify;
-        if (is_rigged(set)) return identify_rigged(model, set, 1, how.seed, how.threads).model;
+        if (is_rigged(set)) {
+            skeleton::Model fitted = identify_rigged(without_faults(model), set, 1, how.seed, how.threads).model;
+            add_faults(model.effects, fitted);
+            return fitted;
+        }
         return calibrated(model, calibrate(model, collect_readings(model, set), how, {}, &near_));
     }
 
@@ -338,7 +355,11 @@ private:
         last.effects = estimate(whole);
         last.material = material_of(body_, whole.best());
         last.set = understood(set_, last.effects, whole.outliers.readings);
-        result_.identified = identify(with_effects(last.effects), last.set, options_.identify, progress_, &near_);
+        const bool rigged = is_rigged(last.set);
+        const skeleton::Model model = with_effects(last.effects);
+        result_.identified =
+            identify(rigged ? without_faults(model) : model, last.set, options_.identify, progress_, &near_);
+        if (rigged) add_faults(last.effects, result_.identified.model);
         last.model = result_.identified.model;
         last.comparison = compare(last.model, last.set, options_.identify.threads);
     }

@@ -1,3 +1,4 @@
+#include "identify/diagnosis/ladder.h"
 #include "identify/diagnosis/rigged_skeleton.h"
 #include "tests/identify/diagnosed.h"
 
@@ -119,6 +120,22 @@ TEST_F(MovedByAGrip, ASkeletonIsFittedToDifferencesAsToPositions) {
             EXPECT_LT((at[s].row(r) - at[3].row(r) - (of[s].row(r) - rest.transpose())).norm(), 1e-6);
         }
     }
+}
+
+TEST_F(MovedByAGrip, TheModelThatIsDeliveredTellsTheSlipThatWasFound) {
+    constexpr double share = 0.8;
+    MeasurementSet set = moved(truth());
+    for (LoadState& state : set.states)
+        for (mesh::ToolMotion& motion : state.motions) motion.translation /= share;
+    LadderOptions options;
+    options.identify.scope = Scope::uniform;
+    options.identify.particles = 50;
+    const Ladder ladder = build_ladder(body_.chain(), *model_, set, {"slip"}, options);
+    const std::vector<skeleton::EffectRecord>& told = ladder.steps.back().model.effects;
+    ASSERT_EQ(told.size(), 1u);
+    EXPECT_EQ(told[0].name, "slip");
+    EXPECT_NEAR(told[0].parameters[0].value, share, 0.03);  // play and compliance of 2 % each
+    EXPECT_EQ(told[0].parameters[0].value, ladder.steps.back().effects[0].parameters[0].value);
 }
 
 TEST_F(MovedByAGrip, SensitivitiesAreDerivativesOfReactionsToo) {
