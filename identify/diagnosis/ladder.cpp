@@ -4,11 +4,11 @@
 
 #include <algorithm>
 #include <iterator>
-#include <set>
 
 #include "identify/comparison/compare.h"
 #include "identify/diagnosis/diagnose.h"
 #include "identify/diagnosis/rigged_skeleton.h"
+#include "identify/diagnosis/statistics/folds.h"
 #include "identify/effects/catalogue.h"
 #include "identify/identify.h"
 #include "identify/inference/maximum/calibrate.h"
@@ -19,55 +19,6 @@
 
 namespace palpate::identify {
 namespace {
-
-bool is_loaded(const LoadState& state) {
-    return std::ranges::any_of(state.contacts, [](const mesh::Contact& c) { return !c.force.isZero(0); }) ||
-           !state.motions.empty() || !state.actuations.empty();
-}
-
-/// Which probes are held out, in turn.
-///
-/// A quarter of the loaded ones, spread evenly, where there are more than eight; the rungs are fitted to the others.
-/// Of fewer none can be spared: every third probe is held out in turn, and the rungs are fitted to all.
-std::vector<std::vector<int>> folds_of(const MeasurementSet& set) {
-    std::set<int> loaded, all;
-    for (const LoadState& state : set.states) {
-        if (is_loaded(state)) loaded.insert(state.probe);
-        if (!state.readings.empty() || !state.reactions.empty()) all.insert(state.probe);
-    }
-    if (loaded.size() < 3) return {};
-    if (loaded.size() > 8) {
-        const std::vector<int> probes(loaded.begin(), loaded.end());
-        const std::size_t count = probes.size() / 4;
-        std::vector<int> held_out;
-        for (std::size_t i = 0; i < count; ++i) held_out.push_back(probes[(2 * i + 1) * probes.size() / (2 * count)]);
-        return {held_out};
-    }
-    std::vector<std::vector<int>> folds(3);
-    for (std::size_t i = 0; const int probe : all) folds[i++ % folds.size()].push_back(probe);
-    return folds;
-}
-
-MeasurementSet part_of(const MeasurementSet& set, const std::vector<int>& probes, bool of_them) {
-    const auto is_other = [&](const LoadState& state) {
-        return (std::ranges::find(probes, state.probe) != probes.end()) != of_them;
-    };
-    MeasurementSet part = set;
-    for (LoadState& state : part.states) {
-        if (!is_other(state)) continue;
-        state.readings.clear();
-        state.reactions.clear();
-    }
-    if (set.continuous) return part;  // the body went through all states, whoever reads them
-    std::set<StateName> counted_from;
-    for (const LoadState& state : part.states)
-        for (const Reading& reading : state.readings)
-            if (reading.since) counted_from.insert(*reading.since);
-    std::erase_if(part.states, [&](const LoadState& state) {
-        return is_other(state) && !counted_from.contains({state.probe, state.time});
-    });
-    return part;
-}
 
 /// An explanation's effects as they are told.
 std::vector<skeleton::EffectRecord> estimate(const Diagnosis& diagnosis) {
@@ -186,7 +137,8 @@ private:
         const LadderStep& now = result_.steps.back();
         const LadderStep& before = result_.steps[result_.steps.size() - 2];
         constexpr double chance = 1.1;
-        const auto worse = [&](const char* what, const StepError& then, const StepError& since, std::string besides) {
+        const auto worse = [&](const char* what, const StepError& then, const StepError& since,
+                               const std::string& besides) {
             if (!(since.held_out_rms_mm > chance * then.held_out_rms_mm)) return false;
             result_.not_added.push_back(
                 {name, fmt::format("with it the {} is off by {:.3g} mm on held-out probes, {:.3g} mm without it{}",
