@@ -23,7 +23,7 @@ std::string EffectHypothesis::sentence_with(const skeleton::EffectRecord& record
     return sentence(record);
 }
 
-std::string EffectHypothesis::objection(const Problem&, const Eigen::VectorXd&, bool) const { return {}; }
+std::string EffectHypothesis::objection(const Problem&, const Eigen::VectorXd&) const { return {}; }
 
 skeleton::EffectRecord EffectHypothesis::record(const std::vector<EffectNumber>& numbers,
                                                 const Eigen::VectorXd& values) const {

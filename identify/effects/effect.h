@@ -125,8 +125,8 @@ public:
     /// Is it so nonlinear that the score test is unreliable? Then a refit is tried regardless of its screen if nothing
     /// else explains the readings.
     virtual bool evades_screen() const { return false; }
-    /// Does it change a body as errors of its mesh may: in one place, at the supports, in some directions more, or
-    /// where it is strained?
+    /// Does it change the readings as errors of the body's mesh may: in one place, at the supports, in some directions
+    /// more, where the body is strained, or under one probe more than under another?
     virtual bool is_like_mesh_error() const { return false; }
 
     /// Of the evidence that it brings, the share that its idealisation (even springs, a ball) may leave to another
@@ -142,9 +142,8 @@ public:
     virtual std::optional<ScreenPlan> screen_plan(const BodyModel& model, const Problem& problem,
                                                   const Explanation& explanation, const ForwardSolution& forward) const;
 
-    /// Why a fit with it is no claim, in words; empty: nothing speaks against it. `enough_without`: what is left
-    /// without it is noise already.
-    virtual std::string objection(const Problem& problem, const Eigen::VectorXd& values, bool enough_without) const;
+    /// Why a fit with it is no claim, in words; empty: nothing speaks against it.
+    virtual std::string objection(const Problem& problem, const Eigen::VectorXd& values) const;
 
     /// As an effect record: names, values and units as in model files.
     virtual skeleton::EffectRecord record(const std::vector<EffectNumber>& numbers,

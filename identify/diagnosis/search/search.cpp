@@ -162,7 +162,6 @@ void Search::confirm_single_effects() {
         double least = std::max(options_.least_screen, 0.1 * screened_[law].front().log_bayes_factor);
         // A refit finds more than a linearisation promises, and not many times as much.
         if (enough) least = std::max(least, 0.3 * least_next_to_noise(*screened.effect, problem_, options_));
-        candidate.objection = enough ? screened.effect->objection(problem_, screened.starts.front(), true) : "";
         if (could_explain_anything(base, *screened.effect))
             candidate.objection = fmt::format(
                 "with {} independent readings it would explain whatever was measured. Read more markers, or load other "
@@ -328,7 +327,7 @@ bool Search::claims(const FittedExplanation& explained) const {
     const Explanation& all = explained.fit.explanation;
     for (std::size_t e = 0; e < all.effects.size(); ++e) {
         if (!explained.has(all.effects[e]->name())) continue;
-        if (!all.effects[e]->objection(problem_, all.values[e], false).empty()) return false;
+        if (!all.effects[e]->objection(problem_, all.values[e]).empty()) return false;
     }
     return true;
 }

@@ -29,17 +29,6 @@ Candidate outlier_candidate(const Diagnosis& diagnosis) {
     return candidate;
 }
 
-/// Is there an explanation among those tried that does without one of the effects, and is enough?
-bool enough_without(const Diagnosis& diagnosis, const FittedExplanation& all, const std::string& name,
-                    const DiagnoseOptions& options) {
-    if (all.effects.size() == 1) return leaves_only_noise(diagnosis.baseline, options);
-    return std::ranges::any_of(diagnosis.tried, [&](const FittedExplanation& other) {
-        const bool is_rest = other.effects.size() + 1 == all.effects.size() && !other.has(name) &&
-                             std::ranges::all_of(other.effects, [&](const auto& e) { return all.has(e->name()); });
-        return is_rest && leaves_only_noise(other.fit, options);
-    });
-}
-
 /// Two mutually confused effects among three or more: together they may mimic an effect outside the catalogue. Empty:
 /// there are none.
 std::string put_together_of_aliases(const FittedExplanation& explained) {
@@ -66,13 +55,11 @@ bool leaves_too_much(const Refit& without, const FittedExplanation& explained) {
 }
 
 /// Why an effect of an explanation, as it came out, is none of that kind; empty: nothing speaks against it.
-std::string objection_of_effects(const Diagnosis& diagnosis, const FittedExplanation& explained,
-                                 const DiagnoseOptions& options) {
+std::string objection_of_effects(const Diagnosis& diagnosis, const FittedExplanation& explained) {
     const auto& all = explained.fit.explanation;
     for (std::size_t e = 0; e < all.effects.size(); ++e) {
         if (!explained.has(all.effects[e]->name())) continue;  // known: no claim
-        const bool enough = enough_without(diagnosis, explained, all.effects[e]->name(), options);
-        std::string objection = all.effects[e]->objection(diagnosis.problem, all.values[e], enough);
+        std::string objection = all.effects[e]->objection(diagnosis.problem, all.values[e]);
         if (!objection.empty()) return objection;
     }
     return {};
@@ -213,7 +200,7 @@ void decide_verdict(const BodyModel& model, const DiagnoseOptions& options, Diag
     for (FittedExplanation& one : diagnosis.tried) {
         one.objection = objection_to(diagnosis, one, options);
         if (one.objection.empty()) {
-            one.objection = objection_of_effects(diagnosis, one, options);
+            one.objection = objection_of_effects(diagnosis, one);
             if (!one.objection.empty()) refused.insert(&one);
         }
         by_evidence.push_back(&one);

@@ -129,11 +129,6 @@ public:
         return plan;
     }
 
-    std::string objection(const Problem&, const Eigen::VectorXd&, bool enough_without) const override {
-        // A wall that hardly matters looks like a nuisance of a probe or a clamp nearby.
-        return enough_without ? "the residual without a wall is noise already" : "";
-    }
-
     skeleton::EffectRecord record(const std::vector<EffectNumber>& numbers,
                                   const Eigen::VectorXd& values) const override {
         Eigen::VectorXd of_unit = values;
