@@ -64,13 +64,28 @@ std::string step_in_words(const json& step) {
     return text + ".";
 }
 
+/// What a model leaves in which nothing more is found. The verdict allows for what is unknown about contacts, clamps
+/// and tools; the model's own error does not.
+std::string adequate_in_words(const json& ladder) {
+    const json& last = ladder["steps"].back();
+    if (last["reference"].is_object()) return "The residual of the finite-element model is noise.";
+    const json noise = ladder.value("noise_mm", json());
+    constexpr double as_noise = 1.1;  // as a diagnosis takes it
+    if (!noise.is_number() || last["rms_mm"].get<double>() <= as_noise * noise.get<double>())
+        return "What is left is noise.";
+    return fmt::format(
+        "No further effect is found. The model is off by more than the noise of {:.3g} mm, by no more than what is "
+        "unknown about contacts, clamps and tools explains.",
+        noise.get<double>());
+}
+
 /// The verdict is on the body in finite elements, where there is one: a skeleton may be coarse besides.
-std::string verdict_in_words(const std::string& verdict, bool reference, const std::vector<std::string>& not_added) {
+std::string verdict_in_words(const json& ladder, const std::vector<std::string>& not_added) {
+    const auto verdict = ladder["verdict"].get<std::string>();
     if (verdict == "missing-effect" && !not_added.empty())
         return fmt::format("The model still lacks {}; a skeleton of more spheres (--spheres) may carry it.",
                            listed(not_added));
-    if (verdict == "adequate")
-        return reference ? "The residual of the finite-element model is noise." : "What is left is noise.";
+    if (verdict == "adequate") return adequate_in_words(ladder);
     if (verdict == "unexplained") return "Something is still missing that the catalogue does not hold.";
     if (verdict == "ambiguous") return "An effect is still missing, but these measurements cannot identify which one.";
     return "Another effect is still missing: run diagnose on the new model.";
@@ -83,11 +98,14 @@ json to_json(const identify::Ladder& ladder) {
     for (const identify::LadderStep& step : ladder.steps) steps.push_back(to_json(step));
     for (const identify::EffectNotAdded& one : ladder.not_added)
         not_added.push_back({{"effect", one.effect}, {"why", one.why}});
-    return {
-        {"format", "palpate-ladder/1"}, {"steps", steps},
-        {"not_added", not_added},       {"held_out_probes", ladder.held_out_probes},
-        {"model", "model.json"},        {"verdict", identify::verdict_names[static_cast<std::size_t>(ladder.verdict)]},
-        {"notes", ladder.notes}};
+    return {{"format", "palpate-ladder/1"},
+            {"steps", steps},
+            {"not_added", not_added},
+            {"held_out_probes", ladder.held_out_probes},
+            {"model", "model.json"},
+            {"verdict", identify::verdict_names[static_cast<std::size_t>(ladder.verdict)]},
+            {"noise_mm", known(ladder.steps.back().comparison.noise)},
+            {"notes", ladder.notes}};
 }
 
 std::string ladder_in_words(const json& ladder) {
@@ -98,10 +116,7 @@ std::string ladder_in_words(const json& ladder) {
         not_added.push_back(one["effect"]);
         text += fmt::format("{} is not added: {}.\n", not_added.back(), one["why"].get<std::string>());
     }
-    return text +
-           verdict_in_words(ladder["verdict"].get<std::string>(), ladder["steps"].back()["reference"].is_object(),
-                            not_added) +
-           "\n";
+    return text + verdict_in_words(ladder, not_added) + "\n";
 }
 
 json final_comparison(const identify::Ladder& ladder, const identify::BodyModel& body) {

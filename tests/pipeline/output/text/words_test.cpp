@@ -198,6 +198,18 @@ TEST(LadderInWords, TellsEveryStepAndTheVerdict) {
                       HasSubstr("The model still lacks friction; a skeleton of more spheres")));
 }
 
+TEST(LadderInWords, TellsNoiseFromWhatContactsExplain) {
+    json on_links = {
+        {"steps",
+         {{{"effects", json::array()}, {"rms_mm", 0.16}, {"held_out_rms_mm", nullptr}, {"reference", nullptr}}}},
+        {"verdict", "adequate"},
+        {"noise_mm", 0.15}};
+    EXPECT_THAT(ladder_in_words(on_links), HasSubstr("What is left is noise."));
+    on_links["noise_mm"] = 0.06;
+    EXPECT_THAT(ladder_in_words(on_links),
+                AllOf(HasSubstr("off by more than the noise of 0.06 mm"), Not(HasSubstr("What is left is noise"))));
+}
+
 TEST(Words, ACertaintyIsToldAsABound) {
     EXPECT_EQ(probability_in_words(0.0), "below 0.01");
     EXPECT_EQ(probability_in_words(0.5), "0.50");
