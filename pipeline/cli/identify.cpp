@@ -45,12 +45,16 @@ Outcome identify(const IdentifyCommandOptions& options, const Common& common) {
     return outcome;
 }
 
-/// What follows a set, or standard input, with the options that the command shares.
+constexpr std::string_view socket_prefix = "unix:";
+bool is_socket(const std::string& from) { return from.starts_with(socket_prefix); }
+
+/// What follows a set, standard input or a socket, with the options that the command shares.
 Outcome follow(FollowOptions options, const IdentifyCommandOptions& shared, const std::string& from,
                const Common& common) {
     options.model = shared.model;
     options.standard_input = from == "-";
-    options.set = options.standard_input ? shared.set : fs::path(from);
+    if (is_socket(from)) options.socket = from.substr(socket_prefix.size());
+    options.set = options.standard_input || is_socket(from) ? shared.set : fs::path(from);
     options.output = shared.output.empty() ? fs::path("identified") : shared.output;
     const bool goes_on = fs::exists(options.output / "cloud.json");
     if (!goes_on) refuse_to_overwrite(options.output, common.force);
@@ -69,27 +73,29 @@ namespace palpate::pipeline {
 void Subcommands::add_identify(CLI::App& app) {
     auto live = std::make_shared<commands::FollowOptions>();
     auto from = std::make_shared<std::string>();
-    auto* sub =
-        subcommand(app, "identify", "Stiffness per link by particle filter.",
-                   "  palpate identify model.json set/ -o fitted --parameters zones\n"
-                   "  palpate identify model.json set/ --fixed torsion -o fitted     # known: not fitted\n\n"
-                   "Prior: each stiffness is log-normal about the model's own, which follows from its sections\n"
-                   "and the material ('palpate skeleton --young'); posterior.csv tells its mean and sd. To move\n"
-                   "it, edit model.json. burion2008 takes an even one from --search-low to --search-high times\n"
-                   "the model's own.\n\n"
-                   "  palpate identify model.json --follow set/ -o live    # while another program appends rows\n"
-                   "  rig | palpate identify model.json set/ --follow - -o live --json\n\n"
-                   "It calibrates with the first readings that are there, then takes in each new one and tells what\n"
-                   "became of it. Killed and begun again it goes on from live/cloud.json. Lines of --follow - are\n"
-                   "{\"probe\": 3, \"time\": 0, \"contacts\": [{\"at\": [x,y,z], \"force\": [fx,fy,fz]}],\n"
-                   "\"markers\": {\"12\": [x,y,z]}} in mm, N and s.\n",
-                   [this, live, from] {
-                       if (!from->empty()) return commands::follow(*live, identify, *from, common);
-                       return commands::identify(identify, common);
-                   });
+    auto* sub = subcommand(
+        app, "identify", "Stiffness per link by particle filter.",
+        "  palpate identify model.json set/ -o fitted --parameters zones\n"
+        "  palpate identify model.json set/ --fixed torsion -o fitted     # known: not fitted\n\n"
+        "Prior: each stiffness is log-normal about the model's own, which follows from its sections\n"
+        "and the material ('palpate skeleton --young'); posterior.csv tells its mean and sd. To move\n"
+        "it, edit model.json; --prior takes it from other specimens ('palpate pool'). burion2008 takes\n"
+        "an even one from --search-low to --search-high times the model's own.\n\n"
+        "  palpate identify model.json --follow set/ -o live    # while another program appends rows\n"
+        "  rig | palpate identify model.json set/ --follow - -o live --json\n"
+        "  palpate identify model.json set/ --follow unix:rig.sock -o live    # answers each line there\n\n"
+        "It calibrates with the first readings that are there, then takes in each new one and tells what\n"
+        "became of it. Killed and begun again it goes on from live/cloud.json. Lines of - and of a socket are\n"
+        "{\"probe\": 3, \"time\": 0, \"contacts\": [{\"at\": [x,y,z], \"force\": [fx,fy,fz]}],\n"
+        "\"markers\": {\"12\": [x,y,z]}} in mm, N and s.\n",
+        [this, live, from] {
+            if (!from->empty()) return commands::follow(*live, identify, *from, common);
+            return commands::identify(identify, common);
+        });
     sub->add_option("MODEL", identify.model, "model.json")->required();
     sub->add_option("SET", identify.set, "The measurements");
-    sub->add_option("--follow", *from, "Take in readings as they come: a SET that grows, or - for standard input");
+    sub->add_option("--follow", *from,
+                    "Take in readings as they come: a SET that grows, - for standard input, or unix:PATH for a socket");
     sub->add_option("--follow-timeout", live->timeout, "End after so long without a reading [s]; 0: never")
         ->check(CLI::NonNegativeNumber);
     sub->add_option("--forgetting", live->filter.forgetting,
@@ -97,10 +103,11 @@ void Subcommands::add_identify(CLI::App& app) {
     sub->add_option("-o,--output", identify.output,
                     "Folder for model.json, posterior.csv, history.pvd; identified by default");
     sub->parse_complete_callback([this, from] {
-        const bool follows_a_set = !from->empty() && *from != "-";
+        const bool follows_a_set = !from->empty() && *from != "-" && !commands::is_socket(*from);
         if (identify.set.empty() && !follows_a_set) throw CLI::RequiredError("SET");
         if (!identify.set.empty() && follows_a_set) {
-            throw CLI::ValidationError("--follow", "names a set, and so does SET; give one of them, or --follow -");
+            throw CLI::ValidationError("--follow",
+                                       "names a set, and so does SET; give one of them, or --follow - or unix:PATH");
         }
     });
     add_flags_of(sub, identify.overrides, "Identification");

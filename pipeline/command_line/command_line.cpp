@@ -51,7 +51,7 @@ CLI::App* Subcommands::subcommand(CLI::App& app, const std::string& name, const 
         "  --threads INT               Threads; all cores by default. They change no number\n"
         "  --seed UINT                 Seed of everything random\n"
         "  --force                     Replace files that palpate did not make\n"
-        "  -q,--quiet  -v,--verbose    Errors only; more detail\n");
+        "  -q,--quiet  -v,--verbose    Result and errors only; more detail\n");
     return sub;
 }
 
@@ -61,7 +61,7 @@ void CommandLine::Impl::add_common(CLI::App& app) {
         ->check(CLI::Range(1, 1024));
     app.add_option("--seed", subcommands.common.seed, "Seed of everything random");
     app.add_flag("--force", subcommands.common.force, "Replace files that palpate did not make");
-    auto* quiet_flag = app.add_flag("-q,--quiet", quiet, "Errors only");
+    auto* quiet_flag = app.add_flag("-q,--quiet", quiet, "Result and errors only");
     app.add_flag("-v,--verbose", verbose, "More detail")->excludes(quiet_flag);
     app.set_version_flag("--version", [this] { return version_text(subcommands.common.json); });
 }

@@ -1,10 +1,7 @@
 #include "pipeline/live/follow.h"
 
 #include <fmt/format.h>
-#include <poll.h>
-#include <unistd.h>
 
-#include <array>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
@@ -17,7 +14,7 @@
 #include "mesh/errors.h"
 #include "mesh/text/atomic_file.h"
 #include "pipeline/live/cloud_file.h"
-#include "pipeline/live/json_reading.h"
+#include "pipeline/live/json_lines.h"
 #include "pipeline/live/set_tail.h"
 #include "pipeline/output/csv/posterior.h"
 #include "pipeline/output/json/json_values.h"
@@ -39,48 +36,6 @@ constexpr double between_clouds = 5;      // [s]
 constexpr int poll_ms = 50;
 
 double seconds_since(Clock::time_point then) { return std::chrono::duration<double>(Clock::now() - then).count(); }
-
-/// What has come since the last look.
-struct Arrived {
-    std::vector<identify::LoadState> states;
-    std::vector<std::string> faults;
-    bool is_over = false;
-};
-
-/// JSON lines on standard input, without waiting for the next.
-class JsonLines {
-public:
-    explicit JsonLines(const identify::MeasurementSet& set) : set_(set) {}
-
-    Arrived poll() {
-        Arrived arrived;
-        pollfd input{STDIN_FILENO, POLLIN, 0};
-        if (::poll(&input, 1, 0) > 0) {
-            std::array<char, 65536> bytes{};
-            const ssize_t count = ::read(STDIN_FILENO, bytes.data(), bytes.size());
-            if (count > 0) text_.append(bytes.data(), static_cast<std::size_t>(count));
-            arrived.is_over = count == 0;
-        }
-        if (arrived.is_over && !text_.empty() && text_.back() != '\n') text_ += '\n';
-        for (std::size_t end = text_.find('\n'); end != std::string::npos; end = text_.find('\n')) {
-            const std::string line = text_.substr(0, end);
-            text_.erase(0, end + 1);
-            ++line_;
-            if (line.find_first_not_of(" \t\r") == std::string::npos) continue;
-            try {
-                arrived.states.push_back(read_json_reading(line, set_, fmt::format("standard input, line {}", line_)));
-            } catch (const InvalidInput& fault) {
-                arrived.faults.emplace_back(fault.what());
-            }
-        }
-        return arrived;
-    }
-
-private:
-    const identify::MeasurementSet& set_;
-    std::string text_;
-    int line_ = 0;
-};
 
 const char* word(identify::FilterUpdate::Fate fate) {
     switch (fate) {
@@ -111,17 +66,19 @@ public:
     Outcome run() {
         begin();
         std::optional<SetTail> tail;
-        std::optional<JsonLines> lines;
         if (options_.standard_input) {
-            lines.emplace(filter_->set());
+            lines_.emplace(filter_->set(), standard_input());
+        } else if (!options_.socket.empty()) {
+            lines_.emplace(filter_->set(), unix_socket(options_.socket));
+            Console::notice(fmt::format("Listens at {}.", options_.socket.string()));
         } else {
             tail.emplace(options_.set);
         }
         Clock::time_point last = Clock::now();
         for (;;) {
-            Arrived arrived;
-            if (lines) {
-                arrived = lines->poll();
+            JsonLines::Arrived arrived;
+            if (lines_) {
+                arrived = lines_->poll();
             } else {
                 SetTail::News news = tail->poll();
                 arrived = {std::move(news.states), std::move(news.faults), false};
@@ -169,15 +126,17 @@ private:
     void take_in(const identify::LoadState& state) {
         if (known_.erase({state.probe, state.time}) > 0) return;  // it began with that one
         try {
-            identify::check_contacts(*rest_, state, options_.standard_input ? "standard input" : "probes.csv");
+            identify::check_contacts(*rest_, state, lines_ ? lines_->name() : "probes.csv");
         } catch (const InvalidInput& fault) {
             return tell_fault(fault.what());
         }
         const Clock::time_point start = Clock::now();
         const identify::FilterUpdate update = filter_->assimilate(state);
         const double took = seconds_since(start);
+        const std::string object = json_of(state, update, took).dump();
+        if (lines_) lines_->answer(object);
         if (common_.json) {
-            fmt::print("{}\n", json_of(state, update, took).dump());
+            fmt::print("{}\n", object);
         } else {
             fmt::print("{}\n", line_of(state, update, took));
             if (update.alarm && !alarmed_) fmt::print("ALARM: {}\n", in_words(*update.alarm, filter_->set()));
@@ -191,8 +150,10 @@ private:
     }
 
     void tell_fault(const std::string& fault) {
+        const std::string object = nlohmann::json{{"fate", "left out"}, {"why", fault}}.dump();
+        if (lines_) lines_->answer(object);
         if (common_.json) {
-            fmt::print("{}\n", nlohmann::json{{"fate", "left out"}, {"why", fault}}.dump());
+            fmt::print("{}\n", object);
         } else {
             fmt::print("left out: {}\n", fault);
         }
@@ -282,6 +243,7 @@ private:
     const FollowOptions& options_;
     const Common& common_;
     std::optional<identify::Filter> filter_;
+    std::optional<JsonLines> lines_;  // none: another program appends to the set
     std::optional<identify::RestBody> rest_;
     std::set<identify::StateName> known_;  // of the set's states, that the filter knew when it began
     int begun_with_ = 0;

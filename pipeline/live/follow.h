@@ -11,6 +11,7 @@ struct FollowOptions {
     double timeout = 0;           // without a reading for so long it ends [s]; 0: never, unless standard input closes
     identify::IdentifyOptions how;
     identify::FilterOptions filter;
+    std::filesystem::path socket = {};  // readings come as JSON lines there, and are answered; empty: they do not
 };
 
 /// Takes in readings as they come, a line or JSON object on standard output for each, and leaves the cloud, from which

@@ -3,7 +3,11 @@
 #include "pipeline/live/follow.h"
 
 #include <gtest/gtest.h>
+#include <sys/socket.h>
+#include <sys/un.h>
+#include <unistd.h>
 
+#include <array>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <stop_token>
@@ -12,6 +16,7 @@
 #include "identify/numerics/random.h"
 #include "mesh/text/atomic_file.h"
 #include "pipeline/live/cloud_file.h"
+#include "pipeline/live/json_lines.h"
 #include "pipeline/live/json_reading.h"
 #include "pipeline/live/set_tail.h"
 #include "skeleton/model/io/model_io.h"
@@ -140,6 +145,86 @@ TEST(Follow, TellsRowsThatNoReaderTakes) {
               std::string::npos)
         << text;
     EXPECT_NE(text.find("taken in; forecast off by"), std::string::npos) << text;
+}
+
+/// As a program sends it.
+std::string json_line(const identify::MeasurementSet& set, const LoadState& state) {
+    nlohmann::json line = {{"probe", state.probe}, {"time", state.time}};
+    for (const mesh::Contact& contact : state.contacts)
+        line["contacts"].push_back({{"at", {contact.point.x(), contact.point.y(), contact.point.z()}},
+                                    {"force", {contact.force.x(), contact.force.y(), contact.force.z()}}});
+    for (const identify::Reading& reading : state.readings)
+        line["markers"][identify::label_of(set.markers[reading.marker])] = {reading.position.x(), reading.position.y(),
+                                                                            reading.position.z()};
+    return line.dump() + "\n";
+}
+
+/// Sends text to a socket, ends, and returns what is answered.
+std::string answer_to(const std::string& text, const fs::path& path) {
+    const int client = ::socket(AF_UNIX, SOCK_STREAM, 0);
+    sockaddr_un address{};
+    address.sun_family = AF_UNIX;
+    path.string().copy(address.sun_path, sizeof(address.sun_path) - 1);
+    EXPECT_EQ(::connect(client, reinterpret_cast<const sockaddr*>(&address), sizeof(address)), 0);
+    EXPECT_EQ(::send(client, text.data(), text.size(), 0), static_cast<ssize_t>(text.size()));
+    ::shutdown(client, SHUT_WR);
+    std::string answer;
+    std::array<char, 4096> bytes{};
+    for (ssize_t count = 0; (count = ::read(client, bytes.data(), bytes.size())) > 0;)
+        answer.append(bytes.data(), static_cast<std::size_t>(count));
+    ::close(client);
+    return answer;
+}
+
+TEST(Follow, AnswersTheProgramsThatConnectToItsSocket) {
+    const Rig rig;
+    commands::FollowOptions options = rig.options("live");
+    options.socket = rig.folder / "rig.sock";
+    options.set = rig.folder / "set";
+    std::vector<nlohmann::json> first, second;
+    {
+        const std::jthread other([&](const std::stop_token& gone) {
+            while (!fs::exists(options.socket) && !gone.stop_requested())
+                std::this_thread::sleep_for(std::chrono::milliseconds(10));
+            first = lines_of(answer_to(json_line(rig.set, rig.set.states[6]) + json_line(rig.set, rig.set.states[7]),
+                                       options.socket));
+            second = lines_of(answer_to("no JSON\n" + json_line(rig.set, rig.set.states[8]), options.socket));
+        });
+        testing::internal::CaptureStdout();
+        commands::follow(options, {});
+        testing::internal::GetCapturedStdout();
+    }
+    ASSERT_EQ(first.size(), 2u);
+    EXPECT_EQ(first[1]["probe"], rig.set.states[7].probe);
+    EXPECT_EQ(first[1]["fate"], "taken in");
+    ASSERT_EQ(second.size(), 2u);
+    EXPECT_EQ(second[0]["fate"], "left out");
+    EXPECT_NE(second[0]["why"].get<std::string>().find("rig.sock, line 3"), std::string::npos) << second[0];
+    EXPECT_EQ(second[1]["readings"], 9);
+    EXPECT_FALSE(fs::exists(options.socket)) << "it is removed in the end";
+}
+
+TEST(UnixSocket, StandsInForOneThatWasLeftAndForNothingElse) {
+    const TemporaryFolder folder;
+    mesh::write_text(folder / "table.csv", "1\n");
+    EXPECT_NE(message_of([&] { unix_socket(folder / "table.csv"); }).find("is no socket"), std::string::npos);
+    EXPECT_NE(message_of([&] { unix_socket(folder / std::string(200, 'a')); }).find("shorter"), std::string::npos);
+    EXPECT_NE(message_of<IoError>([&] { unix_socket(folder / "none/rig.sock"); }).find("none/rig.sock"),
+              std::string::npos);
+    {
+        const auto listening = unix_socket(folder / "rig.sock");
+        EXPECT_NE(message_of([&] { unix_socket(folder / "rig.sock"); }).find("another program listens"),
+                  std::string::npos);
+    }
+    {  // as a program leaves it that is killed
+        const int left = ::socket(AF_UNIX, SOCK_STREAM, 0);
+        sockaddr_un address{};
+        address.sun_family = AF_UNIX;
+        (folder / "rig.sock").string().copy(address.sun_path, sizeof(address.sun_path) - 1);
+        ASSERT_EQ(::bind(left, reinterpret_cast<const sockaddr*>(&address), sizeof(address)), 0);
+        ::close(left);
+    }
+    EXPECT_NO_THROW(unix_socket(folder / "rig.sock"));
 }
 
 TEST(SetTail, GivesEachStateOnceAndWhole) {
