@@ -38,9 +38,7 @@ IdentifyResult identify(const skeleton::Model& model, const MeasurementSet& set,
     const MeasurementSet& readable = labelled.set;
     IdentifyResult result;
     if (is_rigged(readable)) {
-        constexpr int draws = 200;  // as of the tempered filter
-        result = identify_rigged(model, readable, options.particles > 0 ? options.particles : draws, options.seed,
-                                 options.threads, progress);
+        result = identify_rigged(model, readable, options, progress);
     } else if (options.method == Method::burion2008) {
         result = identify_burion2008(model, readable, options, progress);
     } else if (options.domain == Domain::force) {

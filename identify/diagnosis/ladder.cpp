@@ -291,7 +291,9 @@ private:
     skeleton::Model refitted_skeleton(const skeleton::Model& model, const MeasurementSet& set) const {
         const IdentifyOptions& how = options_.identify;
         if (is_rigged(set)) {
-            skeleton::Model fitted = identify_rigged(without_faults(model), set, 1, how.seed, how.threads).model;
+            IdentifyOptions of_one = how;
+            of_one.particles = 1;  // the fit alone
+            skeleton::Model fitted = identify_rigged(without_faults(model), set, of_one).model;
             add_faults(model.effects, fitted);
             return fitted;
         }

@@ -20,9 +20,11 @@ constexpr double start_young = 0.1;
 /// Of each kind of stiffness about the common factor, as of other sets.
 const double prior_sd = std::log(3.0);
 
-SkeletonBody body_of(const skeleton::Model& model, const MeasurementSet& set) {
+SkeletonBody body_of(const skeleton::Model& model, const MeasurementSet& set,
+                     const std::vector<InformativePrior>& priors = {}) {
     const bool is_told = set.material && set.material->young > 0;
-    return {model, set.markers, is_told ? set.material->young : start_young, Rig{set.tools, set.actuators}, prior_sd};
+    return {model,    set.markers, is_told ? set.material->young : start_young, Rig{set.tools, set.actuators},
+            prior_sd, priors};
 }
 
 /// Noise that a set does not tell: a hundredth of how far the markers move [mm].
@@ -110,18 +112,19 @@ bool is_rigged(const MeasurementSet& set) {
     });
 }
 
-IdentifyResult identify_rigged(const skeleton::Model& model, const MeasurementSet& set, int particles,
-                               std::uint64_t seed, int threads, const Progress& progress) {
+IdentifyResult identify_rigged(const skeleton::Model& model, const MeasurementSet& set, const IdentifyOptions& how,
+                               const Progress& progress) {
+    constexpr int draws_by_default = 200;  // as of the tempered filter
     Problem problem = problem_of(set);
-    const skeleton::Model start = scaled(model, set, problem, threads);
-    const SkeletonBody body = body_of(start, set);
-    DiagnoseOptions how;
-    how.known = model.effects;
-    how.refit.threads = threads;
-    how.refit.correct_for_mesh = false;
-    how.law = only_law(set);
+    const skeleton::Model start = scaled(model, set, problem, how.threads);
+    const SkeletonBody body = body_of(start, set, how.priors);
+    DiagnoseOptions options;
+    options.known = model.effects;
+    options.refit.threads = how.threads;
+    options.refit.correct_for_mesh = false;
+    options.law = only_law(set);
     IdentifyResult result;
-    Baselines baselines(body, how);
+    Baselines baselines(body, options);
     baselines.fit(problem, result.notes, progress);
     add_model_error(baselines.best(), problem);
     baselines.refit(problem);
@@ -136,7 +139,7 @@ IdentifyResult identify_rigged(const skeleton::Model& model, const MeasurementSe
     }
     const Parameters parameters = group_stiffness(start, Scope::uniform);
     const std::vector<Eigen::Index> places = places_of(parameters, body);
-    TemperedResult draws = draws_of(fit, places, particles, seed);
+    TemperedResult draws = draws_of(fit, places, how.particles > 0 ? how.particles : draws_by_default, how.seed);
     const LogNormalPrior prior{fit.prior_mean(places), fit.prior_sd(places), nullptr};
     report_particles(parameters, prior, {fit.explanation.theta(places)}, draws, result);
     result.states = static_cast<int>(set.states.size());

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "identify/inference/identify_result.h"
+#include "identify/inference/problem/identify_options.h"
 #include "identify/measurements/measurement_set.h"
 #include "mesh/progress.h"
 #include "skeleton/statics/equilibrium.h"
@@ -12,9 +13,10 @@ bool is_rigged(const MeasurementSet& set);
 
 /// A multiplier for each kind of a skeleton's stiffness, fitted to positions and reactions together under the law that
 /// explains more; the model's own effects are fitted anew beside them. The posterior is Laplace's approximation, drawn
-/// from by `particles`. @throws InvalidInput, SolverFailure as diagnose.
-IdentifyResult identify_rigged(const skeleton::Model& model, const MeasurementSet& set, int particles,
-                               std::uint64_t seed, int threads, const Progress& progress = {});
+/// from by particles, 200 by default. Of `how` it takes particles, priors, seed and threads.
+/// @throws InvalidInput, SolverFailure as diagnose.
+IdentifyResult identify_rigged(const skeleton::Model& model, const MeasurementSet& set, const IdentifyOptions& how,
+                               const Progress& progress = {});
 
 /// How the model stands in each state of the set. @throws SolverFailure where one has no equilibrium.
 std::vector<skeleton::Equilibrium> play_rigged(const skeleton::Model& model, const MeasurementSet& set, int threads);

@@ -255,8 +255,14 @@ ReferenceBody::ReferenceBody(const mesh::VolumeMesh& mesh, const std::vector<mes
     constexpr double of_unknown = 4;   // tissues differ by more than bodies do, by a factor of 50
     constexpr double of_known = 1e-6;  // leaves nothing to be fitted
     i.parameters = {{"young", start, start, 3},
-                    {"compressibility", compressibility, compressibility, options.poisson ? 1e-6 : 1, false,
+                    {"compressibility", compressibility, compressibility, options.poisson ? of_known : 1, false,
                      std::log(1 - 2 * most_ratio), std::log(1 - 2 * least_ratio)}};
+    for (StiffnessParameter& parameter : i.parameters) {
+        const InformativePrior* from_specimens = prior_of(parameter.name, parameter.prior_sd, options.priors);
+        if (!from_specimens) continue;
+        parameter.start = parameter.prior_mean = from_specimens->mean;
+        parameter.prior_sd = from_specimens->sd;
+    }
     for (const mesh::MaterialRegion& region : options.regions) {
         const double own = region.young ? std::log(*region.young) : start;
         i.parameters.push_back(

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "fem/hyperelastic_body.h"
+#include "identify/inference/priors/informative_prior.h"
 #include "identify/measurements/measurement_set.h"
 #include "identify/models/body_model.h"
 #include "identify/models/rig.h"
@@ -18,6 +19,7 @@ struct ReferenceBodyOptions {
     std::optional<mesh::VolumeMesh> finer = {};
     Rig rig = {};                                    // what may touch the body, and act within it
     std::vector<mesh::MaterialRegion> regions = {};  // whose surfaces the elements follow
+    std::vector<InformativePrior> priors = {};       // of "young" and "compressibility", from other specimens
 };
 
 /// The name of the parameter ln E of a region.

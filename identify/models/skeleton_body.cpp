@@ -96,7 +96,7 @@ struct SkeletonBody::Impl {
     bool has_cavities;
     std::unique_ptr<ContactLoads> loads;
 
-    void find_kinds(double prior_sd);
+    void find_kinds(double prior_sd, const std::vector<InformativePrior>& priors);
 
     using Place = std::tuple<double, double, double, double>;
     mutable std::mutex mutex;
@@ -154,7 +154,7 @@ struct SkeletonBody::Impl {
 };
 
 SkeletonBody::SkeletonBody(const skeleton::Model& model, const std::vector<Marker>& markers, double young,
-                           const Rig& rig, double prior_sd)
+                           const Rig& rig, double prior_sd, const std::vector<InformativePrior>& priors)
     : impl_(std::make_unique<Impl>(rig)) {
     Impl& i = *impl_;
     for (int law = 0; law < 2; ++law) {
@@ -168,7 +168,7 @@ SkeletonBody::SkeletonBody(const skeleton::Model& model, const std::vector<Marke
         i.markers.push_back(attach(marker.anchor.value_or(marker.rest), marker.rest));
     }
     i.k0 = skeleton::stiffness_vector(model);
-    i.find_kinds(prior_sd);
+    i.find_kinds(prior_sd, priors);
     i.young = young;
     const Points& reach = model.surface.vertices;
     i.spheres.resize(std::ssize(model.spheres), 3);
@@ -204,7 +204,7 @@ SkeletonBody::SkeletonBody(const skeleton::Model& model, const std::vector<Marke
 SkeletonBody::~SkeletonBody() = default;
 
 // A parameter for each kind of stiffness that the model has.
-void SkeletonBody::Impl::find_kinds(double prior_sd) {
+void SkeletonBody::Impl::find_kinds(double prior_sd, const std::vector<InformativePrior>& priors) {
     const skeleton::StiffnessOrder order(by_law[0]);
     std::vector<int> place(skeleton::stiffness_names.size(), -1);
     for (Eigen::Index k = 0; k < order.size(); ++k) {
@@ -214,6 +214,20 @@ void SkeletonBody::Impl::find_kinds(double prior_sd) {
             parameters.push_back({skeleton::stiffness_names[kind], 0, 0, prior_sd});
         }
         parameter_of.push_back(place[kind]);
+    }
+    // A parameter is the logarithm of a multiplier on the geometric mean of what the model has.
+    for (std::size_t p = 0; p < parameters.size(); ++p) {
+        const InformativePrior* told = prior_of(parameters[p].name, prior_sd, priors);
+        if (!told) continue;
+        double sum = 0, count = 0;
+        for (Eigen::Index k = 0; k < order.size(); ++k) {
+            if (parameter_of[static_cast<std::size_t>(k)] != static_cast<int>(p) || !(k0[k] > 0)) continue;
+            sum += std::log(k0[k]);
+            ++count;
+        }
+        if (count == 0) continue;
+        parameters[p].prior_mean = told->mean - sum / count;
+        parameters[p].prior_sd = told->sd;
     }
 }
 

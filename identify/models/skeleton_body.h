@@ -1,5 +1,6 @@
 #pragma once
 
+#include "identify/inference/priors/informative_prior.h"
 #include "identify/measurements/measurement_set.h"
 #include "identify/models/body_model.h"
 #include "identify/models/rig.h"
@@ -16,9 +17,10 @@ namespace palpate::identify {
 class SkeletonBody : public BodyModel {
 public:
     /// `young`: of the body that the skeleton stands for, as it comes [MPa]; for how deep a contact may dent.
-    /// `rig`: what may touch it, and act within it. `prior_sd`: of each parameter.
+    /// `rig`: what may touch it, and act within it. `prior_sd`: of each parameter, but for
+    /// those that other specimens tell of.
     SkeletonBody(const skeleton::Model& model, const std::vector<Marker>& markers, double young, const Rig& rig = {},
-                 double prior_sd = 3);
+                 double prior_sd = 3, const std::vector<InformativePrior>& priors = {});
     ~SkeletonBody() override;
 
     int dofs() const override;

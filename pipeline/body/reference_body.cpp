@@ -63,7 +63,9 @@ std::vector<std::string> not_followed(const MeshedBody& body, const std::vector<
 }
 
 std::unique_ptr<identify::ReferenceBody> fill(const identify::MeasurementSet& set, double edge_length,
-                                              const Progress& progress, std::vector<std::string>& notes) {
+                                              const Progress& progress,
+                                              const std::vector<identify::InformativePrior>& priors,
+                                              std::vector<std::string>& notes) {
     const double edge = edge_length > 0 ? edge_length : reference_edge_length(set.rest_surface);
     // Tetrahedra that are given stay: those who measured on them, by another solver, made their errors too. Where they
     // are many, fewer are fitted, and what the given ones alter is taken off; unless fewer would bend badly, as those
@@ -88,6 +90,7 @@ std::unique_ptr<identify::ReferenceBody> fill(const identify::MeasurementSet& se
     options.measured_on_mesh = is_fitted;
     if (given && !is_fitted && given_nodes <= enough_nodes) options.finer = given->volume;
     options.rig = {set.tools, set.actuators};
+    options.priors = priors;
     options.regions = with_surfaces(set.regions, body.interfaces);
     options.density = set.density.value_or(default_density * fem::tonne_per_mm3);
     if (set.material && set.material->young > 0) options.young = set.material->young;
@@ -123,10 +126,11 @@ fem::Dilatation dilatation_for(const mesh::Surface& surface, double edge_length,
     return poisson <= unlocked && edge_length > thickness_of(surface) ? fem::Dilatation::full : fem::Dilatation::mean;
 }
 
-Reference make_reference(const identify::MeasurementSet& set, double edge_length, const Progress& progress) {
+Reference make_reference(const identify::MeasurementSet& set, double edge_length, const Progress& progress,
+                         const std::vector<identify::InformativePrior>& priors) {
     Reference reference;
     try {
-        reference.body = fill(set, edge_length, progress, reference.notes);
+        reference.body = fill(set, edge_length, progress, priors, reference.notes);
     } catch (const InvalidInput& e) {
         reference.why_none = e.what();
     } catch (const SolverFailure& e) {

@@ -31,6 +31,8 @@ struct Reference {
 /// Tetrahedra of the set's own are used as they are.
 /// Density and a first guess of Young's modulus are the set's.
 /// @param edge_length of the tetrahedra [mm]; 0: the default
-Reference make_reference(const identify::MeasurementSet& set, double edge_length, const Progress& progress = {});
+/// @param priors of its material, from other specimens
+Reference make_reference(const identify::MeasurementSet& set, double edge_length, const Progress& progress = {},
+                         const std::vector<identify::InformativePrior>& priors = {});
 
 }  // namespace palpate::pipeline

@@ -53,6 +53,7 @@ struct Case {
     skeleton::BuildOptions skeleton;
     bool sphere_curve = false;  // measure what more and fewer spheres would do
     ProbeOptions probing{.probes = 60, .held_out = 12};
+    std::optional<std::filesystem::path> prior;  // population.json, of which `identify.priors` are
     identify::IdentifyOptions identify;
     RunDiagnosisOptions diagnose;
     Expectation expect;

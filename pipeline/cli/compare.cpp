@@ -26,7 +26,7 @@ void compare_reference(nlohmann::json& result, const CompareOptions& options, co
         return;
     }
     try {
-        const auto body = reference_of(given.set, options.overrides.on_defaults().edge_length);
+        const auto body = reference_of(given.set, options.overrides.on_defaults());
         identify::DiagnoseOptions how = diagnose_options({}, given.set.density.has_value(), given.model, common);
         how.screen = false;
         const identify::Diagnosis found = identify::diagnose(*body, given.set, how, Console::progress());

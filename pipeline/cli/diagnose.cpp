@@ -18,7 +18,7 @@ Diagnosed diagnose(const ModelAndSet& given, const DiagnoseCommandOptions& optio
     RunDiagnosisOptions wanted = options.overrides.on_defaults().diagnose;
     wanted.without = options.without;
     const identify::DiagnoseOptions how = diagnose_options(wanted, given.set.density.has_value(), given.model, common);
-    const auto body = body_to_diagnose(options.body, given, options.overrides.on_defaults().edge_length);
+    const auto body = body_to_diagnose(options.body, given, options.overrides.on_defaults());
     const identify::Diagnosis found = identify::diagnose(*body, given.set, how, Console::progress());
     const std::string field = options.output.empty() ? "" : write_missing_series(options.output, given.set, found);
     return {to_json(found, *body, given.set, field), found.explanation, found.notes};
@@ -64,6 +64,7 @@ void Subcommands::add_diagnose(CLI::App& app) {
         ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
     add_body(sub, diagnose.body, "by default");
     add_flag(sub, diagnose.overrides, "volume.edge_length");
+    add_flag(sub, diagnose.overrides, "identify.prior");
     for (const char* place : {"diagnose.gravity", "diagnose.false_claims"}) add_flag(sub, diagnose.overrides, place);
 }
 

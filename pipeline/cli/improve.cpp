@@ -87,7 +87,7 @@ Improved improve(const ModelAndSet& given, const ImproveCommandOptions& options,
                                       .only_better = options.automatic,
                                       .start = starts};
     how.identify.validate();
-    auto body = body_to_diagnose(judged_on(options, asked), given, options.overrides.on_defaults().edge_length);
+    auto body = body_to_diagnose(judged_on(options, asked), given, options.overrides.on_defaults());
     std::optional<identify::Diagnosis> found;
     if (options.automatic) found = diagnose_aloud(*body, given.set, how.diagnose);
     const std::vector<std::string>& effects = found ? found->explanation : asked;

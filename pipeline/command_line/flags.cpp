@@ -10,9 +10,12 @@
 namespace palpate::pipeline {
 namespace {
 
+bool is_path(const nlohmann::ordered_json& schema) { return schema.value("type", "") == "string"; }
+
 /// "{full,burion2008}", or the type and its bounds.
 std::string type_in_words(const nlohmann::ordered_json& schema) {
     if (schema.value("type", "") == "array") return type_in_words(schema["items"]);
+    if (is_path(schema)) return "PATH";
     if (schema.contains("enum"))
         return fmt::format("{{{}}}", fmt::join(schema["enum"].get<std::vector<std::string>>(), ","));
     return fmt::format("{} in [{:g}, {:g}]", schema["type"] == "integer" ? "INT" : "FLOAT",
@@ -26,7 +29,9 @@ std::string capitalised(std::string text) {
 
 CLI::Option* add_with_argument(CLI::App* command, CaseOverrides& overrides, const CaseSetting& setting) {
     const std::string place = setting.place();
-    const auto yaml_of = [many = setting.flag_is_repeatable](const std::vector<std::string>& words) {
+    const auto yaml_of = [many = setting.flag_is_repeatable,
+                          quotes = is_path(setting.schema)](const std::vector<std::string>& words) {
+        if (quotes) return nlohmann::json(words.back()).dump();
         return many ? fmt::format("[{}]", fmt::join(words, ", ")) : words.back();
     };
     auto* option = command->add_option_function<std::vector<std::string>>(

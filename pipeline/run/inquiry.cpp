@@ -7,6 +7,7 @@
 #include "mesh/errors.h"
 #include "mesh/supports/region_yaml.h"
 #include "mesh/text/atomic_file.h"
+#include "pipeline/case/population_prior.h"
 #include "pipeline/case/settings/settings.h"
 #include "pipeline/output/identification.h"
 #include "pipeline/output/json/diagnosis.h"
@@ -47,13 +48,14 @@ json RunDiagnosis::settings() const {
     const Case& c = subject_.settings;
     return {{"settings", settings_of_stage(c, "diagnose")},
             {"edge", c.edge_length},
+            {"priors", priors_json(c.identify.priors)},
             {"density", set_.density.value_or(0)},
             {"young", subject_.material.young},
             {"supports", mesh::regions_to_yaml(set_.supports)}};
 }
 
 const identify::ReferenceBody& RunDiagnosis::reference() {
-    if (!reference_) reference_ = reference_of(set_, subject_.settings.edge_length);
+    if (!reference_) reference_ = reference_of(set_, subject_.settings);
     return *reference_;
 }
 

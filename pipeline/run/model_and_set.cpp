@@ -56,8 +56,8 @@ identify::MeasurementSet without_measurement_faults(const identify::MeasurementS
     return result;
 }
 
-std::unique_ptr<identify::ReferenceBody> reference_of(const identify::MeasurementSet& set, double edge_length) {
-    Reference reference = make_reference(set, edge_length, Console::progress());
+std::unique_ptr<identify::ReferenceBody> reference_of(const identify::MeasurementSet& set, const Case& settings) {
+    Reference reference = make_reference(set, settings.edge_length, Console::progress(), settings.identify.priors);
     Console::notices(reference.notes);
     if (!reference.body) {
         throw InvalidInput("the body cannot be made of finite elements: " + reference.why_none);
@@ -66,13 +66,14 @@ std::unique_ptr<identify::ReferenceBody> reference_of(const identify::Measuremen
 }
 
 std::unique_ptr<identify::BodyModel> body_to_diagnose(const std::string& kind, const ModelAndSet& given,
-                                                      double edge_length) {
-    if (kind != "skeleton") return reference_of(given.set, edge_length);
+                                                      const Case& settings) {
+    if (kind != "skeleton") return reference_of(given.set, settings);
     constexpr double start_young = 0.1;  // [MPa], where the set has no guess
+    constexpr double prior_sd = 3;       // of the logarithm of a stiffness that no specimen tells of
     const bool is_declared = given.set.material && given.set.material->young > 0;
-    return std::make_unique<identify::SkeletonBody>(given.model, given.set.markers,
-                                                    is_declared ? given.set.material->young : start_young,
-                                                    identify::Rig{given.set.tools, given.set.actuators});
+    return std::make_unique<identify::SkeletonBody>(
+        given.model, given.set.markers, is_declared ? given.set.material->young : start_young,
+        identify::Rig{given.set.tools, given.set.actuators}, prior_sd, settings.identify.priors);
 }
 
 void warn_of_modulus(const nlohmann::json& compare, const identify::MeasurementSet& set) {

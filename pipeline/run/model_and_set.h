@@ -29,14 +29,14 @@ ModelAndSet put_together(skeleton::Model model, identify::MeasurementSet set, co
 identify::MeasurementSet without_measurement_faults(const identify::MeasurementSet& set,
                                                     const std::vector<skeleton::EffectRecord>& effects);
 
-/// The set's body in finite elements; what it assumes is said aloud.
-/// @throws InvalidInput telling why there is none.
-std::unique_ptr<identify::ReferenceBody> reference_of(const identify::MeasurementSet& set, double edge_length);
+/// The set's body in finite elements, with the edge length and the priors of the settings; what it assumes is said
+/// aloud. @throws InvalidInput telling why there is none.
+std::unique_ptr<identify::ReferenceBody> reference_of(const identify::MeasurementSet& set, const Case& settings);
 
 /// What errors are judged on: "reference", or "skeleton", which starts from the set's Young's modulus where it has one.
 /// @throws InvalidInput telling why there is no reference.
 std::unique_ptr<identify::BodyModel> body_to_diagnose(const std::string& kind, const ModelAndSet& given,
-                                                      double edge_length);
+                                                      const Case& settings);
 
 /// Says aloud where a fit's Young's modulus hints at a slip of units. `compare`: with the baseline that was fitted.
 void warn_of_modulus(const nlohmann::json& compare, const identify::MeasurementSet& set);

@@ -19,6 +19,7 @@
 #include "pipeline/body/body.h"
 #include "pipeline/body/region_field.h"
 #include "pipeline/body/subject_body.h"
+#include "pipeline/case/population_prior.h"
 #include "pipeline/case/read_case.h"
 #include "pipeline/case/settings/settings.h"
 #include "pipeline/output/csv/posterior.h"
@@ -280,7 +281,9 @@ private:
         options.threads = common_.threads;
         // Our own reference is linear, and says so.
         if (!subject_.set) options.law = identify::LawChoice::linear;
-        const json settings{{"settings", settings_of_stage(c, "identify")}, {"seed", options.seed}};
+        const json settings{{"settings", settings_of_stage(c, "identify")},
+                            {"priors", priors_json(options.priors)},
+                            {"seed", options.seed}};
         const bool ran = folder_.stage(
             {"identify",
              settings,

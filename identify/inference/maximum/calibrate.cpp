@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <optional>
 
 #include "identify/inference/maximum/modes.h"
@@ -103,9 +104,11 @@ public:
         return {model, law, group_stiffness(model, Scope::uniform, options_.fixed), readings, options_.threads};
     }
 
-    static LogNormalPrior uniform_prior(const PositionDomain& domain) {
+    LogNormalPrior uniform_prior(const PositionDomain& domain) const {
         const Eigen::VectorXd zero = Eigen::VectorXd::Zero(domain.parameters().size());
-        return prior_round(zero.array() + domain.common_factor(zero), wide_sd);
+        LogNormalPrior prior = prior_round(zero.array() + domain.common_factor(zero), wide_sd);
+        inform(prior, domain.parameters(), options_.priors);
+        return prior;
     }
 
     static void fit_dents(PositionDomain& domain, FitResult& fit) {
@@ -185,7 +188,8 @@ Calibration calibrate(const skeleton::Model& model, const std::vector<StateReadi
     PositionDomain domain = calibrator.uniform_domain(dented, coarse.law, readings);
     if (!near) coarse.model_error = calibrator.model_error_of(coarse, domain);
     domain.set_model_error(coarse.model_error);
-    LogNormalPrior prior = Calibrator::uniform_prior(domain);
+    LogNormalPrior prior = calibrator.uniform_prior(domain);
+    std::vector<std::string> informed = inform(prior, domain.parameters(), options.priors);
     FitResult fit = calibrator.fit(domain, prior, coarse.theta, settled);
     Calibrator::fit_dents(domain, fit);
     coarse = {coarse.law, fit.theta, domain.dent(), coarse.model_error, fit.chi_squared};
@@ -205,6 +209,7 @@ Calibration calibrate(const skeleton::Model& model, const std::vector<StateReadi
                     ? LogNormalPrior{start, Eigen::VectorXd::Constant(start.size(), link_sd),
                                      smoothness_field(model, domain.parameters())}
                     : prior_round(spread_kinds(domain.parameters(), uniform.parameters(), prior.mean), wide_sd);
+        std::ranges::move(inform(prior, domain.parameters(), options.priors), std::back_inserter(informed));
         domain.set_model_error(model_error);
         report(progress, "first fit", 0.2);
         fit = calibrator.fit(domain, prior, start, nearly);
@@ -235,6 +240,10 @@ Calibration calibrate(const skeleton::Model& model, const std::vector<StateReadi
         std::ranges::transform(others, starts.begin(), &FitResult::theta);
         others = calibrator.other_modes(domain, prior, fit, starts);
     }
+    if (!options.priors.empty())
+        calibrator.note(informed.empty()
+                            ? "prior: the population tells no more of these stiffnesses than the model does"
+                            : fmt::format("prior: as the population tells of {}", mesh::listed(informed)));
     calibrator.note(fmt::format("error of the model beyond the noise: {}",
                                 model_error < hardly_any ? "less than 0.1 % of the displacement"
                                                          : mesh::share_of(model_error, "the displacement")));

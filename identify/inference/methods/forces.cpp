@@ -36,6 +36,7 @@ IdentifyResult identify_by_forces(const skeleton::Model& model, const Measuremen
     const bool single = options.scope == Scope::links;
     posterior.prior.sd = Eigen::VectorXd::Constant(parameters.size(), single ? link_sd : wide_sd);
     if (single) posterior.prior.field = smoothness_field(model, parameters);
+    inform(posterior.prior, parameters, options.priors);
 
     // the exact solution tells the noise, the fit what is most probable
     const Eigen::VectorXd exact = solve_force_domain(posterior.statistics);

@@ -14,6 +14,9 @@ void IdentifyOptions::validate() const {
     demand(iterations >= 1, "iterations", iterations, "at least 1");
     demand(search_low > 0, "search_low", search_low, "above 0");
     demand(search_high > search_low, "search_high", search_high, "above search_low");
+    if (method == Method::burion2008 && !priors.empty())
+        throw InvalidInput(
+            "burion2008 takes an even prior from search_low to search_high, and no other; use the method 'tempered'");
     demand(threads >= 1, "threads", threads, "at least 1");
 }
 

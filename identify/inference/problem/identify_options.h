@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "identify/inference/priors/informative_prior.h"
 #include "skeleton/model/model.h"
 
 namespace palpate::identify {
@@ -34,7 +35,8 @@ struct IdentifyOptions {
     int iterations = 20;      // burion2008: K
     double search_low = 0.1;  // burion2008: box V, as multiples of the model's own stiffness
     double search_high = 10.0;
-    std::vector<skeleton::Stiffness> fixed;  // kinds that are known: they stay as the model has them
+    std::vector<skeleton::Stiffness> fixed;     // kinds that are known: they stay as the model has them
+    std::vector<InformativePrior> priors = {};  // of stiffness, from other specimens
     std::uint64_t seed = 1;
     int threads = 1;
     void validate() const;  // @throws InvalidInput naming option, value, bound

@@ -15,6 +15,8 @@ std::string objection_on_reading(const CaseSetting& setting, const std::string& 
     const std::string name = "value";
     try {
         setting.read(mesh::YamlFields::from_text(setting.key + ": " + value + "\n", name), c);
+    } catch (const IoError& error) {
+        return error.what();
     } catch (const InvalidInput& error) {
         const std::string message = error.what(), where = fmt::format("{}, line 1, {}: ", name, setting.key);
         return message.starts_with(where) ? message.substr(where.size()) : message;

@@ -7,6 +7,7 @@
 
 #include "identify/diagnosis/diagnosis.h"
 #include "mesh/errors.h"
+#include "pipeline/case/population_prior.h"
 #include "pipeline/case/settings/names.h"
 
 namespace palpate::pipeline {
@@ -159,6 +160,18 @@ CaseSetting expectation_of_verdict() {
     return setting;
 }
 
+/// Read when it is named; a path in a file counts from where the file is.
+CaseSetting prior_of_population() {
+    CaseSetting setting = declared("identify.prior", "folder of `palpate pool`: its specimens tell what to expect");
+    setting.schema = {{"type", "string"}};
+    setting.read = [](const YamlFields& yaml, Case& c) {
+        c.prior = std::filesystem::absolute(yaml.file().parent_path() / yaml.text("prior")).lexically_normal();
+        c.identify.priors = read_population_prior(*c.prior);
+    };
+    setting.value = [](const Case& c) { return c.prior ? json(c.prior->string()) : json(); };
+    return setting;
+}
+
 void add_body(std::vector<CaseSetting>& all) {
     const auto body = [&](const char* stage, CaseSetting setting) {
         all.push_back(of_stage(stage, with_flag("Body", std::move(setting))));
@@ -273,6 +286,7 @@ void add_identification(std::vector<CaseSetting>& all) {
     identification(number(
         "identify.search_high", "upper end of burion2008's search box, over the start stiffness", {1e-9, 1e9},
         [](auto& c) -> auto& { return c.identify.search_high; }));
+    identification(prior_of_population());
     // A measurement's noise is drawn by it, too.
     all.push_back(of_stage("", number(
                                    "seed", "the same inputs and seed give the same numbers", {0, 2e9},

@@ -110,7 +110,9 @@ TEST_F(MovedByAGrip, DisplacementsSinceALoadedStateAreDifferences) {
 TEST_F(MovedByAGrip, ASkeletonIsFittedToDifferencesAsToPositions) {
     const MeasurementSet positions = moved(truth()), differences = since(positions, 3);
     ASSERT_TRUE(is_rigged(differences));
-    const skeleton::Model fitted = identify_rigged(body_.chain(), differences, 10, 1, 1).model;
+    IdentifyOptions few;
+    few.particles = 10;
+    const skeleton::Model fitted = identify_rigged(body_.chain(), differences, few).model;
     const std::vector<Points> at = predict_rigged(fitted, positions, 1).positions,
                               of = predict_rigged(fitted, differences, 1).positions;
     for (std::size_t s = 0; s < at.size(); ++s) {

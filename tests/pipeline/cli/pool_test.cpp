@@ -7,7 +7,10 @@
 
 #include "mesh/formats/surface/read_surface.h"
 #include "mesh/text/atomic_file.h"
+#include "pipeline/body/reference_body.h"
+#include "pipeline/case/population_prior.h"
 #include "pipeline/command_line/commands.h"
+#include "pipeline/output/csv/posterior.h"
 #include "tests/messages.h"
 #include "tests/temporary_folder.h"
 
@@ -78,6 +81,54 @@ TEST_F(Pool, TellsTheMeanTheSpreadAndWhoIsUnlikeTheOthers) {
     const std::string page = mesh::read_text(output / "population.html");
     EXPECT_THAT(page, AllOf(HasSubstr("✱ s6"), HasSubstr("next specimen"), testing::Not(HasSubstr("http"))));
     EXPECT_THAT(message_of([&] { commands::pool({runs, *scratch_ / "beam.stl"}, {}); }), HasSubstr("beam.stl"));
+}
+
+TEST_F(Pool, TheNextSpecimenIsExpectedLikeTheOthers) {
+    const fs::path population = *scratch_ / "three";
+    commands::pool({{specimen("a", 0.27, 0.01), specimen("b", 0.3, 0.01), specimen("c", 0.33, 0.01)}, population}, {});
+    const auto priors = read_population_prior(population);
+    const identify::InformativePrior* young = identify::prior_of("young", 3, priors);
+    const identify::InformativePrior* flexion = identify::prior_of("flexion", 3, priors);
+    ASSERT_TRUE(young && flexion);
+    EXPECT_NEAR(young->mean, std::log(0.3), 0.03);
+    EXPECT_GT(young->sd, 0.1);  // of the logarithms of 0.27, 0.3 and 0.33 in the sample: more for the next one
+    EXPECT_LT(young->sd, 0.5);
+
+    // The set says nothing of E, so its body takes all of the prior; the skeleton that of its own stiffness.
+    identify::MeasurementSet set = identify::read_measurement_set(*scratch_ / "run/measurements");
+    set.material.reset();
+    const Reference reference = make_reference(set, 30, {}, priors);
+    ASSERT_TRUE(reference.body) << reference.why_none;
+    const identify::StiffnessParameter& of_body = reference.body->parameters()[0];
+    EXPECT_EQ(of_body.prior_mean, young->mean);
+    EXPECT_EQ(of_body.prior_sd, young->sd);
+
+    commands::IdentifyCommandOptions options{.model = *scratch_ / "run/skeleton/model.json",
+                                             .set = *scratch_ / "run/measurements",
+                                             .output = *scratch_ / "next",
+                                             .overrides = {}};
+    options.overrides.set("identify.parameters", "uniform");
+    options.overrides.set("identify.particles", 40);
+    options.overrides.set("identify.prior", population.string());
+    const commands::Outcome outcome = commands::identify(options, {});
+    EXPECT_THAT(outcome.text, HasSubstr("prior: as the population tells of"));
+    for (const identify::PosteriorRow& row : read_posterior(*scratch_ / "next/posterior.csv")) {
+        if (row.parameter != "flexion") continue;
+        const double variance = std::log1p(std::pow(row.prior_sd / row.prior_mean, 2));
+        EXPECT_NEAR(std::sqrt(variance), flexion->sd, 1e-3 * flexion->sd);
+        EXPECT_NEAR(std::log(row.prior_mean) - variance / 2, flexion->mean, 1e-3);
+    }
+}
+
+TEST_F(Pool, RefusesAPriorThatIsNoPopulation) {
+    EXPECT_THAT(message_of([&] { read_population_prior(*scratch_ / "nowhere"); }),
+                AllOf(HasSubstr("nowhere/population.json"), HasSubstr("palpate pool")));
+    EXPECT_THAT(message_of([&] { read_population_prior(*scratch_ / "run/run.json"); }),
+                AllOf(HasSubstr("run.json"), HasSubstr("is no population"), HasSubstr("palpate pool")));
+    mesh::write_text(*scratch_ / "bare.json", R"({"format": "palpate-population/1", "numbers": []})");
+    EXPECT_THAT(message_of([&] { read_population_prior(*scratch_ / "bare.json"); }), HasSubstr("tells no stiffness"));
+    mesh::write_text(*scratch_ / "cut.json", R"({"format": "palpate-population/1", "numbers": [{"name": "young"}]})");
+    EXPECT_THAT(message_of([&] { read_population_prior(*scratch_ / "cut.json"); }), HasSubstr("palpate pool"));
 }
 
 TEST_F(Pool, RefusesWhatIsNoPopulation) {

@@ -26,10 +26,22 @@ using nlohmann::json;
 using nlohmann::ordered_json;
 using ::testing::HasSubstr;
 
+/// The path of a population of one number.
+std::string population() {
+    static const TemporaryFolder scratch;
+    return json(scratch
+                    .write("population.json", R"({"format": "palpate-population/1", "numbers": [
+                        {"name": "young", "of": "finite elements", "scale": "logarithmic",
+                         "next": {"low": 0.2, "value": 0.3, "high": 0.45}}]})")
+                    .string())
+        .dump();
+}
+
 /// A value that is allowed and no default, as YAML has it.
 std::string another_value(const CaseSetting& setting) {
     const ordered_json& schema = setting.schema;
     const std::string type = schema.value("type", "");
+    if (setting.place() == "identify.prior") return population();
     if (type == "array") return schema["items"].contains("enum") ? "[torsion]" : "[gravity]";
     if (type == "boolean") return setting.value(Case{}) == json(true) ? "false" : "true";
     if (schema.contains("enum")) {
@@ -94,6 +106,14 @@ TEST(Settings, OfLinksMakeTheSkeletonAnew) {
     options.overrides.set("skeleton.links", "burion2008");
     commands::run(options, {});
     EXPECT_THAT(mesh::read_text(scratch / "run/identify/posterior.csv"), Not(HasSubstr("shear")));
+}
+
+TEST(Settings, APriorIsReadWithItsPath) {
+    const Case c = with(setting_at("identify.prior"), population());
+    ASSERT_EQ(c.identify.priors.size(), 1u);
+    EXPECT_EQ(c.identify.priors[0].parameter, "young");
+    EXPECT_NEAR(c.identify.priors[0].mean, std::log(0.3), 1e-12);
+    EXPECT_NEAR(c.identify.priors[0].sd, std::log(0.45 / 0.2) / (2 * 1.959964), 1e-12);
 }
 
 TEST(Settings, BeyondWhatIsAllowedAreRefusedByTheFlagsName) {
