@@ -85,13 +85,14 @@ private:
         return known;
     }
 
-    /// As logarithms where all are positive beyond doubt.
+    /// As logarithms where all are positive beyond doubt, as Young's modulus is, of which the logarithm was fitted.
     static SharedNumber of_known(const Entry& entry) {
         constexpr double beyond_doubt = 3;  // deviations above 0
         SharedNumber number{entry.name, entry.unit, entry.of, PoolScale::logarithmic, factor_of_e, {}, {}};
         double largest = 0;
         for (const Known& known : entry.known) {
-            if (known.value <= beyond_doubt * known.sd) number.scale = PoolScale::linear;
+            const bool is_positive = entry.name == "young" || known.value > beyond_doubt * known.sd;
+            if (!is_positive) number.scale = PoolScale::linear;
             largest = std::max(largest, std::abs(known.value));
         }
         if (entry.name == "poisson") number.scale = PoolScale::compressibility;

@@ -45,8 +45,12 @@ Outcome identify(const IdentifyCommandOptions& options, const Common& common) {
     return outcome;
 }
 
+namespace {
+
 constexpr std::string_view socket_prefix = "unix:";
 bool is_socket(const std::string& from) { return from.starts_with(socket_prefix); }
+
+}  // namespace
 
 /// What follows a set, standard input or a socket, with the options that the command shares.
 Outcome follow(FollowOptions options, const IdentifyCommandOptions& shared, const std::string& from,

@@ -131,6 +131,15 @@ TEST_F(Pool, RefusesAPriorThatIsNoPopulation) {
     EXPECT_THAT(message_of([&] { read_population_prior(*scratch_ / "cut.json"); }), HasSubstr("palpate pool"));
 }
 
+TEST_F(Pool, AModulusThatIsPoorlyKnownIsPositiveAllTheSame) {
+    const commands::Outcome outcome =
+        commands::pool({{specimen("a", 0.3, 0.01), specimen("b", 0.3, 0.2), specimen("c", 0.3, 0.01)}, {}}, {});
+    const json& young = outcome.json["numbers"][0];
+    EXPECT_EQ(young["name"], "young");
+    EXPECT_EQ(young["scale"], "logarithmic");
+    EXPECT_GT(young["specimens"][1]["own"]["low"], 0);
+}
+
 TEST_F(Pool, RefusesWhatIsNoPopulation) {
     const fs::path one = specimen("one", 0.3, 0.01);
     EXPECT_THAT(message_of([&] { commands::pool({{one}, {}}, {}); }), HasSubstr("two specimens at least"));
