@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """Palpate and four baselines take part: entrants.py CHALLENGE -o RESULTS [--only NAME,...] [--palpate PROGRAM] [--edge-length MM]
 
-  palpate       the verdict of `palpate diagnose`, what it names added to the model, which is then identified
+  palpate       `palpate improve --auto`: diagnosis, and the effects that it names added to the identified model
   tuning        identification alone: what is done where no effect is thought of; its verdict is always "adequate"
   discrepancy   tuning, and a Gaussian process over what it leaves (Kennedy and O'Hagan 2001); it names nothing
   aic           Akaike's criterion over single effects on the skeleton
@@ -55,11 +55,20 @@ class Entry:
         self.run("simulate", model, "--probes", probes, "--markers", self.folder / "set" / "markers.csv", *extra, "--draws", draws, "-o", out)
         return out / "positions.csv"
 
+    def judged(self, body):
+        """Arguments of the commands that judge the start model on a body."""
+        size = ("--edge-length", self.edge_length) if self.edge_length and body == "reference" else ()
+        return self.folder / "model.json", self.folder / "set", "--body", body, *size
+
     def diagnosis(self, body):
         out = self.scratch / f"diagnosed-{body}"
-        size = ("--edge-length", self.edge_length) if self.edge_length and body == "reference" else ()
-        self.run("diagnose", self.folder / "model.json", self.folder / "set", "--body", body, *size, "-o", out)
+        self.run("diagnose", *self.judged(body), "-o", out)
         return json.loads((out / "diagnosis.json").read_text())
+
+    def improved(self, body):
+        out = self.scratch / "improved"
+        self.run("improve", *self.judged(body), "--auto", "-o", out)
+        return json.loads((out / "ladder.json").read_text()), out / "model.json"
 
 
 def rows_of(path):
@@ -97,8 +106,10 @@ def as_effects(diagnosis, wanted):
 
 
 def palpate(entry, out, twin):
-    told = entry.diagnosis("skeleton" if twin else "reference")
-    answer(out, told["verdict"], told["explanation"], forecast(entry, entry.identified(as_effects(told, told["explanation"]))))
+    """One command, as its users run it: what it names and what it leaves out of the skeleton count as named."""
+    ladder, model = entry.improved("skeleton" if twin else "reference")
+    named = ladder["steps"][-1]["effects"] + [one["effect"] for one in ladder["not_added"]]
+    answer(out, "missing-effect" if named else ladder["verdict"], named, forecast(entry, model))
 
 
 def tuning(entry, out, twin):

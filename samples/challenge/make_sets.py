@@ -58,18 +58,17 @@ def table(path):
     return lines[0], lines[1:]
 
 
-def hold_out(folder, seed, drop=()):
-    """Takes a fifth of the loaded probes out of the set; their readings are returned, to be sealed."""
+def hold_out(folder, seed):
+    """Takes the readings of a fifth of the loaded probes out of the set; they are returned, to be sealed. Their loads stay:
+    the body bore them, and one that yields remembers them."""
     head, loads = table(folder / "set" / "probes.csv")
     force = [head.split(",").index(axis) for axis in ("fx", "fy", "fz")]
     loaded = sorted({line.split(",")[0] for line in loads if any(float(line.split(",")[i]) for i in force)}, key=int)
     held = set(random.Random(seed).sample(loaded, math.ceil(len(loaded) / 5)))
     (folder / "held_out").mkdir()
     (folder / "held_out" / "probes.csv").write_text("\n".join([head] + [x for x in loads if x.split(",")[0] in held]) + "\n")
-    out = held | set(drop)
-    (folder / "set" / "probes.csv").write_text("\n".join([head] + [x for x in loads if x.split(",")[0] not in out]) + "\n")
     head, readings = table(folder / "set" / "positions.csv")
-    kept = [line for line in readings if line.split(",")[0] not in out]
+    kept = [line for line in readings if line.split(",")[0] not in held]
     (folder / "set" / "positions.csv").write_text("\n".join([head] + kept) + "\n")
     rows = csv.DictReader([head] + [line for line in readings if line.split(",")[0] in held])
     return [[row["probe"], float(row["time"]), row["marker"], *(float(row[a]) if row[a] else None for a in "xyz")] for row in rows]
