@@ -197,7 +197,7 @@ private:
             if (!keep[n]) dropped.push_back(static_cast<Eigen::Index>(n));
         }
         const Eigen::VectorXd y = V.apply(d), own = y(dropped);
-        const double chi_square = d.dot(y) - own.dot(V.solve_within(dropped, own));
+        const double chi_square = d.dot(y) - own.dot(V.solve_within(dropped, own).col(0));
         return std::sqrt(chi_square / static_cast<double>(std::ranges::count(keep, 1)));
     }
 

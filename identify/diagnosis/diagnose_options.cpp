@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "identify/diagnosis/statistics/chance.h"
 #include "identify/effects/catalogue.h"
 #include "mesh/errors.h"
 
@@ -19,21 +20,26 @@ double DiagnoseOptions::least_evidence() const {
     return std::log(static_cast<double>(std::max<std::ptrdiff_t>(effects, 1)) / false_claims);
 }
 
+double DiagnoseOptions::most_left(Eigen::Index readings) const {
+    return std::max(1 + noise_accuracy, largest_noise(readings, false_refusals));
+}
+
 void DiagnoseOptions::validate() const {
-    if (!(false_claims > 0 && false_claims < 1))
-        throw InvalidInput(fmt::format("false_claims is {}; allowed: above 0 and below 1", false_claims));
+    const auto probability = [](const char* name, double value) {
+        if (!(value > 0 && value < 1))
+            throw InvalidInput(fmt::format("{} is {}; allowed: above 0 and below 1", name, value));
+    };
+    probability("false_claims", false_claims);
+    probability("false_refusals", false_refusals);
     for (const std::string& name : without) find_effect(name);
     const auto above = [](const char* name, double value) {
         if (!(value > 0)) throw InvalidInput(fmt::format("{} is {}; it must be above 0", name, value));
     };
-    above("most_left", most_left);
-    above("most_left_held_out", most_left_held_out);
-    above("most_gap", most_gap);
     above("most_pull", most_pull);
     const auto no_less = [](const char* name, double value) {
         if (!(value >= 0)) throw InvalidInput(fmt::format("{} is {}; it must be 0 or more", name, value));
     };
-    no_less("effect_error", effect_error);
+    no_less("noise_accuracy", noise_accuracy);
     no_less("mesh_error", mesh_error);
     no_less("resolution", resolution);
     no_less("idealisation_evidence", idealisation_evidence);

@@ -21,16 +21,13 @@ struct DiagnoseOptions {
     double least_screen = 3;                    // ln Bayes factor of the screen below which none is refitted
     double false_claims = 1e-3;                 // probability that an effect is claimed where none is missing, at most
     double least_lead = 5;                      // over the runner-up
-    double most_left = 1.1;                     // whitened rms, for what is left to be noise
-    double most_left_together = 1.06;           // the same for several effects: they overfit more easily
-    double most_left_held_out = 1.2;            // the same on probes left out
-    double most_gap = 1.06;                     // the same over that on probes fitted, where it is above 1
-    double effect_error = 0.1;                  // share of an effect that discretisation may alter: up to twice the
-                                                // 1 to 6 % that default meshes are off by (README)
-    double most_pull = 8;                       // largest pull of a nuisance, in prior sd; doubled for a plastic body
-    double least_outliers = 100;                // the same for outliers: one reading of 15 sigma, say
-    double mesh_error = 0.005;  // share of the displacement that discretisation error may mimic as an effect
-    double resolution = 0.01;   // of the displacement: noise that is not specified is no less, as of a mesh
+    double false_refusals = 1e-3;               // probability that chance alone refuses what is right, each check
+    double noise_accuracy = 0.1;                // share by which a noise that is told may be off: it has one digit
+    double most_pull = 8;         // largest pull of a nuisance, in prior sd, which is known to a factor of two; 4 come
+                                  // up once in 16,000. Doubled for a plastic body
+    double least_outliers = 100;  // least ln Bayes factor of outliers: one reading of 15 sigma, say
+    double mesh_error = 0.005;    // share of the displacement that discretisation error may mimic as an effect
+    double resolution = 0.01;     // of the displacement: noise that is not specified is no less, as of a mesh
     double idealisation_evidence =
         60;  // least ln Bayes factor beside an effect whose own idealisation leaves a residual
     RefitOptions refit;
@@ -40,6 +37,9 @@ struct DiagnoseOptions {
     /// Bayes factor is 1 on average, so that it is K or more with a probability of 1/K at most [Markov], one of n
     /// effects' with n/K.
     double least_evidence() const;
+    /// Largest whitened rms of so many readings that passes for noise: what chance exceeds with a probability of
+    /// `false_refusals`, and at least what a noise of `noise_accuracy` may be off by.
+    double most_left(Eigen::Index readings) const;
     void validate() const;  // @throws InvalidInput naming option, value and bound
 };
 

@@ -80,6 +80,9 @@ struct ScreenPlan {
     std::function<Eigen::VectorXd(Eigen::Index alternative, const Eigen::VectorXd& screened)> start;
     /// Which alternatives are one place or direction, from which a refit does not come to another. None: all are one.
     std::function<int(Eigen::Index alternative)> place = {};
+    /// Where a refit may begin instead, from the least of the effect to the most: for one that shows only beyond a
+    /// threshold, where no slope tells of it.
+    std::vector<Eigen::VectorXd> scan = {};
 };
 
 /// What a probe changes about the body besides its loads.

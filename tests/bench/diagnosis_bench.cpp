@@ -73,7 +73,7 @@ identify::DiagnoseOptions ablated(const std::vector<std::string>& parts) {
             options.refit.correct_for_mesh = false;
         } else if (part == "gates") {
             options.least_lead = 0;
-            options.most_left = options.most_left_together = options.most_left_held_out = options.most_pull = INFINITY;
+            options.noise_accuracy = options.most_pull = INFINITY;
         }
     }
     return options;

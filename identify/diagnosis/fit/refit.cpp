@@ -200,10 +200,15 @@ void begin(const BodyModel& model, const Problem& problem, int threads, const Re
     }
 }
 
+Whitening whitening_of(const BodyModel& model, const Problem& problem, const Explanation& explanation,
+                       const ForwardSolution& forward, const RefitOptions& options, const Nuisances& nuisances) {
+    return {reading_weights(model, problem, explanation, forward, options.nuisances), nuisances.columns,
+            nuisances.precisions};
+}
+
 void take_nuisances(const BodyModel& model, const Problem& problem, const RefitOptions& options, Refit& at) {
     at.nuisances = make_nuisances(model, problem, at.explanation, at.forward, options.threads, options.nuisances);
-    at.V.emplace(reading_weights(model, problem, at.explanation, at.forward, options.nuisances), at.nuisances.columns,
-                 at.nuisances.precisions);
+    at.V = whitening_of(model, problem, at.explanation, at.forward, options, at.nuisances);
 }
 
 /// Covariance of the numbers by how far each probe pulls at them: C (sum_p s_p s_p^T) C P/(P - 1), s_p what the errors
@@ -291,6 +296,8 @@ void try_magnitude(const BodyModel& model, const Problem& problem, const FitPrio
     at.log_evidence = evidence;
 }
 
+bool yields(const Explanation& explanation) { return explanation.setting().effects.plasticity.has_value(); }
+
 /// The same effects under the same law, whatever their numbers.
 bool is_like(const Explanation& a, const Explanation& b) { return a.law == b.law && a.effects == b.effects; }
 
@@ -308,6 +315,10 @@ Refit refit(const BodyModel& model, const Problem& problem, const Explanation& e
     // unless it led nowhere.
     if (start && start->V) {
         at.V = start->V;
+        // What yields is trusted less, from the first step on.
+        if (yields(explanation) && !yields(start->explanation)) {
+            at.V = whitening_of(model, problem, at.explanation, at.forward, options, start->nuisances);
+        }
     } else if (start && is_like(start->explanation, explanation)) {
         take_nuisances(model, problem, options, at);
     } else {
@@ -348,8 +359,13 @@ double objective_near(const BodyModel& model, const Problem& problem, const Expl
     for (const auto& effect : explanation.effects) numbers.push_back(effect->numbers(model, problem));
     try {
         const ForwardSolution forward = solve_forward(model, problem, explanation, options.threads, &near.forward.q);
-        return objective(*near.V, error_of(problem, forward), FitPriors(model, explanation, numbers),
-                         explanation.all());
+        const FitPriors priors(model, explanation, numbers);
+        const auto of = [&](const Whitening& V) {
+            return objective(V, error_of(problem, forward), priors, explanation.all());
+        };
+        if (!yields(explanation) || yields(near.explanation)) return of(*near.V);
+        const Whitening own = whitening_of(model, problem, explanation, forward, options, near.nuisances);
+        return of(own) + 0.5 * (own.log_determinant() - near.V->log_determinant());
     } catch (const SolverFailure&) {
         return INFINITY;
     }

@@ -176,6 +176,15 @@ void add(const std::vector<std::string>& names, const Eigen::MatrixXd& columns, 
     nuisances.names.insert(nuisances.names.end(), names.begin(), names.end());
 }
 
+/// What an even pressure, over Young's modulus, indents a half-space by plastic flow, over what it does elastically:
+/// it yields first, by Tresca's criterion, where the largest shear is a third of the pressure [Johnson, Contact
+/// mechanics, 3.4], and beyond that gives way as much more as its hardening is below its elastic stiffness.
+double plastic_indentation(const fem::Plasticity& plasticity, double pressure) {
+    constexpr double least_hardening = 0.01;  // what flows is confined by the elastic body round it
+    const double first = 1.5 * plasticity.yield;
+    return std::max(0.0, pressure / first - 1) / std::max(plasticity.hardening, least_hardening);
+}
+
 }  // namespace
 
 double effective_radius(const BodyModel& model, const mesh::Contact& contact) {
@@ -254,7 +263,9 @@ Eigen::VectorXd reading_weights(const BodyModel& model, const Problem& problem, 
             const double r = effective_radius(model, contact), F = contact.force.norm();
             const double d = (problem.rest.row(marker).transpose() - contact.point).norm();
             double U = F * (1 - nu * nu) / (2 * E * r);
-            if (model.is_nonlinear(setting)) U *= 1 + F / (M_PI * r * r * E);
+            const double p = F / (M_PI * r * r);
+            if (model.is_nonlinear(setting)) U *= 1 + p / E;
+            if (setting.effects.plasticity) U *= 1 + plastic_indentation(*setting.effects.plasticity, p / E);
             const double near = std::min(1.0, std::pow(1.2 * r / std::max(d, 1e-9), 2));
             variance[n] += std::pow(options.dent * U * near / problem.sigma[n], 2);
         }

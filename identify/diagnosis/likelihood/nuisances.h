@@ -45,7 +45,8 @@ Nuisances make_nuisances(const BodyModel& model, const Problem& problem, const E
 /// support, d from it,
 ///   sigma^2 -> sigma^2 + (ragged u exp(-(d/l)^2))^2, l twice the mean distance of the pieces that its border cuts.
 /// Where the material yields, a share of the modelled displacement comes on top: what flows keeps and adds up the
-/// errors of its mesh. It keeps dents, too: contacts of earlier stages count as well.
+/// errors of its mesh. It keeps dents, too: contacts of earlier stages count as well, and U is the larger where the
+/// pressure is beyond yield.
 Eigen::VectorXd reading_weights(const BodyModel& model, const Problem& problem, const Explanation& explanation,
                                 const ForwardSolution& forward, const NuisanceOptions& options = {});
 

@@ -44,16 +44,16 @@ Eigen::VectorXd Whitening::residual(const Eigen::VectorXd& d) const {
     return weighted - B_ * inner_.solve(B_.transpose() * weighted);
 }
 
-Eigen::VectorXd Whitening::solve_within(const std::vector<Eigen::Index>& rows, const Eigen::VectorXd& y) const {
+Eigen::MatrixXd Whitening::solve_within(const std::vector<Eigen::Index>& rows, const Eigen::MatrixXd& y) const {
     const Eigen::VectorXd unweighted = weights_(rows).cwiseInverse();
-    Eigen::VectorXd x = unweighted.cwiseProduct(y);
+    Eigen::MatrixXd x = unweighted.asDiagonal() * y;
     if (B_.cols() > 0) {
         const Eigen::MatrixXd own = B_(rows, Eigen::all);
         Eigen::MatrixXd others = inner_.reconstructedMatrix();
         others.selfadjointView<Eigen::Lower>().rankUpdate(own.transpose(), -1);
         x += own * others.selfadjointView<Eigen::Lower>().llt().solve(own.transpose() * x);
     }
-    return unweighted.cwiseProduct(x);
+    return unweighted.asDiagonal() * x;
 }
 
 Eigen::MatrixXd Whitening::absorbed() const {
@@ -99,15 +99,15 @@ std::vector<ScreenResult> screen_alternatives(const Whitening& V, const Eigen::V
     return results;
 }
 
-LeftOutErrors leave_out(const Whitening& V, const Eigen::VectorXd& d, const std::vector<int>& group) {
-    const Eigen::VectorXd y = V.apply(d);
-    LeftOutErrors result{Eigen::VectorXd::Zero(d.size())};
+LeftOutErrors leave_out(const Whitening& V, const Eigen::MatrixXd& d, const std::vector<int>& group) {
+    const Eigen::MatrixXd y = V.apply(d);
+    LeftOutErrors result{Eigen::MatrixXd::Zero(d.rows(), d.cols()), Eigen::VectorXd::Zero(d.cols())};
     std::map<int, std::vector<Eigen::Index>> rows;
     for (std::size_t n = 0; n < group.size(); ++n) rows[group[n]].push_back(static_cast<Eigen::Index>(n));
     for (const auto& [id, own] : rows) {
-        const Eigen::VectorXd error = V.solve_within(own, y(own));
-        result.chi_square += error.dot(y(own));
-        for (Eigen::Index c = 0; c < std::ssize(own); ++c) result.error[own[c]] = error[c];
+        const Eigen::MatrixXd of_group = y(own, Eigen::all), error = V.solve_within(own, of_group);
+        result.chi_square += error.cwiseProduct(of_group).colwise().sum();
+        result.error(own, Eigen::all) = error;
     }
     return result;
 }

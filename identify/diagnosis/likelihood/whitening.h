@@ -21,9 +21,9 @@ public:
     Eigen::VectorXd nuisances(const Eigen::VectorXd& d) const;
     /// d less what the nuisances explain of it, weighted: with the right model, noise of 1 sigma (N).
     Eigen::VectorXd residual(const Eigen::VectorXd& d) const;
-    /// [V^-1]_gg^-1 y for some rows g (n) and y (n), at the price of one factorisation of the nuisances: it is
+    /// [V^-1]_gg^-1 y for some rows g (n) and y (n x p), at the price of one factorisation of the nuisances: it is
     ///   W_g^-1 (1 + B_g (B^T B + Lambda - B_g^T B_g)^-1 B_g^T) W_g^-1. [Woodbury]
-    Eigen::VectorXd solve_within(const std::vector<Eigen::Index>& rows, const Eigen::VectorXd& y) const;
+    Eigen::MatrixXd solve_within(const std::vector<Eigen::Index>& rows, const Eigen::MatrixXd& y) const;
     /// G (c x N) of V^-1 = W^2 - G^T G: blocks of V^-1 at the price of a product.
     Eigen::MatrixXd absorbed() const;
     const Eigen::VectorXd& weights() const { return weights_; }
@@ -54,11 +54,11 @@ ScreenResult screen(const Whitening& V, const Eigen::VectorXd& d, const Eigen::M
 std::vector<ScreenResult> screen_alternatives(const Whitening& V, const Eigen::VectorXd& d, const Eigen::MatrixXd& b,
                                               const Eigen::VectorXd& tau);
 
-/// Errors of each group of rows (ids >= 0, N) as predicted from all the others: [V^-1]_gg^-1 [V^-1 d]_g.
+/// Errors d (N x p) of each group of rows (ids >= 0, N) as predicted from all the others: [V^-1]_gg^-1 [V^-1 d]_g.
 struct LeftOutErrors {
-    Eigen::VectorXd error;  // (N), in sigmas of noise
-    double chi_square = 0;  // of the same, group by group whitened by how well it can be predicted
+    Eigen::MatrixXd error;       // (N x p), in sigmas of noise
+    Eigen::VectorXd chi_square;  // (p) of the same, group by group whitened by how well it can be predicted
 };
-LeftOutErrors leave_out(const Whitening& V, const Eigen::VectorXd& d, const std::vector<int>& group);
+LeftOutErrors leave_out(const Whitening& V, const Eigen::MatrixXd& d, const std::vector<int>& group);
 
 }  // namespace palpate::identify

@@ -127,10 +127,35 @@ std::vector<ScreenedEffect> screen_effects(const BodyModel& model, const Problem
             if (b.alternatives() == 0) continue;
             result[places[i]] = score_columns(problem, residual, b, plans[i]);
             result[places[i]].effect = effects[places[i]];
+            result[places[i]].scan = std::move(plans[i].scan);
         }
     }
     std::erase_if(result, [](const ScreenedEffect& screened) { return !screened.effect; });
     return result;
+}
+
+Eigen::VectorXd start_of(const ScreenedEffect& screened, double without,
+                         const std::function<double(const Eigen::VectorXd& start)>& objective) {
+    if (screened.scan.empty()) {
+        // A linearisation may promise too much: then less of the effect.
+        for (const Eigen::VectorXd& start : screened.starts) {
+            if (screened.starts.size() == 1 || objective(start) < without) return start;
+        }
+        return screened.starts.back();
+    }
+    constexpr double alike = 1;  // ln of evidence: below its threshold an effect does nothing
+    double least = INFINITY;
+    Eigen::VectorXd best = screened.starts.front();
+    int worse = 0;
+    for (const Eigen::VectorXd& start : screened.scan) {
+        const double begins = objective(start);
+        worse = begins > least + alike ? worse + 1 : 0;
+        if (worse == 2) break;  // more of it is worse still
+        if (!(begins < least)) continue;
+        least = begins;
+        best = start;
+    }
+    return best;
 }
 
 Refit expand_to_stages(const BodyModel& model, const Refit& fit, const Problem& merged, const Problem& stages) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <optional>
 
 #include "identify/diagnosis/fit/explanation.h"
@@ -15,6 +16,7 @@ struct ScreenedEffect {
     double predicted_rms_mm = 0;                    // of the errors once it is in, by this linearisation
     std::vector<Eigen::VectorXd> starts = {};       // values to begin a refit with; each after the first has less of it
     std::optional<Eigen::VectorXd> elsewhere = {};  // the same in another place that promises nearly as much
+    std::vector<Eigen::VectorXd> scan = {};         // see ScreenPlan
 
     /// Upper bound for a refit: the screen is a linearisation, which a refit may exceed twofold, and a small one
     /// several times.
@@ -26,6 +28,11 @@ struct ScreenedEffect {
 std::vector<ScreenedEffect> screen_effects(const BodyModel& model, const Problem& problem, const Refit& fit,
                                            const std::vector<std::shared_ptr<const EffectHypothesis>>& effects,
                                            int threads);
+
+/// Where a refit with an effect begins, by the refit's objective there: at the best of its scan, else with as much of it
+/// as leaves the objective below `without`.
+Eigen::VectorXd start_of(const ScreenedEffect& screened, double without,
+                         const std::function<double(const Eigen::VectorXd& start)>& objective);
 
 /// A fit as a start for explanations with a memory: in the problem stage by stage.
 Refit expand_to_stages(const BodyModel& model, const Refit& fit, const Problem& merged, const Problem& stages);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "identify/diagnosis/statistics/chance.h"
 #include "identify/diagnosis/statistics/independent_readings.h"
 #include "identify/diagnosis/verdict/verdict.h"
 #include "mesh/errors.h"
@@ -116,14 +117,14 @@ std::optional<FittedExplanation> Search::refit_with(const Refit& base, const Scr
     explanation.values.push_back(screened.starts.front());
     const bool spread = explanation.has_memory() && !base.explanation.has_memory() && !problem_.by_stage;
     const Refit from = spread ? expand_to_stages(model_, base, problem_, stages_) : base;
-    // A linearisation may promise too much: then less of the effect, so that its fit begins no worse than without it.
-    for (std::size_t i = 0; i < screened.starts.size() && screened.starts.size() > 1; ++i) {
-        explanation.values.back() = screened.starts[i];
-        const double begins = objective_near(model_, problem_for(explanation), explanation, options_.refit, from);
-        if (begins < objective(base)) break;
-    }
+    explanation.values.back() = start_of(screened, objective(base), [&](const Eigen::VectorXd& start) {
+        Explanation trial = explanation;
+        trial.values.back() = start;
+        return objective_near(model_, problem_for(trial), trial, options_.refit, from);
+    });
     std::optional<FittedExplanation> found = refit_from(explanation, from, {screened.effect});
-    const bool is_settled = found && found->fit.whitened_rms <= options_.most_left_together;
+    const bool is_settled =
+        found && found->fit.whitened_rms <= largest_noise(found->fit.error.size(), options_.false_refusals);
     if (!screened.elsewhere || is_settled) return found;
     explanation.values.back() = *screened.elsewhere;
     std::optional<FittedExplanation> other = refit_from(explanation, from, {screened.effect});
@@ -202,10 +203,17 @@ void Search::confirm_single_effects() {
 }
 
 /// A strong effect lies far from where the screen's linearisation holds, which may have led it to the wrong law. A
-/// leader that leaves far more than noise is fitted anew under the others, whatever the screen promised there.
+/// leader that leaves far more than noise goes on where its steps ended, and is fitted anew under the other laws,
+/// whatever the screen promised there.
 void Search::restart_leader() {
     constexpr double much = 2;  // whitened rms: where less is left, a second effect may account for it
-    if (!leader() || leader()->fit.whitened_rms < much) return;
+    const auto leaves_much = [&] { return leader() && leader()->fit.whitened_rms >= much; };
+    if (leaves_much() && !leader()->fit.converged) {
+        const FittedExplanation single = *leader();
+        report(progress_, "refit with " + single.effects.front()->name(), 0.78);
+        if (auto found = carry_over(single, single.fit.explanation.law)) keep_better(std::move(*found));
+    }
+    if (!leaves_much()) return;
     const std::size_t leads = index_of_leader();
     const int own = tried_[leads].fit.explanation.law;
     for (int law = 0; law < baselines_.laws(); ++law) {
@@ -242,10 +250,10 @@ void Search::confirm_under(int law) {
     }
 }
 
-/// In the place of an explanation by the same effect, if it explains more.
+/// In the place of an explanation by the same effects, if it explains more.
 void Search::keep_better(FittedExplanation found) {
     const auto before = std::ranges::find_if(tried_, [&](const FittedExplanation& tried) {
-        return tried.effects.size() == 1 && tried.effects == found.effects;
+        return std::ranges::is_permutation(tried.effects, found.effects);
     });
     if (before == tried_.end()) {
         tried_.push_back(std::move(found));

@@ -61,7 +61,8 @@ bool Search::extend(std::size_t from, int most) {
     const FittedExplanation base = tried_[from];
     const std::vector<std::string> there = names_of(base);
     report(progress_, "screen next to " + listed(there), 0.8);
-    const bool noise_is_left = is_claimable(base, options_) && base.fit.whitened_rms <= options_.most_left;
+    const bool noise_is_left =
+        is_claimable(base, options_) && base.fit.whitened_rms <= options_.most_left(base.fit.error.size());
     const double leads = leader()->log_bayes_factor;
     bool grew = false;
     int refitted = 0;
@@ -124,8 +125,12 @@ void Search::drop_and_swap() {
     for (const auto& effect : best.effects) {
         std::vector<std::string> rest = names_of(best);
         std::erase(rest, effect->name());
-        const bool needed = evidence_for(best.fit, effect->name()) > 10 * options_.least_evidence();
-        if (was_tried(rest) || (needed && leaves_only_noise(best.fit, options_))) continue;
+        const double own = evidence_for(best.fit, effect->name());
+        const bool needed = own > 10 * options_.least_evidence();
+        if (needed && leaves_only_noise(best.fit, options_)) continue;
+        // Without an effect that says nothing the others explain as much from here, where their own fit did not get to.
+        const bool is_idle = own < options_.least_evidence();
+        if (was_tried(rest) && !is_idle) continue;
         if (refits_together_ >= options_.refits_together) break;
         ++refits_together_;
         // Drop: what is left may explain as much.
@@ -139,9 +144,10 @@ void Search::drop_and_swap() {
         }
         auto less = refit_from(explanation, *start, others);
         if (!less) continue;
-        tried_.push_back(std::move(*less));
+        const bool is_new = !was_tried(rest);
+        keep_better(std::move(*less));
         // Swap: another in its place.
-        if (!leaves_only_noise(best.fit, options_)) extend(tried_.size() - 1, 1);
+        if (is_new && !leaves_only_noise(best.fit, options_)) extend(tried_.size() - 1, 1);
     }
     // What does as well with fewer effects stands for what has more.
     const std::size_t leader = index_of_leader();

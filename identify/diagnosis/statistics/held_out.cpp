@@ -31,7 +31,7 @@ HeldOut leave_probes_out(const Problem& problem, const Refit& fit) {
     const std::vector<int> group = held_out_groups(problem);
     const LeftOutErrors left = leave_out(Whitening(fit.V->weights(), A, precisions), d, group);
     const auto N = static_cast<double>(problem.rows());
-    return {problem.rms_mm(left.error.cwiseProduct(problem.sigma)), std::sqrt(left.chi_square / N), {}};
+    return {problem.rms_mm(problem.sigma.cwiseProduct(left.error.col(0))), std::sqrt(left.chi_square[0] / N), {}};
 }
 
 namespace {

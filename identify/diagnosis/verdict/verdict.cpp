@@ -6,6 +6,7 @@
 #include <cmath>
 #include <set>
 
+#include "identify/diagnosis/statistics/chance.h"
 #include "identify/diagnosis/verdict/next_probe.h"
 #include "identify/effects/catalogue.h"
 
@@ -88,18 +89,15 @@ std::string objection_of_held_out(const Diagnosis& diagnosis, const FittedExplan
     return fmt::format("held-out probes are predicted worse with it, to {:.3g} mm instead of {:.3g} mm", with, without);
 }
 
-/// Left-out probes that err more than fitted ones tell of an overfit to single probes, unless the excess is within what
-/// the body's discretisation alters of the effect that is predicted there.
+/// Left-out probes that err by more than noise, and by more than chance lets a right explanation err there, tell of an
+/// overfit to single probes.
 std::string objection_of_overfit(const Diagnosis& diagnosis, const FittedExplanation& explained,
                                  const DiagnoseOptions& options) {
-    constexpr double chance = 10;  // over the number of rows: an allowance for small sets
-    const double fitted = explained.fit.whitened_rms, unseen = explained.held_out.whitened_rms;
-    const double without = diagnosis.baseline_held_out.whitened_rms;
-    const double most = fitted * (options.most_gap + chance / static_cast<double>(diagnosis.problem.rows()));
-    const double predicted = std::max(0.0, without * without - unseen * unseen);
-    if (unseen <= 1 || unseen * unseen <= most * most + std::pow(options.effect_error, 2) * predicted) return {};
+    const double unseen = explained.held_out.whitened_rms;
+    if (unseen <= 1 + options.noise_accuracy) return {};
+    if (unseen <= largest_held_out(diagnosis.problem, explained.fit, options.false_refusals)) return {};
     return fmt::format("it overfits single probes: the error of held-out probes is {:.2f} times that of fitted ones",
-                       unseen / fitted);
+                       unseen / explained.fit.whitened_rms);
 }
 
 std::string objection_to(const Diagnosis& diagnosis, const FittedExplanation& explained,
@@ -133,11 +131,8 @@ std::vector<const FittedExplanation*> explain_alike(const std::vector<const Fitt
     for (const FittedExplanation* one : by_evidence) {
         if (!is_claimable(*one, options) || refused.contains(one)) continue;
         most = std::max(most, one->log_bayes_factor);
-        const bool predicts = one->held_out.whitened_rms <= options.most_left_held_out;
         const bool leads = most - one->log_bayes_factor < options.least_lead;
-        const bool closely = one->effects.size() == 1 || one->fit.whitened_rms <= options.most_left_together;
-        if (leaves_only_noise(one->fit, options) && closely && predicts && leads && one->objection.empty())
-            alike.push_back(one);
+        if (leaves_only_noise(one->fit, options) && leads && one->objection.empty()) alike.push_back(one);
     }
     return alike;
 }
@@ -174,7 +169,7 @@ bool is_claimable(const FittedExplanation& explained, const DiagnoseOptions& opt
 bool leaves_only_noise(const Refit& fit, const DiagnoseOptions& options) {
     // Plastic flow accumulates discretisation error, mostly along the border of a support.
     const double most_pull = (fit.explanation.setting().effects.plasticity ? 2 : 1) * options.most_pull;
-    return fit.whitened_rms <= options.most_left && fit.nuisance_pull <= most_pull;
+    return fit.whitened_rms <= options.most_left(fit.error.size()) && fit.nuisance_pull <= most_pull;
 }
 
 double least_next_to_noise(const EffectHypothesis& effect, const Problem& problem, const DiagnoseOptions& options) {

@@ -85,6 +85,9 @@ public:
         plan.start = [yields](Eigen::Index y, const Eigen::VectorXd&) {
             return Eigen::Vector2d(std::log(yields[y]), std::log(hardening));
         };
+        // Yield strains from where nothing flows.
+        for (double yield = 0.4; yield > 0.003; yield /= 1.5)
+            plan.scan.emplace_back(Eigen::Vector2d(std::log(yield), std::log(hardening)));
         return plan;
     }
 

@@ -10,7 +10,7 @@ namespace palpate::identify {
 struct NamingRules {
     double least_evidence = 0;       // ln Bayes factor
     double least_next_to_noise = 0;  // the same where what is left without the effect may pass for noise
-    double most_left = 1.1;          // whitened rms up to which it may
+    double most_left = 1;            // whitened rms up to which it may
     double least_lead = 5;           // over every other effect
 };
 

@@ -2,6 +2,7 @@
 
 #include <functional>
 
+#include "identify/diagnosis/statistics/chance.h"
 #include "identify/diagnosis/verdict/verdict.h"
 #include "tests/identify/diagnosed.h"
 #include "tests/messages.h"
@@ -114,7 +115,7 @@ TEST_F(Diagnosed, WhatErrorsOfTheMeshMayFeignIsNoClaim) {
     exact.mesh_error = 0.001;
     coarse.mesh_error = 0.01;
     const Diagnosis claimed = diagnose(set, exact), not_claimed = diagnose(set, coarse);
-    ASSERT_LT(claimed.baseline.whitened_rms, exact.most_left);
+    ASSERT_LT(claimed.baseline.whitened_rms, exact.most_left(claimed.problem.rows()));
     EXPECT_THAT(claimed.explanation, ElementsAre("compliant-support"));
     EXPECT_EQ(not_claimed.verdict, Verdict::adequate);
     EXPECT_GT(candidate(not_claimed, "compliant-support").log_bayes_factor, coarse.least_evidence());
@@ -181,16 +182,22 @@ TEST_F(Diagnosed, WhatBendsToEachProbeIsNoClaim) {
         decide_verdict(*model_, {}, found);
         return found.verdict;
     };
-    const double most = 1.06 + 10 / 648.0;     // rows
-    found.baseline_held_out.whitened_rms = 1;  // an effect that hardly shows on left-out probes
+    const DiagnoseOptions options;
+    const double most = std::max(1 + options.noise_accuracy,
+                                 largest_held_out(found.problem, found.tried.front().fit, options.false_refusals));
+    EXPECT_LT(most, 1.13);  // 648 rows, and four sigma
     EXPECT_EQ(verdict(most - 0.01), Verdict::missing_effect);
+    EXPECT_EQ(found.tried.front().objection, "");
     EXPECT_EQ(verdict(most + 0.01), Verdict::unexplained);
     EXPECT_THAT(found.tried.front().objection, HasSubstr("held-out probes"));
+}
 
-    // Of an effect of 10 sigmas there, discretisation may alter a tenth: 1 sigma, which adds in squares.
-    found.baseline_held_out.whitened_rms = 10;
-    EXPECT_EQ(verdict(most + 0.01), Verdict::missing_effect);
-    EXPECT_EQ(found.tried.front().objection, "");
+TEST(MostLeft, IsWhatNoiseIsToldToOrWhatChanceLeaves) {
+    DiagnoseOptions options;
+    EXPECT_DOUBLE_EQ(options.most_left(10000), 1.1);
+    EXPECT_NEAR(options.most_left(60), std::sqrt(99.607 / 60), 1e-4);  // chi^2 of 60 that 0.001 exceed
+    options.noise_accuracy = 0.5;
+    EXPECT_DOUBLE_EQ(options.most_left(60), 1.5);
 }
 
 /// A clear case judged once more, with one thing about it changed.
@@ -285,9 +292,10 @@ TEST_F(Diagnosed, MessagesNameOptionValueAndBound) {
         return message_of([&] { options.validate(); });
     };
     EXPECT_EQ(message([](DiagnoseOptions& o) { o.refits = 0; }), "refits is 0; allowed: 1 and more");
-    EXPECT_EQ(message([](DiagnoseOptions& o) { o.most_left = 0; }), "most_left is 0; it must be above 0");
-    EXPECT_THAT(message([](DiagnoseOptions& o) { o.most_left_held_out = 0; }), HasSubstr("most_left_held_out is 0"));
-    EXPECT_THAT(message([](DiagnoseOptions& o) { o.most_left = missing; }), HasSubstr("most_left is nan"));
+    EXPECT_EQ(message([](DiagnoseOptions& o) { o.most_pull = 0; }), "most_pull is 0; it must be above 0");
+    EXPECT_EQ(message([](DiagnoseOptions& o) { o.false_refusals = 0; }),
+              "false_refusals is 0; allowed: above 0 and below 1");
+    EXPECT_THAT(message([](DiagnoseOptions& o) { o.noise_accuracy = missing; }), HasSubstr("noise_accuracy is nan"));
     EXPECT_EQ(message([](DiagnoseOptions& o) { o.mesh_error = -1; }), "mesh_error is -1; it must be 0 or more");
     EXPECT_THAT(message([](DiagnoseOptions& o) { o.without = {"gravty"}; }),
                 HasSubstr("there is no effect 'gravty'; did you mean 'gravity'?"));

@@ -156,6 +156,33 @@ TEST_F(Refits, TrustMarkersLessWhereTheMaterialKeepsADent) {
     }
 }
 
+TEST_F(Refits, TrustMarkersLessUnderAPressureBeyondYield) {
+    const MeasurementSet set = body_.set(SmallBody::releases(0.03, 2));
+    const Problem problem = make_problem(set, sigma).stage_by_stage();
+    const auto loaded =
+        std::ranges::find_if(problem.stages, [](const Stage& stage) { return !stage.action.contacts.empty(); });
+    ASSERT_NE(loaded, problem.stages.end());
+    const mesh::Contact& contact = loaded->action.contacts.front();
+    const double r = effective_radius(*model_, contact);
+    const double pressure = contact.force.norm() / (M_PI * r * r) / model_->young(truth().setting());
+    constexpr double hardening = 0.3;
+    const auto of_yield = [&](double yield) {
+        return truth("plasticity", numbers({std::log(yield), std::log(hardening)}));
+    };
+    const ForwardSolution forward = solve_forward(*model_, problem, of_yield(10 * pressure), 1);
+    const auto unknown = [&](double yield) {  // variance beyond the noise, under that load
+        const NuisanceOptions dents_alone{.dent = 30, .ragged = 0, .flow = 0};
+        const Eigen::VectorXd weights = reading_weights(*model_, problem, of_yield(yield), forward, dents_alone);
+        double sum = 0;
+        for (Eigen::Index n = 0; n < problem.rows(); ++n)
+            if (problem.action[n] == loaded - problem.stages.begin()) sum += std::pow(weights[n], -2) - 1;
+        return sum;
+    };
+    // An even pressure yields at 1.5 times the yield stress; at twice that it indents by 1/hardening more.
+    EXPECT_NEAR(unknown(pressure / 1.5), unknown(10 * pressure), 1e-9 * unknown(10 * pressure));
+    EXPECT_NEAR(unknown(pressure / 3) / unknown(10 * pressure), std::pow(1 + 1 / hardening, 2), 1e-6);
+}
+
 TEST_F(Refits, KnowLessWhereProbesDisagree) {
     // Noise alone scatters no more than the covariance says; of gains that come and go from probe to probe it knows
     // nothing.

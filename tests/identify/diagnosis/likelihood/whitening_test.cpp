@@ -182,10 +182,10 @@ TEST(LeaveOut, IsTheErrorOfAFitWithoutTheGroup) {
         const Eigen::MatrixXd to_others = e.V(own, others) * e.V(others, others).inverse();
         const Eigen::VectorXd error = e.d(own) - to_others * e.d(others);
         const Eigen::MatrixXd spread = e.V(own, own) - to_others * e.V(others, own);
-        EXPECT_LT((left.error(own) - error).norm(), 1e-10 * error.norm()) << g;
+        EXPECT_LT((left.error(own, 0) - error).norm(), 1e-10 * error.norm()) << g;
         chi_square += error.dot(spread.inverse() * error);
     }
-    EXPECT_NEAR(left.chi_square, chi_square, 1e-9 * chi_square);
+    EXPECT_NEAR(left.chi_square[0], chi_square, 1e-9 * chi_square);
 }
 
 TEST(LeaveOut, WhitensErrorsOfTheRightModelToOne) {
@@ -198,7 +198,7 @@ TEST(LeaveOut, WhitensErrorsOfTheRightModelToOne) {
     constexpr int draws = 200;
     RandomStream random(3, 0, 0);
     for (int i = 0; i < draws; ++i) {
-        sum += leave_out(e.whitening(), L * random.normals(N), group).chi_square;
+        sum += leave_out(e.whitening(), L * random.normals(N), group).chi_square[0];
     }
     // Each group's sum is chi^2 of 8; groups hang together, at most as if they were one: sd sqrt(2 * 5 / 8000).
     EXPECT_NEAR(sum / (draws * N), 1, 4 * std::sqrt(2.0 * 5 / (draws * N)));  // 4 sigma
