@@ -18,7 +18,7 @@
 namespace palpate::identify {
 namespace {
 
-constexpr double adequate_rms = 1.1;  // in sigmas: with thousands of readings no p-value forgives rounding
+constexpr double adequate_rms = 1.1;       // in sigmas: with thousands of readings no p-value forgives rounding
 constexpr double adequate_p_value = 1e-3;  // what is right is refused once in a thousand times, as by a diagnosis
 constexpr int worst_readings = 10;
 

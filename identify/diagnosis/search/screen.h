@@ -29,8 +29,8 @@ std::vector<ScreenedEffect> screen_effects(const BodyModel& model, const Problem
                                            const std::vector<std::shared_ptr<const EffectHypothesis>>& effects,
                                            int threads);
 
-/// Where a refit with an effect begins, by the refit's objective there: at the best of its scan, else with as much of it
-/// as leaves the objective below `without`.
+/// Where a refit with an effect begins, by the refit's objective there: at the best of its scan, else with as much of
+/// it as leaves the objective below `without`.
 Eigen::VectorXd start_of(const ScreenedEffect& screened, double without,
                          const std::function<double(const Eigen::VectorXd& start)>& objective);
 

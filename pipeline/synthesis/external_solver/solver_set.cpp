@@ -187,9 +187,8 @@ private:
         constexpr double allowed = 0.03;  // of the size: chords of coarse elements
         if (furthest <= allowed * size) return;
         std::string cause =
-            "are they of this body, at rest and not warped by their displacement? Elements longer than a rim is thick "
-            "cut "
-            "it off: shorter ones (--edge-length) follow it.";
+            "are they of this body, at rest and not warped by their displacement? Elements longer than the thickness "
+            "of a rim cut it off: shorter ones (--edge-length) follow it.";
         for (const double factor : {10.0, 25.4, 1000.0, 0.1, 1 / 25.4, 0.001})
             if (std::abs(its_size / size - factor) < 0.05 * factor)
                 cause = fmt::format(

@@ -97,6 +97,18 @@ void Tally::add(const Tally& more) {
     for (const auto& [hidden, list] : more.after_) append(after_[hidden], list);
 }
 
+/// False claims by the evidence alone, at the rates that `--false-claims` may state.
+void Tally::print_reliability() const {
+    fmt::print("\n| stated rate of false claims | least ln BF | null sets above |\n| --- | --- | --- |\n");
+    for (const double rate : {0.1, 0.03, 0.01, 3e-3, 1e-3, 1e-4}) {
+        identify::DiagnoseOptions options;
+        options.false_claims = rate;
+        const double least = options.least_evidence();
+        const auto above = std::ranges::count_if(null_evidence_, [&](double one) { return one >= least; });
+        fmt::print("| {:g} | {:.1f} | {} of {} |\n", rate, least, above, null_evidence_.size());
+    }
+}
+
 void Tally::print() const {
     const auto count = [&](Outcome outcome) { return counts_.contains(outcome) ? counts_.at(outcome) : 0; };
     fmt::print("\n{} right, {} in part, {} wrong, {} inconclusive; {} of {} null sets blamed.\n", count(Outcome::right),
@@ -106,6 +118,7 @@ void Tally::print() const {
             "Largest ln BF of any effect in a null set: median {:.1f}, 95 % {:.1f}, 99 % {:.1f}, largest {:.1f}.\n",
             quantile(null_evidence_, 0.5), quantile(null_evidence_, 0.95), quantile(null_evidence_, 0.99),
             quantile(null_evidence_, 1));
+        print_reliability();
     }
     std::set<std::string> columns;
     for (const auto& [hidden, row] : named_) {

@@ -26,6 +26,7 @@ private:
     };
 
     void print_numbers() const;
+    void print_reliability() const;
 
     std::map<Outcome, int> counts_;
     int nulls_ = 0, blamed_ = 0;
