@@ -200,6 +200,7 @@ void begin(const BodyModel& model, const Problem& problem, int threads, const Re
     }
 }
 
+/// Readings weighed as an explanation has them, with nuisances that were taken there or nearby.
 Whitening whitening_of(const BodyModel& model, const Problem& problem, const Explanation& explanation,
                        const ForwardSolution& forward, const RefitOptions& options, const Nuisances& nuisances) {
     return {reading_weights(model, problem, explanation, forward, options.nuisances), nuisances.columns,

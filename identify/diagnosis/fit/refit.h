@@ -65,7 +65,8 @@ Whitening with_numbers_unknown(const Refit& fit);
 double objective(const Refit& fit);
 
 /// The same at an explanation's own equilibria, by the weights and nuisances of a fit nearby: what a refit from there
-/// would begin with. Infinite where there are no equilibria.
+/// would begin with. One that yields, unlike that fit, has weights of its own, and what they alter of ln |V| / 2
+/// counts. Infinite where there are no equilibria.
 double objective_near(const BodyModel& model, const Problem& problem, const Explanation& explanation,
                       const RefitOptions& options, const Refit& near);
 

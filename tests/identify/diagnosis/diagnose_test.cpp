@@ -179,9 +179,9 @@ TEST_F(Diagnosed, WhatTheCatalogueLacksIsNotExplainedOrByAStatedAlias) {
         for (const Candidate& c : found.ranking) EXPECT_NE(c.effect->name(), effect);
         if (found.verdict == Verdict::unexplained) {
             EXPECT_THAT(found.explanation, IsEmpty());
-            EXPECT_GT(found.best().whitened_rms,
-                      options.most_left(found.problem.rows()));  // no wrong effect leaves noise only
-        } else {                                                 // as a soft ball at the base does for springs below it
+            // no wrong effect leaves noise only
+            EXPECT_GT(found.best().whitened_rms, options.most_left(found.problem.rows()));
+        } else {  // as a soft ball at the base does for springs below it
             EXPECT_EQ(found.verdict, Verdict::missing_effect) << effect;
             EXPECT_THAT(find_effect(effect)->description().confused_with, Contains(found.explanation.front()));
             ++aliases;
