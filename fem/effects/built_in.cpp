@@ -1,5 +1,7 @@
 #include "fem/effects/built_in.h"
 
+#include "fem/effects/local/local_force.h"
+#include "fem/effects/local/local_springs.h"
 #include "fem/effects/material/anisotropy.h"
 #include "fem/effects/material/inclusion.h"
 #include "fem/effects/material/prestress.h"
@@ -78,6 +80,7 @@ std::vector<KnownEffect> built_in_effects() {
         known_swelling(),      known_viscosity(),
         known_plasticity(),    known_damage(),
         known_friction(),      known_volume(),
+        known_local_force(),   known_local_springs(),
         fault("misalignment"), fault("force-gain"),
         fault("slip"),         fault("actuation-gain"),
         fault("clock"),        fault("outliers"),

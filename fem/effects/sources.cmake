@@ -2,6 +2,9 @@
 set(effect_sources
   built_in.cpp
   registry.cpp
+  local/local_force.cpp
+  local/local_springs.cpp
+  local/locality.cpp
   material/anisotropy.cpp
   material/damage.cpp
   material/inclusion.cpp

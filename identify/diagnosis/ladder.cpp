@@ -136,10 +136,18 @@ private:
     bool is_worse(const std::string& name) {
         const LadderStep& now = result_.steps.back();
         const LadderStep& before = result_.steps[result_.steps.size() - 2];
+        // What a diagnosis names needs no better forecast, by as much as chance may make one worse; what was located in
+        // what is left has nothing else to speak for it.
         constexpr double chance = 1.1;
+        const bool is_residual = name == options_.residual;
+        if (is_residual && folds_.empty()) {
+            result_.not_added.push_back({name, "there are too few probes to see whether others are forecast better"});
+            return true;
+        }
+        const double most = is_residual ? 1 : chance;
         const auto worse = [&](const char* what, const StepError& then, const StepError& since,
                                const std::string& besides) {
-            if (!(since.held_out_rms_mm > chance * then.held_out_rms_mm)) return false;
+            if (since.held_out_rms_mm < most * then.held_out_rms_mm) return false;
             result_.not_added.push_back(
                 {name, fmt::format("with it the {} is off by {:.3g} mm on held-out probes, {:.3g} mm without it{}",
                                    what, since.held_out_rms_mm, then.held_out_rms_mm, besides)});

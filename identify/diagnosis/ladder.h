@@ -52,6 +52,8 @@ struct LadderOptions {
     DiagnoseOptions diagnose;
     /// An effect that makes held-out probes worse, or leaves a state without equilibrium, is not added.
     bool only_better = false;
+    /// One of the effects, by name, that was located in what is left and has to make held-out probes better.
+    std::string residual = {};
     std::vector<skeleton::EffectRecord> start = {};  // numbers of effects to begin with, where no diagnosis has any
 };
 

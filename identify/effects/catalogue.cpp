@@ -32,6 +32,8 @@ std::shared_ptr<const EffectHypothesis> slip_effect();
 std::shared_ptr<const EffectHypothesis> actuation_gain_effect();
 std::shared_ptr<const EffectHypothesis> clock_effect();
 std::shared_ptr<const EffectHypothesis> outliers_effect();
+std::shared_ptr<const EffectHypothesis> local_force_effect();
+std::shared_ptr<const EffectHypothesis> local_springs_effect();
 
 namespace {
 
@@ -79,9 +81,21 @@ bool register_effect(skeleton::KnownEffect physics, std::shared_ptr<const Effect
     return true;
 }
 
+const std::vector<std::shared_ptr<const EffectHypothesis>>& unnamed_sources() {
+    static const std::vector<std::shared_ptr<const EffectHypothesis>> all{local_force_effect(), local_springs_effect()};
+    return all;
+}
+
+std::vector<std::shared_ptr<const EffectHypothesis>> all_effects() {
+    std::vector<std::shared_ptr<const EffectHypothesis>> all = catalogue();
+    all.insert(all.end(), unnamed_sources().begin(), unnamed_sources().end());
+    return all;
+}
+
 std::shared_ptr<const EffectHypothesis> effect_named(const std::string& name) {
-    const auto found = std::ranges::find(catalogue(), name, [](const auto& effect) { return effect->name(); });
-    return found == catalogue().end() ? nullptr : *found;
+    const auto effects = all_effects();
+    const auto found = std::ranges::find(effects, name, [](const auto& effect) { return effect->name(); });
+    return found == effects.end() ? nullptr : *found;
 }
 
 std::shared_ptr<const EffectHypothesis> effect_of_single_readings() {
@@ -91,9 +105,10 @@ std::shared_ptr<const EffectHypothesis> effect_of_single_readings() {
 std::shared_ptr<const EffectHypothesis> find_effect(const std::string& name) {
     if (auto effect = effect_named(name)) return effect;
     std::string names;
-    for (const auto& effect : catalogue()) names += (names.empty() ? "" : ", ") + effect->name();
-    const auto nearest = std::ranges::min_element(
-        catalogue(), {}, [&](const auto& effect) { return edits_between(name, effect->name()); });
+    const auto effects = all_effects();
+    for (const auto& effect : effects) names += (names.empty() ? "" : ", ") + effect->name();
+    const auto nearest =
+        std::ranges::min_element(effects, {}, [&](const auto& effect) { return edits_between(name, effect->name()); });
     throw InvalidInput(
         fmt::format("there is no effect '{}'; did you mean '{}'? Known are: {}", name, (*nearest)->name(), names));
 }

@@ -8,8 +8,12 @@
 
 namespace palpate::identify {
 
-/// Every effect that is known, in the order in which they are told.
+/// Every effect that a diagnosis may name, in the order in which they are told.
 const std::vector<std::shared_ptr<const EffectHypothesis>>& catalogue();
+/// What stands for a source that was located and has no name: no diagnosis looks for it, models show it.
+const std::vector<std::shared_ptr<const EffectHypothesis>>& unnamed_sources();
+/// Both.
+std::vector<std::shared_ptr<const EffectHypothesis>> all_effects();
 
 /// Adds an effect of one's own in one row: its physics, and how it is diagnosed and hidden. Meant for a static object
 /// of its file:

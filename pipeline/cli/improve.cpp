@@ -5,8 +5,10 @@
 
 #include "identify/diagnosis/diagnose.h"
 #include "identify/diagnosis/ladder.h"
+#include "identify/diagnosis/locate/residual.h"
 #include "identify/effects/catalogue.h"
 #include "mesh/errors.h"
+#include "mesh/text/atomic_file.h"
 #include "mesh/text/words.h"
 #include "pipeline/command_line/flags.h"
 #include "pipeline/command_line/objects.h"
@@ -15,6 +17,7 @@
 #include "pipeline/output/ladder.h"
 #include "pipeline/output/text/comparison.h"
 #include "pipeline/output/text/diagnosis.h"
+#include "pipeline/output/text/draft.h"
 #include "pipeline/run/model_and_set.h"
 #include "pipeline/synthesis/effects/effect_spec.h"
 
@@ -35,8 +38,28 @@ identify::Diagnosis diagnose_aloud(const identify::BodyModel& body, const identi
                                    const identify::DiagnoseOptions& how) {
     identify::Diagnosis found = identify::diagnose(body, set, how, Console::progress());
     Console::notice(diagnosis_in_words(to_json(found, body, set)));
-    if (found.explanation.empty()) Console::notice("Nothing is added.");
+    if (found.explanation.empty()) Console::notice("Nothing that has a name is added.");
     return found;
+}
+
+/// What is left by then, as an effect that both models show.
+std::optional<skeleton::EffectRecord> find_residual_aloud(const identify::BodyModel& body,
+                                                          const identify::Diagnosis& found, const Common& common) {
+    if (found.verdict == identify::Verdict::adequate) {
+        Console::notice("What is left is noise: there is no residual to add.");
+        return std::nullopt;
+    }
+    const std::optional<identify::Residual> residual = identify::find_residual(body, found, common.threads);
+    if (!residual) {
+        Console::notice(
+            "No residual is added: what is left is no constant force, no spring and no change of stiffness in one "
+            "place, which models could show without knowing its cause.");
+        return std::nullopt;
+    }
+    Console::notice(fmt::format("What is left, located: {} (ln Bayes factor {:.3g}, to first order)",
+                                identify::find_effect(residual->effect.name)->sentence(residual->effect),
+                                residual->log_bayes_factor));
+    return residual->effect;
 }
 
 /// Effects with the numbers that a fit is to begin with.
@@ -76,21 +99,38 @@ std::string judged_on(const ImproveCommandOptions& options, const std::vector<st
     return "skeleton";
 }
 
+/// The one of them that no catalogue has a name for.
+std::optional<skeleton::EffectRecord> unnamed_among(const std::vector<skeleton::EffectRecord>& effects) {
+    for (const skeleton::EffectRecord& effect : effects)
+        for (const auto& unnamed : identify::unnamed_sources())
+            if (unnamed->name() == effect.name) return effect;
+    return std::nullopt;
+}
+
 }  // namespace
 
 Improved improve(const ModelAndSet& given, const ImproveCommandOptions& options, const Common& common) {
     const std::vector<skeleton::EffectRecord> starts = starts_of(options.add);
-    const std::vector<std::string> asked = names_of(starts);
-    const identify::LadderOptions how{.identify = identify_options(options.overrides, common),
-                                      .diagnose = diagnose_options(options.overrides.on_defaults().diagnose,
-                                                                   given.set.density.has_value(), given.model, common),
-                                      .only_better = options.automatic,
-                                      .start = starts};
+    std::vector<std::string> effects = names_of(starts);
+    const bool is_diagnosed = options.automatic || options.residual;
+    identify::LadderOptions how{.identify = identify_options(options.overrides, common),
+                                .diagnose = diagnose_options(options.overrides.on_defaults().diagnose,
+                                                             given.set.density.has_value(), given.model, common),
+                                .only_better = is_diagnosed,
+                                .start = starts};
     how.identify.validate();
-    auto body = body_to_diagnose(judged_on(options, asked), given, options.overrides.on_defaults());
+    auto body = body_to_diagnose(judged_on(options, effects), given, options.overrides.on_defaults());
     std::optional<identify::Diagnosis> found;
-    if (options.automatic) found = diagnose_aloud(*body, given.set, how.diagnose);
-    const std::vector<std::string>& effects = found ? found->explanation : asked;
+    if (is_diagnosed) {
+        found = diagnose_aloud(*body, given.set, how.diagnose);
+        effects = found->explanation;
+    }
+    if (options.residual) {
+        if (const auto residual = find_residual_aloud(*body, *found, common)) {
+            effects.push_back(how.residual = residual->name);
+            how.start.push_back(*residual);
+        }
+    }
     identify::Ladder ladder = identify::build_ladder(given.model, *body, given.set, effects, how,
                                                      found ? &*found : nullptr, Console::progress());
     ladder.identified.damping = damping_of(ladder.steps.back().model, given.set, how.identify.seed, common);
@@ -101,8 +141,16 @@ Outcome improve(const ImproveCommandOptions& options, const Common& common) {
     const fs::path output = options.output.empty() ? fs::path("improved") : options.output;
     refuse_to_overwrite(output, common.force);
     starts_of(options.add);  // refuses what is no effect before anything is read
+    if (!options.draft.empty()) {
+        refuse_to_overwrite(options.draft, common.force);
+        check_draft_name(options.draft.stem().string());
+    }
     const auto [ladder, body] = improve(read_model_and_set(options.model, options.set), options, common);
     write_ladder(output, ladder, *body);
+
+    const std::optional<skeleton::EffectRecord> drafted = unnamed_among(ladder.steps.back().effects);
+    if (!options.draft.empty() && drafted)
+        mesh::write_text(options.draft, draft_of(*drafted, options.draft.stem().string()));
 
     Outcome outcome;
     outcome.json = to_json(ladder);
@@ -112,6 +160,11 @@ Outcome improve(const ImproveCommandOptions& options, const Common& common) {
     for (const std::string& note : ladder.notes) outcome.text += "  " + note + "\n";
     outcome.text +=
         fmt::format("Model: {}\nParaView: {}\n", (output / "model.json").string(), (output / "ladder.pvd").string());
+    if (!options.draft.empty()) {
+        outcome.json["draft"] = drafted ? nlohmann::json(options.draft.string()) : nlohmann::json();
+        outcome.text += drafted ? fmt::format("Draft of an effect: {}\n", options.draft.string())
+                                : "No draft is written: nothing without a name was added.\n";
+    }
     outcome.text +=
         outcome.json["verdict"] == "adequate"
             ? fmt::format("Next: palpate simulate {} --probes probes.csv -o played\n", (output / "model.json").string())
@@ -140,7 +193,16 @@ void Subcommands::add_improve(CLI::App& app) {
         ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
         ->check(CLI::Validator([](std::string& spec) { return objection_to_spec(spec); }, "EFFECT[:name=value,...]"));
     what->add_flag("--auto", improve.automatic, "What a diagnosis names");
+    what->add_flag(
+        "--residual", improve.residual,
+        "What a diagnosis names and, in what is left then, a force, springs or a change of stiffness in one\n"
+        "place, whatever its cause: where it makes the forecast of held-out probes better");
     what->require_option(1);
+    sub->add_option(
+           "--draft", improve.draft,
+           "C++ file for what --residual adds, as an effect of your own to be taken on from there; the effect is\n"
+           "called as the file is")
+        ->needs("--residual");
     add_body(sub, improve.body, "by default, but for what links alone have");
     add_flags_of(sub, improve.overrides, "Identification");
     add_flag(sub, improve.overrides, "volume.edge_length");

@@ -98,6 +98,8 @@ struct ImproveCommandOptions {
     std::filesystem::path model, set, output;
     std::vector<std::string> add = {};  // effects, EFFECT[:name=value,...], a rung each; from these values
     bool automatic = false;             // what a diagnosis names, in place of those
+    bool residual = false;              // the same, and what is left then, located
+    std::filesystem::path draft = {};   // C++ file for that as an effect of one's own
     std::string body = {};              // as for a diagnosis; empty: the skeleton where an effect is of its links alone
     CaseOverrides overrides = {};
 };

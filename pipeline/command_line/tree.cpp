@@ -9,7 +9,7 @@ namespace {
 
 std::vector<std::string> effect_names() {
     std::vector<std::string> names;
-    for (const auto& effect : identify::catalogue()) names.push_back(effect->name());
+    for (const auto& effect : identify::all_effects()) names.push_back(effect->name());
     return names;
 }
 

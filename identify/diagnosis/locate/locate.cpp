@@ -250,10 +250,11 @@ void summarise(MissingSource& source) {
 }  // namespace
 
 std::optional<MissingSource> locate_missing(const BodyModel& model, const Problem& problem, const Refit& fit,
-                                            int threads) {
+                                            int threads, const std::function<bool(const SourceTerm&)>& is_candidate) {
     if (problem.rows() == 0 || model.skin().rows() == 0) return std::nullopt;
     Scan scan(model, problem, fit, threads);
     std::vector<Alternative> all = scan.alternatives();
+    if (is_candidate) std::erase_if(all, [&](const Alternative& one) { return !is_candidate(one.term); });
     if (all.empty()) return std::nullopt;
     MissingSource source;
     share_out(all);

@@ -39,7 +39,7 @@ Outcome effects(const EffectsOptions& options, const Common&) {
     }
     Outcome outcome;
     outcome.json = {{"effects", json::array()}};
-    for (const auto& effect : identify::catalogue()) {
+    for (const auto& effect : identify::all_effects()) {
         outcome.text += fmt::format("{:<18} {:<12} {}\n", effect->name(), fem::kind_name(effect->description().kind),
                                     effect->description().meaning);
         outcome.json["effects"].push_back(effect_json(*effect));

@@ -21,9 +21,10 @@ using testing::HasSubstr;
 
 /// Names that users may rely on.
 const std::set<std::string> promised{
-    "gravity",      "stiffening", "anisotropy", "inclusion",         "volume",    "torsion",    "shear",  "contact",
-    "pressure",     "prestress",  "swelling",   "compliant-support", "viscosity", "plasticity", "damage", "friction",
-    "misalignment", "force-gain", "slip",       "actuation-gain",    "clock",     "outliers"};
+    "gravity",   "stiffening",     "anisotropy", "inclusion", "volume",       "torsion",
+    "shear",     "contact",        "pressure",   "prestress", "swelling",     "compliant-support",
+    "viscosity", "plasticity",     "damage",     "friction",  "misalignment", "force-gain",
+    "slip",      "actuation-gain", "clock",      "outliers",  "local-force",  "local-springs"};
 const std::set<std::string> probe_kinds{"load", "orientation", "pressure", "dwell", "unload", "repeat", "fiducials"};
 
 class EveryEffect : public testing::TestWithParam<std::shared_ptr<const EffectHypothesis>> {
@@ -196,7 +197,14 @@ TEST_P(EveryEffect, OfTheMeasurementIsTakenOutOfASet) {
               1e-5);  // two equilibria, each to 1e-7 of its load
 }
 
-INSTANTIATE_TEST_SUITE_P(Catalogue, EveryEffect, testing::ValuesIn(catalogue()), [](const auto& about) {
+TEST(UnnamedSources, AreNotSearchedByADiagnosis) {
+    for (const auto& source : unnamed_sources()) {
+        EXPECT_EQ(std::ranges::find(catalogue(), source), catalogue().end()) << source->name();
+        EXPECT_EQ(find_effect(source->name()), source);
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(Catalogue, EveryEffect, testing::ValuesIn(all_effects()), [](const auto& about) {
     std::string name = about.param->name();
     std::erase(name, '-');
     return name;

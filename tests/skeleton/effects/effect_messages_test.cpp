@@ -27,8 +27,8 @@ TEST(EffectMessages, EveryFaultIsNamed) {
         complaint({"gravitty", {}})
             .rfind("effect 'gravitty' is not known (did you mean 'gravity'?); known are 'gravity', "
                    "'compliant-support', 'stiffening', 'anisotropy', 'inclusion', 'contact', 'pressure', "
-                   "'prestress', 'swelling', 'viscosity', 'plasticity', 'damage', 'friction', 'volume', 'torsion', "
-                   "'shear', ",
+                   "'prestress', 'swelling', 'viscosity', 'plasticity', 'damage', 'friction', 'volume', 'local-force', "
+                   "'local-springs', 'torsion', 'shear', ",
                    0),
         0u);
     EXPECT_EQ(complaint({"outliers", {}}),

@@ -32,6 +32,16 @@ const std::vector<EffectRecord> all_effects{
     {"damage", {{"share", 0.4, "1"}, {"strain", 0.07, "1"}}},
     {"friction", {{"tendons", 0.2, "1"}}},
     {"volume", {{"poisson", 0.3, "1"}}},
+    {"local-force",
+     {{"cx", 10, "mm"},
+      {"cy", 0, "mm"},
+      {"cz", 0, "mm"},
+      {"radius", 5, "mm"},
+      {"fx", 0, "N"},
+      {"fy", 0.1, "N"},
+      {"fz", 0, "N"}}},
+    {"local-springs",
+     {{"cx", 10, "mm"}, {"cy", 0, "mm"}, {"cz", 0, "mm"}, {"radius", 5, "mm"}, {"stiffness", 0.2, "N/mm"}}},
     {"torsion", {{"torsion", 0.5, "1"}}},
     {"shear", {{"shear", 0.5, "1"}}},
 };
@@ -47,7 +57,7 @@ TEST(KnownEffects, AreAllThatABodyMayHave) {
 
 TEST(KnownEffects, TellTheirNumbers) {
     const fem::Effects physics = physics_of(all_effects);
-    EXPECT_EQ(physics.points.size(), 3u);    // gravity, support, contact
+    EXPECT_EQ(physics.points.size(), 5u);    // gravity, support, contact, a force and springs in one place
     EXPECT_EQ(physics.material.size(), 4u);  // stiffening, anisotropy, inclusion, prestress
     EXPECT_EQ(physics.pressure, 0.01);
     EXPECT_EQ(physics.growth, -0.02);

@@ -78,7 +78,16 @@ std::vector<skeleton::EffectRecord> playable_effects() {
         {"plasticity", {{"yield", 0.02, ""}, {"hardening", 0.1, ""}}},
         {"damage", {{"share", 0.6, ""}, {"strain", 0.03, ""}}},
         {"contact", {{"nx", 0, ""}, {"ny", 0, ""}, {"nz", 1, ""}, {"offset", -3.5, ""}, {"stiffness", 0.01, ""}}},
-        {"compliant-support", {{"stiffness", 20, ""}}}};
+        {"compliant-support", {{"stiffness", 20, ""}}},
+        {"local-force",
+         {{"cx", 16, ""},
+          {"cy", 8, ""},
+          {"cz", 5, ""},
+          {"radius", 4, ""},
+          {"fx", 0.05, ""},
+          {"fy", 0.02, ""},
+          {"fz", -0.1, ""}}},
+        {"local-springs", {{"cx", 16, ""}, {"cy", 8, ""}, {"cz", 8, ""}, {"radius", 5, ""}, {"stiffness", 0.3, ""}}}};
 }
 
 }  // namespace palpate::runtime
