@@ -5,6 +5,8 @@
 #include <cmath>
 
 #include "identify/diagnosis/locate/locate.h"
+#include "identify/effects/catalogue.h"
+#include "mesh/errors.h"
 
 namespace palpate::identify {
 namespace {
@@ -53,7 +55,83 @@ skeleton::EffectRecord record_of(const SourceTerm& term, double size) {
     return effect;
 }
 
+/// Rows and columns of a symmetric matrix.
+Eigen::MatrixXd block_of(const Eigen::MatrixXd& all, Eigen::Index first, Eigen::Index count) {
+    return all.block(first, first, count, count);
+}
+
+/// The term of a source whose last effect is a fitted one: its place, and its numbers in the source's own form.
+SourceTerm term_of(const SourceTerm& located, const Refit& fit) {
+    const Eigen::VectorXd& values = fit.explanation.values.back();
+    const Eigen::Index count = values.size(), first = fit.explanation.all().size() - count;
+    const Eigen::MatrixXd covariance = block_of(fit.covariance, first, count);
+    SourceTerm term = located;
+    term.centre = values.head<3>();
+    term.radius = std::exp(values[3]);
+    term.probability = 1;
+    Eigen::MatrixXd by_value;  // d numbers / d values behind the place
+    if (located.form == SourceForm::softening) {
+        term.radius /= std::sqrt(5.0);  // a ball, see record_of
+        term.mean = values.tail(1);     // ln ratio
+        by_value = Eigen::MatrixXd::Identity(1, 1);
+    } else if (located.law == SourceLaw::spring) {
+        term.mean = values.tail(1).array().exp();
+        by_value = term.mean.asDiagonal();
+    } else {
+        term.form = SourceForm::force;
+        term.mean = values.tail<3>();
+        by_value = Mat3::Identity();
+    }
+    const Eigen::Index numbers = term.mean.size();
+    term.covariance = by_value * covariance.bottomRightCorner(numbers, numbers) * by_value.transpose();
+    term.sd = term.covariance.diagonal().cwiseSqrt();
+    return term;
+}
+
+/// Where a term's weight is in the body or on its skin: its centroid; sets how far it reaches and what it sums up to.
+Vec3 centroid_of(SourceTerm& term, const Points& points, const Eigen::VectorXd& shares) {
+    const Eigen::VectorXd weight = shares.cwiseProduct(source_weight(term.centre, term.radius, points));
+    term.norm = weight.sum();
+    if (!(term.norm > 0)) return term.centre;  // far outside of the body
+    const Vec3 centroid = points.transpose() * weight / term.norm;
+    term.extent = std::sqrt(weight.dot((points.rowwise() - centroid.transpose()).rowwise().squaredNorm()) / term.norm);
+    return centroid;
+}
+
 }  // namespace
+
+void fit_source(const BodyModel& model, const Problem& problem, const Refit& without, const RefitOptions& options,
+                MissingSource& source) {
+    const SourceTerm located = source.likeliest();
+    const std::string name = effect_of(located);
+    if (name.empty()) return;
+    const auto effect = find_effect(name);
+    Explanation explanation = without.explanation;
+    explanation.effects.push_back(effect);
+    explanation.values.push_back(effect->values(effect->numbers(model, problem), record_of(located, model.size())));
+    std::optional<Refit> fit;
+    try {
+        fit = refit(model, problem, explanation, options, &without);
+    } catch (const SolverFailure&) {  // to first order it is too strong for the body
+        return;
+    }
+    if (!(fit->log_evidence > without.log_evidence)) return;
+    SourceTerm term = term_of(located, *fit);
+    const bool on_skin = term.form == SourceForm::normal;
+    source.at = on_skin ? centroid_of(term, model.skin(), model.skin_areas() / model.skin_areas().sum())
+                        : centroid_of(term, model.material_points(), model.material_shares());
+    const Eigen::Index place = fit->explanation.all().size() - fit->explanation.values.back().size();
+    source.spread = std::sqrt(term.extent * term.extent + block_of(fit->covariance, place, 3).trace());
+    if (term.form == SourceForm::force) {
+        const double size = term.mean.norm();
+        source.direction = term.mean / size;
+        const Mat3 across = Mat3::Identity() - source.direction * source.direction.transpose();
+        source.direction_sd = std::sqrt((across * term.covariance * across).trace() / 2) / size;
+    }
+    const double before = without.whitened_rms * without.whitened_rms, after = fit->whitened_rms * fit->whitened_rms;
+    source.explained = std::clamp(1 - after / before, 0.0, 1.0);
+    source.terms = {std::move(term)};
+}
 
 std::optional<Residual> find_residual(const BodyModel& model, const Diagnosis& diagnosis, int threads) {
     const auto can_be_shown = [&](const SourceTerm& term) {

@@ -17,4 +17,10 @@ struct Residual {
 /// that go with a load or with the time have no cause that a model knows of; faults of the readings are none of a body.
 std::optional<Residual> find_residual(const BodyModel& model, const Diagnosis& diagnosis, int threads);
 
+/// A source that was located beside a fit, fitted to the readings: place, size and strength at the equilibria that they
+/// come to, where first order tells of a strong one in kind alone. It stays as it is where models do not show such a
+/// source, and where the fit explains no more than the one without it.
+void fit_source(const BodyModel& model, const Problem& problem, const Refit& without, const RefitOptions& options,
+                MissingSource& source);
+
 }  // namespace palpate::identify

@@ -175,7 +175,12 @@ bool leaves_only_noise(const Refit& fit, const DiagnoseOptions& options) {
 double least_next_to_noise(const EffectHypothesis& effect, const Problem& problem, const DiagnoseOptions& options) {
     const double least = 2 * options.least_evidence();
     if (!effect.is_like_mesh_error()) return least;
-    const double in_sigmas = options.mesh_error * problem.displacement().cwiseQuotient(problem.sigma).norm();
+    // Halved edges leave a third of what they show, where errors fall with the square of the edge.
+    constexpr double beyond_halved_edges = 1.0 / 3;
+    double in_sigmas = options.mesh_error * problem.displacement().cwiseQuotient(problem.sigma).norm();
+    if (problem.discretisation.size() > 0)
+        in_sigmas =
+            std::max(in_sigmas, beyond_halved_edges * problem.discretisation.cwiseQuotient(problem.sigma).norm());
     return std::max(least, 0.5 * in_sigmas * in_sigmas);
 }
 
