@@ -6,7 +6,6 @@
 #include <cmath>
 
 #include "identify/diagnosis/locate/locate.h"
-#include "identify/diagnosis/locate/residual.h"
 #include "identify/diagnosis/search/baselines.h"
 #include "identify/diagnosis/search/crushing.h"
 #include "identify/diagnosis/search/mesh_correction.h"
@@ -76,9 +75,7 @@ public:
         decide_verdict(model_, options_, result_);
         if (options_.screen && result_.verdict != Verdict::adequate) {
             tell("where it is", 0.95);
-            result_.missing = where_missing(model_, set_, result_, options_.refit.threads);
-            if (result_.missing && result_.verdict == Verdict::unexplained)
-                fit_source(model_, result_.problem, result_.baseline, options_.refit, *result_.missing);
+            result_.missing = where_missing(model_, set_, result_, options_.refit);
         }
         note_mesh_error();
         if (options_.refit.magnitude == MagnitudeUse::alternative && result_.best().has_known_magnitude)

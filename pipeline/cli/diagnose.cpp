@@ -43,6 +43,10 @@ Outcome diagnose(const DiagnoseCommandOptions& options, const Common& common) {
         outcome.text += options.body == "skeleton" ? " --body skeleton -o improved\n" : " -o improved\n";
     } else if (outcome.json["verdict"] == "ambiguous") {
         outcome.text += "Next: add that probe to the set, and diagnose again\n";
+    } else if (outcome.json["verdict"] == "unexplained" && outcome.json["where"].is_object() &&
+               outcome.json["where"]["kind"] != "sensor") {
+        outcome.text += fmt::format("Next: palpate improve {} {} --residual -o improved\n", options.model.string(),
+                                    options.set.string());
     }
     return outcome;
 }

@@ -44,12 +44,13 @@ identify::Diagnosis diagnose_aloud(const identify::BodyModel& body, const identi
 
 /// What is left by then, as an effect that both models show.
 std::optional<skeleton::EffectRecord> find_residual_aloud(const identify::BodyModel& body,
-                                                          const identify::Diagnosis& found, const Common& common) {
-    if (found.verdict == identify::Verdict::adequate) {
+                                                          const identify::Diagnosis& found,
+                                                          const identify::RefitOptions& options) {
+    if (found.verdict != identify::Verdict::unexplained) {
         Console::notice("What is left is noise: there is no residual to add.");
         return std::nullopt;
     }
-    const std::optional<identify::Residual> residual = identify::find_residual(body, found, common.threads);
+    const std::optional<identify::Residual> residual = identify::find_residual(body, found, options);
     if (!residual) {
         Console::notice(
             "No residual is added: what is left is no constant force, no spring and no change of stiffness in one "
@@ -126,7 +127,7 @@ Improved improve(const ModelAndSet& given, const ImproveCommandOptions& options,
         effects = found->explanation;
     }
     if (options.residual) {
-        if (const auto residual = find_residual_aloud(*body, *found, common)) {
+        if (const auto residual = find_residual_aloud(*body, *found, how.diagnose.refit)) {
             effects.push_back(how.residual = residual->name);
             how.start.push_back(*residual);
         }

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <set>
 
+#include "identify/diagnosis/locate/residual.h"
 #include "identify/diagnosis/locate/source_bases.h"
 #include "identify/diagnosis/locate/source_evidence.h"
 #include "identify/diagnosis/locate/source_laws.h"
@@ -314,11 +315,16 @@ MissingSource source_of_outliers(const MeasurementSet& set, const Diagnosis& dia
 }  // namespace
 
 std::optional<MissingSource> where_missing(const BodyModel& model, const MeasurementSet& set,
-                                           const Diagnosis& diagnosis, int threads) {
+                                           const Diagnosis& diagnosis, const RefitOptions& options) {
     const bool has_outliers = !diagnosis.outliers.readings.empty();
     const bool is_all = diagnosis.explanation.size() == 1 && !diagnosis.explained;
     if (has_outliers && is_all) return source_of_outliers(set, diagnosis);
-    std::optional<MissingSource> source = locate_missing(model, diagnosis.problem, diagnosis.baseline, threads);
+    const Problem& problem = diagnosis.problem;
+    const Refit& baseline = diagnosis.baseline;
+    const bool is_named = diagnosis.verdict != Verdict::unexplained;  // then its numbers are those of the effect
+    const Refit beside = is_named ? baseline : beside_constant_sources(model, problem, baseline, options);
+    std::optional<MissingSource> source = locate_missing(model, problem, beside, options.threads);
+    if (source && !is_named) fit_source(model, problem, beside, baseline, options, *source);
     if (!source && has_outliers) return source_of_outliers(set, diagnosis);
     return source;
 }

@@ -15,8 +15,9 @@ std::optional<MissingSource> locate_missing(const BodyModel& model, const Proble
                                             int threads,
                                             const std::function<bool(const SourceTerm&)>& is_candidate = {});
 
-/// The same of a diagnosis, from what its baseline leaves; where single readings are all that is wrong, those.
+/// The same of a diagnosis, from what its baseline leaves; where single readings are all that is wrong, those. Where no
+/// effect explains the readings, the source is fitted.
 std::optional<MissingSource> where_missing(const BodyModel& model, const MeasurementSet& set,
-                                           const Diagnosis& diagnosis, int threads);
+                                           const Diagnosis& diagnosis, const RefitOptions& options);
 
 }  // namespace palpate::identify

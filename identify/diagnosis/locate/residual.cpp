@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 
 #include "identify/diagnosis/locate/locate.h"
 #include "identify/effects/catalogue.h"
@@ -98,20 +99,59 @@ Vec3 centroid_of(SourceTerm& term, const Points& points, const Eigen::VectorXd& 
     return centroid;
 }
 
+/// What is left alike in all states: of each coordinate that is read the mean over its states, of each row (N).
+Eigen::VectorXd common_to_states(const Problem& problem, const Eigen::VectorXd& left) {
+    std::map<int, std::pair<double, int>> sums;
+    for (Eigen::Index n = 0; n < problem.rows(); ++n) {
+        if (problem.is_difference(n)) continue;
+        auto& [sum, count] = sums[problem.coordinate[n]];
+        sum += left[n];
+        ++count;
+    }
+    Eigen::VectorXd common = Eigen::VectorXd::Zero(problem.rows());
+    for (Eigen::Index n = 0; n < problem.rows(); ++n) {
+        if (problem.is_difference(n)) continue;
+        const auto& [sum, count] = sums.at(problem.coordinate[n]);
+        common[n] = sum / count;
+    }
+    return common;
+}
+
 }  // namespace
 
-void fit_source(const BodyModel& model, const Problem& problem, const Refit& without, const RefitOptions& options,
-                MissingSource& source) {
+Refit beside_constant_sources(const BodyModel& model, const Problem& problem, const Refit& fit,
+                              const RefitOptions& options) {
+    constexpr int rounds = 3;  // what is alike is told anew as the stiffness changes
+    Problem apart = problem;
+    Eigen::VectorXd taken = Eigen::VectorXd::Zero(problem.rows());
+    Refit at = fit;
+    for (int round = 0; round < rounds; ++round) {
+        const Eigen::VectorXd common = common_to_states(problem, at.error.cwiseProduct(problem.sigma));
+        if (common.cwiseQuotient(problem.sigma).squaredNorm() < 0.5 * at.error.squaredNorm()) break;
+        apart.measured -= common;
+        taken += common;
+        try {
+            at = refit(model, apart, at.explanation, options, &at);
+        } catch (const SolverFailure&) {
+            return fit;
+        }
+    }
+    at.error += taken.cwiseQuotient(problem.sigma);
+    return at;
+}
+
+void fit_source(const BodyModel& model, const Problem& problem, const Refit& beside, const Refit& without,
+                const RefitOptions& options, MissingSource& source) {
     const SourceTerm located = source.likeliest();
     const std::string name = effect_of(located);
     if (name.empty()) return;
     const auto effect = find_effect(name);
-    Explanation explanation = without.explanation;
+    Explanation explanation = beside.explanation;
     explanation.effects.push_back(effect);
     explanation.values.push_back(effect->values(effect->numbers(model, problem), record_of(located, model.size())));
     std::optional<Refit> fit;
     try {
-        fit = refit(model, problem, explanation, options, &without);
+        fit = refit(model, problem, explanation, options, &beside);
     } catch (const SolverFailure&) {  // to first order it is too strong for the body
         return;
     }
@@ -133,15 +173,16 @@ void fit_source(const BodyModel& model, const Problem& problem, const Refit& wit
     source.terms = {std::move(term)};
 }
 
-std::optional<Residual> find_residual(const BodyModel& model, const Diagnosis& diagnosis, int threads) {
+std::optional<Residual> find_residual(const BodyModel& model, const Diagnosis& diagnosis, const RefitOptions& options) {
     const auto can_be_shown = [&](const SourceTerm& term) {
         const std::string effect = effect_of(term);
         const bool is_sensible = effect != "local-springs" || term.mean[0] > 0;
         return !effect.empty() && is_sensible &&
                std::ranges::find(diagnosis.explanation, effect) == diagnosis.explanation.end();
     };
-    const std::optional<MissingSource> source =
-        locate_missing(model, diagnosis.problem, diagnosis.best(), threads, can_be_shown);
+    const std::optional<MissingSource> source = locate_missing(
+        model, diagnosis.problem, beside_constant_sources(model, diagnosis.problem, diagnosis.best(), options),
+        options.threads, can_be_shown);
     if (!source || !(source->log_bayes_factor() > 0)) return std::nullopt;
     return Residual{record_of(source->likeliest(), model.size()), source->log_bayes_factor()};
 }

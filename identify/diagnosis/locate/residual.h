@@ -15,12 +15,18 @@ struct Residual {
 
 /// Absent: nothing is left that a source explains which acts alike in all states, or holds the body by springs. Those
 /// that go with a load or with the time have no cause that a model knows of; faults of the readings are none of a body.
-std::optional<Residual> find_residual(const BodyModel& model, const Diagnosis& diagnosis, int threads);
+std::optional<Residual> find_residual(const BodyModel& model, const Diagnosis& diagnosis, const RefitOptions& options);
+
+/// The fit that sources are located beside. A constant one bends a fit until the stiffness does what the source does;
+/// so where most of what a fit leaves is alike in all states, it is fitted anew to how the states differ. Its `error`
+/// is that of the problem itself.
+Refit beside_constant_sources(const BodyModel& model, const Problem& problem, const Refit& fit,
+                              const RefitOptions& options);
 
 /// A source that was located beside a fit, fitted to the readings: place, size and strength at the equilibria that they
 /// come to, where first order tells of a strong one in kind alone. It stays as it is where models do not show such a
-/// source, and where the fit explains no more than the one without it.
-void fit_source(const BodyModel& model, const Problem& problem, const Refit& without, const RefitOptions& options,
-                MissingSource& source);
+/// source, and where the fit explains no more than the one `without` it.
+void fit_source(const BodyModel& model, const Problem& problem, const Refit& beside, const Refit& without,
+                const RefitOptions& options, MissingSource& source);
 
 }  // namespace palpate::identify

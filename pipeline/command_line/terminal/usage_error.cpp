@@ -29,8 +29,10 @@ std::string in_our_words(const std::string& words) {
     if (std::regex_match(words, found, not_one_of))
         return fmt::format("{}: '{}' is none of {}", found[1].str(), found[2].str(), found[3].str());
     if (std::regex_match(words, found, too_many)) return fmt::format("'{}' is too many", found[1].str());
-    if (std::regex_match(words, found, one_of_group))
-        return fmt::format("one of {} is needed", std::regex_replace(found[1].str(), std::regex(","), " or "));
+    if (std::regex_match(words, found, one_of_group)) {
+        const std::string but_last = std::regex_replace(found[1].str(), std::regex(",(?=[^,]*$)"), " or ");
+        return fmt::format("one of {} is needed", std::regex_replace(but_last, std::regex(","), ", "));
+    }
     static const std::regex required(R"((.*) is required)");
     if (std::regex_match(words, found, required)) return fmt::format("{} is needed", found[1].str());
     return words;

@@ -207,6 +207,35 @@ TEST_F(Climbed, WhatWasNamedAndIsNotAddedIsStillMissing) {
     EXPECT_EQ(ladder.verdict, Verdict::missing_effect);
 }
 
+TEST_F(Climbed, AResidualIsAddedWhereItMakesForecastsBetter) {
+    const Eigen::VectorXd pull = numbers({32, 5, 5, std::log(4), 0, 0.006, -0.008});
+    options_.residual = "local-force";
+    options_.start = {{"local-force", {{"cx", 28, "mm"}, {"fz", -0.01, "N"}}}};
+    const Ladder ladder = build_ladder(twin({{"local-force", pull}}), {"local-force"});
+    ASSERT_EQ(ladder.steps.size(), 2u);
+    EXPECT_LT(ladder.steps[1].reference->held_out_rms_mm, 0.2 * ladder.steps[0].reference->held_out_rms_mm);
+    EXPECT_LT(ladder.steps[1].skeleton.held_out_rms_mm, 0.5 * ladder.steps[0].skeleton.held_out_rms_mm);
+    EXPECT_EQ(ladder.identified.model.effects.front().name, "local-force");
+}
+
+TEST_F(Climbed, AResidualIsNotAddedWhereItForecastsNothing) {
+    options_.residual = "local-force";
+    options_.only_better = true;
+    const Ladder ladder = build_ladder(twin({}), {"local-force"});
+    EXPECT_EQ(ladder.steps.size(), 1u);
+    ASSERT_EQ(ladder.not_added.size(), 1u);
+    EXPECT_TRUE(says(ladder.not_added[0].why, {"held-out probes"}));
+}
+
+TEST_F(Climbed, AResidualIsNotAddedWhereNoProbeCanBeHeldOut) {
+    options_.residual = "local-force";
+    options_.only_better = true;
+    const Ladder ladder = build_ladder(twin({}, 2), {"local-force"});
+    ASSERT_TRUE(ladder.held_out_probes.empty());
+    ASSERT_EQ(ladder.not_added.size(), 1u);
+    EXPECT_TRUE(says(ladder.not_added[0].why, {"too few probes"}));
+}
+
 TEST_F(Climbed, AnUnknownEffectIsRefused) { EXPECT_THROW(build_ladder(twin({}), {"gravty"}), InvalidInput); }
 
 TEST_F(Climbed, AnEffectThatCannotShowIsRefused) {

@@ -105,7 +105,7 @@ TEST(CommandLine, WrongUsageIsToldLikeAnyOtherError) {
     EXPECT_THAT(complaint("check a b"), StartsWith("error: palpate check: 'b' is too many"));
     EXPECT_THAT(complaint("check a --threads 0"), HasSubstr("--threads: '0' is no number from 1 to 1024"));
     EXPECT_THAT(complaint("compare a b --tolerance -1"), HasSubstr("--tolerance: '-1' is no number of 0 or more"));
-    EXPECT_THAT(complaint("improve a b"), HasSubstr("one of --add or --auto is needed"));
+    EXPECT_THAT(complaint("improve a b"), HasSubstr("one of --add, --auto or --residual is needed"));
     EXPECT_THAT(complaint("diagnose a b --body spheres"), HasSubstr("'spheres' is none of"));
     EXPECT_THAT(complaint("check a --jsn"), HasSubstr("did you mean '--json'?"));
     EXPECT_THAT(complaint("simulate m --probes p --add gravity:gz"), HasSubstr("error: palpate simulate: "));

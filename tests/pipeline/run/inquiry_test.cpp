@@ -1,4 +1,4 @@
-// Compare, name the missing effect, add it, watch the error fall: on a small beam whose weight is not specified.
+// Compare, name the missing effect, add it, watch the error fall: on a small beam wmagnet weight is not specified.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -132,7 +132,7 @@ TEST_F(HeavyBeam, DiagnosisAndLadderHaveTheKeysOfTheContract) {
     }
 }
 
-TEST_F(HeavyBeam, RepeatsNothingWhoseInputsAreUnchanged) {
+TEST_F(HeavyBeam, RepeatsNothingWmagnetInputsAreUnchanged) {
     const json before = read(path("run/run.json"))["stages"];
     commands::run({.input = path("set"), .output = path("run"), .overrides = coarse()}, {});
     EXPECT_EQ(before, read(path("run/run.json"))["stages"]);
@@ -218,6 +218,47 @@ TEST_F(HeavyBeam, ImprovesNothingWhereNothingIsMissing) {
                             .json;
     EXPECT_EQ(ladder["steps"].size(), 1U);
     EXPECT_EQ(ladder["verdict"], "adequate");
+}
+
+/// What no effect of the catalogue explains becomes part of both models, and a file to go on from.
+TEST_F(HeavyBeam, TakesUpWhatIsLeftAndDraftsIt) {
+    identify::MeasurementSet set = heavy_beam(false);
+    identify::ModelSetting setting{.law = 2, .theta = Eigen::Vector2d(std::log(1.0), std::log(0.1)), .effects = {}};
+    setting.effects = skeleton::make_physics({"local-force",
+                                              {{"cx", 40, "mm"},
+                                               {"cy", 10, "mm"},
+                                               {"cz", 10, "mm"},
+                                               {"radius", 8, "mm"},
+                                               {"fx", 0, "N"},
+                                               {"fy", 1.2, "N"},
+                                               {"fz", -1.6, "N"}}});
+    set.position_noise = noise;
+    read_beam(set, setting, Vec3::Zero(), 12);
+    identify::write_measurement_set(path("pulled"), set);
+    const commands::Outcome outcome = commands::improve({.model = path("run/skeleton/model.json"),
+                                                         .set = path("pulled"),
+                                                         .output = path("pulled-improved"),
+                                                         .residual = true,
+                                                         .draft = path("magnet.cpp"),
+                                                         .overrides = coarse()},
+                                                        {});
+    const json& steps = outcome.json["steps"];
+    ASSERT_EQ(steps.size(), 2U) << outcome.text;
+    EXPECT_EQ(steps[1]["effects"], json({"local-force"}));
+    EXPECT_LT(steps[1]["reference"]["held_out_rms_mm"].get<double>(),
+              0.5 * steps[0]["reference"]["held_out_rms_mm"].get<double>());
+    EXPECT_EQ(outcome.json["draft"], path("magnet.cpp").string());
+    EXPECT_THAT(mesh::read_text(path("magnet.cpp")), HasSubstr("return {\"magnet\","));
+    EXPECT_THAT(outcome.text, HasSubstr("Draft of an effect: "));
+}
+
+TEST(Inquiry, RefusesADraftThatCannotBeNamedSoBeforeAnythingIsRead) {
+    EXPECT_TRUE(says(message_of<InvalidInput>([] {
+                         commands::improve(
+                             {.model = "m.json", .set = "set", .output = {}, .residual = true, .draft = "gravity.cpp"},
+                             {});
+                     }),
+                     {"gravity", "another name"}));
 }
 
 TEST(Inquiry, TellsExpectationsThatAreNotMet) {

@@ -29,7 +29,7 @@ protected:
 };
 
 TEST_F(ResidualOfABar, IsAForceThatPullsAsTheHiddenOneDoes) {
-    const auto residual = find_residual(*model_, left_by(truth("local-force", force_)), 1);
+    const auto residual = find_residual(*model_, left_by(truth("local-force", force_)), {});
     ASSERT_TRUE(residual);
     EXPECT_EQ(residual->effect.name, "local-force");
     EXPECT_GT(residual->log_bayes_factor, DiagnoseOptions{}.least_evidence());
@@ -40,7 +40,7 @@ TEST_F(ResidualOfABar, IsAForceThatPullsAsTheHiddenOneDoes) {
 TEST_F(ResidualOfABar, FittedFromThereIsWhereTheHiddenOneIs) {
     const Explanation hidden = truth("local-force", force_);
     const Diagnosis without = left_by(hidden);
-    const auto residual = find_residual(*model_, without, 1);
+    const auto residual = find_residual(*model_, without, {});
     ASSERT_TRUE(residual);
     const Refit& fit = left_by(hidden, {residual->effect}).baseline;
     EXPECT_GT(without.baseline.whitened_rms, 5);
@@ -51,9 +51,27 @@ TEST_F(ResidualOfABar, FittedFromThereIsWhereTheHiddenOneIs) {
     EXPECT_LT((vector_at(found, 4) - pull_).tail<2>().norm(), 0.15 * pull_.norm());
 }
 
+TEST_F(ResidualOfABar, FarStrongerThanTheProbesIsFound) {
+    // The probes move the bar by a millimetre, the force by ten: the fit without it is as stiff as its prior lets it
+    // be.
+    Eigen::VectorXd strong = force_;
+    strong.tail<3>() *= 8;
+    const Diagnosis without = left_by(truth("local-force", strong));
+    const auto residual = find_residual(*model_, without, {});
+    ASSERT_TRUE(residual);
+    EXPECT_EQ(residual->effect.name, "local-force");
+    const Refit beside = beside_constant_sources(*model_, without.problem, without.baseline, {});
+    const auto off = [&](const Explanation& e) {
+        return std::abs(std::log(model_->young(e.setting()) / model_->young(truth().setting())));
+    };
+    EXPECT_LT(off(beside.explanation), 0.7 * off(without.baseline.explanation));
+    const Refit& fit = left_by(truth("local-force", strong), {residual->effect}).baseline;
+    EXPECT_LT(fit.whitened_rms, 1.1);
+}
+
 TEST_F(ResidualOfABar, IsSpringsWhereTheSkinIsHeld) {
     const Eigen::VectorXd held = numbers({38, 5, 9, std::log(3), std::log(0.02)});
-    const auto residual = find_residual(*model_, left_by(truth("local-springs", held)), 1);
+    const auto residual = find_residual(*model_, left_by(truth("local-springs", held)), {});
     ASSERT_TRUE(residual);
     EXPECT_EQ(residual->effect.name, "local-springs");
     EXPECT_LT((vector_at(residual->effect, 0) - held.head<3>()).norm(), 0.3 * model_->size());
@@ -61,7 +79,7 @@ TEST_F(ResidualOfABar, IsSpringsWhereTheSkinIsHeld) {
 }
 
 TEST_F(ResidualOfABar, IsNoneWhereNothingIsLeft) {
-    const auto residual = find_residual(*model_, left_by(truth()), 1);
+    const auto residual = find_residual(*model_, left_by(truth()), {});
     // Where nothing is missing a Bayes factor is 1 on average.
     EXPECT_LT(residual ? residual->log_bayes_factor : 0, DiagnoseOptions{}.least_evidence());
 }
