@@ -99,22 +99,26 @@ Vec3 centroid_of(SourceTerm& term, const Points& points, const Eigen::VectorXd& 
     return centroid;
 }
 
-/// What is left alike in all states: of each coordinate that is read the mean over its states, of each row (N).
-Eigen::VectorXd common_to_states(const Problem& problem, const Eigen::VectorXd& left) {
-    std::map<int, std::pair<double, int>> sums;
-    for (Eigen::Index n = 0; n < problem.rows(); ++n) {
-        if (problem.is_difference(n)) continue;
-        auto& [sum, count] = sums[problem.coordinate[n]];
-        sum += left[n];
-        ++count;
-    }
-    Eigen::VectorXd common = Eigen::VectorXd::Zero(problem.rows());
-    for (Eigen::Index n = 0; n < problem.rows(); ++n) {
-        if (problem.is_difference(n)) continue;
-        const auto& [sum, count] = sums.at(problem.coordinate[n]);
-        common[n] = sum / count;
-    }
+/// What is alike in all states: of each coordinate that is read the mean over its states, of each row (N x c).
+Eigen::MatrixXd common_to_states(const Problem& problem, const Eigen::MatrixXd& of_rows) {
+    std::map<int, std::vector<Eigen::Index>> rows_of;
+    for (Eigen::Index n = 0; n < problem.rows(); ++n)
+        if (!problem.is_difference(n)) rows_of[problem.coordinate[n]].push_back(n);
+    Eigen::MatrixXd common = Eigen::MatrixXd::Zero(of_rows.rows(), of_rows.cols());
+    for (const auto& [coordinate, rows] : rows_of)
+        common(rows, Eigen::all).rowwise() = of_rows(rows, Eigen::all).colwise().mean();
     return common;
+}
+
+/// What is left alike in all states once a fit's numbers are those that tell the states apart best, to first order [as
+/// the readings] (N).
+Eigen::VectorXd left_in_common(const Problem& problem, const Refit& fit) {
+    const Eigen::MatrixXd columns = fit.columns - common_to_states(problem, fit.columns);
+    const Eigen::VectorXd error = fit.error - common_to_states(problem, fit.error);
+    Eigen::MatrixXd H = columns.transpose() * columns;
+    H.diagonal() += fit.prior_sd.cwiseAbs2().cwiseInverse();
+    const Eigen::VectorXd step = H.llt().solve(columns.transpose() * error);
+    return common_to_states(problem, (fit.error - fit.columns * step).cwiseProduct(problem.sigma));
 }
 
 }  // namespace
@@ -126,7 +130,7 @@ Refit beside_constant_sources(const BodyModel& model, const Problem& problem, co
     Eigen::VectorXd taken = Eigen::VectorXd::Zero(problem.rows());
     Refit at = fit;
     for (int round = 0; round < rounds; ++round) {
-        const Eigen::VectorXd common = common_to_states(problem, at.error.cwiseProduct(problem.sigma));
+        const Eigen::VectorXd common = left_in_common(problem, at);
         if (common.cwiseQuotient(problem.sigma).squaredNorm() < 0.5 * at.error.squaredNorm()) break;
         apart.measured -= common;
         taken += common;
