@@ -20,7 +20,7 @@ const char* effect_of(const SourceTerm& term) {
         case SourceForm::traction:
             return is_constant ? "local-force" : "";
         case SourceForm::normal:
-            if (term.law == SourceLaw::spring) return "local-springs";
+            if (term.law == SourceLaw::spring) return term.mean[0] > 0 ? "local-springs" : "";
             return is_constant ? "local-force" : "";
         case SourceForm::softening:
             return is_constant && std::isfinite(term.radius) ? "inclusion" : "";
@@ -79,7 +79,7 @@ SourceTerm term_of(const SourceTerm& located, const Refit& fit) {
         term.mean = values.tail(1).array().exp();
         by_value = term.mean.asDiagonal();
     } else {
-        term.form = SourceForm::force;
+        term.form = located.form == SourceForm::force ? SourceForm::force : SourceForm::traction;
         term.mean = values.tail<3>();
         by_value = Mat3::Identity();
     }
@@ -161,12 +161,12 @@ void fit_source(const BodyModel& model, const Problem& problem, const Refit& bes
     }
     if (!(fit->log_evidence > without.log_evidence)) return;
     SourceTerm term = term_of(located, *fit);
-    const bool on_skin = term.form == SourceForm::normal;
+    const bool on_skin = term.form == SourceForm::normal || term.form == SourceForm::traction;
     source.at = on_skin ? centroid_of(term, model.skin(), model.skin_areas() / model.skin_areas().sum())
                         : centroid_of(term, model.material_points(), model.material_shares());
     const Eigen::Index place = fit->explanation.all().size() - fit->explanation.values.back().size();
     source.spread = std::sqrt(term.extent * term.extent + block_of(fit->covariance, place, 3).trace());
-    if (term.form == SourceForm::force) {
+    if (effect->name() == "local-force") {
         const double size = term.mean.norm();
         source.direction = term.mean / size;
         const Mat3 across = Mat3::Identity() - source.direction * source.direction.transpose();
@@ -180,14 +180,13 @@ void fit_source(const BodyModel& model, const Problem& problem, const Refit& bes
 std::optional<Residual> find_residual(const BodyModel& model, const Diagnosis& diagnosis, const RefitOptions& options) {
     const auto can_be_shown = [&](const SourceTerm& term) {
         const std::string effect = effect_of(term);
-        const bool is_sensible = effect != "local-springs" || term.mean[0] > 0;
-        return !effect.empty() && is_sensible &&
-               std::ranges::find(diagnosis.explanation, effect) == diagnosis.explanation.end();
+        return !effect.empty() && std::ranges::find(diagnosis.explanation, effect) == diagnosis.explanation.end();
     };
-    const std::optional<MissingSource> source = locate_missing(
-        model, diagnosis.problem, beside_constant_sources(model, diagnosis.problem, diagnosis.best(), options),
-        options.threads, can_be_shown);
+    const Problem& problem = diagnosis.problem;
+    const Refit beside = beside_constant_sources(model, problem, diagnosis.best(), options);
+    std::optional<MissingSource> source = locate_missing(model, problem, beside, options.threads, can_be_shown);
     if (!source || !(source->log_bayes_factor() > 0)) return std::nullopt;
+    fit_source(model, problem, beside, diagnosis.best(), options, *source);
     return Residual{record_of(source->likeliest(), model.size()), source->log_bayes_factor()};
 }
 

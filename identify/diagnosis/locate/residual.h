@@ -7,10 +7,10 @@
 namespace palpate::identify {
 
 /// What an explanation, or the baseline where there is none, leaves of the readings, as an effect that models show:
-/// where a fit may begin with it. Its numbers are of first order about the model without it.
+/// where a fit may begin with it.
 struct Residual {
     skeleton::EffectRecord effect;
-    double log_bayes_factor = 0;  // of all such sources, against nothing
+    double log_bayes_factor = 0;  // of all such sources, against nothing, to first order
 };
 
 /// Absent: nothing is left that a source explains which acts alike in all states, or holds the body by springs. Those
