@@ -147,7 +147,7 @@ private:
         const double most = is_residual ? 1 : chance;
         const auto worse = [&](const char* what, const StepError& then, const StepError& since,
                                const std::string& besides) {
-            if (since.held_out_rms_mm < most * then.held_out_rms_mm) return false;
+            if (!(since.held_out_rms_mm >= most * then.held_out_rms_mm)) return false;
             result_.not_added.push_back(
                 {name, fmt::format("with it the {} is off by {:.3g} mm on held-out probes, {:.3g} mm without it{}",
                                    what, since.held_out_rms_mm, then.held_out_rms_mm, besides)});

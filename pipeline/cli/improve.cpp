@@ -196,8 +196,8 @@ void Subcommands::add_improve(CLI::App& app) {
     what->add_flag("--auto", improve.automatic, "What a diagnosis names");
     what->add_flag(
         "--residual", improve.residual,
-        "What a diagnosis names and, in what is left then, a force, springs or a change of stiffness in one\n"
-        "place, whatever its cause: where it makes the forecast of held-out probes better");
+        "What a diagnosis names or, where no effect explains the measurements, a force, springs or another stiffness\n"
+        "in one place, whatever its cause, if the forecast of held-out probes gains by it");
     what->require_option(1);
     sub->add_option(
            "--draft", improve.draft,

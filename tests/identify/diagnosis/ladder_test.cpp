@@ -236,6 +236,13 @@ TEST_F(Climbed, AResidualIsNotAddedWhereNoProbeCanBeHeldOut) {
     EXPECT_TRUE(says(ladder.not_added[0].why, {"too few probes"}));
 }
 
+TEST_F(Climbed, WhatHasANameIsAddedWhereNoProbeCanBeHeldOut) {
+    options_.only_better = true;
+    const Ladder ladder = build_ladder(twin({{"gravity", half_g_}}, 2), {"gravity"});
+    ASSERT_TRUE(ladder.held_out_probes.empty());
+    EXPECT_THAT(names_of(ladder.steps.back().effects), ElementsAre("gravity"));
+}
+
 TEST_F(Climbed, AnUnknownEffectIsRefused) { EXPECT_THROW(build_ladder(twin({}), {"gravty"}), InvalidInput); }
 
 TEST_F(Climbed, AnEffectThatCannotShowIsRefused) {
