@@ -85,13 +85,14 @@ py::tuple diagnose(const skeleton::Model& model, const TabledSet& set, const fs:
 }
 
 py::tuple improve(const skeleton::Model& model, const TabledSet& set, const fs::path& output,
-                  const std::vector<std::string>& add, bool automatic, const std::string& body,
+                  const std::vector<std::string>& add, bool automatic, bool residual, const std::string& body,
                   const Overrides& settings, const Call& call) {
     const commands::ImproveCommandOptions options{.model = {},
                                                   .set = {},
                                                   .output = output,
                                                   .add = add,
                                                   .automatic = automatic,
+                                                  .residual = residual,
                                                   .body = body,
                                                   .overrides = overrides_of(settings, call)};
     auto improved = at_work(call, [&] {

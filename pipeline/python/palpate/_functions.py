@@ -208,7 +208,9 @@ def improve(
 ):
     """Adds effects to a model, fits anew, and tells the error before and after, on fitted and on held-out probes.
 
-    `add`: effects, 'gravity' or 'gravity:gz=-9810' (where the fit begins), a rung each; 'auto': what a diagnosis names.
+    `add`: effects, 'gravity' or 'gravity:gz=-9810' (where the fit begins), a rung each; 'auto': what a diagnosis names;
+    'residual': the same or, where no effect explains the measurements, a force, springs or another stiffness in one
+    place, if the forecast of held-out probes gains by it.
     Settings: those of identify() and diagnose().
 
     `threads`: all cores where None; they change no number. `progress`: a function of (what, fraction in [0, 1]), or True
@@ -218,14 +220,14 @@ def improve(
     pairs = settings_of(
         ("Identification",), settings, ("volume.edge_length", "diagnose.gravity", "diagnose.false_claims")
     )
-    automatic = add == "auto"
-    names = [] if automatic else words_of(add, "add")
-    if not automatic and not names:
-        raise InvalidInput("add: names no effect; give effects as 'gravity' or 'gravity:gz=-9810', or 'auto'")
+    automatic, residual = add == "auto", add == "residual"
+    names = [] if automatic or residual else words_of(add, "add")
+    if not (automatic or residual or names):
+        raise InvalidInput("add: names no effect; give effects as 'gravity' or 'gravity:gz=-9810', 'auto' or 'residual'")
     _require_body(body, ("", "reference", "skeleton"))
     with calling(threads, seed, force, progress) as call:
         text, result, model, identified, notes = _core.improve(
-            _model(model), _set(set, call), output or "", names, automatic, body, pairs, call
+            _model(model), _set(set, call), output or "", names, automatic, residual, body, pairs, call
         )
     return Ladder(text, result, model, identified, notes)
 

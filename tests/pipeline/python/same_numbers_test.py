@@ -60,6 +60,14 @@ class SameNumbers(unittest.TestCase):
         )
         self.assertEqual([effect["name"] for effect in ladder.model.effects], ["gravity"])
 
+    def test_improve_by_what_is_left(self):
+        ladder = palpate.improve(
+            model(), measured(), "residual", self.folder / "taken_up", body="skeleton", particles=40, threads=1
+        )
+        theirs = self.folder / "taken_up_there"
+        program("improve", model_file(), set_folder(), "--residual", "--body", "skeleton", "-o", theirs, *SHORT)
+        self.assertEqual(ladder.json, json.loads((theirs / "ladder.json").read_text()))
+
     def test_simulate(self):
         program("simulate", model_file(), "--probes", set_folder() / "probes.csv", "-o", self.folder / "played")
         with open(self.folder / "played" / "positions.csv") as file:
