@@ -1,10 +1,6 @@
 #include "fem/effects/local/locality.h"
 
-#include <cmath>
-
 namespace palpate::fem {
-
-double Locality::weight(const Vec3& X) const { return std::exp(-0.5 * (X - centre).squaredNorm() / (radius * radius)); }
 
 Eigen::VectorXd Locality::shares(const Points& rest, const Eigen::VectorXd& even) const {
     // By the distance beyond that of the nearest point, so that some weight is left however far it is.

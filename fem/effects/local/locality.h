@@ -9,7 +9,6 @@ struct Locality {
     Vec3 centre = Vec3::Zero();  // [mm]
     double radius = 1;           // 1 sd of the weight [mm], > 0
 
-    double weight(const Vec3& X) const;
     /// Shares of points in that part (n), which add up to 1: their even weights times g. Where none of them is near,
     /// the nearest one has it all.
     Eigen::VectorXd shares(const Points& rest, const Eigen::VectorXd& even) const;

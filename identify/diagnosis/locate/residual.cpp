@@ -56,16 +56,11 @@ skeleton::EffectRecord record_of(const SourceTerm& term, double size) {
     return effect;
 }
 
-/// Rows and columns of a symmetric matrix.
-Eigen::MatrixXd block_of(const Eigen::MatrixXd& all, Eigen::Index first, Eigen::Index count) {
-    return all.block(first, first, count, count);
-}
-
 /// The term of a source whose last effect is a fitted one: its place, and its numbers in the source's own form.
 SourceTerm term_of(const SourceTerm& located, const Refit& fit) {
     const Eigen::VectorXd& values = fit.explanation.values.back();
     const Eigen::Index count = values.size(), first = fit.explanation.all().size() - count;
-    const Eigen::MatrixXd covariance = block_of(fit.covariance, first, count);
+    const Eigen::MatrixXd covariance = fit.covariance.block(first, first, count, count);
     SourceTerm term = located;
     term.centre = values.head<3>();
     term.radius = std::exp(values[3]);
@@ -165,7 +160,7 @@ void fit_source(const BodyModel& model, const Problem& problem, const Refit& bes
     source.at = on_skin ? centroid_of(term, model.skin(), model.skin_areas() / model.skin_areas().sum())
                         : centroid_of(term, model.material_points(), model.material_shares());
     const Eigen::Index place = fit->explanation.all().size() - fit->explanation.values.back().size();
-    source.spread = std::sqrt(term.extent * term.extent + block_of(fit->covariance, place, 3).trace());
+    source.spread = std::sqrt(term.extent * term.extent + fit->covariance.diagonal().segment<3>(place).sum());
     if (effect->name() == "local-force") {
         const double size = term.mean.norm();
         source.direction = term.mean / size;

@@ -3,17 +3,15 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "identify/diagnosis/fit/explanation.h"
+#include "identify/effects/centre_numbers.h"
 #include "identify/effects/effect.h"
 #include "mesh/geometry/sampling.h"
 
 namespace palpate::identify {
 namespace {
-
-constexpr double flat = 0.01;  // of the largest extent: no place is known better before, in a sheet neither
 
 /// Pieces of the body away from its supports; all of them where it is short.
 std::vector<Vec3> free_pieces(const BodyModel& model) {
@@ -57,18 +55,7 @@ public:
     bool is_like_mesh_error() const override { return true; }
 
     std::vector<EffectNumber> numbers(const BodyModel& model, const Problem&) const override {
-        const Eigen::RowVector3d low = model.pieces().colwise().minCoeff(), high = model.pieces().colwise().maxCoeff();
-        const Eigen::RowVector3d centre = 0.5 * (low + high), extent = high - low;
-        const Eigen::RowVector3d sd = extent.cwiseMax(flat * extent.maxCoeff()) / 3.5;
-        std::vector<EffectNumber> result;
-        result.reserve(5);
-        for (int a = 0; a < 3; ++a) {
-            result.push_back({.name = std::array{"cx", "cy", "cz"}[a],
-                              .unit = "mm",
-                              .start = centre[a],
-                              .prior_mean = centre[a],
-                              .prior_sd = sd[a]});
-        }
+        std::vector<EffectNumber> result = centre_numbers(model);
         const double radius = std::log(0.12 * model.size());
         result.push_back({.name = "radius",
                           .unit = "mm",

@@ -5,6 +5,7 @@
 #include "fem/effects/local/local_force.h"
 #include "fem/effects/local/local_springs.h"
 #include "identify/diagnosis/fit/explanation.h"
+#include "identify/effects/centre_numbers.h"
 #include "identify/effects/effect.h"
 #include "identify/effects/vector_words.h"
 
@@ -15,18 +16,7 @@ namespace {
 constexpr Eigen::Index place_numbers = 4;
 
 std::vector<EffectNumber> numbers_of_place(const BodyModel& model) {
-    constexpr double flat = 0.01;  // of the largest extent: no place is known better before, in a sheet neither
-    const Eigen::RowVector3d low = model.pieces().colwise().minCoeff(), high = model.pieces().colwise().maxCoeff();
-    const Eigen::RowVector3d centre = 0.5 * (low + high), extent = high - low;
-    const Eigen::RowVector3d sd = extent.cwiseMax(flat * extent.maxCoeff()) / 3.5;
-    std::vector<EffectNumber> result;
-    result.reserve(place_numbers);
-    int axis = 0;
-    for (const char* name : {"cx", "cy", "cz"}) {
-        result.push_back(
-            {.name = name, .unit = "mm", .start = centre[axis], .prior_mean = centre[axis], .prior_sd = sd[axis]});
-        ++axis;
-    }
+    std::vector<EffectNumber> result = centre_numbers(model);
     // From a twentieth of the body to all of it.
     const double radius = std::log(0.2 * model.size());
     result.push_back(

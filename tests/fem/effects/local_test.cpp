@@ -22,7 +22,6 @@ TEST(Locality, SharesAddUpAndFallOffAsAGaussianDoes) {
     const Eigen::VectorXd shares = where.shares(line(9), even);
     EXPECT_NEAR(shares.sum(), 1, 1e-15);
     EXPECT_NEAR((shares[4] / even[4]) / (shares[2] / even[2]), std::exp(-0.5 * 4 / 2.25), 1e-14);
-    EXPECT_NEAR(where.weight(Vec3(2, 1.5, 0)), std::exp(-0.5), 1e-15);
 }
 
 TEST(Locality, FarFromAllPointsTheNearestHasItAll) {
