@@ -141,7 +141,9 @@ private:
         constexpr double chance = 1.1;
         const bool is_residual = name == options_.residual;
         if (is_residual && folds_.empty()) {
-            result_.not_added.push_back({name, "there are too few probes to see whether others are forecast better"});
+            result_.not_added.push_back({name,
+                                         "there are too few probes to see whether others are forecast better; load the "
+                                         "body in three probes or more"});
             return true;
         }
         const double most = is_residual ? 1 : chance;
