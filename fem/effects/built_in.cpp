@@ -1,5 +1,6 @@
 #include "fem/effects/built_in.h"
 
+#include "fem/effects/local/known_locality.h"
 #include "fem/effects/local/local_force.h"
 #include "fem/effects/local/local_springs.h"
 #include "fem/effects/material/anisotropy.h"
@@ -22,9 +23,18 @@ KnownEffect known_pressure() {
             }};
 }
 
+/// Growth::Part.
+KnownEffect known_local_swelling() {
+    std::vector<KnownParameter> parameters = locality_parameters();
+    parameters.push_back({"growth", "1", Range::above_minus_one});
+    return {"local-swelling", std::move(parameters), [](const EffectNumbers& numbers) -> Effects {
+                return {.growth = {.parts = {{locality(numbers), numbers["growth"]}}}};
+            }};
+}
+
 KnownEffect known_swelling() {
     return {"swelling", {{"growth", "1", Range::above_minus_one}}, [](const EffectNumbers& numbers) -> Effects {
-                return {.growth = numbers["growth"]};
+                return {.growth = {.everywhere = numbers["growth"]}};
             }};
 }
 
@@ -73,17 +83,18 @@ KnownEffect fault(std::string name) { return {std::move(name), {}, {}, EffectKin
 
 std::vector<KnownEffect> built_in_effects() {
     return {
-        known_gravity(),       known_compliant_support(),
-        known_stiffening(),    known_anisotropy(),
-        known_inclusion(),     known_contact(),
-        known_pressure(),      known_prestress(),
-        known_swelling(),      known_viscosity(),
-        known_plasticity(),    known_damage(),
-        known_friction(),      known_volume(),
-        known_local_force(),   known_local_springs(),
-        fault("misalignment"), fault("force-gain"),
-        fault("slip"),         fault("actuation-gain"),
-        fault("clock"),        fault("outliers"),
+        known_gravity(),         known_compliant_support(),
+        known_stiffening(),      known_anisotropy(),
+        known_inclusion(),       known_contact(),
+        known_pressure(),        known_prestress(),
+        known_swelling(),        known_viscosity(),
+        known_plasticity(),      known_damage(),
+        known_friction(),        known_volume(),
+        known_local_force(),     known_local_springs(),
+        known_local_swelling(),  fault("misalignment"),
+        fault("force-gain"),     fault("slip"),
+        fault("actuation-gain"), fault("clock"),
+        fault("outliers"),
     };
 }
 

@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "fem/effects/material/growth.h"
 #include "fem/effects/material/material_effect.h"
 #include "fem/effects/point/point_potential.h"
 #include "fem/effects/surface/surface_energy.h"
@@ -49,7 +50,7 @@ struct Effects {
     std::vector<std::shared_ptr<const MaterialEffect>> material{};
     SurfaceEnergies surface{};
     double pressure = 0;  // in closed cavities, above that outside [MPa]
-    double growth = 0;    // of every free length of the material since its rest shape was taken [-], > -1
+    Growth growth{};
     std::optional<Plasticity> plasticity{};
     std::optional<Damage> damage{};
     std::optional<CreepLaw> creep{};  // used where loads are applied in time; ignored by an equilibrium
@@ -61,7 +62,7 @@ struct Effects {
 
     bool empty() const {
         const auto is_nothing = [](const auto& effect) { return effect->is_nothing(); };
-        return points.empty() && material.empty() && surface.empty() && pressure == 0 && growth == 0 && !plasticity &&
+        return points.empty() && material.empty() && surface.empty() && pressure == 0 && growth.none() && !plasticity &&
                !damage && !creep && tools.empty() && cavities.empty() && tendons.empty() &&
                std::all_of(of_model.begin(), of_model.end(), is_nothing);
     }
@@ -73,7 +74,7 @@ struct Effects {
         material.insert(material.end(), more.material.begin(), more.material.end());
         surface.insert(surface.end(), more.surface.begin(), more.surface.end());
         pressure += more.pressure;
-        growth += more.growth;
+        growth.add(more.growth);
         if (more.plasticity) plasticity = more.plasticity;
         if (more.damage) damage = more.damage;
         if (more.creep) creep = more.creep;

@@ -2,11 +2,13 @@
 set(effect_sources
   built_in.cpp
   registry.cpp
+  local/known_locality.cpp
   local/local_force.cpp
   local/local_springs.cpp
   local/locality.cpp
   material/anisotropy.cpp
   material/damage.cpp
+  material/growth.cpp
   material/inclusion.cpp
   material/prestress.cpp
   material/stiffening.cpp

@@ -75,7 +75,7 @@ public:
         decide_verdict(model_, options_, result_);
         if (options_.screen && result_.verdict != Verdict::adequate) {
             tell("where it is", 0.95);
-            result_.missing = where_missing(model_, set_, result_, options_.refit);
+            result_.missing = where_missing(model_, set_, result_, options_);
         }
         note_mesh_error();
         if (options_.refit.magnitude == MagnitudeUse::alternative && result_.best().has_known_magnitude)
@@ -106,7 +106,7 @@ private:
 
     /// The mesh's error as a neighbouring fit tells it.
     bool take_correction_of_neighbour() {
-        if (!options_.near) return false;
+        if (!options_.near || !options_.near->knows_mesh_error) return false;
         result_.problem.correct_for(discretisation_of(*options_.near->problem, result_.problem));
         return result_.problem.discretisation.size() > 0;
     }

@@ -139,7 +139,7 @@ private:
         // What a diagnosis names needs no better forecast, by as much as chance may make one worse; what was located in
         // what is left has nothing else to speak for it.
         constexpr double chance = 1.1;
-        const bool is_residual = name == options_.residual;
+        const bool is_residual = options_.residual && options_.residual->effect.name == name;
         if (is_residual && folds_.empty()) {
             result_.not_added.push_back({name,
                                          "there are too few probes to see whether others are forecast better; load the "
@@ -171,9 +171,16 @@ private:
         options.screen = false;
         for (const std::string& name : effects) options.known.push_back(start_of(name, diagnosis));
         if (!set_readings_aside(effects)) options.without.push_back(effect_of_single_readings()->name());
-        if (diagnosis) {
+        const bool has_residual = options_.residual && options_.residual->fit &&
+                                  std::ranges::find(effects, options_.residual->effect.name) != effects.end();
+        if (diagnosis && has_residual) {
+            // Far from where the diagnosis ended: what it knows of the law and of the mesh's error does not hold.
+            options.law = options_.residual->fit->explanation.law;
+            options.near = NeighbouringFit{&diagnosis->problem, &*options_.residual->fit, false};
+        } else if (diagnosis) {
             options.law = diagnosis->law;
-            options.near = {&diagnosis->problem, effects.empty() ? &diagnosis->baseline : &diagnosis->best()};
+            options.near =
+                NeighbouringFit{&diagnosis->problem, effects.empty() ? &diagnosis->baseline : &diagnosis->best()};
         }
         return diagnose(body_, set, options);
     }
@@ -186,6 +193,7 @@ private:
                 }
             }
         }
+        if (options_.residual && options_.residual->effect.name == name) return options_.residual->effect;
         const auto told = std::ranges::find(options_.start, name, &skeleton::EffectRecord::name);
         return told == options_.start.end() ? skeleton::EffectRecord{name, {}} : *told;
     }
@@ -255,7 +263,7 @@ private:
         options.screen = false;
         options.law = found.law;
         options.known = estimate(found);
-        options.near = {&found.problem, &found.best()};
+        options.near = NeighbouringFit{&found.problem, &found.best()};
         if (found.outliers.readings.empty()) options.without.push_back(effect_of_single_readings()->name());
         return diagnose(body_, part, options);
     }

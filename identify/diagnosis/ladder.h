@@ -3,6 +3,7 @@
 #include "identify/comparison/comparison.h"
 #include "identify/diagnosis/diagnose_options.h"
 #include "identify/diagnosis/diagnosis.h"
+#include "identify/diagnosis/locate/residual.h"
 #include "identify/diagnosis/material_estimate.h"
 #include "identify/inference/identify_result.h"
 #include "identify/inference/problem/identify_options.h"
@@ -52,8 +53,8 @@ struct LadderOptions {
     DiagnoseOptions diagnose;
     /// An effect that makes held-out probes worse, or leaves a state without equilibrium, is not added.
     bool only_better = false;
-    /// One of the effects, by name, that was located in what is left and has to make held-out probes better.
-    std::string residual = {};
+    /// One of the effects that was located in what is left and has to make held-out probes better.
+    std::optional<Residual> residual = {};
     std::vector<skeleton::EffectRecord> start = {};  // numbers of effects to begin with, where no diagnosis has any
 };
 

@@ -34,6 +34,7 @@ std::shared_ptr<const EffectHypothesis> clock_effect();
 std::shared_ptr<const EffectHypothesis> outliers_effect();
 std::shared_ptr<const EffectHypothesis> local_force_effect();
 std::shared_ptr<const EffectHypothesis> local_springs_effect();
+std::shared_ptr<const EffectHypothesis> local_swelling_effect();
 
 namespace {
 
@@ -82,7 +83,8 @@ bool register_effect(skeleton::KnownEffect physics, std::shared_ptr<const Effect
 }
 
 const std::vector<std::shared_ptr<const EffectHypothesis>>& unnamed_sources() {
-    static const std::vector<std::shared_ptr<const EffectHypothesis>> all{local_force_effect(), local_springs_effect()};
+    static const std::vector<std::shared_ptr<const EffectHypothesis>> all{local_force_effect(), local_springs_effect(),
+                                                                          local_swelling_effect()};
     return all;
 }
 

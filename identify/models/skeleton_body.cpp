@@ -12,6 +12,7 @@
 #include "identify/models/tendon_friction.h"
 #include "skeleton/effects/placed_effects.h"
 #include "skeleton/model/attach.h"
+#include "skeleton/model/growth.h"
 #include "skeleton/model/stiffness_order.h"
 #include "skeleton/statics/equilibrium.h"
 #include "skeleton/statics/statics.h"
@@ -113,6 +114,15 @@ struct SkeletonBody::Impl {
         if (has_cavities) result.pressure += action.pressure;
         rig.add(action, young_of(setting), result);
         return result;
+    }
+    /// Points as far out as the material that carries them has grown.
+    std::vector<skeleton::Attachment> grown(std::vector<skeleton::Attachment> points,
+                                            const ModelSetting& setting) const {
+        const fem::Growth& growth = setting.effects.growth;
+        if (growth.none()) return points;
+        const State rest = skeleton::rest_state(model(setting));
+        for (skeleton::Attachment& point : points) point = skeleton::grown(std::move(point), rest, growth);
+        return points;
     }
     /// Of the tendons that rub.
     fem::TendonSliding sliding(const Eigen::VectorXd& q, const ModelSetting& setting,
@@ -347,11 +357,13 @@ Eigen::MatrixXd SkeletonBody::parameter_force(const Eigen::VectorXd& q, const Mo
 }
 
 Points SkeletonBody::observe(const Eigen::VectorXd& q, const ModelSetting& setting) const {
-    return skeleton::observe(impl_->model(setting), impl_->equilibrium_of(q, setting), impl_->markers);
+    return skeleton::observe(impl_->model(setting), impl_->equilibrium_of(q, setting),
+                             impl_->grown(impl_->markers, setting));
 }
 
 Eigen::SparseMatrix<double> SkeletonBody::observation(const Eigen::VectorXd& q, const ModelSetting& setting) const {
-    return skeleton::observation_jacobian(impl_->model(setting), impl_->equilibrium_of(q, setting), impl_->markers);
+    return skeleton::observation_jacobian(impl_->model(setting), impl_->equilibrium_of(q, setting),
+                                          impl_->grown(impl_->markers, setting));
 }
 
 Eigen::VectorXd SkeletonBody::advance(const Eigen::VectorXd& q, const Eigen::VectorXd& step,
@@ -412,12 +424,13 @@ const Points& SkeletonBody::skin() const { return impl_->by_law[0].surface.verti
 const Eigen::VectorXd& SkeletonBody::skin_areas() const { return impl_->skin_areas; }
 
 Points SkeletonBody::skin_positions(const Eigen::VectorXd& q, const ModelSetting& setting) const {
-    return skeleton::observe(impl_->model(setting), impl_->equilibrium_of(q, setting), impl_->by_law[0].skin);
+    return skeleton::observe(impl_->model(setting), impl_->equilibrium_of(q, setting),
+                             impl_->grown(impl_->by_law[0].skin, setting));
 }
 
 Eigen::SparseMatrix<double> SkeletonBody::skin_motion(const Eigen::VectorXd& q, const ModelSetting& setting) const {
     return skeleton::observation_jacobian(impl_->model(setting), impl_->equilibrium_of(q, setting),
-                                          impl_->by_law[0].skin);
+                                          impl_->grown(impl_->by_law[0].skin, setting));
 }
 
 const Points& SkeletonBody::material_points() const { return impl_->spheres; }
@@ -478,7 +491,9 @@ Eigen::VectorXd SkeletonBody::Impl::grip_force(const Eigen::VectorXd& q, const M
 template <class Visit>
 void SkeletonBody::Impl::for_each_point_of(const mesh::ToolMotion& motion, const Eigen::VectorXd& q,
                                            const ModelSetting& setting, const Visit& visit) const {
-    const skeleton::PlacedEffects placed(model(setting), {.tools = {rig.tool(motion, young_of(setting))}});
+    fem::Effects holding;
+    holding.tools = {rig.tool(motion, young_of(setting))};
+    const skeleton::PlacedEffects placed(model(setting), holding);
     placed.for_each_point_of_tool(0, tangent_state(q, setting),
                                   [&](const skeleton::CarriedPoint& at, fem::PointTerms terms) {
                                       Vec3 x = at.x();

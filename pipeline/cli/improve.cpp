@@ -43,24 +43,24 @@ identify::Diagnosis diagnose_aloud(const identify::BodyModel& body, const identi
 }
 
 /// What is left by then, as an effect that both models show.
-std::optional<skeleton::EffectRecord> find_residual_aloud(const identify::BodyModel& body,
-                                                          const identify::Diagnosis& found,
-                                                          const identify::RefitOptions& options) {
+std::optional<identify::Residual> find_residual_aloud(const identify::BodyModel& body, const identify::Diagnosis& found,
+                                                      const identify::DiagnoseOptions& options) {
     if (found.verdict != identify::Verdict::unexplained) {
         Console::notice("What is left is noise: there is no residual to add.");
         return std::nullopt;
     }
-    const std::optional<identify::Residual> residual = identify::find_residual(body, found, options);
+    std::optional<identify::Residual> residual = identify::find_residual(body, found, options);
     if (!residual) {
         Console::notice(
-            "No residual is added: what is left is no constant force, no spring and no change of stiffness in one "
-            "place, which models could show without knowing its cause.");
+            "No residual is added: what is left is no constant force, no spring, no growth and no change of stiffness "
+            "in "
+            "one place, which models could show without knowing its cause.");
         return std::nullopt;
     }
-    Console::notice(fmt::format("What is left, located: {} (ln Bayes factor {:.3g}, to first order)",
+    Console::notice(fmt::format("What is left, located: {} (ln Bayes factor {:.3g})",
                                 identify::find_effect(residual->effect.name)->sentence(residual->effect),
                                 residual->log_bayes_factor));
-    return residual->effect;
+    return residual;
 }
 
 /// Effects with the numbers that a fit is to begin with.
@@ -127,10 +127,8 @@ Improved improve(const ModelAndSet& given, const ImproveCommandOptions& options,
         effects = found->explanation;
     }
     if (options.residual) {
-        if (const auto residual = find_residual_aloud(*body, *found, how.diagnose.refit)) {
-            effects.push_back(how.residual = residual->name);
-            how.start.push_back(*residual);
-        }
+        how.residual = find_residual_aloud(*body, *found, how.diagnose);
+        if (how.residual) effects.push_back(how.residual->effect.name);
     }
     identify::Ladder ladder = identify::build_ladder(given.model, *body, given.set, effects, how,
                                                      found ? &*found : nullptr, Console::progress());
@@ -196,8 +194,8 @@ void Subcommands::add_improve(CLI::App& app) {
     what->add_flag("--auto", improve.automatic, "What a diagnosis names");
     what->add_flag(
         "--residual", improve.residual,
-        "What a diagnosis names or, where no effect explains the measurements, a force, springs or another stiffness\n"
-        "in one place, whatever its cause, if the forecast of held-out probes gains by it");
+        "What a diagnosis names or, where no effect explains the measurements, a force, springs, growth or another\n"
+        "stiffness in one place, whatever its cause, if the forecast of held-out probes gains by it");
     what->require_option(1);
     sub->add_option(
            "--draft", improve.draft,

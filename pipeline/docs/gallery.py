@@ -119,6 +119,7 @@ shown = {
     # which a located source begins near to
     "local-force": Shown("local-force:cx=70,cy=5,cz=5,radius=6,fx=0,fy=0.01,fz=-0.015", add="local-force:cx=60,cy=5,cz=5,radius=10"),
     "local-springs": Shown("local-springs:cx=70,cy=5,cz=5,radius=6,stiffness=0.02", add="local-springs:cx=60,cy=5,cz=5,radius=10"),
+    "local-swelling": Shown("local-swelling:cx=60,cy=5,cz=5,radius=8,growth=0.1", add="local-swelling:cx=50,cy=5,cz=5,radius=10"),
 }
 turn = np.array([[0.94, -0.34, 0.0], [0.12, 0.34, 0.93], [0.32, 0.88, -0.36]])  # rows: right, up, away from the eye
 light = np.array([-0.3, 0.8, -0.5]) / np.linalg.norm([-0.3, 0.8, -0.5])  # in these

@@ -102,15 +102,10 @@ void FullLink::add_hessian(const Strains& k, Mat12& H) const {
     add_curvature(k.cwiseProduct(strains_), H);
 }
 
-FullLink full_link(const Link& link, const State& rest, const State& state) {
-    return {*link.section,
-            link.length,
-            rest.x.row(link.a).transpose(),
-            rest.x.row(link.b).transpose(),
-            state.x.row(link.a).transpose(),
-            state.R[link.a],
-            state.x.row(link.b).transpose(),
-            state.R[link.b]};
+FullLink full_link(const Link& link, const State& rest, const LinkPose& ends) {
+    return {
+        *link.section, link.length, rest.x.row(link.a).transpose(), rest.x.row(link.b).transpose(), ends.x_a, ends.R_a,
+        ends.x_b,      ends.R_b};
 }
 
 LinkTerms full_link_terms(const FullLink& link, bool with_hessian) {

@@ -3,6 +3,7 @@
 #include <optional>
 
 #include "skeleton/links/link_energy.h"
+#include "skeleton/model/link_pose.h"
 #include "skeleton/model/state.h"
 
 namespace palpate::skeleton {
@@ -54,8 +55,8 @@ private:
     Eigen::Matrix<double, 12, 6> gradients_;
 };
 
-/// A link of a model in a state; `rest`: the model's. @pre the link is full.
-FullLink full_link(const Link& link, const State& rest, const State& state);
+/// A link of a model as its ends are; `rest`: the model's state. @pre the link is full.
+FullLink full_link(const Link& link, const State& rest, const LinkPose& ends);
 
 /// Energies of a full link at unit stiffness, and their derivatives.
 LinkTerms full_link_terms(const FullLink& link, bool with_hessian);

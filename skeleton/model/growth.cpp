@@ -2,19 +2,35 @@
 
 namespace palpate::skeleton {
 
-std::vector<Link> grown(std::vector<Link> links, double growth) {
-    for (Link& link : links) link.length *= 1 + growth;
+namespace {
+
+double factor_of(const Link& link, const Model& model, const fem::Growth& growth) {
+    return 1 + growth.between(model.spheres[link.a].center, model.spheres[link.b].center);
+}
+
+}  // namespace
+
+std::vector<Link> grown_links(const Model& model, const fem::Growth& growth) {
+    std::vector<Link> links = model.links;
+    for (Link& link : links) link.length *= factor_of(link, model, growth);
     return links;
 }
 
-State grown(State rest, double growth) {
-    rest.x *= 1 + growth;
-    return rest;
+std::vector<LinkPose> natural_poses(const Model& model, const fem::Growth& growth) {
+    const State rest = rest_state(model);
+    std::vector<LinkPose> poses;
+    poses.reserve(model.links.size());
+    for (const Link& link : model.links) {
+        LinkPose& ends = poses.emplace_back(pose(link, rest));
+        const double factor = factor_of(link, model, growth);
+        if (factor != 1) ends.x_b = ends.x_a + factor * (ends.x_b - ends.x_a);
+    }
+    return poses;
 }
 
-State grown_start(const Model& model, double growth) {
+State grown_start(const Model& model, const fem::Growth& growth) {
     State start = rest_state(model);
-    if (growth == 0) return start;
+    if (growth.everywhere == 0) return start;
     Vec3 middle = Vec3::Zero();
     int held = 0;
     for (const Sphere& sphere : model.spheres) {
@@ -25,13 +41,14 @@ State grown_start(const Model& model, double growth) {
     if (held > 0) middle /= held;
     for (std::size_t i = 0; i < model.spheres.size(); ++i) {
         const Sphere& sphere = model.spheres[i];
-        if (!sphere.held) start.x.row(static_cast<Eigen::Index>(i)) += growth * (sphere.center - middle).transpose();
+        if (!sphere.held)
+            start.x.row(static_cast<Eigen::Index>(i)) += growth.everywhere * (sphere.center - middle).transpose();
     }
     return start;
 }
 
-Attachment grown(Attachment point, const State& rest, double growth) {
-    if (growth == 0) return point;
+Attachment grown(Attachment point, const State& rest, const fem::Growth& growth) {
+    if (growth.none()) return point;
     Vec3 mean = Vec3::Zero();
     for (const SphereInfluence& share : point.shares) mean += share.weight * rest.x.row(share.sphere).transpose();
     // What the point moves by against the spheres' mean as they part, see CarriedPoint.
@@ -40,7 +57,7 @@ Attachment grown(Attachment point, const State& rest, double growth) {
         const Vec3 arm = rest.x.row(share.sphere).transpose() - mean;
         followed += share.follow.leftCols<3>() * arm - share.weight * arm;
     }
-    point.rest += growth * (point.rest - mean - followed);
+    point.rest += growth.at(point.rest) * (point.rest - mean - followed);
     return point;
 }
 

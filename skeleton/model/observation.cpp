@@ -7,7 +7,7 @@ namespace palpate::skeleton {
 
 Points observe(const Model& model, const State& state, const std::vector<Attachment>& points) {
     const State rest = rest_state(model);
-    const double growth = physics_of(model.effects).growth;
+    const fem::Growth growth = physics_of(model.effects).growth;
     Points positions(static_cast<Eigen::Index>(points.size()), 3);
     for (size_t i = 0; i < points.size(); ++i)
         positions.row(static_cast<Eigen::Index>(i)) =
@@ -18,7 +18,7 @@ Points observe(const Model& model, const State& state, const std::vector<Attachm
 Eigen::SparseMatrix<double> observation_jacobian(const Model& model, const State& state,
                                                  const std::vector<Attachment>& points) {
     const State rest = rest_state(model);
-    const double growth = physics_of(model.effects).growth;
+    const fem::Growth growth = physics_of(model.effects).growth;
     std::vector<Eigen::Triplet<double>> entries;
     for (size_t i = 0; i < points.size(); ++i) {
         const CarriedPoint point(grown(points[i], rest, growth), rest, state);

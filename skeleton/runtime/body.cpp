@@ -36,7 +36,7 @@ std::vector<std::string> what_is_not_played(const skeleton::Model& model) {
 
 /// Its skin as far out as the material has grown, to be shown. Contacts and effects act on it as it hangs in the model.
 skeleton::Model with_grown_skin(skeleton::Model model) {
-    const double growth = skeleton::physics_of(model.effects).growth;
+    const fem::Growth growth = skeleton::physics_of(model.effects).growth;
     const skeleton::State rest = skeleton::rest_state(model);
     for (skeleton::Attachment& point : model.skin) point = skeleton::grown(std::move(point), rest, growth);
     return model;

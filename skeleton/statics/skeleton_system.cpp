@@ -68,6 +68,7 @@ SkeletonSystem::SkeletonSystem(const Model& model, const fem::Effects& effects)
     body_.links = model.links;
     release(effects_, body_);
     start_ = grown_start(body_, effects.growth);
+    if (!effects.growth.parts.empty()) growing_ = effects;
 
     for (const Sphere& sphere : body_.spheres) {
         reach_ = std::max(reach_, sphere.center.cwiseAbs().maxCoeff());
@@ -91,6 +92,15 @@ SkeletonSystem::SkeletonSystem(const Model& model, const fem::Effects& effects)
     effect_load_ = std::max(largest_force(effects_.load_at_rest()), effects_.load_of_tools(length_));
     for (const BlockCholesky::Block& block : effects_.curvature(effects_.rest()))
         effect_stiffness_ = std::max(effect_stiffness_, block.diagonal().cwiseAbs().cwiseQuotient(metric_).maxCoeff());
+}
+
+void SkeletonSystem::scale_effects(double share) {
+    if (growing_ && share != effect_share_) {
+        fem::Effects effects = *growing_;
+        for (fem::Growth::Part& part : effects.growth.parts) part.growth *= share;
+        links_ = PlacedLinks(body_, effects);
+    }
+    effect_share_ = share;
 }
 
 // The place of the coupling of two spheres, a new one if need be; -1: one sphere alone, or one is held.
@@ -204,22 +214,23 @@ State SkeletonSystem::advance(const State& state, const Eigen::VectorXd& step, d
     return next;
 }
 
-void SkeletonSystem::assemble(const Eigen::VectorXd& k, const State& state, const Load* load) {
+void SkeletonSystem::assemble(const Eigen::VectorXd& k, const State& state, const Load* load, bool unstrained) {
     assert(k.size() == links_.order().size());
     if (load) prepare(*load);
     if (!matrix_) matrix_ = make_tangent_matrix(static_cast<int>(free_.size()), couplings_);
     matrix_->set_zero();
-    const State& of_links = body_.law == EquilibriumLaw::linear ? links_.natural() : state;
     for (size_t l = 0; l < body_.links.size(); ++l) {
         const Link& link = body_.links[l];
-        const Mat12 H = links_.hessian(l, links_.order().link(k, static_cast<Eigen::Index>(l)), of_links, before_);
+        const LinkPose ends = unstrained ? links_.natural(l) : pose(link, state);
+        const Mat12 H = links_.hessian(l, links_.order().link(k, static_cast<Eigen::Index>(l)), ends, before_);
         const int i = block_of_[link.a], j = block_of_[link.b];
         if (i >= 0) matrix_->add_diagonal(i, H.topLeftCorner<6, 6>());
         if (j >= 0) matrix_->add_diagonal(j, H.bottomRightCorner<6, 6>());
         if (coupling_of_[l] >= 0) matrix_->add_coupling(coupling_of_[l], H.topRightCorner<6, 6>());
     }
     if (!links_.volumes().empty())
-        add_pairs(links_.volumes().pairs(), coupling_of_cell_, links_.volumes().curvature(k, of_links));
+        add_pairs(links_.volumes().pairs(), coupling_of_cell_,
+                  unstrained ? links_.volumes().natural_curvature(k) : links_.volumes().curvature(k, state));
     add_pairs(effects_.pairs(), coupling_of_pair_, effects_.curvature(state, effect_share_));
     if (!load) return;
     for (const auto& [a, b, block] : external_curvature(body_, state, *load)) {

@@ -35,8 +35,9 @@ public:
     const PlacedLinks& links() const { return links_; }
     double length() const { return length_; }  // mean of the links [mm]
 
-    /// How much of the effects is in force, but of those that hold the supports; 1 if not told otherwise.
-    void scale_effects(double share) { effect_share_ = share; }
+    /// How much of the effects is in force, but of those that hold the supports, and how far parts of the material have
+    /// grown; 1 if not told otherwise.
+    void scale_effects(double share);
     /// What the links' fibres had been through (12L); empty, as it is if not told otherwise: nothing.
     void remember(const FibreStates& before);
     const FibreStates& before() const { return before_; }
@@ -60,7 +61,11 @@ public:
     void prepare(const Load& load);
     /// Assembles the tangent; without a load the links' and effects' alone. By the linear law links change as where
     /// they are not strained, whatever the state.
-    void assemble(const Eigen::VectorXd& k, const State& state, const Load* load = nullptr);
+    void assemble(const Eigen::VectorXd& k, const State& state, const Load* load = nullptr) {
+        assemble(k, state, load, body_.law == EquilibriumLaw::linear);
+    }
+    /// The tangent at the start, of links that are not strained: where parts have grown they are, and may give way.
+    void assemble_unstrained(const Eigen::VectorXd& k) { assemble(k, start_, nullptr, true); }
     /// Factors tangent + shift [N/mm] * metric, which makes turning and moving comparable.
     std::optional<BlockCholesky::BadPivot> factor(double shift);
     /// Factors the tangent. @throws SolverFailure naming the sphere that it does not keep in place.
@@ -72,6 +77,7 @@ public:
     Eigen::VectorXd metric_times(const Eigen::VectorXd& step) const;
 
 private:
+    void assemble(const Eigen::VectorXd& k, const State& state, const Load* load, bool unstrained);
     int coupling(int a, int b);
     void add_pairs(const std::vector<std::array<int, 2>>& pairs, const std::vector<int>& couplings,
                    const std::vector<BlockCholesky::Block>& blocks);
@@ -80,6 +86,7 @@ private:
     PlacedEffects effects_;
     PlacedLinks links_;
     State start_;
+    std::optional<fem::Effects> growing_;  // in force, where parts of the material have grown
     FibreStates before_;
     double effect_share_ = 1;
     double effect_load_ = 0, effect_stiffness_ = 0;        // largest at rest [N, N/mm]

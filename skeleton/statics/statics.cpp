@@ -80,7 +80,7 @@ Eigen::SparseMatrix<double> tangent(const Model& model, const State& state, cons
     const PlacedLinks links = links_of(model, extra);
     for (size_t l = 0; l < model.links.size(); ++l) {
         const Link& link = model.links[l];
-        const Mat12 H = links.hessian(l, link.stiffness, state, before);
+        const Mat12 H = links.hessian(l, link.stiffness, pose(link, state), before);
         for (int j = 0; j < 12; ++j)
             for (int i = 0; i < 12; ++i) entries.emplace_back(row_of(link, i), row_of(link, j), H(i, j));
     }

@@ -135,7 +135,7 @@ Equilibrium StaticsSolver::solve(const Eigen::VectorXd& k, const Load& load, con
 
 Eigen::MatrixXd StaticsSolver::linear_steps(const Eigen::VectorXd& k, const Eigen::MatrixXd& F) {
     impl_->system.remember({});
-    impl_->system.assemble(k, impl_->system.start());
+    impl_->system.assemble_unstrained(k);
     impl_->system.factor_stable(k);
     return impl_->system.solve(F);
 }

@@ -210,6 +210,7 @@ inline Eigen::VectorXd example(const EffectHypothesis& effect, const std::vector
         {"friction", {0.3}},
         {"local-force", {30, 6, 4, std::log(5), 0.002, -0.001, 0.003}},
         {"local-springs", {30, 6, 4, std::log(5), std::log(0.01)}},
+        {"local-swelling", {21, 6, 4, std::log(5), 0.05}},
         {"torsion", {0.3}},
         {"shear", {0.3}}};
     const auto found = chosen.find(effect.name());

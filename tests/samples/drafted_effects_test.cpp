@@ -37,8 +37,18 @@ TEST(DraftedEffect, ActsAsTheSpringsThatWereLocated) {
     expect_alike({"ligament", stiffness}, {"local-springs", stiffness});
 }
 
+TEST(DraftedEffect, GrowsAsThePartThatWasLocated) {
+    const std::vector<skeleton::EffectParameter> growth{{"growth", -0.08, "1"}};
+    skeleton::EffectRecord located{"local-swelling", place};
+    located.parameters.insert(located.parameters.end(), growth.begin(), growth.end());
+    const fem::Growth own = skeleton::make_physics({"dry-spot", growth}).growth;
+    for (const Vec3& X : {Vec3(30, 0, 0), Vec3(45, -2, 3)})
+        EXPECT_EQ(own.at(X), skeleton::make_physics(located).growth.at(X));
+    EXPECT_LT(own.at({30, 0, 0}), -0.07);
+}
+
 TEST(DraftedEffect, IsLookedForByADiagnosis) {
-    for (const char* name : {"pull", "ligament"}) {
+    for (const char* name : {"pull", "ligament", "dry-spot"}) {
         const auto effect = effect_named(name);
         ASSERT_TRUE(effect) << name;
         EXPECT_NE(std::ranges::find(catalogue(), effect), catalogue().end()) << name;

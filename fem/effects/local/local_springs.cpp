@@ -1,5 +1,7 @@
 #include "fem/effects/local/local_springs.h"
 
+#include "fem/effects/local/known_locality.h"
+
 namespace palpate::fem {
 
 PointTerms LocalSprings::terms(const Vec3& X, const Vec3& x) const {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "fem/effects/known_effect.h"
 #include "fem/effects/local/locality.h"
 
 namespace palpate::fem {

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "fem/effects/known_effect.h"
+#include "mesh/types.h"
 
 namespace palpate::fem {
 
@@ -9,13 +9,11 @@ struct Locality {
     Vec3 centre = Vec3::Zero();  // [mm]
     double radius = 1;           // 1 sd of the weight [mm], > 0
 
+    /// g(X) [-].
+    double weight(const Vec3& X) const;
     /// Shares of points in that part (n), which add up to 1: their even weights times g. Where none of them is near,
     /// the nearest one has it all.
     Eigen::VectorXd shares(const Points& rest, const Eigen::VectorXd& even) const;
 };
-
-/// How files and users tell it: cx, cy, cz and radius.
-std::vector<KnownParameter> locality_parameters();
-Locality locality(const EffectNumbers& numbers);
 
 }  // namespace palpate::fem

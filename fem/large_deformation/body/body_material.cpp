@@ -42,6 +42,12 @@ std::vector<ElementModel> models_of(const BodyShape& body, const BodySetting& se
     return models;
 }
 
+/// Of an element's corners at rest.
+Vec3 middle(const BodyShape& body, std::size_t element) {
+    const auto corners = body.mesh.tetrahedra.row(static_cast<Eigen::Index>(element)).head<4>();
+    return body.mesh.nodes(corners, Eigen::all).colwise().mean();
+}
+
 Mat3 gradient_at(const ElementShape& shape, const NodeVectors& u, int q) {
     return Mat3::Identity() + u * shape.gradients(q).transpose();
 }
@@ -51,14 +57,16 @@ Mat3 gradient_at(const ElementShape& shape, const NodeVectors& u, int q) {
 BodyMaterial::BodyMaterial(const BodyShape& body, const BodySetting& setting, const MaterialState* before, bool flows)
     : body_(body),
       models_(models_of(body, setting)),
-      growth_(setting.effects.growth),
       plasticity_(setting.effects.plasticity),
       damage_(setting.effects.damage),
       before_(before),
       flows_(flows) {
     if (plasticity_) validate(*plasticity_);
     if (damage_) validate(*damage_);
-    if (const double g = 1 + growth_; setting.law != MaterialLaw::linear) scale_ = {g * g * g, g * g, g};
+    if (const Growth& growth = setting.effects.growth; !growth.none()) {
+        growth_.reserve(body.elements.size());
+        for (std::size_t e = 0; e < body.elements.size(); ++e) growth_.push_back(growth.at(middle(body, e)));
+    }
     assert(!before || (before->law == setting.law && before->points.size() == element_points * body.elements.size()));
     const auto& all = setting.effects.material;
     if (all.empty() && !plasticity_ && !damage_) return;
@@ -87,29 +95,29 @@ BodyMaterial::BodyMaterial(const BodyShape& body, const BodySetting& setting, co
 
 NodeVectors BodyMaterial::elastic_displacements(const Eigen::VectorXd& u, std::size_t element) const {
     NodeVectors moved = body_.displacements(u, element);
-    if (growth_ == 0) return moved;
+    if (growth_.empty()) return moved;
+    const double growth = growth_[element];
     // From its first node, as only differences count: (X + u) / g - X.
     NodeVectors X =
         node_positions<element_nodes>(body_.mesh.nodes, body_.mesh.tetrahedra.row(static_cast<Eigen::Index>(element)))
             .transpose();
     X.colwise() -= X.col(0).eval();
-    if (law() == MaterialLaw::linear) return moved - growth_ * X;
-    return (moved - growth_ * X) / (1 + growth_);
+    if (law() == MaterialLaw::linear) return moved - growth * X;
+    return (moved - growth * X) / (1 + growth);
 }
 
 double BodyMaterial::force(const Eigen::VectorXd& u, std::size_t element, NodeVectors& f) const {
     const double energy =
         element_force(body_.elements[element], model(element), effects(element), elastic_displacements(u, element), f);
-    if (growth_ == 0) return energy;
-    f *= scale_.force;
-    return scale_.energy * energy;
+    const double g = scale(element);
+    f *= g * g;
+    return g * g * g * energy;
 }
 
 NodeVectors BodyMaterial::force(const Eigen::VectorXd& u, std::size_t element) const {
     NodeVectors f;
     if (std::isfinite(force(u, element, f))) return f;
-    const auto corners = body_.mesh.tetrahedra.row(static_cast<Eigen::Index>(element)).head<4>();
-    const Vec3 at = body_.mesh.nodes(corners, Eigen::all).colwise().mean();
+    const Vec3 at = middle(body_, element);
     throw SolverFailure(
         fmt::format("Element {} of the body, at rest near ({:.4g}, {:.4g}, {:.4g}) mm, is turned inside out by these "
                     "displacements; there it has no force. Take smaller displacements.",
@@ -118,8 +126,9 @@ NodeVectors BodyMaterial::force(const Eigen::VectorXd& u, std::size_t element) c
 
 void BodyMaterial::tangent(const Eigen::VectorXd& u, std::size_t element, ElementTangent& K) const {
     element_tangent(body_.elements[element], model(element), effects(element), elastic_displacements(u, element), K);
-    if (growth_ == 0) return;
-    for (ElementTangent::NodePairs& block : K.blocks) block *= scale_.tangent;
+    if (growth_.empty()) return;
+    const double g = scale(element);
+    for (ElementTangent::NodePairs& block : K.blocks) block *= g;
 }
 
 MaterialState BodyMaterial::after(const Eigen::VectorXd& u) const {

@@ -16,9 +16,9 @@ struct MaterialState {
 
 /// What a body is made of: how each of its elements answers, with the effects in its material.
 ///
-/// Material that has grown by a factor g in every free length has the energy g^3 W(F / g) per volume of the rest shape:
-/// an element answers as it does without growth to nodes at x / g, with forces g^2 as large. In small strain its strain
-/// is less by g - 1. [Rodriguez, Hoger, McCulloch 1994]
+/// Material that has grown by a factor g in every free length, in an element as at its middle, has the energy g^3 W(F /
+/// g) per volume of the rest shape: an element answers as it does without growth to nodes at x / g, with forces g^2 as
+/// large. In small strain its strain is less by g - 1. [Rodriguez, Hoger, McCulloch 1994]
 class BodyMaterial {
 public:
     /// `before`: nullptr: virgin; of no account where nothing remembers. `flows`: does plastic strain change from
@@ -58,16 +58,16 @@ private:
         return place_.empty() || place_[element] < 0 ? nullptr : &effects_[place_[element]];
     }
 
+    /// g of an element, 1 in small strain: its energy is g^3 times that without growth, its forces are g^2 times those.
+    double scale(std::size_t element) const {
+        return growth_.empty() || law() == MaterialLaw::linear ? 1 : 1 + growth_[element];
+    }
     /// Displacements of an element's nodes from the shape that it would have by itself, scaled to that of its rest.
     NodeVectors elastic_displacements(const Eigen::VectorXd& u, std::size_t element) const;
 
     const BodyShape& body_;
     std::vector<ElementModel> models_;  // of the body's own material, then of each region's
-    double growth_;                     // g - 1
-    /// What an element's answer without growth is multiplied by: g^3, g^2 and g; in small strain 1.
-    struct {
-        double energy = 1, force = 1, tangent = 1;
-    } scale_;
+    std::vector<double> growth_;        // g - 1 of each element; empty: none has grown
     std::vector<const MaterialEffect*> energies_;
     std::optional<Plasticity> plasticity_;
     std::optional<Damage> damage_;

@@ -48,6 +48,14 @@ BodySetting with_soft_contact(const BodySetting& setting) {
     return soft;
 }
 
+/// With a share of what the material has grown by.
+BodySetting with_growth(BodySetting setting, double share) {
+    Growth& growth = setting.effects.growth;
+    growth.everywhere *= share;
+    for (Growth::Part& part : growth.parts) part.growth *= share;
+    return setting;
+}
+
 /// Are tools where they were, or almost?
 bool is_near(const LoadedBody& body, const Unknowns& unknowns, const Eigen::VectorXd& u) {
     Eigen::VectorXd net;
@@ -111,8 +119,9 @@ BodyEquilibrium find_equilibrium(const BodyShape& body, const EliminationOrder& 
     // A body that flows sets out from where it would stand if it did not, unless it is near its answer.
     const auto within = [&](double share) { return NewtonTolerance{share * load, share}; };
     const auto elastically = [&](double share) {
-        return loaded.conservative() ||
-               newton.minimise(LoadedBody(body, setting, f, before, share, false), within(rough), u);
+        if (loaded.conservative()) return true;
+        const BodySetting less = with_growth(setting, share);
+        return newton.minimise(LoadedBody(body, less, f, before, share, false), within(rough), u);
     };
     const BodySetting softly = with_soft_contact(setting);
     const auto from_start = [&] {
@@ -131,13 +140,15 @@ BodyEquilibrium find_equilibrium(const BodyShape& body, const EliminationOrder& 
         Eigen::VectorXd last = Eigen::VectorXd::Zero(f.size());
         u = last;
         for (int k = 1; k <= steps; ++k) {
-            const LoadedBody part(body, softly, f, before, static_cast<double>(k) / steps);
+            const double share = static_cast<double>(k) / steps;
+            const BodySetting less = with_growth(softly, share);
+            const LoadedBody part(body, less, f, before, share);
             const Eigen::VectorXd ahead = 2 * u - last;
             last = u;
             if (part.admits(ahead)) u = ahead;
-            const double share = k == steps && !touches(setting.effects) ? options.tolerance : rough;
-            if (k == 1 && !elastically(1.0 / steps)) return false;
-            if (!newton.minimise(part, within(share), u)) return false;
+            const double tolerance = k == steps && !touches(setting.effects) ? options.tolerance : rough;
+            if (k == 1 && !elastically(share)) return false;
+            if (!newton.minimise(part, within(tolerance), u)) return false;
         }
         return !touches(setting.effects) || newton.minimise(loaded, within(options.tolerance), u);
     };

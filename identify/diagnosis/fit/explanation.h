@@ -69,6 +69,7 @@ Signatures::InAction signatures_of_last_effect(const BodyModel& model, const Pro
                                                const Eigen::VectorXd& q);
 
 /// Direct sensitivity of the readings to the parameters, at fixed configuration, over sigma (N x parameters).
-Eigen::MatrixXd seen_directly(const Problem& problem, const Explanation& explanation, const ForwardSolution& forward);
+Eigen::MatrixXd seen_directly(const BodyModel& model, const Problem& problem, const Explanation& explanation,
+                              const ForwardSolution& forward);
 
 }  // namespace palpate::identify

@@ -8,6 +8,7 @@ namespace palpate::identify {
 struct NeighbouringFit {
     const Problem* problem;
     const Refit* fit;
+    bool knows_mesh_error = true;  // is the error of the mesh that came off that problem's readings that of the fit?
 };
 
 /// The fit as an initial guess for another problem: its configurations, without its data-dependent parts; none if

@@ -157,7 +157,7 @@ private:
         at_.columns = sensitivities(model_, problem_, at_.explanation, at_.forward,
                                     {own_signatures(model_, problem_, at_.explanation, at_.forward)}, threads_, &steps_)
                           .front() +
-                      seen_directly(problem_, at_.explanation, at_.forward);
+                      seen_directly(model_, problem_, at_.explanation, at_.forward);
         has_slopes_ = true;
     }
 

@@ -289,7 +289,16 @@ Signatures::InAction signatures_of_last_effect(const BodyModel& model, const Pro
     return as_signatures(effect_at_once(model, problem, explanation, explanation.effects.size() - 1, forward, k, q));
 }
 
-Eigen::MatrixXd seen_directly(const Problem& problem, const Explanation& explanation, const ForwardSolution& forward) {
+Eigen::MatrixXd seen_directly(const BodyModel& model, const Problem& problem, const Explanation& explanation,
+                              const ForwardSolution& forward) {
+    const auto seen = [&](const Explanation& by, std::size_t k) {
+        const ModelSetting setting = by.setting();
+        if (setting.effects.growth.none()) return by.read(problem, forward.stand[k]);
+        // What has grown carries its markers farther out, wherever it is.
+        Points stand = forward.stand[k];
+        stand.topRows(problem.markers) = model.observe(forward.q[k], setting);
+        return by.read(problem, stand);
+    };
     Eigen::MatrixXd result = Eigen::MatrixXd::Zero(problem.rows(), explanation.numbers());
     // By central differences of what is seen: exact to rounding for maps as smooth as a small rotation.
     Eigen::Index column = explanation.theta.size();
@@ -300,9 +309,8 @@ Eigen::MatrixXd seen_directly(const Problem& problem, const Explanation& explana
             ahead.values[e][j] += h;
             behind.values[e][j] -= h;
             std::vector<Points> difference;
-            for (const Points& stand : forward.stand) {
-                difference.emplace_back((ahead.read(problem, stand) - behind.read(problem, stand)) / (2 * h));
-            }
+            for (std::size_t k = 0; k < forward.stand.size(); ++k)
+                difference.emplace_back((seen(ahead, k) - seen(behind, k)) / (2 * h));
             result.col(column) = problem.pick(difference).cwiseQuotient(problem.sigma);
         }
     }

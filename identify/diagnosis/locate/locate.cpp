@@ -25,11 +25,6 @@ struct Alternative {
     std::size_t place = 0;
 };
 
-int read_states(const Problem& problem) {
-    const std::set<int> states(problem.state.begin(), problem.state.end());
-    return static_cast<int>(states.size());
-}
-
 class Scan {
 public:
     Scan(const BodyModel& model, const Problem& problem, const Refit& fit, int threads)
@@ -68,16 +63,9 @@ public:
         return std::move(found_);
     }
 
-    /// What an alternative alters in each state of the set, rms in sigmas of noise (S).
-    Eigen::VectorXd shown(const Alternative& one) const {
-        const Eigen::VectorXd felt =
-            rows_of(*one.basis, one.term.strength, static_cast<Eigen::Index>(one.place), 1) * one.term.mean;
-        Eigen::VectorXd squares = Eigen::VectorXd::Zero(std::ssize(problem_.stages)), count = squares;
-        for (Eigen::Index n = 0; n < problem_.rows(); ++n) {
-            squares[problem_.state[n]] += felt[n] * felt[n];
-            count[problem_.state[n]] += 1;
-        }
-        return squares.cwiseQuotient(count.cwiseMax(1)).cwiseSqrt();
+    /// What an alternative alters of the readings, in sigmas of noise (N).
+    Eigen::VectorXd altered(const Alternative& one) const {
+        return rows_of(*one.basis, one.term.strength, static_cast<Eigen::Index>(one.place), 1) * one.term.mean;
     }
 
 private:
@@ -216,6 +204,32 @@ void share_out(std::vector<Alternative>& all) {
     }
 }
 
+/// Of each form and law the likeliest place, and the likeliest of those that are farther from it than `apart`; the
+/// likeliest first.
+std::vector<MissingSource::Rival> rivals_among(const std::vector<Alternative>& all, double apart) {
+    std::vector<const Alternative*> chosen;
+    const auto keep_likeliest = [&](auto first, auto end, const auto& may) {
+        const Alternative* best = nullptr;
+        for (auto one = first; one != end; ++one)
+            if (may(*one) && (!best || one->log_weight > best->log_weight)) best = &*one;
+        if (best) chosen.push_back(best);
+        return best;
+    };
+    for (auto first = all.begin(); first != all.end();) {
+        const auto end = std::find_if_not(first, all.end(),
+                                          [&](const Alternative& one) { return is_same_but_for_place(*first, one); });
+        const Alternative* best = keep_likeliest(first, end, [](const Alternative&) { return true; });
+        keep_likeliest(first, end,
+                       [&](const Alternative& one) { return (one.term.centre - best->term.centre).norm() > apart; });
+        first = end;
+    }
+    std::ranges::stable_sort(chosen, [](const auto* a, const auto* b) { return a->log_weight > b->log_weight; });
+    std::vector<MissingSource::Rival> rivals;
+    rivals.reserve(chosen.size());
+    for (const Alternative* one : chosen) rivals.push_back({one->kind, one->term, one->log_weight});
+    return rivals;
+}
+
 /// Does a source's vector point somewhere?
 bool has_direction(SourceForm form) {
     return form == SourceForm::force || form == SourceForm::traction || form == SourceForm::marker;
@@ -264,6 +278,7 @@ std::optional<MissingSource> locate_missing(const BodyModel& model, const Proble
     source.kind =
         static_cast<SourceKind>(std::ranges::max_element(source.log_bayes_factors) - source.log_bayes_factors.begin());
     const double sum = source.log_bayes_factor();
+    source.rivals = rivals_among(all, 0.25 * model.size());
     std::erase_if(all, [&](const Alternative& one) {
         constexpr double negligible = 1e-3;  // probability
         return one.kind != source.kind || one.log_weight - sum < std::log(negligible);
@@ -272,15 +287,12 @@ std::optional<MissingSource> locate_missing(const BodyModel& model, const Proble
     std::ranges::stable_sort(all, std::greater{}, &Alternative::log_weight);
     double kept = 0;
     for (const Alternative& one : all) kept += std::exp(one.log_weight - sum);
-    const Eigen::VectorXd shown = scan.shown(all.front());
+    source.states = states_shown(problem, scan.altered(all.front()));
     source.explained = all.front().explained;
     for (Alternative& one : all) {
         one.term.probability = std::exp(one.log_weight - sum) / kept;
         source.terms.push_back(std::move(one.term));
     }
-    constexpr double notable = 0.2;  // of the most: less is within what a first-order model errs by
-    for (Eigen::Index s = 0; s < shown.size(); ++s)
-        if (shown[s] > 0 && shown[s] >= notable * shown.maxCoeff()) source.states.push_back(static_cast<int>(s));
     summarise(source);
     return source;
 }
@@ -315,15 +327,15 @@ MissingSource source_of_outliers(const MeasurementSet& set, const Diagnosis& dia
 }  // namespace
 
 std::optional<MissingSource> where_missing(const BodyModel& model, const MeasurementSet& set,
-                                           const Diagnosis& diagnosis, const RefitOptions& options) {
+                                           const Diagnosis& diagnosis, const DiagnoseOptions& options) {
     const bool has_outliers = !diagnosis.outliers.readings.empty();
     const bool is_all = diagnosis.explanation.size() == 1 && !diagnosis.explained;
     if (has_outliers && is_all) return source_of_outliers(set, diagnosis);
     const Problem& problem = diagnosis.problem;
     const Refit& baseline = diagnosis.baseline;
     const bool is_named = diagnosis.verdict != Verdict::unexplained;  // then its numbers are those of the effect
-    const Refit beside = is_named ? baseline : beside_constant_sources(model, problem, baseline, options);
-    std::optional<MissingSource> source = locate_missing(model, problem, beside, options.threads);
+    const Refit beside = is_named ? baseline : beside_constant_sources(model, problem, baseline, options.refit);
+    std::optional<MissingSource> source = locate_missing(model, problem, beside, options.refit.threads);
     if (source && !is_named) fit_source(model, problem, beside, baseline, options, *source);
     if (!source && has_outliers) return source_of_outliers(set, diagnosis);
     return source;

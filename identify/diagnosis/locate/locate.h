@@ -3,6 +3,7 @@
 #include <functional>
 #include <optional>
 
+#include "identify/diagnosis/diagnose_options.h"
 #include "identify/diagnosis/diagnosis.h"
 #include "identify/diagnosis/locate/missing_source.h"
 
@@ -18,6 +19,6 @@ std::optional<MissingSource> locate_missing(const BodyModel& model, const Proble
 /// The same of a diagnosis, from what its baseline leaves; where single readings are all that is wrong, those. Where no
 /// effect explains the readings, the source is fitted.
 std::optional<MissingSource> where_missing(const BodyModel& model, const MeasurementSet& set,
-                                           const Diagnosis& diagnosis, const RefitOptions& options);
+                                           const Diagnosis& diagnosis, const DiagnoseOptions& options);
 
 }  // namespace palpate::identify

@@ -111,10 +111,9 @@ std::string MissingSource::sentence() const {
         case SourceForm::force:
             return fmt::format("A force of {} acts within the material, {}, {}.", vector_in_short(*this, term, "N"),
                                place, law);
-        case SourceForm::eigenstrain:
-            return fmt::format(
-                "The material would {} if it could: it is under a stress of {} of its shear modulus, {}, {}.",
-                value > 0 ? "swell" : "shrink", with_sd(std::abs(value), sd), place, law);
+        case SourceForm::growth:
+            return fmt::format("The material has {} by {} % in every free length, {}, {}.",
+                               value > 0 ? "grown" : "shrunk", with_sd(100 * std::abs(value), 100 * sd), place, law);
         case SourceForm::softening: {
             const bool is_everywhere = term.law == SourceLaw::constant;
             // A model to first order in the logarithm of the stiffness says that it changes by more, not by how much.

@@ -11,7 +11,7 @@ namespace palpate::identify {
 
 /// What kind of thing is missing, whatever its name.
 enum class SourceKind {
-    body_force,  // a force or an eigenstrain within the material
+    body_force,  // a force within the material, or growth of it
     stiffness,   // the material is stiffer or softer than the model's: somewhere, along some direction, or at times
     boundary,    // a force on the surface where the model has none, or a support that moves
     sensor,      // readings are off, the body is not
@@ -37,19 +37,19 @@ inline constexpr std::array<const char*, 10> source_law_names{"constant",  "prop
 
 /// What a source's numbers are.
 enum class SourceForm {
-    force,        // a force in the material [N] (3)
-    eigenstrain,  // a stress at rest that makes the material swell, over its shear modulus [-] (1)
-    softening,    // ln of the stiffness over the model's [-] (1)
-    fibres,       // stiffness along a direction, a share of the shear modulus [-] (1)
-    set,          // share of earlier loads that the body keeps the shape of, linear and quadratic [-] (2)
-    traction,     // a force on the skin [N] (3)
-    normal,       // a force on the skin along its normal, inward positive [N]; a stiffness [N/mm] of springs (1)
-    support,      // compliance of the supports: moving [mm/N] and turning [rad/(N mm)] (2)
-    marker,       // how far readings of a marker are off [mm] (3)
-    frame,        // how far the frame of the readings has moved and turned [mm], [rad] (6)
-    gain,         // how much larger a probe's force is than it is told [-] (1)
-    gains,        // the same of each probe (probes)
-    readings,     // single readings that are off, each by itself; it has no numbers
+    force,      // a force in the material [N] (3)
+    growth,     // of every free length of the material [-] (1)
+    softening,  // ln of the stiffness over the model's [-] (1)
+    fibres,     // stiffness along a direction, a share of the shear modulus [-] (1)
+    set,        // share of earlier loads that the body keeps the shape of, linear and quadratic [-] (2)
+    traction,   // a force on the skin [N] (3)
+    normal,     // a force on the skin along its normal, inward positive [N]; a stiffness [N/mm] of springs (1)
+    support,    // compliance of the supports: moving [mm/N] and turning [rad/(N mm)] (2)
+    marker,     // how far readings of a marker are off [mm] (3)
+    frame,      // how far the frame of the readings has moved and turned [mm], [rad] (6)
+    gain,       // how much larger a probe's force is than it is told [-] (1)
+    gains,      // the same of each probe (probes)
+    readings,   // single readings that are off, each by itself; it has no numbers
 };
 
 /// One way to explain what is left: where it is, how strong, how likely among those of its kind.
@@ -79,7 +79,15 @@ struct MissingSource {
     Vec3 direction = Vec3::Zero();  // of unit length; 0: it has none
     double direction_sd = 0;        // [rad]
     std::vector<int> states = {};   // of the set, in which it shows: a fifth or more of the most
-    double explained = 0;           // share of the whitened square error that the likeliest term takes away
+    /// Where each form of source is likeliest, under each law that it may follow, in one or two places far apart; the
+    /// likeliest first.
+    struct Rival {
+        SourceKind kind;
+        SourceTerm term;
+        double log_weight;  // ln of evidence and prior, to first order
+    };
+    std::vector<Rival> rivals = {};
+    double explained = 0;  // share of the whitened square error that the likeliest term takes away
 
     double log_bayes_factor() const { return log_bayes_factors[static_cast<std::size_t>(kind)]; }
     const SourceTerm& likeliest() const { return terms.front(); }

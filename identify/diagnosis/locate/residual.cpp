@@ -4,8 +4,12 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <set>
+#include <utility>
 
 #include "identify/diagnosis/locate/locate.h"
+#include "identify/diagnosis/locate/source_evidence.h"
+#include "identify/diagnosis/locate/source_laws.h"
 #include "identify/effects/catalogue.h"
 #include "mesh/errors.h"
 
@@ -22,6 +26,8 @@ const char* effect_of(const SourceTerm& term) {
         case SourceForm::normal:
             if (term.law == SourceLaw::spring) return term.mean[0] > 0 ? "local-springs" : "";
             return is_constant ? "local-force" : "";
+        case SourceForm::growth:
+            return is_constant && std::isfinite(term.radius) ? "local-swelling" : "";
         case SourceForm::softening:
             return is_constant && std::isfinite(term.radius) ? "inclusion" : "";
         default:
@@ -49,6 +55,9 @@ skeleton::EffectRecord record_of(const SourceTerm& term, double size) {
     effect.parameters.push_back({"radius", sd, "mm"});
     if (effect.name == "local-springs") {
         effect.parameters.push_back({"stiffness", term.mean[0], "N/mm"});
+    } else if (effect.name == "local-swelling") {
+        // First order tells of a large change only that it is large.
+        effect.parameters.push_back({"growth", std::clamp(term.mean[0], -0.3, 0.5), "1"});
     } else {
         const Vec3 force = term.form == SourceForm::normal ? Vec3(term.mean[0] * term.axis) : Vec3(term.mean.head<3>());
         tell_vector({"fx", "fy", "fz"}, force, "N", effect);
@@ -69,6 +78,9 @@ SourceTerm term_of(const SourceTerm& located, const Refit& fit) {
     if (located.form == SourceForm::softening) {
         term.radius /= std::sqrt(5.0);  // a ball, see record_of
         term.mean = values.tail(1);     // ln ratio
+        by_value = Eigen::MatrixXd::Identity(1, 1);
+    } else if (located.form == SourceForm::growth) {
+        term.mean = values.tail(1);
         by_value = Eigen::MatrixXd::Identity(1, 1);
     } else if (located.law == SourceLaw::spring) {
         term.mean = values.tail(1).array().exp();
@@ -116,6 +128,84 @@ Eigen::VectorXd left_in_common(const Problem& problem, const Refit& fit) {
     return common_to_states(problem, (fit.error - fit.columns * step).cwiseProduct(problem.sigma));
 }
 
+/// A source fitted to the readings.
+struct FittedSource {
+    MissingSource::Rival located;
+    SourceTerm term;
+    Refit fit;
+    double log_bayes_factor = 0;  // against none, on the scale of those to first order
+};
+
+/// The evidence of a fit against that of one without its source, by what the models next to a source may err.
+double log_bayes_factor(const Problem& problem, const Refit& fit, const Refit& without) {
+    const auto rows = static_cast<double>(problem.rows());
+    const double independent = independent_errors(rows, read_states(problem));
+    const auto chi_square = [&](const Refit& one) { return rows * one.whitened_rms * one.whitened_rms; };
+    const auto deviance = [&](const Refit& one) { return source_deviance(chi_square(one), rows, independent); };
+    const double excess = (chi_square(fit) - deviance(fit)) - (chi_square(without) - deviance(without));
+    return fit.log_evidence - without.log_evidence + 0.5 * excess;
+}
+
+/// From where an explanation stands, whose last effect is the source; `near`: a fit not far from there.
+std::optional<FittedSource> fitted(const BodyModel& model, const Problem& problem, const MissingSource::Rival& located,
+                                   const Explanation& start, const Refit& near, const Refit& without,
+                                   const RefitOptions& options) {
+    try {
+        Refit fit = refit(model, problem, start, options, &near);
+        if (!(fit.log_evidence > without.log_evidence)) return std::nullopt;
+        SourceTerm term = term_of(located.term, fit);
+        const double evidence = log_bayes_factor(problem, fit, without);
+        return FittedSource{located, std::move(term), std::move(fit), evidence};
+    } catch (const SolverFailure&) {  // to first order it is too strong for the body
+        return std::nullopt;
+    }
+}
+
+/// The likeliest of some fits: of each effect from its likeliest place, then of the likeliest effect from others, and
+/// under other laws.
+std::optional<FittedSource> likeliest_fit(const BodyModel& model, const Problem& problem,
+                                          const std::vector<MissingSource::Rival>& rivals, const Refit& beside,
+                                          const Refit& without, const DiagnoseOptions& options) {
+    RefitOptions how = options.refit;
+    std::optional<FittedSource> best;
+    const auto keep_likelier = [&](std::optional<FittedSource> found) {
+        if (!found || (best && best->log_bayes_factor >= found->log_bayes_factor)) return;
+        best = std::move(found);
+        how.rival = best->fit.whitened_rms;
+    };
+    const auto try_from = [&](const MissingSource::Rival& located) {
+        const auto effect = find_effect(effect_of(located.term));
+        Explanation start = beside.explanation;
+        start.effects.push_back(effect);
+        start.values.push_back(effect->values(effect->numbers(model, problem), record_of(located.term, model.size())));
+        keep_likelier(fitted(model, problem, located, start, beside, without, how));
+    };
+    std::set<std::string> tried;
+    std::vector<const MissingSource::Rival*> others;
+    for (const MissingSource::Rival& rival : rivals) {
+        const std::string effect = effect_of(rival.term);
+        if (effect.empty()) continue;
+        if (tried.insert(effect).second)
+            try_from(rival);
+        else
+            others.push_back(&rival);
+    }
+    if (!best) return best;
+    const std::string effect = best->fit.explanation.effects.back()->name();
+    std::erase_if(others, [&](const auto* rival) { return effect_of(rival->term) != effect; });
+    constexpr std::size_t places = 3;  // besides the likeliest: each costs a fit
+    for (std::size_t i = 0; i < std::min(places, others.size()); ++i) try_from(*others[i]);
+    if (options.law) return best;
+    // Which law is the likeliest without the source says little of which is with it.
+    const FittedSource from = *best;
+    for (int law = 0; law < static_cast<int>(model.laws().size()); ++law) {
+        Explanation start = from.fit.explanation;
+        if (std::exchange(start.law, law) != law)
+            keep_likelier(fitted(model, problem, from.located, start, from.fit, without, how));
+    }
+    return best;
+}
+
 }  // namespace
 
 Refit beside_constant_sources(const BodyModel& model, const Problem& problem, const Refit& fit,
@@ -139,50 +229,51 @@ Refit beside_constant_sources(const BodyModel& model, const Problem& problem, co
     return at;
 }
 
-void fit_source(const BodyModel& model, const Problem& problem, const Refit& beside, const Refit& without,
-                const RefitOptions& options, MissingSource& source) {
-    const SourceTerm located = source.likeliest();
-    const std::string name = effect_of(located);
-    if (name.empty()) return;
-    const auto effect = find_effect(name);
-    Explanation explanation = beside.explanation;
-    explanation.effects.push_back(effect);
-    explanation.values.push_back(effect->values(effect->numbers(model, problem), record_of(located, model.size())));
-    std::optional<Refit> fit;
-    try {
-        fit = refit(model, problem, explanation, options, &beside);
-    } catch (const SolverFailure&) {  // to first order it is too strong for the body
-        return;
-    }
-    if (!(fit->log_evidence > without.log_evidence)) return;
-    SourceTerm term = term_of(located, *fit);
+std::optional<Refit> fit_source(const BodyModel& model, const Problem& problem, const Refit& beside,
+                                const Refit& without, const DiagnoseOptions& options, MissingSource& source) {
+    std::optional<FittedSource> best = likeliest_fit(model, problem, source.rivals, beside, without, options);
+    if (!best) return std::nullopt;
+    const auto is_likelier = [&](const MissingSource::Rival& one) {  // and nothing that could be fitted
+        return !*effect_of(one.term) && one.log_weight > best->log_bayes_factor;
+    };
+    if (std::ranges::any_of(source.rivals, is_likelier)) return std::nullopt;
+    const Refit& fit = best->fit;
+    SourceTerm& term = best->term;
+    source.kind = best->located.kind;
+    for (double& evidence : source.log_bayes_factors) evidence = std::min(evidence, best->log_bayes_factor);
+    source.log_bayes_factors[static_cast<std::size_t>(source.kind)] = best->log_bayes_factor;
     const bool on_skin = term.form == SourceForm::normal || term.form == SourceForm::traction;
     source.at = on_skin ? centroid_of(term, model.skin(), model.skin_areas() / model.skin_areas().sum())
                         : centroid_of(term, model.material_points(), model.material_shares());
-    const Eigen::Index place = fit->explanation.all().size() - fit->explanation.values.back().size();
-    source.spread = std::sqrt(term.extent * term.extent + fit->covariance.diagonal().segment<3>(place).sum());
-    if (effect->name() == "local-force") {
+    const Eigen::Index place = fit.explanation.all().size() - fit.explanation.values.back().size();
+    source.spread = std::sqrt(term.extent * term.extent + fit.covariance.diagonal().segment<3>(place).sum());
+    source.direction = Vec3::Zero();
+    source.direction_sd = 0;
+    if (term.form == SourceForm::force || term.form == SourceForm::traction) {
         const double size = term.mean.norm();
         source.direction = term.mean / size;
         const Mat3 across = Mat3::Identity() - source.direction * source.direction.transpose();
         source.direction_sd = std::sqrt((across * term.covariance * across).trace() / 2) / size;
     }
-    const double before = without.whitened_rms * without.whitened_rms, after = fit->whitened_rms * fit->whitened_rms;
+    source.states = states_shown(problem, beside.error - fit.error);
+    const double before = without.whitened_rms * without.whitened_rms, after = fit.whitened_rms * fit.whitened_rms;
     source.explained = std::clamp(1 - after / before, 0.0, 1.0);
     source.terms = {std::move(term)};
+    return std::move(best->fit);
 }
 
-std::optional<Residual> find_residual(const BodyModel& model, const Diagnosis& diagnosis, const RefitOptions& options) {
+std::optional<Residual> find_residual(const BodyModel& model, const Diagnosis& diagnosis,
+                                      const DiagnoseOptions& options) {
     const auto can_be_shown = [&](const SourceTerm& term) {
         const std::string effect = effect_of(term);
         return !effect.empty() && std::ranges::find(diagnosis.explanation, effect) == diagnosis.explanation.end();
     };
     const Problem& problem = diagnosis.problem;
-    const Refit beside = beside_constant_sources(model, problem, diagnosis.best(), options);
-    std::optional<MissingSource> source = locate_missing(model, problem, beside, options.threads, can_be_shown);
+    const Refit beside = beside_constant_sources(model, problem, diagnosis.best(), options.refit);
+    std::optional<MissingSource> source = locate_missing(model, problem, beside, options.refit.threads, can_be_shown);
     if (!source || !(source->log_bayes_factor() > 0)) return std::nullopt;
-    fit_source(model, problem, beside, diagnosis.best(), options, *source);
-    return Residual{record_of(source->likeliest(), model.size()), source->log_bayes_factor()};
+    std::optional<Refit> fit = fit_source(model, problem, beside, diagnosis.best(), options, *source);
+    return Residual{record_of(source->likeliest(), model.size()), source->log_bayes_factor(), std::move(fit)};
 }
 
 }  // namespace palpate::identify

@@ -7,7 +7,6 @@
 #include <cmath>
 #include <map>
 
-#include "fem/effects/material/prestress.h"
 #include "identify/diagnosis/locate/source_laws.h"
 #include "identify/diagnosis/search/screen_plan.h"
 #include "identify/effects/catalogue.h"
@@ -124,7 +123,7 @@ public:
         };
         using enum SourceKind;
         bases_ = {basis(body_force, SourceForm::force, 3, material_.places),
-                  basis(body_force, SourceForm::eigenstrain, 1, pieces_.places),
+                  basis(body_force, SourceForm::growth, 1, pieces_.places),
                   basis(stiffness, SourceForm::softening, 1, pieces_.places),
                   basis(boundary, SourceForm::traction, 3, skin_.places),
                   basis(boundary, SourceForm::normal, 1, skin_.places),
@@ -151,8 +150,10 @@ public:
         put(0, spread(of_material, material_weights_));
         const Eigen::MatrixXd softer = model_.piece_force(q, setting_, action, pieces_.weights);
         ModelSetting swollen = setting_;
-        swollen.effects.material.push_back(std::make_shared<fem::Prestress>(-Mat3::Identity()));
-        put(1, adjoint.by_force.transpose() * (model_.piece_force(q, swollen, action, pieces_.weights) - softer));
+        constexpr double growth = 1e-4;  // small enough for forces to be in proportion, large against their rounding
+        swollen.effects.growth.everywhere += growth;
+        const Eigen::MatrixXd swelling = (model_.piece_force(q, swollen, action, pieces_.weights) - softer) / growth;
+        put(1, adjoint.by_force.transpose() * swelling);
         put(2, adjoint.by_force.transpose() * softer);
         put(3, spread(of_skin, skin_weights_));
         put(4, directed(of_skin, -normals_, skin_weights_));

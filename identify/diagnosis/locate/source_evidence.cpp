@@ -14,17 +14,19 @@ constexpr std::array<double, 8> sizes{0.03, 0.1, 0.3, 1, 3, 10, 30, 100};
 
 }  // namespace
 
+double independent_errors(double rows, int states) { return std::min(rows, 6.0 * states); }
+
+double source_deviance(double chi_square, double rows, double independent) {
+    const double excess = chi_square - rows;
+    return excess > 0 ? independent * std::log1p(excess / independent) : excess;
+}
+
 SourceScore::SourceScore(const Whitening& V, const Eigen::VectorXd& d, int states)
     : V_(V),
       whitened_(V.apply(d)),
       chi_square_(d.dot(whitened_)),
       rows_(static_cast<double>(d.size())),
-      independent_(std::min(rows_, 6.0 * states)) {}
-
-double SourceScore::deviance(double chi_square) const {
-    const double excess = chi_square - rows_;
-    return excess > 0 ? independent_ * std::log1p(excess / independent_) : excess;
-}
+      independent_(independent_errors(rows_, states)) {}
 
 std::vector<SourceEvidence> SourceScore::operator()(const Eigen::MatrixXd& columns, int p, bool one_sided) const {
     const Eigen::MatrixXd applied = V_.apply(columns);
@@ -44,13 +46,14 @@ std::vector<SourceEvidence> SourceScore::operator()(const Eigen::MatrixXd& colum
         const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(M * scale2);
         const Eigen::ArrayXd lambda = eigen.eigenvalues().array().max(0);
         const Eigen::ArrayXd s = (eigen.eigenvectors().transpose() * scores.segment(at, p)).array() * std::sqrt(scale2);
-        const double without = deviance(chi_square_);
+        const double without = source_deviance(chi_square_, rows_, independent_);
         std::array<double, sizes.size()> evidence{};
         std::size_t best = 0;
         for (std::size_t t = 0; t < sizes.size(); ++t) {
             const double precision = 1 / (sizes[t] * sizes[t]);
             const double gain = (s.square() / (lambda + precision)).sum();
-            evidence[t] = 0.5 * (without - deviance(chi_square_ - gain)) - 0.5 * (lambda / precision).log1p().sum();
+            evidence[t] = 0.5 * (without - source_deviance(chi_square_ - gain, rows_, independent_)) -
+                          0.5 * (lambda / precision).log1p().sum();
             if (evidence[t] > evidence[best]) best = t;
         }
         double mean = 0;

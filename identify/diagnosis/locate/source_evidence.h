@@ -15,6 +15,11 @@ struct SourceEvidence {
     Eigen::MatrixXd covariance;  // (p x p)
 };
 
+/// Numbers that the errors of a model next to a source have, among readings (`rows`) from so many states, and -2 ln p
+/// of what is left of the readings: see SourceScore.
+double independent_errors(double rows, int states);
+double source_deviance(double chi_square, double rows, double independent);
+
 /// Evidence of columns (N x p) against no source, where neither the errors of the model next to a source nor the
 /// source's size are known:
 ///   d ~ N(0, V + M + tau^2 B B^T),  tau in decades from below the noise to far above it, equally likely,
@@ -37,8 +42,6 @@ public:
 private:
     const Whitening& V_;
     Eigen::VectorXd whitened_;  // V^-1 d
-    double deviance(double chi_square) const;
-
     double chi_square_, rows_, independent_;
 };
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <set>
 
 namespace palpate::identify {
 namespace {
@@ -49,6 +50,25 @@ Eigen::VectorXd relative_loads(const Problem& problem) {
     Eigen::VectorXd sum = Eigen::VectorXd::Zero(count);
     for (int c = 0; c < 3; ++c) sum += over_largest(kinds.col(c));
     return over_largest(sum);
+}
+
+int read_states(const Problem& problem) {
+    const std::set<int> states(problem.state.begin(), problem.state.end());
+    return static_cast<int>(states.size());
+}
+
+std::vector<int> states_shown(const Problem& problem, const Eigen::VectorXd& altered) {
+    Eigen::VectorXd squares = Eigen::VectorXd::Zero(std::ssize(problem.stages)), count = squares;
+    for (Eigen::Index n = 0; n < problem.rows(); ++n) {
+        squares[problem.state[n]] += altered[n] * altered[n];
+        count[problem.state[n]] += 1;
+    }
+    const Eigen::VectorXd shown = squares.cwiseQuotient(count.cwiseMax(1)).cwiseSqrt();
+    constexpr double notable = 0.2;  // of the most: less is within what a first-order model errs by
+    std::vector<int> states;
+    for (Eigen::Index s = 0; s < shown.size(); ++s)
+        if (shown[s] > 0 && shown[s] >= notable * shown.maxCoeff()) states.push_back(static_cast<int>(s));
+    return states;
 }
 
 std::vector<std::pair<SourceLaw, Eigen::VectorXd>> common_laws(const Problem& problem) {

@@ -20,8 +20,8 @@ ScreenPlan screen_plan_by_numbers(const EffectHypothesis& effect, const BodyMode
     plan.signatures = {count, [&model, &problem, with, &forward](int k, const Eigen::VectorXd& q) {
                            return signatures_of_last_effect(model, problem, with, forward, k, q);
                        }};
-    plan.columns = [&problem, with, &forward, prior_sd, count](const Eigen::MatrixXd& sensitivities) {
-        return ScreenColumns{sensitivities + seen_directly(problem, with, forward).rightCols(count), prior_sd};
+    plan.columns = [&model, &problem, with, &forward, prior_sd, count](const Eigen::MatrixXd& sensitivities) {
+        return ScreenColumns{sensitivities + seen_directly(model, problem, with, forward).rightCols(count), prior_sd};
     };
     plan.start = [start](Eigen::Index, const Eigen::VectorXd&) { return start; };
     return plan;

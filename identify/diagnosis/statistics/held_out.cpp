@@ -124,7 +124,7 @@ HeldOut predict(const BodyModel& model, const Problem& merged, const Refit& fit,
     const Eigen::MatrixXd own = sensitivities(model, unseen, explanation, forward,
                                               {own_signatures(model, unseen, explanation, forward)}, options.threads)
                                     .front() +
-                                seen_directly(unseen, explanation, forward);
+                                seen_directly(model, unseen, explanation, forward);
 
     const Eigen::MatrixXd spread = covariance.llt().matrixL();
     Eigen::MatrixXd A(unseen.rows(), own.cols() + nuisances.columns.cols());

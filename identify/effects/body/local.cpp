@@ -140,9 +140,48 @@ public:
     }
 };
 
+/// A part of the material that nobody has named has grown: it dried, took up a liquid, is warmer than the rest.
+class LocalSwellingEffect : public EffectHypothesis {
+public:
+    const EffectDescription& description() const override {
+        static const EffectDescription text{
+            .name = "local-swelling",
+            .kind = EffectKind::body,
+            .meaning =
+                "A part of the material has grown or shrunk since the rest shape was taken: it took up a liquid, "
+                "dried, or is warmer than the rest. 'improve --residual' finds it; no diagnosis names it.",
+            .parameters = {place_in_text, radius_in_text,
+                           "growth [-]: of every free length in its middle; below 0 it shrank"},
+            .reveals = "an error that is there without any load, away from one place or towards it",
+            .confused_with = {"swelling", "prestress", "local-force"},
+            .separating_probe = "read the unloaded body, with markers all round that place",
+            .next_probe = "fiducials"};
+        return text;
+    }
+
+    std::vector<EffectNumber> numbers(const BodyModel& model, const Problem&) const override {
+        std::vector<EffectNumber> result = numbers_of_place(model);
+        // A third of the volume there, more or less; that of an even swelling besides, more than nothing is left.
+        result.push_back({.name = "growth", .unit = "1", .prior_sd = 0.1, .least = -0.4});
+        return result;
+    }
+
+    bool enforce(const Eigen::VectorXd& values, ModelSetting& setting) const override {
+        setting.effects.growth.parts.push_back({locality_of(values), values[place_numbers]});
+        return true;
+    }
+
+    std::string sentence(const skeleton::EffectRecord& record) const override {
+        const double growth = record.parameters[place_numbers].value;
+        return fmt::format("The material has {} by up to {:.2g} % in every free length {}.",
+                           growth < 0 ? "shrunk" : "grown", 100 * std::abs(growth), place_in_words(record));
+    }
+};
+
 }  // namespace
 
 std::shared_ptr<const EffectHypothesis> local_force_effect() { return std::make_shared<LocalForceEffect>(); }
 std::shared_ptr<const EffectHypothesis> local_springs_effect() { return std::make_shared<LocalSpringsEffect>(); }
+std::shared_ptr<const EffectHypothesis> local_swelling_effect() { return std::make_shared<LocalSwellingEffect>(); }
 
 }  // namespace palpate::identify

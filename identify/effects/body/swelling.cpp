@@ -36,7 +36,7 @@ public:
     }
 
     bool enforce(const Eigen::VectorXd& values, ModelSetting& setting) const override {
-        setting.effects.growth += values[0];
+        setting.effects.growth.everywhere += values[0];
         return true;
     }
 

@@ -56,7 +56,7 @@ LinearPoint linearise(const BodyModel& model, const Problem& problem, const Expl
     Eigen::MatrixXd columns = sensitivities(model, problem, explanation, forward,
                                             {own_signatures(model, problem, explanation, forward)}, threads)
                                   .front() +
-                              seen_directly(problem, explanation, forward);
+                              seen_directly(model, problem, explanation, forward);
     Eigen::VectorXd prior_sd(std::ssize(model.parameters()));
     for (Eigen::Index p = 0; p < prior_sd.size(); ++p) prior_sd[p] = model.parameters()[p].prior_sd;
     Nuisances nuisances = make_nuisances(model, problem, explanation, forward, threads);

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cmath>
 #include <map>
 
 #include "identify/effects/catalogue.h"
@@ -17,7 +18,7 @@ namespace {
 constexpr const char* frame = R"(// @SENTENCE@
 //
 // A draft, written by 'palpate improve --residual --draft': where it acts and how strong it is were fitted, what it is
-// was not. Say what it is, and change the potential where its cause asks for another one. To build palpate with it, in
+// was not. Say what it is, and change the physics where its cause asks for others. To build palpate with it, in
 // the project's folder:
 //   cmake --preset release -DPALPATE_OWN_EFFECTS=THIS_FILE && cmake --build --preset release
 
@@ -36,14 +37,14 @@ using namespace palpate;
 
 const fem::Locality where{{@CENTRE@}, @RADIUS@};  // its middle and 1 sd of its weight [mm]
 
-// --- The physics: a potential at a point, of which each point has a share ------------------------------------------
+// --- The physics -----------------------------------------------------------------------------------------------------
 
 @PHYSICS@
 skeleton::KnownEffect known_physics() {
     return {"@NAME@",
             {@KNOWN@},
             [](const skeleton::EffectNumbers& numbers) -> fem::Effects {
-                return {.points = {std::make_shared<Source>(@FROM_FILE@)}};
+                return @MADE@;
             }};
 }
 
@@ -79,7 +80,7 @@ public:
     }
 
     bool enforce(const Eigen::VectorXd& values, identify::ModelSetting& setting) const override {
-        setting.effects.points.push_back(std::make_shared<Source>(@FROM_FIT@));
+        setting.effects.add(@FITTED@);
         return true;
     }
 
@@ -96,7 +97,9 @@ const bool known = identify::register_effect(known_physics(), std::make_shared<S
 }  // namespace
 )";
 
-constexpr const char* force = R"(/// A constant force on the material, by its mass: e = -F . (x - X), F in N in all.
+constexpr const char* force =
+    R"(/// A constant force on the material: the potential of a point, of which each has a share by its mass, is
+/// e = -F . (x - X), F in N in all.
 class Source : public fem::PointPotential {
 public:
     explicit Source(const Vec3& force) : force_(force) {}
@@ -111,9 +114,13 @@ public:
 private:
     Vec3 force_;
 };
+
+fem::Effects source(const Vec3& force) { return {.points = {std::make_shared<Source>(force)}}; }
 )";
 
-constexpr const char* springs = R"(/// Springs on the skin, by its area: e = k/2 |x - X|^2, k in N/mm in all.
+constexpr const char* springs =
+    R"(/// Springs on the skin: the potential of a point, of which each has a share by its area, is e = k/2 |x - X|^2, k in
+/// N/mm in all.
 class Source : public fem::PointPotential {
 public:
     explicit Source(double k) : k_(k) {}
@@ -129,6 +136,13 @@ public:
 private:
     double k_;
 };
+
+fem::Effects source(double k) { return {.points = {std::make_shared<Source>(k)}}; }
+)";
+
+constexpr const char* swelling =
+    R"(/// The material is larger in every free length than it was at rest, by `growth` in the middle.
+fem::Effects source(double growth) { return {.growth = {.parts = {{where, growth}}}}; }
 )";
 
 using Words = std::map<std::string, std::string>;
@@ -136,8 +150,8 @@ using Words = std::map<std::string, std::string>;
 Words words_of_force(const Vec3& F) {
     return {{"PHYSICS", force},
             {"KNOWN", R"({"fx", "N"}, {"fy", "N"}, {"fz", "N"})"},
-            {"FROM_FILE", R"(numbers.vector("fx", "fy", "fz"))"},
-            {"FROM_FIT", "values.head<3>()"},
+            {"MADE", R"(source(numbers.vector("fx", "fy", "fz")))"},
+            {"FITTED", "source(values.head<3>())"},
             {"MEANING", "A constant force acts in one place."},
             {"PARAMETERS", R"("fx, fy, fz [N]: the force in all")"},
             {"REVEALS", "an error that is there without any load, about one place"},
@@ -154,8 +168,8 @@ Words words_of_force(const Vec3& F) {
 Words words_of_springs(double k) {
     return {{"PHYSICS", springs},
             {"KNOWN", R"({"stiffness", "N/mm"})"},
-            {"FROM_FILE", R"(numbers["stiffness"])"},
-            {"FROM_FIT", "values[0]"},
+            {"MADE", R"(source(numbers["stiffness"]))"},
+            {"FITTED", "source(values[0])"},
             {"MEANING", "Something holds the skin in one place."},
             {"PARAMETERS", R"("stiffness [N/mm]: of all springs together")"},
             {"REVEALS", "one place moves too little, under whatever probe"},
@@ -166,6 +180,29 @@ Words words_of_springs(double k) {
             {"UNIT", "N/mm"},
             {"SIZE", fmt::format("{:.4g}", k)},
             {"TOLD", R"("Something holds the skin in one place: {:.3g} N/mm.", p[0].value)"}};
+}
+
+Words words_of_swelling(double growth) {
+    return {{"PHYSICS", swelling},
+            {"KNOWN", R"({"growth", "1", fem::Range::above_minus_one})"},
+            {"MADE", R"(source(numbers["growth"]))"},
+            {"FITTED", "source(values[0])"},
+            {"MEANING", "The material has grown in one place since the rest shape was taken."},
+            {"PARAMETERS", R"("growth [-]: of every free length in the middle of that place")"},
+            {"REVEALS", "an error that is there without any load, away from one place or towards it"},
+            {"CONFUSED", R"("swelling", "prestress")"},
+            {"PROBE", "read the unloaded body, with markers all round that place"},
+            {"KIND", "fiducials"},
+            {"NUMBERS", R"("growth")"},
+            {"UNIT", "1"},
+            {"SIZE", fmt::format("{:.4g}", std::abs(growth))},
+            {"TOLD", R"("The material has grown by {:.2g} % in one place.", 100 * p[0].value)"}};
+}
+
+Words words_of(const skeleton::EffectRecord& effect) {
+    const auto value = [&](std::size_t i) { return effect.parameters.at(i).value; };
+    if (effect.name == "local-force") return words_of_force({value(4), value(5), value(6)});
+    return effect.name == "local-springs" ? words_of_springs(value(4)) : words_of_swelling(value(4));
 }
 
 std::string filled(std::string text, const Words& words) {
@@ -198,8 +235,7 @@ std::string draft_of(const skeleton::EffectRecord& effect, const std::string& na
     if (unnamed == identify::unnamed_sources().end())
         throw InvalidInput(fmt::format("'{}' is in the catalogue: it needs no draft", effect.name));
     const auto value = [&](std::size_t i) { return effect.parameters.at(i).value; };
-    Words words =
-        effect.name == "local-force" ? words_of_force({value(4), value(5), value(6)}) : words_of_springs(value(4));
+    Words words = words_of(effect);
     words["NAME"] = name;
     words["SENTENCE"] = (*unnamed)->sentence(effect);
     words["CENTRE"] = fmt::format("{:.5g}, {:.5g}, {:.5g}", value(0), value(1), value(2));

@@ -39,8 +39,8 @@ SourceDensity density_of(const identify::SourceTerm& term, const mesh::Surface& 
             if (term.law == identify::SourceLaw::spring || term.law == identify::SourceLaw::one_sided)
                 return {"missing springs [N/mm^3]", area_of(surface)};
             return {"missing pressure [N/mm^2]", area_of(surface)};
-        case SourceForm::eigenstrain:
-            return {"missing stress over the shear modulus [-]"};
+        case SourceForm::growth:
+            return {"missing growth of lengths [-]"};
         case SourceForm::softening:
             return {"missing ln stiffness [-]"};
         case SourceForm::fibres:

@@ -209,8 +209,8 @@ def improve(
     """Adds effects to a model, fits anew, and tells the error before and after, on fitted and on held-out probes.
 
     `add`: effects, 'gravity' or 'gravity:gz=-9810' (where the fit begins), a rung each; 'auto': what a diagnosis names;
-    'residual': the same or, where no effect explains the measurements, a force, springs or another stiffness in one
-    place, if the forecast of held-out probes gains by it.
+    'residual': the same or, where no effect explains the measurements, a force, springs, growth or another
+    stiffness in one place, if the forecast of held-out probes gains by it.
     Settings: those of identify() and diagnose().
 
     `threads`: all cores where None; they change no number. `progress`: a function of (what, fraction in [0, 1]), or True

@@ -20,9 +20,9 @@ Vec3 middle(const Link& link, const State& rest) { return 0.5 * (rest.x.row(link
 PlacedLinks::PlacedLinks(const Model& model, const fem::Effects& effects)
     : order_(model),
       volumes_(model, effects),
-      links_(grown(model.links, effects.growth)),
+      links_(grown_links(model, effects.growth)),
       rest_(rest_state(model)),
-      natural_(grown(rest_, effects.growth)),
+      natural_(natural_poses(model, effects.growth)),
       history_(effects),
       torsion_(link_effects(effects).torsion),
       shear_(link_effects(effects).shear),
@@ -61,10 +61,8 @@ double PlacedLinks::scale_of(const Link& link, const FibreOffsets& offsets, cons
     return 1 / softness;
 }
 
-LinkFibre PlacedLinks::fibre(size_t link, int j, const State& state) const {
-    const auto& [a, b] = std::pair(links_[link].a, links_[link].b);
-    return {links_[link].length, offsets_[link][j],          state.x.row(a).transpose(),
-            state.R[a],          state.x.row(b).transpose(), state.R[b]};
+LinkFibre PlacedLinks::fibre(size_t link, int j, const LinkPose& ends) const {
+    return {links_[link].length, offsets_[link][j], ends.x_a, ends.R_a, ends.x_b, ends.R_b};
 }
 
 // L^2 (w / 3 + p) of one fibre: its energy at unit stiffness.
@@ -83,13 +81,13 @@ StretchTerms PlacedLinks::fibre_terms(size_t link, int j, double stretch, bool w
     return links_[link].length * links_[link].length * sum;
 }
 
-FullLink PlacedLinks::coupled(size_t l, const State& state) const {
-    FullLink now = full_link(links_[l], rest_, state);
+FullLink PlacedLinks::coupled(size_t l, const LinkPose& ends) const {
+    FullLink now = full_link(links_[l], rest_, ends);
     if (has_law(l)) now.couple(laws_[l].coupling);
     return now;
 }
 
-void PlacedLinks::add_effects(size_t l, const State& state, const FibreStates& before, bool with_hessian,
+void PlacedLinks::add_effects(size_t l, const LinkPose& ends, const FibreStates& before, bool with_hessian,
                               LinkTerms& terms) const {
     const Link& link = links_[l];
     if (has_law(l)) {
@@ -106,15 +104,14 @@ void PlacedLinks::add_effects(size_t l, const State& state, const FibreStates& b
         if (with_hessian) terms.hessian[1] += torsion_ * terms.hessian[2];
     }
     if (shear_ != 0) {
-        const Shear shear(link.length, directions_[l], state.x.row(link.a).transpose(), state.R[link.a],
-                          state.x.row(link.b).transpose(), state.R[link.b]);
+        const Shear shear(link.length, directions_[l], ends.x_a, ends.R_a, ends.x_b, ends.R_b);
         terms.energy[0] += shear_ * shear.energy();
         shear.add_gradient(shear_, terms.gradient.col(0));
         if (with_hessian) shear.add_hessian(shear_, terms.hessian[0]);
     }
     if (!offsets_.empty())
         for (int j = 0; j < fibres_per_link; ++j) {
-            const LinkFibre one = fibre(l, j, state);
+            const LinkFibre one = fibre(l, j, ends);
             const StretchTerms its = fibre_terms(l, j, one.stretch(), with_hessian, before);
             Vec12 gradient = Vec12::Zero();
             Mat12 hessian = Mat12::Zero();
@@ -134,33 +131,31 @@ void PlacedLinks::add_effects(size_t l, const State& state, const FibreStates& b
         for (Eigen::Index s = 0; s < terms.energy.size(); ++s) terms.hessian[s] *= scales_[l];
 }
 
-LinkTerms PlacedLinks::terms(size_t l, const State& state, bool with_hessian, const FibreStates& before) const {
+LinkTerms PlacedLinks::terms(size_t l, const LinkPose& ends, bool with_hessian, const FibreStates& before) const {
     const Link& link = links_[l];
-    LinkTerms terms = link.section
-                          ? full_link_terms(coupled(l, state), with_hessian)
-                          : link_terms(link.length, directions_[l], state.x.row(link.a).transpose(), state.R[link.a],
-                                       state.x.row(link.b).transpose(), state.R[link.b], with_hessian);
-    if (!plain_) add_effects(l, state, before, with_hessian, terms);
+    LinkTerms terms =
+        link.section ? full_link_terms(coupled(l, ends), with_hessian)
+                     : link_terms(link.length, directions_[l], ends.x_a, ends.R_a, ends.x_b, ends.R_b, with_hessian);
+    if (!plain_) add_effects(l, ends, before, with_hessian, terms);
     return terms;
 }
 
-Mat12 PlacedLinks::hessian(size_t l, const Stiffnesses& k, const State& state, const FibreStates& before) const {
+Mat12 PlacedLinks::hessian(size_t l, const Stiffnesses& k, const LinkPose& ends, const FibreStates& before) const {
     const Link& link = links_[l];
-    const Vec3 x_a = state.x.row(link.a).transpose(), x_b = state.x.row(link.b).transpose();
     Stiffnesses with_torsion = k;
     if (!plain_) with_torsion[2] += torsion_ * k[1];
     if (has_law(l)) with_torsion = with_torsion.cwiseProduct(laws_[l].factors) / scales_[l];
     Mat12 H = Mat12::Zero();
     if (link.section)
-        coupled(l, state).add_hessian(with_torsion, H);
+        coupled(l, ends).add_hessian(with_torsion, H);
     else
-        H = link_hessian(with_torsion, link.length, directions_[l], x_a, state.R[link.a], x_b, state.R[link.b]);
+        H = link_hessian(with_torsion, link.length, directions_[l], ends.x_a, ends.R_a, ends.x_b, ends.R_b);
     if (plain_) return H;
     if (shear_ != 0)
-        Shear(link.length, directions_[l], x_a, state.R[link.a], x_b, state.R[link.b]).add_hessian(shear_ * k[0], H);
+        Shear(link.length, directions_[l], ends.x_a, ends.R_a, ends.x_b, ends.R_b).add_hessian(shear_ * k[0], H);
     if (!offsets_.empty())
         for (int j = 0; j < fibres_per_link; ++j) {
-            const LinkFibre one = fibre(l, j, state);
+            const LinkFibre one = fibre(l, j, ends);
             one.add_hessian(shares_[l].row(j).dot(k) * fibre_terms(l, j, one.stretch(), true, before), H);
         }
     return scales_[l] * H;
@@ -196,7 +191,8 @@ Eigen::SparseMatrix<double> PlacedLinks::linear_forces(const Eigen::VectorXd& st
     volumes_.add_linear_forces(step, of_volumes);
     return assembled(
         [&](size_t l) {
-            const LinkTerms at_rest = terms(l, rest_, false, before), natural = terms(l, natural_, true, before);
+            const LinkTerms at_rest = terms(l, rest_, false, before),
+                            natural = terms(l, this->natural(l), true, before);
             Vec12 own;
             own << step.segment<6>(Eigen::Index{6} * links_[l].a), step.segment<6>(Eigen::Index{6} * links_[l].b);
             Eigen::Matrix<double, 12, Eigen::Dynamic, 0, 12, 6> forces = -at_rest.gradient;
@@ -214,7 +210,7 @@ FibreStates PlacedLinks::flowed(const State& state, const FibreStates& before) c
     for (size_t l = 0; l < links_.size(); ++l)
         for (int j = 0; j < fibres_per_link; ++j) {
             const FibreState had = before.empty() ? FibreState() : before[fibres_per_link * l + j];
-            now.push_back(after_stretch(history_, had, fibre(l, j, state).stretch()));
+            now.push_back(after_stretch(history_, had, fibre(l, j, pose(links_[l], state)).stretch()));
         }
     return now;
 }
@@ -228,7 +224,7 @@ FlowDerivatives PlacedLinks::flow_derivatives(const Eigen::VectorXd& k, const St
         for (int j = 0; j < fibres_per_link; ++j) {
             const int z = 3 * static_cast<int>(fibres_per_link * l + j);
             const FibreState had = before.empty() ? FibreState() : before[z / 3];
-            const LinkFibre one = fibre(l, j, state);
+            const LinkFibre one = fibre(l, j, pose(links_[l], state));
             const HistorySlopes slopes = history_slopes(history_, had, one.stretch());
             Vec12 stretches = Vec12::Zero();
             one.add_gradient({.energy = 0, .first = 1, .second = 0}, stretches);
@@ -260,7 +256,7 @@ Stiffnesses PlacedLinks::rest_stiffness(size_t l, const Stiffnesses& k) const {
     // Fibres stiffen tension and bending alike.
     double stiffer = 1;
     if (!material_.empty()) {
-        const StretchTerms on_axis = fibre_terms(l, 0, fibre(l, 0, rest_).stretch(), true, {});
+        const StretchTerms on_axis = fibre_terms(l, 0, fibre(l, 0, pose(links_[l], rest_)).stretch(), true, {});
         stiffer += std::max(0.0, on_axis.second / (links_[l].length * links_[l].length));
     }
     Stiffnesses own = k;
@@ -275,7 +271,7 @@ double PlacedLinks::largest_rest_force(const Eigen::VectorXd& k, const FibreStat
     if (offsets_.empty()) return most;
     for (size_t l = 0; l < links_.size(); ++l)
         for (int j = 0; j < fibres_per_link; ++j) {
-            const StretchTerms its = fibre_terms(l, j, fibre(l, j, rest_).stretch(), false, before);
+            const StretchTerms its = fibre_terms(l, j, fibre(l, j, pose(links_[l], rest_)).stretch(), false, before);
             const double force = std::abs(its.first) / links_[l].length;
             most = std::max(most, scales_[l] * k[3 * static_cast<Eigen::Index>(l)] * force);
         }

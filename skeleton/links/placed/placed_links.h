@@ -36,20 +36,24 @@ public:
 
     /// Energies at unit stiffness, each with all that goes with it. `before`, here and below: what the fibres had
     /// been through. @throws SolverFailure when ends of the link or of a fibre coincide.
-    LinkTerms terms(size_t link, const State& state, bool with_hessian, const FibreStates& before = {}) const;
+    LinkTerms terms(size_t link, const LinkPose& ends, bool with_hessian, const FibreStates& before = {}) const;
+    LinkTerms terms(size_t link, const State& state, bool with_hessian, const FibreStates& before = {}) const {
+        return terms(link, pose(links_[link], state), with_hessian, before);
+    }
     /// The sum of their second derivatives at stiffness k, at a third of the cost.
-    Mat12 hessian(size_t link, const Stiffnesses& k, const State& state, const FibreStates& before = {}) const;
+    Mat12 hessian(size_t link, const Stiffnesses& k, const LinkPose& ends, const FibreStates& before = {}) const;
 
     const StiffnessOrder& order() const { return order_; }
     const PlacedVolumes& volumes() const { return volumes_; }
-    /// Where no link is strained: at rest, or as large as the material has grown.
-    const State& natural() const { return natural_; }
+    /// Where a link is not strained, whatever its neighbours: at rest, or as long as the material has grown.
+    const LinkPose& natural(size_t link) const { return natural_[link]; }
     /// s of each link; empty where no effect is in force.
     const std::vector<double>& scales() const { return scales_; }
 
     /// d net force / d k in a state (6N x stiffnesses, in their order): each column the force at unit stiffness.
     Eigen::SparseMatrix<double> forces(const State& state, const FibreStates& before = {}) const;
-    /// The same after a step from rest (6N), to first order; how forces change is that of `natural`.
+    /// The same after a step from rest (6N), to first order; how a link's forces change is that of its
+    /// `natural` pose.
     Eigen::SparseMatrix<double> linear_forces(const Eigen::VectorXd& step, const FibreStates& before = {}) const;
 
     /// What the fibres have been through once they stood in a state (12L); empty when nothing remembers.
@@ -66,10 +70,10 @@ public:
 private:
     double scale_of(const Link& link, const FibreOffsets& offsets, const fem::Effects& effects) const;
     bool has_law(size_t link) const { return !laws_.empty() && laws_[link].in_force; }
-    FullLink coupled(size_t link, const State& state) const;
-    LinkFibre fibre(size_t link, int j, const State& state) const;
+    FullLink coupled(size_t link, const LinkPose& ends) const;
+    LinkFibre fibre(size_t link, int j, const LinkPose& ends) const;
     StretchTerms fibre_terms(size_t link, int j, double stretch, bool with_second, const FibreStates& before) const;
-    void add_effects(size_t link, const State& state, const FibreStates& before, bool with_hessian,
+    void add_effects(size_t link, const LinkPose& ends, const FibreStates& before, bool with_hessian,
                      LinkTerms& terms) const;
     template <typename ForcesOf>
     Eigen::SparseMatrix<double> assembled(const ForcesOf& forces_of,
@@ -79,7 +83,8 @@ private:
     PlacedVolumes volumes_;
     std::vector<Link> links_;
     std::vector<Vec3> directions_;  // at rest (L)
-    State rest_, natural_;
+    State rest_;
+    std::vector<LinkPose> natural_;                                     // (L)
     std::vector<std::shared_ptr<const fem::MaterialEffect>> material_;  // those with an energy of their own
     HistoryLaw history_;
     double torsion_, shear_;

@@ -16,9 +16,9 @@ constexpr int elongation = static_cast<int>(Stiffness::elongation);
 }  // namespace
 
 PlacedVolumes::PlacedVolumes(const Model& model, const fem::Effects& effects)
-    : links_(grown(model.links, effects.growth)),
+    : links_(grown_links(model, effects.growth)),
       rest_(rest_state(model)),
-      natural_(grown(rest_, effects.growth)),
+      natural_(natural_poses(model, effects.growth)),
       pair_of_link_(3 * model.links.size(), -1) {
     const StiffnessOrder order(model);
     if (!order.full()) return;
@@ -55,11 +55,18 @@ PlacedVolumes::PlacedVolumes(const Model& model, const fem::Effects& effects)
     }
 }
 
-std::vector<PlacedVolumes::Swelling> PlacedVolumes::swellings(const State& state) const {
+std::vector<LinkPose> PlacedVolumes::poses(const State& state) const {
+    std::vector<LinkPose> result;
+    result.reserve(links_.size());
+    for (const Link& link : links_) result.push_back(pose(link, state));
+    return result;
+}
+
+std::vector<PlacedVolumes::Swelling> PlacedVolumes::swellings(const std::vector<LinkPose>& poses) const {
     std::vector<Swelling> result(links_.size());
     for (std::size_t l = 0; l < links_.size(); ++l) {
         if (pair_of_link_[3 * l] < 0) continue;
-        const FullLink link = full_link(links_[l], rest_, state);
+        const FullLink link = full_link(links_[l], rest_, poses[l]);
         const double half = 0.5 * links_[l].section->area;
         result[l] = {half * link.strains()[elongation], half * link.gradients().col(elongation)};
     }
@@ -82,7 +89,7 @@ PlacedVolumes::Gradient PlacedVolumes::gradient_of(const Cell& cell, const std::
 }
 
 double PlacedVolumes::energy(const Eigen::VectorXd& k, const State& state) const {
-    const std::vector<Swelling> all = swellings(state);
+    const std::vector<Swelling> all = swellings(poses(state));
     double sum = 0;
     for (const Cell& cell : cells_) {
         double change = 0;
@@ -93,7 +100,7 @@ double PlacedVolumes::energy(const Eigen::VectorXd& k, const State& state) const
 }
 
 Eigen::VectorXd PlacedVolumes::force(const Eigen::VectorXd& k, const State& state) const {
-    const std::vector<Swelling> all = swellings(state);
+    const std::vector<Swelling> all = swellings(poses(state));
     Eigen::VectorXd f = Eigen::VectorXd::Zero(6 * rest_.x.rows());
     for (const Cell& cell : cells_) {
         double change = 0;
@@ -104,8 +111,9 @@ Eigen::VectorXd PlacedVolumes::force(const Eigen::VectorXd& k, const State& stat
     return f;
 }
 
-std::vector<PlacedVolumes::Block> PlacedVolumes::curvature(const Eigen::VectorXd& k, const State& state) const {
-    const std::vector<Swelling> all = swellings(state);
+std::vector<PlacedVolumes::Block> PlacedVolumes::curvature(const Eigen::VectorXd& k,
+                                                           const std::vector<LinkPose>& poses) const {
+    const std::vector<Swelling> all = swellings(poses);
     std::vector<Block> blocks(pairs_.size(), Block::Zero());
     std::vector<double> pressures(links_.size(), 0);  // on each link's section, of the cells at both ends
     for (std::size_t c = 0; c < cells_.size(); ++c) {
@@ -126,7 +134,7 @@ std::vector<PlacedVolumes::Block> PlacedVolumes::curvature(const Eigen::VectorXd
         FullLink::Strains factors = FullLink::Strains::Zero();
         factors[elongation] = 0.5 * links_[l].section->area * pressures[l];
         Mat12 H = Mat12::Zero();
-        full_link(links_[l], rest_, state).add_curvature(factors, H);
+        full_link(links_[l], rest_, poses[l]).add_curvature(factors, H);
         blocks[pair_of_link_[3 * l]] += H.topRightCorner<6, 6>();
         blocks[pair_of_link_[3 * l + 1]] += H.topLeftCorner<6, 6>();
         blocks[pair_of_link_[3 * l + 2]] += H.bottomRightCorner<6, 6>();
@@ -135,7 +143,7 @@ std::vector<PlacedVolumes::Block> PlacedVolumes::curvature(const Eigen::VectorXd
 }
 
 void PlacedVolumes::add_forces(const State& state, std::vector<Eigen::Triplet<double>>& entries) const {
-    const std::vector<Swelling> all = swellings(state);
+    const std::vector<Swelling> all = swellings(poses(state));
     for (const Cell& cell : cells_) {
         double change = 0;
         for (const auto& [sphere, own] : gradient_of(cell, all, change)) {
@@ -149,7 +157,7 @@ void PlacedVolumes::add_forces(const State& state, std::vector<Eigen::Triplet<do
 
 void PlacedVolumes::add_linear_forces(const Eigen::VectorXd& step, std::vector<Eigen::Triplet<double>>& entries) const {
     // At rest nothing has swollen but by links that rest at another length than their spheres' distance.
-    const std::vector<Swelling> all = swellings(natural_), at_rest = swellings(rest_);
+    const std::vector<Swelling> all = swellings(natural_), at_rest = swellings(poses(rest_));
     for (const Cell& cell : cells_) {
         double change = 0;
         const Gradient gradient = gradient_of(cell, all, change);
@@ -163,7 +171,7 @@ void PlacedVolumes::add_linear_forces(const Eigen::VectorXd& step, std::vector<E
             FullLink::Strains factors = FullLink::Strains::Zero();
             factors[elongation] = 0.5 * links_[l].section->area * change;
             Mat12 H = Mat12::Zero();
-            full_link(links_[l], rest_, natural_).add_curvature(factors, H);
+            full_link(links_[l], rest_, natural_[l]).add_curvature(factors, H);
             Vec12 own;
             own << step.segment<6>(Eigen::Index{6} * links_[l].a), step.segment<6>(Eigen::Index{6} * links_[l].b);
             const Vec12 more = H * own;

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "skeleton/links/link_energy.h"
-#include "skeleton/model/state.h"
+#include "skeleton/model/link_pose.h"
 
 namespace palpate::skeleton {
 
@@ -29,7 +29,11 @@ public:
     /// - d energy / d step (6N).
     Eigen::VectorXd force(const Eigen::VectorXd& k, const State& state) const;
     /// The block (a, b) of d^2 energy / d step^2 of each pair.
-    std::vector<Block> curvature(const Eigen::VectorXd& k, const State& state) const;
+    std::vector<Block> curvature(const Eigen::VectorXd& k, const State& state) const {
+        return curvature(k, poses(state));
+    }
+    /// The same where no link is strained.
+    std::vector<Block> natural_curvature(const Eigen::VectorXd& k) const { return curvature(k, natural_); }
 
     /// Adds d net force / d k to the triplets of a matrix (6N x stiffnesses).
     void add_forces(const State& state, std::vector<Eigen::Triplet<double>>& entries) const;
@@ -49,13 +53,16 @@ private:
         double volume = 0;
         Vec12 gradient = Vec12::Zero();
     };
-    std::vector<Swelling> swellings(const State& state) const;
+    std::vector<LinkPose> poses(const State& state) const;  // (L)
+    std::vector<Swelling> swellings(const std::vector<LinkPose>& poses) const;
+    std::vector<Block> curvature(const Eigen::VectorXd& k, const std::vector<LinkPose>& poses) const;
     // theta V, and its derivative where it is not zero: a sphere and six entries each.
     using Gradient = std::vector<std::pair<int, Eigen::Matrix<double, 6, 1>>>;
     Gradient gradient_of(const Cell& cell, const std::vector<Swelling>& swellings, double& change) const;
 
     std::vector<Link> links_;
-    State rest_, natural_;  // natural: where no link is strained, see growth.h
+    State rest_;
+    std::vector<LinkPose> natural_;  // see growth.h
     std::vector<Cell> cells_;
     std::vector<std::array<int, 2>> pairs_;
     std::vector<std::vector<int>> pair_of_;  // of each cell: of each pair of its spheres, in the order of Gradient

@@ -43,7 +43,7 @@ std::vector<skeleton::Stiffnesses> scaled_stiffnesses(const skeleton::Model& mod
 ForceField::ForceField(const skeleton::Model& given)
     : model_(given), moves_(given.spheres.size(), 1), poses_(given.spheres.size()) {
     const fem::Effects effects = skeleton::physics_of(given.effects);
-    model_.links = skeleton::grown(given.links, effects.growth);
+    model_.links = skeleton::grown_links(given, effects.growth);
     const skeleton::Model& model = model_;
     laws_ = skeleton::section_laws(given, effects);
     std::vector<double> scales = skeleton::PlacedLinks(given, effects).scales();

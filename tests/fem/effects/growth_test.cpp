@@ -13,7 +13,7 @@ namespace {
 constexpr double growth = 0.08;
 
 BodySetting has_grown(MaterialLaw law, Effects effects = {}) {
-    effects.growth += growth;
+    effects.growth.everywhere += growth;
     return {law, {.young = 0.7, .poisson = 0.4, .density = 0}, std::move(effects)};
 }
 
@@ -45,12 +45,49 @@ TEST(Growth, LeavesNoForceInABodyThatIsFreeToTakeIt) {
     }
 }
 
+/// Half of the bar has grown.
+BodySetting has_grown_in_part(MaterialLaw law) {
+    BodySetting setting{law, {.young = 0.7, .poisson = 0.4, .density = 0}, {}};
+    setting.effects.growth.parts.push_back({{Vec3(2, 0.5, 0.5), 0.7}, 0.1});
+    return setting;
+}
+
+TEST(Growth, OfAPartIsThatOfItsElements) {
+    const GrowingBar bar;
+    const HyperelasticBody body(bar.mesh, bar.held, dilatations.front());
+    BodySetting plain{MaterialLaw::neo_hookean, {.young = 0.7, .poisson = 0.4, .density = 0}, {}};
+    BodySetting everywhere = plain;
+    everywhere.effects.growth.parts.push_back({{Vec3(0, 0, 0), 1e6}, growth});
+    const Eigen::VectorXd r = body.residual(bar.u, has_grown(MaterialLaw::neo_hookean), bar.none);
+    EXPECT_LT((body.residual(bar.u, everywhere, bar.none) - r).norm(), 1e-9 * r.norm());
+    // A part that is nowhere near does nothing, and one that has grown pushes.
+    BodySetting away = plain;
+    away.effects.growth.parts.push_back({{Vec3(100, 0, 0), 1}, growth});
+    EXPECT_EQ(body.residual(bar.none, away, bar.none).norm(), 0);
+    EXPECT_GT(body.residual(bar.none, has_grown_in_part(MaterialLaw::neo_hookean), bar.none).norm(), 0.01);
+}
+
+TEST(Growth, IsSteppedAsALoadIs) {
+    // At rest with all of it, Newton's method comes to no end.
+    const mesh::VolumeMesh mesh = jittered_bar(Kind::curved, {6, 2, 2}, {6, 1, 1});
+    const HyperelasticBody body(mesh, nodes_where(mesh, [](const Vec3& x) { return x.x() < 0.2; }),
+                                dilatations.front());
+    BodySetting setting{MaterialLaw::neo_hookean, {.young = 0.7, .poisson = 0.45, .density = 0}, {}};
+    setting.effects.growth.parts.push_back({{Vec3(3, 0.2, 0.5), 1}, 2});
+    const Eigen::VectorXd none = Eigen::VectorXd::Zero(mesh.nodes.size());
+    const double confined = body.residual(none, setting, none).norm();
+    const BodyEquilibrium found = body.equilibrium(setting, none);
+    EXPECT_LT(found.residual, 1e-6 * confined);
+    EXPECT_GT(found.u.cwiseAbs().maxCoeff(), 1);
+}
+
 TEST(Growth, ForceAndTangentAreDerivatives) {
     const GrowingBar bar;
     for (const Dilatation dilatation : dilatations) {
         const HyperelasticBody body(bar.mesh, bar.held, dilatation);
         for (const MaterialLaw law : laws) {
-            const BodySetting setting = has_grown(law, {.material = {std::make_shared<Stiffening>(0.5, 2.0)}});
+            BodySetting setting = has_grown(law, {.material = {std::make_shared<Stiffening>(0.5, 2.0)}});
+            setting.effects.growth.add(has_grown_in_part(law).effects.growth);
             const auto energy = [&](const Eigen::VectorXd& at) {
                 return Eigen::VectorXd::Constant(1, body.potential(at, setting, bar.none)).eval();
             };

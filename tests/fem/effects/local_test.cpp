@@ -65,6 +65,22 @@ TEST(LocalSprings, PullAPartThatMovesBackByTheStiffnessInAll) {
     EXPECT_NEAR(energy, 0.5 * 0.7 * moved.squaredNorm(), 1e-15);
 }
 
+TEST(Growth, OfPartsAddsUp) {
+    Growth growth{.everywhere = 0.1, .parts = {{{Vec3(2, 0, 0), 2}, -0.3}}};
+    EXPECT_DOUBLE_EQ(growth.at({2, 0, 2}), 0.1 - 0.3 * std::exp(-0.5));
+    growth.add({.everywhere = 0.05, .parts = {{{Vec3(0, 0, 0), 1}, 0.2}}});
+    EXPECT_NEAR(growth.at({2, 0, 0}), 0.15 - 0.3 + 0.2 * std::exp(-2), 1e-15);
+    EXPECT_TRUE(growth.possible());
+    EXPECT_THROW(growth.add({.parts = {{{Vec3(50, 0, 0), 1}, -0.9}}}), InvalidInput);
+}
+
+TEST(Growth, MeanAlongALineIsThatOfTheGaussian) {
+    const Growth growth{.parts = {{{Vec3(1, 0, 0), 2}, 0.2}}};
+    const double integral = 2 * std::sqrt(M_PI / 2) * (std::erf(4 / std::sqrt(8.0)) + std::erf(1 / std::sqrt(8.0)));
+    EXPECT_NEAR(growth.between({0, 0, 0}, {5, 0, 0}), 0.2 * integral / 5, 3e-4);  // h^2 / 24 of the slopes at its ends
+    EXPECT_DOUBLE_EQ(growth.between({1, 0, 0}, {1, 0, 0}), 0.2);
+}
+
 TEST(LocalEffects, AreKnownByTheirNumbers) {
     const std::vector<EffectParameter> place{{"cx", 1, "mm"}, {"cy", 2, "mm"}, {"cz", 3, "mm"}, {"radius", 4, "mm"}};
     EffectRecord force{"local-force", place}, springs{"local-springs", place};
@@ -75,6 +91,11 @@ TEST(LocalEffects, AreKnownByTheirNumbers) {
     EXPECT_EQ(known.make(springs).points.front()->terms(Vec3::Zero(), Vec3(1, 0, 0)).gradient, Vec3(0.2, 0, 0));
     springs.parameters[3].value = 0;
     EXPECT_THROW(known.make(springs), InvalidInput);
+    EffectRecord swelling{"local-swelling", place};
+    swelling.parameters.push_back({"growth", -0.5, "1"});
+    EXPECT_EQ(known.make(swelling).growth.at({1, 2, 3}), -0.5);
+    swelling.parameters.back().value = -1;
+    EXPECT_THROW(known.make(swelling), InvalidInput);
 }
 
 }  // namespace

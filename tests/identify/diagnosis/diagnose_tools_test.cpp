@@ -148,7 +148,7 @@ TEST_F(MovedByAGrip, SensitivitiesAreDerivativesOfReactionsToo) {
         const ForwardSolution forward = solve_forward(*model_, problem, at, 1);
         const Eigen::MatrixXd columns =
             sensitivities(*model_, problem, at, forward, {own_signatures(*model_, problem, at, forward)}, 1).front() +
-            seen_directly(problem, at, forward);
+            seen_directly(*model_, problem, at, forward);
         for (Eigen::Index p = 0; p < 2; ++p) {
             constexpr double h = 2e-3;  // of a logarithm: the third derivative alters 1e-6 of it
             Explanation ahead = at, behind = at;

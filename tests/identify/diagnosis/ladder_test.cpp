@@ -209,8 +209,7 @@ TEST_F(Climbed, WhatWasNamedAndIsNotAddedIsStillMissing) {
 
 TEST_F(Climbed, AResidualIsAddedWhereItMakesForecastsBetter) {
     const Eigen::VectorXd pull = numbers({32, 5, 5, std::log(4), 0, 0.006, -0.008});
-    options_.residual = "local-force";
-    options_.start = {{"local-force", {{"cx", 28, "mm"}, {"fz", -0.01, "N"}}}};
+    options_.residual = Residual{.effect = {"local-force", {{"cx", 28, "mm"}, {"fz", -0.01, "N"}}}};
     const Ladder ladder = build_ladder(twin({{"local-force", pull}}), {"local-force"});
     ASSERT_EQ(ladder.steps.size(), 2u);
     EXPECT_LT(ladder.steps[1].reference->held_out_rms_mm, 0.2 * ladder.steps[0].reference->held_out_rms_mm);
@@ -219,7 +218,7 @@ TEST_F(Climbed, AResidualIsAddedWhereItMakesForecastsBetter) {
 }
 
 TEST_F(Climbed, AResidualIsNotAddedWhereItForecastsNothing) {
-    options_.residual = "local-force";
+    options_.residual = Residual{.effect = {"local-force", {}}};
     options_.only_better = true;
     const Ladder ladder = build_ladder(twin({}), {"local-force"});
     EXPECT_EQ(ladder.steps.size(), 1u);
@@ -228,7 +227,7 @@ TEST_F(Climbed, AResidualIsNotAddedWhereItForecastsNothing) {
 }
 
 TEST_F(Climbed, AResidualIsNotAddedWhereNoProbeCanBeHeldOut) {
-    options_.residual = "local-force";
+    options_.residual = Residual{.effect = {"local-force", {}}};
     options_.only_better = true;
     const Ladder ladder = build_ladder(twin({}, 2), {"local-force"});
     ASSERT_TRUE(ladder.held_out_probes.empty());

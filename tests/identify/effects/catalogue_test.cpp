@@ -21,10 +21,11 @@ using testing::HasSubstr;
 
 /// Names that users may rely on.
 const std::set<std::string> promised{
-    "gravity",   "stiffening",     "anisotropy", "inclusion", "volume",       "torsion",
-    "shear",     "contact",        "pressure",   "prestress", "swelling",     "compliant-support",
-    "viscosity", "plasticity",     "damage",     "friction",  "misalignment", "force-gain",
-    "slip",      "actuation-gain", "clock",      "outliers",  "local-force",  "local-springs"};
+    "gravity",       "stiffening",     "anisotropy", "inclusion", "volume",       "torsion",
+    "shear",         "contact",        "pressure",   "prestress", "swelling",     "compliant-support",
+    "viscosity",     "plasticity",     "damage",     "friction",  "misalignment", "force-gain",
+    "slip",          "actuation-gain", "clock",      "outliers",  "local-force",  "local-springs",
+    "local-swelling"};
 const std::set<std::string> probe_kinds{"load", "orientation", "pressure", "dwell", "unload", "repeat", "fiducials"};
 
 class EveryEffect : public testing::TestWithParam<std::shared_ptr<const EffectHypothesis>> {

@@ -28,7 +28,7 @@ TEST(EffectMessages, EveryFaultIsNamed) {
             .rfind("effect 'gravitty' is not known (did you mean 'gravity'?); known are 'gravity', "
                    "'compliant-support', 'stiffening', 'anisotropy', 'inclusion', 'contact', 'pressure', "
                    "'prestress', 'swelling', 'viscosity', 'plasticity', 'damage', 'friction', 'volume', 'local-force', "
-                   "'local-springs', 'torsion', 'shear', ",
+                   "'local-springs', 'local-swelling', 'torsion', 'shear', ",
                    0),
         0u);
     EXPECT_EQ(complaint({"outliers", {}}),

@@ -42,6 +42,7 @@ const std::vector<EffectRecord> all_effects{
       {"fz", 0, "N"}}},
     {"local-springs",
      {{"cx", 10, "mm"}, {"cy", 0, "mm"}, {"cz", 0, "mm"}, {"radius", 5, "mm"}, {"stiffness", 0.2, "N/mm"}}},
+    {"local-swelling", {{"cx", 10, "mm"}, {"cy", 0, "mm"}, {"cz", 0, "mm"}, {"radius", 5, "mm"}, {"growth", 0.3, "1"}}},
     {"torsion", {{"torsion", 0.5, "1"}}},
     {"shear", {{"shear", 0.5, "1"}}},
 };
@@ -60,7 +61,8 @@ TEST(KnownEffects, TellTheirNumbers) {
     EXPECT_EQ(physics.points.size(), 5u);    // gravity, support, contact, a force and springs in one place
     EXPECT_EQ(physics.material.size(), 4u);  // stiffening, anisotropy, inclusion, prestress
     EXPECT_EQ(physics.pressure, 0.01);
-    EXPECT_EQ(physics.growth, -0.02);
+    EXPECT_EQ(physics.growth.everywhere, -0.02);
+    EXPECT_DOUBLE_EQ(physics.growth.at({10, 5, 0}), -0.02 + 0.3 * std::exp(-0.5));
     EXPECT_EQ(link_effects(physics).torsion, 0.5);
     EXPECT_EQ(link_effects(physics).shear, 0.5);
     EXPECT_EQ(physics.creep->creep, 0.7);

@@ -30,7 +30,7 @@ Apart apart_under_push(const skeleton::Model& model, int vertex, const Vec3& for
 
     Body body(model);
     // where the vertex stands at the beginning: its spheres have parted where the material has grown
-    const double growth = skeleton::physics_of(model.effects).growth;
+    const fem::Growth growth = skeleton::physics_of(model.effects).growth;
     const int contact = body.touch(
         skeleton::carried_place(model.skin[vertex], skeleton::rest_state(model), skeleton::grown_start(model, growth)));
     body.push(contact, force);

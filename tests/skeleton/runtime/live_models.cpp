@@ -87,7 +87,8 @@ std::vector<skeleton::EffectRecord> playable_effects() {
           {"fx", 0.05, ""},
           {"fy", 0.02, ""},
           {"fz", -0.1, ""}}},
-        {"local-springs", {{"cx", 16, ""}, {"cy", 8, ""}, {"cz", 8, ""}, {"radius", 5, ""}, {"stiffness", 0.3, ""}}}};
+        {"local-springs", {{"cx", 16, ""}, {"cy", 8, ""}, {"cz", 8, ""}, {"radius", 5, ""}, {"stiffness", 0.3, ""}}},
+        {"local-swelling", {{"cx", 12, ""}, {"cy", 8, ""}, {"cz", 5, ""}, {"radius", 6, ""}, {"growth", 0.08, ""}}}};
 }
 
 }  // namespace palpate::runtime

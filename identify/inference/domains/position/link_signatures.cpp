@@ -47,7 +47,7 @@ LinksAtRest::LinksAtRest(const skeleton::Model& model)
         const auto link = static_cast<std::size_t>(l);
         gradients.middleCols(n * l, n) = placed.terms(link, state, false).gradient;
         if (linear) {
-            const skeleton::LinkTerms natural = placed.terms(link, placed.natural(), true);
+            const skeleton::LinkTerms natural = placed.terms(link, placed.natural(link), true);
             for (int s = 0; s < n; ++s) {
                 for (const Term& term : terms_of(natural.hessian[s])) {
                     found.push_back(term);

@@ -62,7 +62,7 @@ TEST_P(Signature, OfEveryNumberIsTheDerivativeOfWhatIsSeen) {
     const Eigen::MatrixXd columns =
         sensitivities(*model_, problem_, truth_, forward, {own_signatures(*model_, problem_, truth_, forward)}, 1)
             .front() +
-        seen_directly(problem_, truth_, forward);
+        seen_directly(*model_, problem_, truth_, forward);
     ASSERT_EQ(columns.cols(), truth_.numbers());
     ASSERT_TRUE(truth_.effects.empty() || truth_.values.front().size() > 0);
     for (Eigen::Index p = 0; p < columns.cols(); ++p) {

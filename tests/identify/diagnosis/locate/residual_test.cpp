@@ -78,6 +78,20 @@ TEST_F(ResidualOfABar, IsSpringsWhereTheSkinIsHeld) {
     EXPECT_GT(residual->effect.parameters[4].value, 0);
 }
 
+TEST_F(ResidualOfABar, IsGrowthWhereThatMaterialSwells) {
+    const Eigen::VectorXd swollen = numbers({24, 7, 3, std::log(4), 0.1});
+    const Explanation hidden = truth("local-swelling", swollen);
+    const Diagnosis without = left_by(hidden);
+    const auto residual = find_residual(*model_, without, {});
+    ASSERT_TRUE(residual);
+    EXPECT_EQ(residual->effect.name, "local-swelling");
+    const Refit& fit = left_by(hidden, {residual->effect}).baseline;
+    EXPECT_LT(fit.whitened_rms, 1.1);
+    const skeleton::EffectRecord found = fit.explanation.effects[0]->record(fit.numbers[0], fit.explanation.values[0]);
+    EXPECT_LT((vector_at(found, 0) - swollen.head<3>()).norm(), 0.1 * model_->size());
+    EXPECT_GT(found.parameters[4].value, 0);
+}
+
 TEST_F(ResidualOfABar, IsNoneWhereNothingIsLeft) {
     const auto residual = find_residual(*model_, left_by(truth()), {});
     // Where nothing is missing a Bayes factor is 1 on average.

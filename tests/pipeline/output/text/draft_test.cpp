@@ -28,6 +28,12 @@ skeleton::EffectRecord springs() {
     return effect;
 }
 
+skeleton::EffectRecord swelling() {
+    skeleton::EffectRecord effect{"local-swelling", place()};
+    effect.parameters.push_back({"growth", -0.08, "1"});
+    return effect;
+}
+
 /// PALPATE_UPDATE=1 writes the files. They are compiled and tried by drafted_effects_tests.
 void expect_draft(const skeleton::EffectRecord& effect, const std::string& name) {
     const std::filesystem::path file = drafts / (name + ".cc");
@@ -40,6 +46,7 @@ void expect_draft(const skeleton::EffectRecord& effect, const std::string& name)
 
 TEST(Draft, OfAForceIsTheFileThatIsTried) { expect_draft(force(), "pull"); }
 TEST(Draft, OfSpringsIsTheFileThatIsTried) { expect_draft(springs(), "ligament"); }
+TEST(Draft, OfSwellingIsTheFileThatIsTried) { expect_draft(swelling(), "dry-spot"); }
 
 TEST(Draft, NeedsANameThatIsFree) {
     EXPECT_EQ(message_of([] { draft_of(force(), "gravity"); }),

@@ -1,7 +1,7 @@
 // Something holds the skin around (29.4, -2.0, -2.8) mm, within 9.3 mm, as springs of 0.055 N/mm in all.
 //
 // A draft, written by 'palpate improve --residual --draft': where it acts and how strong it is were fitted, what it is
-// was not. Say what it is, and change the potential where its cause asks for another one. To build palpate with it, in
+// was not. Say what it is, and change the physics where its cause asks for others. To build palpate with it, in
 // the project's folder:
 //   cmake --preset release -DPALPATE_OWN_EFFECTS=THIS_FILE && cmake --build --preset release
 
@@ -20,9 +20,10 @@ using namespace palpate;
 
 const fem::Locality where{{29.381, -1.9754, -2.828}, 9.28};  // its middle and 1 sd of its weight [mm]
 
-// --- The physics: a potential at a point, of which each point has a share ------------------------------------------
+// --- The physics -----------------------------------------------------------------------------------------------------
 
-/// Springs on the skin, by its area: e = k/2 |x - X|^2, k in N/mm in all.
+/// Springs on the skin: the potential of a point, of which each has a share by its area, is e = k/2 |x - X|^2, k in
+/// N/mm in all.
 class Source : public fem::PointPotential {
 public:
     explicit Source(double k) : k_(k) {}
@@ -39,11 +40,13 @@ private:
     double k_;
 };
 
+fem::Effects source(double k) { return {.points = {std::make_shared<Source>(k)}}; }
+
 skeleton::KnownEffect known_physics() {
     return {"ligament",
             {{"stiffness", "N/mm"}},
             [](const skeleton::EffectNumbers& numbers) -> fem::Effects {
-                return {.points = {std::make_shared<Source>(numbers["stiffness"])}};
+                return source(numbers["stiffness"]);
             }};
 }
 
@@ -79,7 +82,7 @@ public:
     }
 
     bool enforce(const Eigen::VectorXd& values, identify::ModelSetting& setting) const override {
-        setting.effects.points.push_back(std::make_shared<Source>(values[0]));
+        setting.effects.add(source(values[0]));
         return true;
     }
 

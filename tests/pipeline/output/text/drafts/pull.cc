@@ -1,7 +1,7 @@
 // A force of 0.05 N towards (-0.60, 0.00, 0.80) acts within the body, around (29.4, -2.0, -2.8) mm, within 9.3 mm.
 //
 // A draft, written by 'palpate improve --residual --draft': where it acts and how strong it is were fitted, what it is
-// was not. Say what it is, and change the potential where its cause asks for another one. To build palpate with it, in
+// was not. Say what it is, and change the physics where its cause asks for others. To build palpate with it, in
 // the project's folder:
 //   cmake --preset release -DPALPATE_OWN_EFFECTS=THIS_FILE && cmake --build --preset release
 
@@ -20,9 +20,10 @@ using namespace palpate;
 
 const fem::Locality where{{29.381, -1.9754, -2.828}, 9.28};  // its middle and 1 sd of its weight [mm]
 
-// --- The physics: a potential at a point, of which each point has a share ------------------------------------------
+// --- The physics -----------------------------------------------------------------------------------------------------
 
-/// A constant force on the material, by its mass: e = -F . (x - X), F in N in all.
+/// A constant force on the material: the potential of a point, of which each has a share by its mass, is
+/// e = -F . (x - X), F in N in all.
 class Source : public fem::PointPotential {
 public:
     explicit Source(const Vec3& force) : force_(force) {}
@@ -38,11 +39,13 @@ private:
     Vec3 force_;
 };
 
+fem::Effects source(const Vec3& force) { return {.points = {std::make_shared<Source>(force)}}; }
+
 skeleton::KnownEffect known_physics() {
     return {"pull",
             {{"fx", "N"}, {"fy", "N"}, {"fz", "N"}},
             [](const skeleton::EffectNumbers& numbers) -> fem::Effects {
-                return {.points = {std::make_shared<Source>(numbers.vector("fx", "fy", "fz"))}};
+                return source(numbers.vector("fx", "fy", "fz"));
             }};
 }
 
@@ -78,7 +81,7 @@ public:
     }
 
     bool enforce(const Eigen::VectorXd& values, identify::ModelSetting& setting) const override {
-        setting.effects.points.push_back(std::make_shared<Source>(values.head<3>()));
+        setting.effects.add(source(values.head<3>()));
         return true;
     }
 
