@@ -204,8 +204,8 @@ void share_out(std::vector<Alternative>& all) {
     }
 }
 
-/// Of each form and law the likeliest place, and the likeliest of those that are farther from it than `apart`; the
-/// likeliest first.
+/// Of each form and law the likeliest place, the likeliest of those that are farther from it than `apart`, and all of
+/// the body; the likeliest first.
 std::vector<MissingSource::Rival> rivals_among(const std::vector<Alternative>& all, double apart) {
     std::vector<const Alternative*> chosen;
     const auto keep_likeliest = [&](auto first, auto end, const auto& may) {
@@ -219,8 +219,11 @@ std::vector<MissingSource::Rival> rivals_among(const std::vector<Alternative>& a
         const auto end = std::find_if_not(first, all.end(),
                                           [&](const Alternative& one) { return is_same_but_for_place(*first, one); });
         const Alternative* best = keep_likeliest(first, end, [](const Alternative&) { return true; });
-        keep_likeliest(first, end,
-                       [&](const Alternative& one) { return (one.term.centre - best->term.centre).norm() > apart; });
+        keep_likeliest(first, end, [&](const Alternative& one) {
+            return !std::isinf(one.term.radius) && (one.term.centre - best->term.centre).norm() > apart;
+        });
+        if (!std::isinf(best->term.radius))
+            keep_likeliest(first, end, [](const Alternative& one) { return std::isinf(one.term.radius); });
         first = end;
     }
     std::ranges::stable_sort(chosen, [](const auto* a, const auto* b) { return a->log_weight > b->log_weight; });

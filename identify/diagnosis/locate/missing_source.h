@@ -79,8 +79,8 @@ struct MissingSource {
     Vec3 direction = Vec3::Zero();  // of unit length; 0: it has none
     double direction_sd = 0;        // [rad]
     std::vector<int> states = {};   // of the set, in which it shows: a fifth or more of the most
-    /// Where each form of source is likeliest, under each law that it may follow, in one or two places far apart; the
-    /// likeliest first.
+    /// Where each form of source is likeliest, under each law that it may follow: in one or two places far apart, and
+    /// all over the body; the likeliest first.
     struct Rival {
         SourceKind kind;
         SourceTerm term;

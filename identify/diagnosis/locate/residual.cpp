@@ -161,8 +161,8 @@ std::optional<FittedSource> fitted(const BodyModel& model, const Problem& proble
     }
 }
 
-/// The likeliest of some fits: of each effect from its likeliest place, then of the likeliest effect from others, and
-/// under other laws.
+/// The likeliest of some fits: of each effect from its likeliest place and from all of the body, then of the likeliest
+/// effect from other places, and under other laws.
 std::optional<FittedSource> likeliest_fit(const BodyModel& model, const Problem& problem,
                                           const std::vector<MissingSource::Rival>& rivals, const Refit& beside,
                                           const Refit& without, const DiagnoseOptions& options) {
@@ -180,12 +180,12 @@ std::optional<FittedSource> likeliest_fit(const BodyModel& model, const Problem&
         start.values.push_back(effect->values(effect->numbers(model, problem), record_of(located.term, model.size())));
         keep_likelier(fitted(model, problem, located, start, beside, without, how));
     };
-    std::set<std::string> tried;
+    std::set<std::pair<std::string, bool>> tried;  // in one place, or all over the body
     std::vector<const MissingSource::Rival*> others;
     for (const MissingSource::Rival& rival : rivals) {
         const std::string effect = effect_of(rival.term);
         if (effect.empty()) continue;
-        if (tried.insert(effect).second)
+        if (tried.emplace(effect, std::isinf(rival.term.radius)).second)
             try_from(rival);
         else
             others.push_back(&rival);

@@ -156,9 +156,12 @@ std::string where_line(const json& diagnosis) {
     std::string kinds;
     for (const auto& [kind, ln] : where["log_bayes_factors"].items())
         kinds += fmt::format("{}{} {}", kinds.empty() ? "" : ", ", kind, evidence(ln));
-    return "<p><b>Whatever its name:</b> " + escape(where["sentence"].get<std::string>()) +
-           " <span class=\"soft\">To first order, about the model without any effect; evidence by kind: " +
-           escape(kinds) + ".</span></p>";
+    // Where an effect has a name, its own numbers tell more.
+    const std::string how = diagnosis["verdict"] == "unexplained"
+                                ? "Fitted where models show such a source, else to first order"
+                                : "To first order, about the model without any effect";
+    return fmt::format("<p><b>Whatever its name:</b> {} <span class=\"soft\">{}; evidence by kind: {}.</span></p>",
+                       escape(where["sentence"].get<std::string>()), how, escape(kinds));
 }
 
 }  // namespace
