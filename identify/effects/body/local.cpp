@@ -161,7 +161,7 @@ public:
 
     std::vector<EffectNumber> numbers(const BodyModel& model, const Problem&) const override {
         std::vector<EffectNumber> result = numbers_of_place(model);
-        // A third of the volume there, more or less; that of an even swelling besides, more than nothing is left.
+        // A third of the volume there, more or less. With the least of an even swelling some material is left.
         result.push_back({.name = "growth", .unit = "1", .prior_sd = 0.1, .least = -0.4});
         return result;
     }

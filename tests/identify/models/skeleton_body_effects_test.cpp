@@ -210,6 +210,27 @@ TEST_P(SkeletonUnderAll, PiecesTogetherAreWhatStiffens) {
     EXPECT_LT((all - expected).norm(), 1e-12 * expected.norm());  // rounding
 }
 
+TEST(SkeletonThatGrew, CarriesMarkersAsFarOutAsTheModelDoes) {
+    const SmallBody body;
+    const skeleton::EffectRecord effect{
+        "local-swelling",
+        {{"cx", 25, "mm"}, {"cy", 5, "mm"}, {"cz", 5, "mm"}, {"radius", 9, "mm"}, {"growth", 0.1, "1"}}};
+    for (const int law : {0, 1}) {
+        const SkeletonBody judged(body.chain(), body.markers, SmallBody::young);
+        ModelSetting setting = bare_truth(judged, law).setting();
+        setting.effects = skeleton::make_physics(effect);
+        const Points seen = judged.observe(judged.equilibrium(setting, {}, nullptr), setting);
+
+        skeleton::Model model = body.chain();
+        model.law = static_cast<EquilibriumLaw>(law);
+        const std::vector<StateReadings> readings = collect_readings(model, body.set(SmallBody::probes()));
+        model.effects = {effect};
+        const Points expected = observe(model, equilibrium(model, {}), readings.front().points);
+        EXPECT_LT((seen - expected).cwiseAbs().maxCoeff(), 1e-8) << law;  // equilibria, each to 1e-9 of its forces
+        EXPECT_GT((seen - observe(model, skeleton::rest_state(model), readings.front().points)).norm(), 1);
+    }
+}
+
 INSTANTIATE_TEST_SUITE_P(Laws, SkeletonUnderAll, testing::Values(0, 1),
                          [](const auto& law) { return law.param == 0 ? "Linear" : "LargeRotation"; });
 
