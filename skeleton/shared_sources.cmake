@@ -18,9 +18,11 @@ set(shared_skeleton_sources
   links/fibres/history_law.cpp
   links/fibres/plastic_fibre.cpp
   links/fibres/uniaxial.cpp
+  links/placed/grown_links.cpp
   links/placed/placed_links.cpp
   links/placed/placed_volumes.cpp
   links/sections/section_law.cpp
+  links/sections/section_shape.cpp
   loads/cavities.cpp
   loads/dent.cpp
   loads/load.cpp

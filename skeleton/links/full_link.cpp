@@ -35,7 +35,7 @@ FullLink::FullLink(const LinkSection& section, double length, const Vec3& X_a, c
     for (const auto& [kind, axis] : partings) {
         const Vec3 f_a = axes_a_.col(axis), f_b = axes_b_.col(axis), mean = 0.5 * (f_a + f_b);
         const auto s = static_cast<int>(kind);
-        strains_[s] = mean.dot(gap_);
+        strains_[s] = mean.dot(gap_) - section.natural[s];
         gradients_.col(s) << -mean, 0.5 * f_a.cross(gap_) - arm_a_.cross(mean), mean,
             0.5 * f_b.cross(gap_) + arm_b_.cross(mean);
     }
@@ -50,7 +50,7 @@ FullLink::FullLink(const LinkSection& section, double length, const Vec3& X_a, c
         const auto s = static_cast<int>(kind);
         halves_[axis] = turn.vec().dot(f);
         turns_.col(axis) = turn.w() * f + turn.vec().cross(f);
-        strains_[s] = 2 * halves_[axis];
+        strains_[s] = 2 * halves_[axis] - section.natural[s];
         gradients_.col(s) << Vec3::Zero(), -turns_.col(axis), Vec3::Zero(), turns_.col(axis);
     }
 }

@@ -17,6 +17,7 @@ namespace palpate::skeleton {
 ///   shear       s = (R_a f_1 + R_b f_1) / 2 . d,  shear_2 with f_2      [mm]
 ///   torsion     s = 2 v . R_a f_0                                       [rad]
 ///   flexion     s = 2 v . R_a f_2, in the plane of shear,  flexion_2 with f_1
+/// each less its natural strain, where its material has grown unevenly (LinkSection::natural).
 /// The energy of each is 1/2 k s^2: conservative, the same after any rigid motion, and polynomial in rotations: 2 |v|
 /// is twice the sine of half the angle. A straight beam's segment with k = E A / L, E I / L, G J / L and, across, 1 /
 /// (L / (kappa G A) + L^3 / (12 E I)) is exact for small displacements of its ends.

@@ -2,32 +2,6 @@
 
 namespace palpate::skeleton {
 
-namespace {
-
-double factor_of(const Link& link, const Model& model, const fem::Growth& growth) {
-    return 1 + growth.between(model.spheres[link.a].center, model.spheres[link.b].center);
-}
-
-}  // namespace
-
-std::vector<Link> grown_links(const Model& model, const fem::Growth& growth) {
-    std::vector<Link> links = model.links;
-    for (Link& link : links) link.length *= factor_of(link, model, growth);
-    return links;
-}
-
-std::vector<LinkPose> natural_poses(const Model& model, const fem::Growth& growth) {
-    const State rest = rest_state(model);
-    std::vector<LinkPose> poses;
-    poses.reserve(model.links.size());
-    for (const Link& link : model.links) {
-        LinkPose& ends = poses.emplace_back(pose(link, rest));
-        const double factor = factor_of(link, model, growth);
-        if (factor != 1) ends.x_b = ends.x_a + factor * (ends.x_b - ends.x_a);
-    }
-    return poses;
-}
-
 State grown_start(const Model& model, const fem::Growth& growth) {
     State start = rest_state(model);
     if (growth.everywhere == 0) return start;

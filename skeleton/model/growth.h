@@ -1,20 +1,12 @@
 #pragma once
 
-#include <vector>
-
 #include "fem/effects/material/growth.h"
-#include "skeleton/model/link_pose.h"
+#include "skeleton/model/state.h"
 
 namespace palpate::skeleton {
 
-// What a skeleton is after its material has grown in every free length since its rest shape was taken. Its spheres
-// begin where they rest; stiffnesses stay what they are.
-
-/// Links that rest at their grown length.
-std::vector<Link> grown_links(const Model& model, const fem::Growth& growth);
-
-/// Each link by itself where nothing strains it: as long as it has grown (L).
-std::vector<LinkPose> natural_poses(const Model& model, const fem::Growth& growth);
+// What a skeleton is after its material has grown in every free length since its rest shape was taken, but for its
+// links (links/placed/grown_links.h).
 
 /// Where a search for an equilibrium begins: as grown everywhere, about the middle of what is held, which stays.
 State grown_start(const Model& model, const fem::Growth& growth);

@@ -44,6 +44,9 @@ struct LinkSection {
     Vec3 at = Vec3::Zero();        // its centroid, where the link's two halves meet [mm]
     Mat3 axes = Mat3::Identity();  // rows: along the link; across it in the planes of shear and of shear_2
     double area = 0;               // [mm^2]
+    /// Strains at which nothing strains it, as Stiffness orders them [mm, rad]: of material that has grown unevenly. A
+    /// model's own has none; elongation has its rest length.
+    Eigen::Matrix<double, 6, 1> natural = Eigen::Matrix<double, 6, 1>::Zero();
 };
 
 /// An elastic link between two spheres.

@@ -221,7 +221,7 @@ void SkeletonSystem::assemble(const Eigen::VectorXd& k, const State& state, cons
     matrix_->set_zero();
     for (size_t l = 0; l < body_.links.size(); ++l) {
         const Link& link = body_.links[l];
-        const LinkPose ends = unstrained ? links_.natural(l) : pose(link, state);
+        const LinkPose ends = unstrained ? links_.linear_pose(l) : pose(link, state);
         const Mat12 H = links_.hessian(l, links_.order().link(k, static_cast<Eigen::Index>(l)), ends, before_);
         const int i = block_of_[link.a], j = block_of_[link.b];
         if (i >= 0) matrix_->add_diagonal(i, H.topLeftCorner<6, 6>());
@@ -230,7 +230,7 @@ void SkeletonSystem::assemble(const Eigen::VectorXd& k, const State& state, cons
     }
     if (!links_.volumes().empty())
         add_pairs(links_.volumes().pairs(), coupling_of_cell_,
-                  unstrained ? links_.volumes().natural_curvature(k) : links_.volumes().curvature(k, state));
+                  unstrained ? links_.volumes().linear_curvature(k) : links_.volumes().curvature(k, state));
     add_pairs(effects_.pairs(), coupling_of_pair_, effects_.curvature(state, effect_share_));
     if (!load) return;
     for (const auto& [a, b, block] : external_curvature(body_, state, *load)) {

@@ -7,7 +7,6 @@
 #include "skeleton/links/fibres/uniaxial.h"
 #include "skeleton/links/rest_direction.h"
 #include "skeleton/links/shear.h"
-#include "skeleton/model/growth.h"
 
 namespace palpate::skeleton {
 
@@ -22,7 +21,7 @@ PlacedLinks::PlacedLinks(const Model& model, const fem::Effects& effects)
       volumes_(model, effects),
       links_(grown_links(model, effects.growth)),
       rest_(rest_state(model)),
-      natural_(natural_poses(model, effects.growth)),
+      linear_poses_(straight_poses(model, links_)),
       history_(effects),
       torsion_(link_effects(effects).torsion),
       shear_(link_effects(effects).shear),
@@ -35,6 +34,7 @@ PlacedLinks::PlacedLinks(const Model& model, const fem::Effects& effects)
     laws_ = section_laws(model, effects);
     for (const auto& effect : material_) in_sections_.push_back(acts_in_sections(*effect, Vec3(rest_.x.row(0))));
     const bool has_fibres = !material_.empty() || history_;
+    if (has_fibres) lengths_ = fibre_lengths(model, links_);
     for (size_t l = 0; l < links_.size(); ++l) {
         const FibreOffsets offsets = fibre_offsets(links_[l], directions_[l]);
         scales_.push_back(scale_of(links_[l], offsets, effects));
@@ -62,7 +62,7 @@ double PlacedLinks::scale_of(const Link& link, const FibreOffsets& offsets, cons
 }
 
 LinkFibre PlacedLinks::fibre(size_t link, int j, const LinkPose& ends) const {
-    return {links_[link].length, offsets_[link][j], ends.x_a, ends.R_a, ends.x_b, ends.R_b};
+    return {lengths_[link][j], offsets_[link][j], ends.x_a, ends.R_a, ends.x_b, ends.R_b};
 }
 
 // L^2 (w / 3 + p) of one fibre: its energy at unit stiffness.
@@ -191,12 +191,11 @@ Eigen::SparseMatrix<double> PlacedLinks::linear_forces(const Eigen::VectorXd& st
     volumes_.add_linear_forces(step, of_volumes);
     return assembled(
         [&](size_t l) {
-            const LinkTerms at_rest = terms(l, rest_, false, before),
-                            natural = terms(l, this->natural(l), true, before);
+            const LinkTerms at_rest = terms(l, rest_, false, before), linear = terms(l, linear_pose(l), true, before);
             Vec12 own;
             own << step.segment<6>(Eigen::Index{6} * links_[l].a), step.segment<6>(Eigen::Index{6} * links_[l].b);
             Eigen::Matrix<double, 12, Eigen::Dynamic, 0, 12, 6> forces = -at_rest.gradient;
-            for (int s = 0; s < order_.per_link(); ++s) forces.col(s) -= natural.hessian[s] * own;
+            for (int s = 0; s < order_.per_link(); ++s) forces.col(s) -= linear.hessian[s] * own;
             return forces;
         },
         std::move(of_volumes));

@@ -5,6 +5,7 @@
 
 #include "skeleton/links/fibres/history_law.h"
 #include "skeleton/links/full_link.h"
+#include "skeleton/links/placed/grown_links.h"
 #include "skeleton/links/placed/placed_volumes.h"
 #include "skeleton/links/sections/section_law.h"
 #include "skeleton/model/stiffness_order.h"
@@ -45,15 +46,16 @@ public:
 
     const StiffnessOrder& order() const { return order_; }
     const PlacedVolumes& volumes() const { return volumes_; }
-    /// Where a link is not strained, whatever its neighbours: at rest, or as long as the material has grown.
-    const LinkPose& natural(size_t link) const { return natural_[link]; }
+    /// Where the linear law takes a link's stiffness, whatever its neighbours: at rest, or as long as the material has
+    /// grown.
+    const LinkPose& linear_pose(size_t link) const { return linear_poses_[link]; }
     /// s of each link; empty where no effect is in force.
     const std::vector<double>& scales() const { return scales_; }
 
     /// d net force / d k in a state (6N x stiffnesses, in their order): each column the force at unit stiffness.
     Eigen::SparseMatrix<double> forces(const State& state, const FibreStates& before = {}) const;
-    /// The same after a step from rest (6N), to first order; how a link's forces change is that of its
-    /// `natural` pose.
+    /// The same after a step from rest (6N), to first order; how a link's forces change is that in its
+    /// `linear_pose`.
     Eigen::SparseMatrix<double> linear_forces(const Eigen::VectorXd& step, const FibreStates& before = {}) const;
 
     /// What the fibres have been through once they stood in a state (12L); empty when nothing remembers.
@@ -84,7 +86,7 @@ private:
     std::vector<Link> links_;
     std::vector<Vec3> directions_;  // at rest (L)
     State rest_;
-    std::vector<LinkPose> natural_;                                     // (L)
+    std::vector<LinkPose> linear_poses_;                                // (L)
     std::vector<std::shared_ptr<const fem::MaterialEffect>> material_;  // those with an energy of their own
     HistoryLaw history_;
     double torsion_, shear_;
@@ -93,6 +95,7 @@ private:
     std::vector<SectionLaw> laws_;       // (L); empty where no effect acts in sections
     std::vector<char> in_sections_;      // of each effect in material_
     std::vector<FibreOffsets> offsets_;  // (L); empty when no fibre has an energy
+    std::vector<FibreLengths> lengths_;  // where nothing strains them; the same
     std::vector<FibreShares> shares_;    // the same
 };
 

@@ -4,7 +4,7 @@
 #include <map>
 
 #include "skeleton/links/full_link.h"
-#include "skeleton/model/growth.h"
+#include "skeleton/links/placed/grown_links.h"
 #include "skeleton/model/stiffness_order.h"
 
 namespace palpate::skeleton {
@@ -18,7 +18,7 @@ constexpr int elongation = static_cast<int>(Stiffness::elongation);
 PlacedVolumes::PlacedVolumes(const Model& model, const fem::Effects& effects)
     : links_(grown_links(model, effects.growth)),
       rest_(rest_state(model)),
-      natural_(natural_poses(model, effects.growth)),
+      linear_poses_(straight_poses(model, links_)),
       pair_of_link_(3 * model.links.size(), -1) {
     const StiffnessOrder order(model);
     if (!order.full()) return;
@@ -157,7 +157,7 @@ void PlacedVolumes::add_forces(const State& state, std::vector<Eigen::Triplet<do
 
 void PlacedVolumes::add_linear_forces(const Eigen::VectorXd& step, std::vector<Eigen::Triplet<double>>& entries) const {
     // At rest nothing has swollen but by links that rest at another length than their spheres' distance.
-    const std::vector<Swelling> all = swellings(natural_), at_rest = swellings(poses(rest_));
+    const std::vector<Swelling> all = swellings(linear_poses_), at_rest = swellings(poses(rest_));
     for (const Cell& cell : cells_) {
         double change = 0;
         const Gradient gradient = gradient_of(cell, all, change);
@@ -171,7 +171,7 @@ void PlacedVolumes::add_linear_forces(const Eigen::VectorXd& step, std::vector<E
             FullLink::Strains factors = FullLink::Strains::Zero();
             factors[elongation] = 0.5 * links_[l].section->area * change;
             Mat12 H = Mat12::Zero();
-            full_link(links_[l], rest_, natural_[l]).add_curvature(factors, H);
+            full_link(links_[l], rest_, linear_poses_[l]).add_curvature(factors, H);
             Vec12 own;
             own << step.segment<6>(Eigen::Index{6} * links_[l].a), step.segment<6>(Eigen::Index{6} * links_[l].b);
             const Vec12 more = H * own;

@@ -32,8 +32,8 @@ public:
     std::vector<Block> curvature(const Eigen::VectorXd& k, const State& state) const {
         return curvature(k, poses(state));
     }
-    /// The same where no link is strained.
-    std::vector<Block> natural_curvature(const Eigen::VectorXd& k) const { return curvature(k, natural_); }
+    /// The same in the linear law (PlacedLinks::linear_pose).
+    std::vector<Block> linear_curvature(const Eigen::VectorXd& k) const { return curvature(k, linear_poses_); }
 
     /// Adds d net force / d k to the triplets of a matrix (6N x stiffnesses).
     void add_forces(const State& state, std::vector<Eigen::Triplet<double>>& entries) const;
@@ -62,7 +62,7 @@ private:
 
     std::vector<Link> links_;
     State rest_;
-    std::vector<LinkPose> natural_;  // see growth.h
+    std::vector<LinkPose> linear_poses_;
     std::vector<Cell> cells_;
     std::vector<std::array<int, 2>> pairs_;
     std::vector<std::vector<int>> pair_of_;  // of each cell: of each pair of its spheres, in the order of Gradient

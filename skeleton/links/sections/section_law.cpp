@@ -6,7 +6,7 @@
 #include <array>
 #include <cmath>
 
-#include "skeleton/links/fibres/link_fibre.h"
+#include "skeleton/links/sections/section_shape.h"
 
 namespace palpate::skeleton {
 
@@ -21,24 +21,6 @@ constexpr double kappa = 5.0 / 6;  // of shear, as start_stiffness has it
 
 // Generalized strains by their place in Stiffness.
 constexpr int axial = 0, bend_1 = 1, twist = 2, bend_2 = 3, cut_1 = 4, cut_2 = 5;
-
-// Area and second moments of the section that a link stands for; sd_1, sd_2: how far it reaches along axes 1 and 2.
-struct SectionShape {
-    double area = 1, sd_1 = 0, sd_2 = 0;
-};
-SectionShape shape_of(const Link& link) {
-    SectionShape shape;
-    const LinkSection& section = *link.section;
-    if (section.area > 0) shape.area = section.area;
-    // The flexions are as the moments are, whatever their common multiplier. A limb's radius of gyration is that of
-    // their geometric mean, about sqrt(A / 12) whether its section is round or flat; a plate's is that of the smaller.
-    const double k_1 = link.stiffness[bend_1], k_2 = link.stiffness[bend_2];
-    const double ratio = k_1 > 0 && k_2 > 0 ? std::sqrt(std::sqrt(k_1 / k_2)) : 1, gyration = radius_of_gyration(link);
-    const bool plate = section.area > 0 && gyration * std::sqrt(ratio) < std::sqrt(section.area / 12);
-    shape.sd_2 = plate ? gyration : gyration / ratio;
-    shape.sd_1 = shape.sd_2 * ratio * ratio;
-    return shape;
-}
 
 // Strains xx, xy, xz, yy, zz, yz in the axes of a link, as matrices; of shears, twice each, half.
 std::array<Mat3, 6> unit_strains(const Mat3& axes) {
@@ -97,22 +79,11 @@ Mat6 forces_at(double s) {
     return H;
 }
 
-// Where a section is sampled: as fibres are, in an ellipse of its moments.
-std::array<Eigen::Vector2d, fibres_per_link> places_in(const SectionShape& shape) {
-    Link round;
-    round.gyration = 1;
-    round.section = LinkSection();
-    const FibreOffsets offsets = fibre_offsets(round, Vec3::UnitX());
-    std::array<Eigen::Vector2d, fibres_per_link> places;
-    for (int j = 0; j < fibres_per_link; ++j) places[j] << shape.sd_1 * offsets[j].y(), shape.sd_2 * offsets[j].z();
-    return places;
-}
-
 // Softness of a link of the moduli Q whose sections are scaled by `scale`(slice, place), to which `correct` makes a sum
 // of strains over the section a beam's.
 template <typename Scale>
 Mat6 stiffness_of(const SectionShape& shape, double length, const Mat3& Q, const Vec6& correct, const Scale& scale) {
-    const auto places = places_in(shape);
+    const SectionPlaces places = section_places(shape);
     Mat6 softness = Mat6::Zero();
     for (int i = 0; i < slices; ++i) {
         Mat6 K = Mat6::Zero();
@@ -133,7 +104,7 @@ Mat6 stiffness_of(const SectionShape& shape, double length, const Mat3& Q, const
 }
 
 SectionLaw law_of(const Model& model, const Link& link, const fem::Effects& effects) {
-    const SectionShape shape = shape_of(link);
+    const SectionShape shape = section_shape(link);
     SectionLaw law;
     if (!(shape.sd_1 > 0 && shape.sd_2 > 0)) return law;
     const LinkSection& section = *link.section;

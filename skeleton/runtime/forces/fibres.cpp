@@ -10,7 +10,8 @@
 
 namespace palpate::runtime {
 
-Fibres::Fibres(const skeleton::Model& model, const fem::Effects& effects, const std::vector<skeleton::Stiffnesses>& k,
+Fibres::Fibres(const skeleton::Model& model, const fem::Effects& effects,
+               const std::vector<skeleton::FibreLengths>& lengths, const std::vector<skeleton::Stiffnesses>& k,
                const std::vector<skeleton::SectionLaw>& laws)
     : history_(effects) {
     std::ranges::copy_if(effects.material, std::back_inserter(material_),
@@ -29,6 +30,7 @@ Fibres::Fibres(const skeleton::Model& model, const fem::Effects& effects, const 
         own.direction = skeleton::rest_direction(model, link);
         own.middle = 0.5 * (model.spheres[link.a].center + model.spheres[link.b].center);
         own.offsets = skeleton::fibre_offsets(link, own.direction);
+        own.lengths = lengths[l];
         own.strengths = skeleton::fibre_shares(link) * k[l];
         links_.push_back(own);
     }
@@ -46,7 +48,7 @@ bool Fibres::needed(const skeleton::Model& model, const fem::Effects& effects,
 }
 
 skeleton::LinkFibre Fibres::fibre(const OfLink& link, int j, const Poses& poses) const {
-    return {link.length, link.offsets[j], poses.x[link.a], poses.R[link.a], poses.x[link.b], poses.R[link.b]};
+    return {link.lengths[j], link.offsets[j], poses.x[link.a], poses.R[link.a], poses.x[link.b], poses.R[link.b]};
 }
 
 // K L^2 (w / 3 + p) of one fibre.

@@ -9,8 +9,10 @@ namespace palpate::runtime {
 /// are those of PlacedLinks.
 class Fibres {
 public:
-    /// `k`: of each link, scaled; `laws`: of each, or none. What acts by a link's law is not in its fibres.
-    Fibres(const skeleton::Model& model, const fem::Effects& effects, const std::vector<skeleton::Stiffnesses>& k,
+    /// `lengths`: of each link's fibres; `k`: of each, scaled; `laws`: of each, or none. What acts by a link's law is
+    /// not in its fibres.
+    Fibres(const skeleton::Model& model, const fem::Effects& effects,
+           const std::vector<skeleton::FibreLengths>& lengths, const std::vector<skeleton::Stiffnesses>& k,
            const std::vector<skeleton::SectionLaw>& laws);
 
     /// Does one of the effects act in a link beside its stiffnesses and its law?
@@ -33,6 +35,7 @@ private:
         bool by_law = false;           // its section has a law
         Vec3 direction, middle;        // at rest
         skeleton::FibreOffsets offsets;
+        skeleton::FibreLengths lengths;                                 // where nothing strains them [mm]
         Eigen::Matrix<double, skeleton::fibres_per_link, 1> strengths;  // [N/mm]
     };
     skeleton::LinkFibre fibre(const OfLink& link, int j, const Poses& poses) const;

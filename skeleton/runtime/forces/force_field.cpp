@@ -4,7 +4,7 @@
 
 #include "skeleton/effects/link_effects.h"
 #include "skeleton/links/full_link.h"
-#include "skeleton/model/growth.h"
+#include "skeleton/links/placed/grown_links.h"
 
 namespace palpate::runtime {
 
@@ -50,7 +50,8 @@ ForceField::ForceField(const skeleton::Model& given)
     if (scales.empty()) scales.assign(model.links.size(), 1);
     k_ = stiffnesses_in_force(model, effects, laws_, scales);
     if (Fibres::needed(model, effects, laws_))
-        fibres_ = std::make_unique<Fibres>(model, effects, scaled_stiffnesses(model, scales), laws_);
+        fibres_ = std::make_unique<Fibres>(model, effects, skeleton::fibre_lengths(given, model.links),
+                                           scaled_stiffnesses(model, scales), laws_);
     if (!effects.points.empty() || !effects.surface.empty() || effects.pressure != 0)
         effects_ = std::make_unique<PointEffects>(model, effects);
 

@@ -3,6 +3,7 @@
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 
+#include "skeleton/links/full_link.h"
 #include "skeleton/statics/statics.h"
 
 namespace palpate::runtime {
@@ -59,7 +60,9 @@ FullTable full_table(const skeleton::Model& model, const std::vector<skeleton::S
         put(batch.q_section, lane, Eigen::Quaterniond(Mat3(section.axes.transpose())).coeffs());
         put(batch.arm_a, lane, Vec3(section.axes * (section.at - X_a)));
         put(batch.arm_b, lane, Vec3(section.axes * (section.at - X_b)));
-        batch.offset[lane] = link->length - (X_b - X_a).norm();
+        skeleton::FullLink::Strains natural = section.natural;
+        natural[0] += link->length - (X_b - X_a).norm();
+        put(batch.natural, lane, natural);
         batch.half_area[lane] = kept[link->a] || kept[link->b] ? 0.5 * section.area : 0;
         put(batch.k, lane, k[l]);
     }

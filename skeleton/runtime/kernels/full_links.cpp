@@ -87,12 +87,13 @@ PALPATE_INLINE Lanes add_batch(const FullLinks& links, const SectionCouplings* b
     const Lanes3 v = turn.vector();
 
     // strains, in the order of Stiffness: elongation, flexion, torsion, flexion_2, shear, shear_2
-    Lanes s[6] = {parting(h.a.f0, h.b.f0, h.gap) - at(links.offset),
+    Lanes s[6] = {parting(h.a.f0, h.b.f0, h.gap),
                   2 * dot(v, h.a.f2),
                   2 * dot(v, h.a.f0),
                   2 * dot(v, h.a.f1),
                   parting(h.a.f1, h.b.f1, h.gap),
                   parting(h.a.f2, h.b.f2, h.gap)};
+    for (int i = 0; i < 6; ++i) s[i] -= at(links.natural[i]);
     if constexpr (coupled) couple(*by, s);
     Lanes energy = all(0);
     for (int i = 0; i < 6; ++i) energy += at(links.k[i]) * s[i] * s[i];
@@ -135,7 +136,7 @@ PALPATE_INLINE Lanes add_batch(const FullLinks& links, const SectionCouplings* b
 template <bool damped>
 PALPATE_INLINE void swell(const FullLinks& links, const double* pose, const Rates& rates, double* swelling) {
     const Halves h = halves_of(links, pose);
-    Lanes s = parting(h.a.f0, h.b.f0, h.gap) - at(links.offset);
+    Lanes s = parting(h.a.f0, h.b.f0, h.gap) - at(links.natural[0]);
     if constexpr (damped) {
         s += rates.beta * parting_rate(h.a.f0, h.b.f0, h.gap, motion_of(links, h, rates.velocity));
     }

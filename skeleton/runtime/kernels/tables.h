@@ -46,9 +46,9 @@ struct alignas(64) FullLinks {
     int a[4], b[4];
     double q_section[4][4];
     double arm_a[3][4], arm_b[3][4];  // from the centres to the section's centroid, in its axes [mm]
-    double offset[4];                 // the link's rest length less the spheres' distance [mm]
-    double half_area[4];              // of the section, where a sphere's volume is kept, else 0 [mm^2]
-    double k[6][4];                   // as Stiffness orders them
+    double natural[6][4];  // strains where nothing strains it: with the rest length less the spheres' distance
+    double half_area[4];   // of the section, where a sphere's volume is kept, else 0 [mm^2]
+    double k[6][4];        // as Stiffness orders them
 };
 
 /// Of four full links, how a strain depends on those behind it, as Stiffness orders them: (0, 1), (0, 2) ... (4, 5).

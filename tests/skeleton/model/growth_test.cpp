@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "skeleton/links/placed/grown_links.h"
 #include "skeleton/links/placed/placed_links.h"
 #include "skeleton/statics/equilibrium.h"
 #include "skeleton/statics/statics.h"
@@ -75,15 +76,6 @@ TEST(Growth, OfAPartMakesItsLinksLonger) {
         }
         EXPECT_GT(x, model.spheres.back().center.x() + 1);
     }
-}
-
-TEST(Growth, LeavesEachLinkStrainlessByItself) {
-    const Model model = lattice_with_skin();
-    fem::Effects effects;
-    effects.growth.parts.push_back({{model.spheres.front().center, 10}, 0.2});
-    const PlacedLinks links(model, effects);
-    for (std::size_t l = 0; l < model.links.size(); ++l)
-        EXPECT_LT(links.terms(l, links.natural(l), false).gradient.norm(), 1e-12) << l;
 }
 
 TEST(Growth, OfAPartThatIsHeldFastIsNoReasonToGiveWay) {

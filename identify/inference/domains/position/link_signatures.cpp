@@ -47,9 +47,9 @@ LinksAtRest::LinksAtRest(const skeleton::Model& model)
         const auto link = static_cast<std::size_t>(l);
         gradients.middleCols(n * l, n) = placed.terms(link, state, false).gradient;
         if (linear) {
-            const skeleton::LinkTerms natural = placed.terms(link, placed.natural(link), true);
+            const skeleton::LinkTerms terms = placed.terms(link, placed.linear_pose(link), true);
             for (int s = 0; s < n; ++s) {
-                for (const Term& term : terms_of(natural.hessian[s])) {
+                for (const Term& term : terms_of(terms.hessian[s])) {
                     found.push_back(term);
                     kind.push_back(s);
                 }

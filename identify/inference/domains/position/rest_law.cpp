@@ -73,7 +73,7 @@ fem::LowerMatrix LinearStatics::matrix(const Eigen::VectorXd& k) const {
     }
     const skeleton::PlacedVolumes& volumes = links.placed.volumes();
     if (volumes.empty()) return K;
-    const std::vector<skeleton::BlockStructure::Block> blocks = volumes.natural_curvature(k);
+    const std::vector<skeleton::BlockStructure::Block> blocks = volumes.linear_curvature(k);
     for (std::size_t p = 0; p < blocks.size(); ++p) {
         add(volumes.pairs()[p][0], volumes.pairs()[p][1], blocks[p], K);
     }
