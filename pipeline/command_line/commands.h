@@ -142,11 +142,13 @@ struct PoolOptions {
 Outcome pool(const PoolOptions& options, const Common& common);
 
 struct PlayOptions {
-    std::filesystem::path model, output;  // no output: it is served
+    std::filesystem::path input, output;  // no output: it is served
     std::filesystem::path set = {};       // measurements; empty: the run's own, where it has some
     int port = 0;                         // 0: a free one
+    bool pick = false;                    // `input` is a mesh, a case or a set, on which places are chosen
+    CaseOverrides overrides = {};         // of that
 };
-/// A page in which the model is touched. @throws InvalidInput, IoError.
+/// A page in which the model is touched, or a body is set up. @throws InvalidInput, IoError.
 Outcome play(const PlayOptions& options, const Common& common);
 
 struct NewOptions {

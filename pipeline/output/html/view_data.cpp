@@ -9,8 +9,8 @@
 #include "mesh/errors.h"
 #include "mesh/formats/vtk/poly_data.h"
 #include "pipeline/analysis/link_uncertainty.h"
-#include "pipeline/output/base64.h"
 #include "pipeline/output/html/findings.h"
+#include "pipeline/output/html/packed_rows.h"
 #include "pipeline/output/text/words.h"
 #include "skeleton/model/io/model_io.h"
 
@@ -19,22 +19,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using nlohmann::json;
-
-template <class Number>
-json packed(const char* type, const std::vector<Number>& numbers) {
-    return {{"type", type},
-            {"data", base64({reinterpret_cast<const char*>(numbers.data()), numbers.size() * sizeof(Number)})}};
-}
-
-/// Row by row.
-template <class Number, class Matrix>
-std::vector<Number> flat(const Matrix& matrix) {
-    std::vector<Number> numbers;
-    for (Eigen::Index i = 0; i < matrix.rows(); ++i) {
-        for (Eigen::Index c = 0; c < matrix.cols(); ++c) numbers.push_back(static_cast<Number>(matrix(i, c)));
-    }
-    return numbers;
-}
 
 json floats(const Eigen::MatrixXd& matrix) { return packed("f32", flat<float>(matrix)); }
 

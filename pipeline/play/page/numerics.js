@@ -77,18 +77,6 @@ class Numerics {
   markers(set, count) { return this.doubles(this.wasm._play_markers(set), 3 * count); }
 }
 
-const plus3 = (a, b, factor = 1) => [a[0] + factor * b[0], a[1] + factor * b[1], a[2] + factor * b[2]];
-const minus3 = (a, b) => plus3(a, b, -1);
-const times3 = (a, factor) => a.map((v) => factor * v);
-const dot3 = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-const cross3 = (a, b) => [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
-const length3 = (a) => Math.hypot(...a);
-const unit3 = (a) => times3(a, 1 / (length3(a) || 1));
-const row3 = (a, i) => [a[3 * i], a[3 * i + 1], a[3 * i + 2]];
-
-/// n . C n for a 3 x 3 matrix.
-const along3 = (C, n) => dot3(n, [0, 1, 2].map((r) => dot3([C[r], C[r + 3], C[r + 6]], n)));
-
 /// A number with three digits and its unit.
 function inUnit(value, unit) {
   if (!Number.isFinite(value)) return '–';

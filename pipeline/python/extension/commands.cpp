@@ -100,7 +100,7 @@ void bind_commands(py::module_& module) {
                    return told(at_work(call, [&] { return commands::export_model(options, call.common); }));
                });
     module.def("play_page", [](const fs::path& model, const fs::path& output, const Call& call) {
-        const commands::PlayOptions options{.model = model, .output = output};
+        const commands::PlayOptions options{.input = model, .output = output};
         return told(at_work(call, [&] { return commands::play(options, call.common); }));
     });
     module.def("diagnosis_in_words",

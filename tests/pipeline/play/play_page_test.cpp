@@ -131,7 +131,7 @@ TEST(InTheHand, WritesOnePageThatNeedsNoNetwork) {
     const TemporaryFolder scratch;
     skeleton::write_model(scratch / "model.json", lattice_in_the_hand());
     const commands::Outcome outcome =
-        commands::play({.model = scratch / "model.json", .output = scratch / "page.html"}, {});
+        commands::play({.input = scratch / "model.json", .output = scratch / "page.html"}, {});
     EXPECT_EQ(outcome.code, commands::done);
     const std::string page = mesh::read_text(scratch / "page.html");
     EXPECT_EQ(outcome.json["bytes"].get<std::size_t>(), page.size());
@@ -140,18 +140,18 @@ TEST(InTheHand, WritesOnePageThatNeedsNoNetwork) {
     EXPECT_THAT(page,
                 AllOf(HasSubstr("<meta name=\"generator\" content=\"palpate\">"), HasSubstr("id=\"play-module\"")));
     // palpate's own page may be replaced, another one not
-    EXPECT_NO_THROW(commands::play({.model = scratch / "model.json", .output = scratch / "page.html"}, {}));
+    EXPECT_NO_THROW(commands::play({.input = scratch / "model.json", .output = scratch / "page.html"}, {}));
     const auto other = scratch.write("other.html", "<html>mine</html>");
-    EXPECT_THAT(message_of([&] { commands::play({.model = scratch / "model.json", .output = other}, {}); }),
+    EXPECT_THAT(message_of([&] { commands::play({.input = scratch / "model.json", .output = other}, {}); }),
                 AllOf(HasSubstr("other.html"), HasSubstr("--force")));
 }
 
 TEST(InTheHand, SaysWhatCannotBePlayed) {
     const TemporaryFolder scratch;
     const auto message = [&](const std::filesystem::path& model) {
-        return message_of([&] { commands::play({.model = model, .output = scratch / "page.html"}, {}); });
+        return message_of([&] { commands::play({.input = model, .output = scratch / "page.html"}, {}); });
     };
-    EXPECT_THAT(message_of<IoError>([&] { commands::play({.model = scratch / "none.json", .output = {}}, {}); }),
+    EXPECT_THAT(message_of<IoError>([&] { commands::play({.input = scratch / "none.json", .output = {}}, {}); }),
                 AllOf(HasSubstr("none.json"), HasSubstr("does not exist")));
     std::filesystem::create_directory(scratch / "empty");
     EXPECT_THAT(message(scratch / "empty"), AllOf(HasSubstr("empty"), HasSubstr("no model.json")));
@@ -161,7 +161,7 @@ TEST(InTheHand, SaysWhatCannotBePlayed) {
     skeleton::write_model(scratch / "bare.json", bare);
     EXPECT_THAT(message(scratch / "bare.json"), AllOf(HasSubstr("bare.json"), HasSubstr("skin")));
     skeleton::write_model(scratch / "model.json", lattice_in_the_hand());
-    EXPECT_THAT(message_of([&] { commands::play({.model = scratch / "model.json", .output = scratch / "empty"}, {}); }),
+    EXPECT_THAT(message_of([&] { commands::play({.input = scratch / "model.json", .output = scratch / "empty"}, {}); }),
                 AllOf(HasSubstr("empty"), HasSubstr("page.html")));
     EXPECT_FALSE(std::filesystem::exists(scratch / "page.html"));
 }

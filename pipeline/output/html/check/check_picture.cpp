@@ -6,22 +6,12 @@
 #include <cmath>
 #include <map>
 
-#include "pipeline/output/base64.h"
+#include "pipeline/output/html/packed_rows.h"
 
 namespace palpate::pipeline {
 namespace {
 
 using nlohmann::json;
-
-template <class Number, class Matrix>
-json packed_rows(const char* type, const Matrix& matrix) {
-    std::vector<Number> numbers;
-    numbers.reserve(static_cast<std::size_t>(matrix.size()));
-    for (Eigen::Index i = 0; i < matrix.rows(); ++i)
-        for (Eigen::Index c = 0; c < matrix.cols(); ++c) numbers.push_back(static_cast<Number>(matrix(i, c)));
-    return {{"type", type},
-            {"data", base64({reinterpret_cast<const char*>(numbers.data()), numbers.size() * sizeof(Number)})}};
-}
 
 json place_json(const Vec3& at) { return {at.x(), at.y(), at.z()}; }
 
@@ -140,7 +130,7 @@ json picture_of_state(const identify::MeasurementSet& set, const identify::LoadS
             {"words", words_of(set, state)},
             {"loads", loads},
             {"motions", motions},
-            {"moved", packed_rows<float>("f32", moved)},
+            {"moved", packed("f32", flat<float>(moved))},
             {"odd", odd_markers(by_name, preflight, &state)}};
 }
 
@@ -149,14 +139,14 @@ json picture_of_state(const identify::MeasurementSet& set, const identify::LoadS
 json check_picture(const Subject& subject, const json& preflight) {
     const Points& vertices = subject.surface.vertices;
     json data{{"surface",
-               {{"points", packed_rows<float>("f32", vertices)},
-                {"triangles", packed_rows<std::int32_t>("i32", subject.surface.triangles)},
+               {{"points", packed("f32", flat<float>(vertices))},
+                {"triangles", packed("i32", flat<std::int32_t>(subject.surface.triangles))},
                 {"held", inside(subject.supports, vertices)},
                 {"gripped", json::array()},
                 {"part", parts_of(vertices, preflight)}}},
               {"parts", json::array()},
               {"markers",
-               {{"rest", packed_rows<float>("f32", Points(0, 3))}, {"names", json::array()}, {"odd", json::array()}}},
+               {{"rest", packed("f32", flat<float>(Points(0, 3)))}, {"names", json::array()}, {"odd", json::array()}}},
               {"tools", json::array()},
               {"tendons", json::array()},
               {"states", json::array()}};
@@ -172,7 +162,7 @@ json check_picture(const Subject& subject, const json& preflight) {
         by_name[label_of(set.markers[m])] = static_cast<int>(m);
         data["markers"]["names"].push_back(label_of(set.markers[m]));
     }
-    data["markers"]["rest"] = packed_rows<float>("f32", rest);
+    data["markers"]["rest"] = packed("f32", flat<float>(rest));
     data["markers"]["odd"] = odd_markers(by_name, preflight, nullptr);
     data["tools"] = tools_json(set);
     data["tendons"] = tendons_json(set);
