@@ -10,6 +10,7 @@
 #include "identify/loading/creep.h"
 #include "identify/measurements/rig/fittable.h"
 #include "mesh/errors.h"
+#include "mesh/formats/read_body.h"
 #include "mesh/text/atomic_file.h"
 #include "pipeline/case/read_case.h"
 #include "pipeline/case/subject.h"
@@ -62,7 +63,13 @@ std::vector<Candidate> candidates_in(const fs::path& input) {
         throw IoError(fmt::format("{}: does not exist; give a model.json, a folder of identify or improve, or a run",
                                   input.string()));
     }
-    if (!fs::is_directory(input)) return {{input, "The model", ""}};
+    if (!fs::is_directory(input)) {
+        if (mesh::is_body_file(input))
+            throw InvalidInput(fmt::format(
+                "{0}: is a body without a model; 'palpate run {0}' makes one, and 'palpate play {0} --pick' sets it up",
+                input.string()));
+        return {{input, "The model", ""}};
+    }
     if (const fs::path ladder = input / "ladder.json"; fs::exists(ladder)) {
         try {
             return candidates_of_ladder(input, read_json(ladder));

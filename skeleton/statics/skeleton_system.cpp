@@ -221,8 +221,9 @@ void SkeletonSystem::assemble(const Eigen::VectorXd& k, const State& state, cons
     matrix_->set_zero();
     for (size_t l = 0; l < body_.links.size(); ++l) {
         const Link& link = body_.links[l];
-        const LinkPose ends = unstrained ? links_.linear_pose(l) : pose(link, state);
-        const Mat12 H = links_.hessian(l, links_.order().link(k, static_cast<Eigen::Index>(l)), ends, before_);
+        const Stiffnesses own = links_.order().link(k, static_cast<Eigen::Index>(l));
+        const Mat12 H =
+            unstrained ? links_.linear_hessian(l, own, before_) : links_.hessian(l, own, pose(link, state), before_);
         const int i = block_of_[link.a], j = block_of_[link.b];
         if (i >= 0) matrix_->add_diagonal(i, H.topLeftCorner<6, 6>());
         if (j >= 0) matrix_->add_diagonal(j, H.bottomRightCorner<6, 6>());

@@ -151,7 +151,8 @@ class Picker {
     at('probes').replaceChildren(...setup.probes.map((p, i) =>
       this.row('probes', i, `Probe ${setup.numberOf(i)}`, [vector(p.at, 'at'), vector(p.force, 'force'), field(p, 'radius', 'radius')])));
     at('markers').replaceChildren(...setup.markers.map((m, i) => this.row('markers', i, m.name, [vector(m.at, 'at')])));
-    at('held').textContent = setup.supports.length ? `${(100 * setup.heldShare()).toPrecision(2)} % of the surface is held.` : '';
+    const beside = setup.supports.some((s) => s.line) ? ', beside what points hold' : '';
+    at('held').textContent = setup.supports.length ? `${+(100 * setup.heldShare()).toPrecision(2)} % of the surface is held${beside}.` : '';
     at('warnings').replaceChildren(...setup.warnings().map((text) => Object.assign(document.createElement('li'), {textContent: text})));
   }
   showFile() {

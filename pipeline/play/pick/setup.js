@@ -12,6 +12,7 @@ class Setup {
     this.high = all.high;
     this.size = Math.max(...this.high.map((h, c) => h - this.low[c]));
     this.supports = data.supports.map((s) => structuredClone(s));
+    this.given = this.supports.length;  // the first of them, which are not undone
     this.probes = [];
     this.markers = [];
     this.order = [];  // lists, in the order in which something came into them
@@ -25,6 +26,7 @@ class Setup {
   }
   remove(list, i) {
     this[list].splice(i, 1);
+    if (list === 'supports' && i < this.given) return void --this.given;
     const last = this.order.lastIndexOf(list);
     if (last >= 0) this.order.splice(last, 1);
   }

@@ -81,8 +81,14 @@ StretchTerms PlacedLinks::fibre_terms(size_t link, int j, double stretch, bool w
     return links_[link].length * links_[link].length * sum;
 }
 
-FullLink PlacedLinks::coupled(size_t l, const LinkPose& ends) const {
-    FullLink now = full_link(links_[l], rest_, ends);
+Link PlacedLinks::straight(size_t l) const {
+    Link link = links_[l];
+    if (link.section) link.section->natural.setZero();
+    return link;
+}
+
+FullLink PlacedLinks::coupled(const Link& link, size_t l, const LinkPose& ends) const {
+    FullLink now = full_link(link, rest_, ends);
     if (has_law(l)) now.couple(laws_[l].coupling);
     return now;
 }
@@ -132,22 +138,38 @@ void PlacedLinks::add_effects(size_t l, const LinkPose& ends, const FibreStates&
 }
 
 LinkTerms PlacedLinks::terms(size_t l, const LinkPose& ends, bool with_hessian, const FibreStates& before) const {
-    const Link& link = links_[l];
+    return terms_of(links_[l], l, ends, with_hessian, before);
+}
+
+LinkTerms PlacedLinks::linear_terms(size_t l, const FibreStates& before) const {
+    return terms_of(straight(l), l, linear_poses_[l], true, before);
+}
+
+Mat12 PlacedLinks::hessian(size_t l, const Stiffnesses& k, const LinkPose& ends, const FibreStates& before) const {
+    return hessian_of(links_[l], l, k, ends, before);
+}
+
+Mat12 PlacedLinks::linear_hessian(size_t l, const Stiffnesses& k, const FibreStates& before) const {
+    return hessian_of(straight(l), l, k, linear_poses_[l], before);
+}
+
+LinkTerms PlacedLinks::terms_of(const Link& link, size_t l, const LinkPose& ends, bool with_hessian,
+                                const FibreStates& before) const {
     LinkTerms terms =
-        link.section ? full_link_terms(coupled(l, ends), with_hessian)
+        link.section ? full_link_terms(coupled(link, l, ends), with_hessian)
                      : link_terms(link.length, directions_[l], ends.x_a, ends.R_a, ends.x_b, ends.R_b, with_hessian);
     if (!plain_) add_effects(l, ends, before, with_hessian, terms);
     return terms;
 }
 
-Mat12 PlacedLinks::hessian(size_t l, const Stiffnesses& k, const LinkPose& ends, const FibreStates& before) const {
-    const Link& link = links_[l];
+Mat12 PlacedLinks::hessian_of(const Link& link, size_t l, const Stiffnesses& k, const LinkPose& ends,
+                              const FibreStates& before) const {
     Stiffnesses with_torsion = k;
     if (!plain_) with_torsion[2] += torsion_ * k[1];
     if (has_law(l)) with_torsion = with_torsion.cwiseProduct(laws_[l].factors) / scales_[l];
     Mat12 H = Mat12::Zero();
     if (link.section)
-        coupled(l, ends).add_hessian(with_torsion, H);
+        coupled(link, l, ends).add_hessian(with_torsion, H);
     else
         H = link_hessian(with_torsion, link.length, directions_[l], ends.x_a, ends.R_a, ends.x_b, ends.R_b);
     if (plain_) return H;
@@ -191,7 +213,7 @@ Eigen::SparseMatrix<double> PlacedLinks::linear_forces(const Eigen::VectorXd& st
     volumes_.add_linear_forces(step, of_volumes);
     return assembled(
         [&](size_t l) {
-            const LinkTerms at_rest = terms(l, rest_, false, before), linear = terms(l, linear_pose(l), true, before);
+            const LinkTerms at_rest = terms(l, rest_, false, before), linear = linear_terms(l, before);
             Vec12 own;
             own << step.segment<6>(Eigen::Index{6} * links_[l].a), step.segment<6>(Eigen::Index{6} * links_[l].b);
             Eigen::Matrix<double, 12, Eigen::Dynamic, 0, 12, 6> forces = -at_rest.gradient;

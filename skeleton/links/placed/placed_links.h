@@ -44,18 +44,20 @@ public:
     /// The sum of their second derivatives at stiffness k, at a third of the cost.
     Mat12 hessian(size_t link, const Stiffnesses& k, const LinkPose& ends, const FibreStates& before = {}) const;
 
+    /// Terms and second derivatives as the linear law has them, whatever the link's neighbours: at rest, or as long as
+    /// the material has grown (straight_poses), and strained by nothing.
+    LinkTerms linear_terms(size_t link, const FibreStates& before = {}) const;
+    Mat12 linear_hessian(size_t link, const Stiffnesses& k, const FibreStates& before = {}) const;
+
     const StiffnessOrder& order() const { return order_; }
     const PlacedVolumes& volumes() const { return volumes_; }
-    /// Where the linear law takes a link's stiffness, whatever its neighbours: at rest, or as long as the material has
-    /// grown.
-    const LinkPose& linear_pose(size_t link) const { return linear_poses_[link]; }
     /// s of each link; empty where no effect is in force.
     const std::vector<double>& scales() const { return scales_; }
 
     /// d net force / d k in a state (6N x stiffnesses, in their order): each column the force at unit stiffness.
     Eigen::SparseMatrix<double> forces(const State& state, const FibreStates& before = {}) const;
-    /// The same after a step from rest (6N), to first order; how a link's forces change is that in its
-    /// `linear_pose`.
+    /// The same after a step from rest (6N), to first order; how a link's forces change is that of its
+    /// linear_terms.
     Eigen::SparseMatrix<double> linear_forces(const Eigen::VectorXd& step, const FibreStates& before = {}) const;
 
     /// What the fibres have been through once they stood in a state (12L); empty when nothing remembers.
@@ -72,7 +74,13 @@ public:
 private:
     double scale_of(const Link& link, const FibreOffsets& offsets, const fem::Effects& effects) const;
     bool has_law(size_t link) const { return !laws_.empty() && laws_[link].in_force; }
-    FullLink coupled(size_t link, const LinkPose& ends) const;
+    /// A link without its natural strains.
+    Link straight(size_t link) const;
+    FullLink coupled(const Link& link, size_t place, const LinkPose& ends) const;
+    LinkTerms terms_of(const Link& link, size_t place, const LinkPose& ends, bool with_hessian,
+                       const FibreStates& before) const;
+    Mat12 hessian_of(const Link& link, size_t place, const Stiffnesses& k, const LinkPose& ends,
+                     const FibreStates& before) const;
     LinkFibre fibre(size_t link, int j, const LinkPose& ends) const;
     StretchTerms fibre_terms(size_t link, int j, double stretch, bool with_second, const FibreStates& before) const;
     void add_effects(size_t link, const LinkPose& ends, const FibreStates& before, bool with_hessian,

@@ -32,7 +32,7 @@ public:
     std::vector<Block> curvature(const Eigen::VectorXd& k, const State& state) const {
         return curvature(k, poses(state));
     }
-    /// The same in the linear law (PlacedLinks::linear_pose).
+    /// The same in the linear law (PlacedLinks::linear_terms).
     std::vector<Block> linear_curvature(const Eigen::VectorXd& k) const { return curvature(k, linear_poses_); }
 
     /// Adds d net force / d k to the triplets of a matrix (6N x stiffnesses).

@@ -155,6 +155,8 @@ TEST(InTheHand, SaysWhatCannotBePlayed) {
                 AllOf(HasSubstr("none.json"), HasSubstr("does not exist")));
     std::filesystem::create_directory(scratch / "empty");
     EXPECT_THAT(message(scratch / "empty"), AllOf(HasSubstr("empty"), HasSubstr("no model.json")));
+    mesh::write_text(scratch / "liver.stl", "solid\nendsolid\n");
+    EXPECT_THAT(message(scratch / "liver.stl"), AllOf(HasSubstr("liver.stl"), HasSubstr("--pick")));
     skeleton::Model bare = lattice_in_the_hand();
     bare.surface = {};
     bare.skin.clear();

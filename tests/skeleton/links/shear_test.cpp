@@ -54,7 +54,7 @@ TEST(ShearInLinks, AddsToWhatEndsThatStayParallelWithstand) {
     const double share = 0.3, L = 10;
     const Vec3 k = link.links[0].stiffness;
     const PlacedLinks links(link, {.of_model = {in_links({.shear = share})}});
-    const Mat12 H = links.hessian(0, k, links.linear_pose(0));
+    const Mat12 H = links.linear_hessian(0, k);
     EXPECT_NEAR(H(7, 7), 2 * k[1] / (L * L) + share * k[0], 1e-12);
     EXPECT_NEAR(H(8, 8), 2 * k[1] / (L * L) + share * k[0], 1e-12);
     EXPECT_NEAR(H(6, 6), k[0], 1e-12);

@@ -47,7 +47,7 @@ LinksAtRest::LinksAtRest(const skeleton::Model& model)
         const auto link = static_cast<std::size_t>(l);
         gradients.middleCols(n * l, n) = placed.terms(link, state, false).gradient;
         if (linear) {
-            const skeleton::LinkTerms terms = placed.terms(link, placed.linear_pose(link), true);
+            const skeleton::LinkTerms terms = placed.linear_terms(link);
             for (int s = 0; s < n; ++s) {
                 for (const Term& term : terms_of(terms.hessian[s])) {
                     found.push_back(term);

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Eigenvalues>
 #include <numbers>
 
 #include "skeleton/links/placed/placed_links.h"
@@ -107,6 +108,19 @@ TEST(GrownLinks, AreStrainlessByThemselvesTheirFibresToo) {
         bent = std::max(bent, (natural[l].R_b - Mat3::Identity()).norm());
     }
     EXPECT_GT(bent, 0.01);
+}
+
+TEST(GrownLinks, AreNoLessStableInTheLinearLawHoweverMuchTheyCurve) {
+    // What curves a link does not strain it where the linear law takes its stiffness: a rigid turn is free, all else is
+    // not.
+    const Model bar = make_round_bar(6);
+    const PlacedLinks links(bar, physics_of({local_swelling({27, 6, 0}, 6, 3)}));
+    for (std::size_t l = 0; l < bar.links.size(); ++l) {
+        const Mat12 H = links.linear_hessian(l, bar.links[l].stiffness);
+        const Eigen::VectorXd eigenvalues = Eigen::SelfAdjointEigenSolver<Mat12>(H).eigenvalues();
+        EXPECT_GT(eigenvalues.minCoeff(), -1e-12 * eigenvalues.maxCoeff()) << l;
+        EXPECT_GT(eigenvalues[6], 1e-4 * eigenvalues.maxCoeff()) << l;
+    }
 }
 
 TEST(GrownLinks, OfThePaperGrowAlongTheirAxes) {
