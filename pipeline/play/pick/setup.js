@@ -149,9 +149,9 @@ class Setup {
   /// Names, contents (texts or bytes) and what to do with them.
   files() {
     if (this.addsToSet) return [
-      {name: 'supports.yaml', content: this.supportsYaml(), what: 'In the place of "supports" in set.yaml.'},
-      {name: 'probes.csv', content: this.probesCsv(), what: 'Rows to add to probes.csv, in mm and N.'},
-      {name: 'markers.csv', content: this.markersCsv(), what: 'Rows to add to markers.csv, in mm.'}];
+      {name: 'supports.yaml', content: this.supportsYaml(), what: 'In the place of "supports" in set.yaml; in mm: convert where its units are others.'},
+      {name: 'probes.csv', content: this.probesCsv(), what: 'Rows to add to probes.csv; in mm and N: convert where the units of set.yaml are others.'},
+      {name: 'markers.csv', content: this.markersCsv(), what: 'Rows to add to markers.csv; in mm: convert where the units of set.yaml are others.'}];
     const ofSet = 'For a measurement set: all five into one folder, then fill in positions.csv.';
     return [
       this.data.kind === 'case' ? {name: 'supports.yaml', content: this.supportsYaml(), what: 'In the place of "supports" in case.yaml.'}
