@@ -28,7 +28,7 @@ assert score.named("missing-effect", ["gravity"], []) == "blamed"
 
 with tempfile.TemporaryDirectory() as scratch:
     scratch = Path(scratch)
-    sets = "1,2,3,4,9,10,17,18,57" + (",43" if shutil.which("ccx") else "")
+    sets = "1,3,18,57" + (",43" if shutil.which("ccx") else "")
     make = [sys.executable, folder / "make_sets.py", "--secret", "rehearsal", "--palpate", palpate, "-o", scratch / "made"]
     subprocess.run([*map(str, make), "--sets", sets], check=True)
     enter = [sys.executable, folder / "entrants.py", scratch / "made", "-o", scratch / "results", "--palpate", palpate]
@@ -37,8 +37,8 @@ with tempfile.TemporaryDirectory() as scratch:
     subprocess.run([sys.executable, folder / "score.py", scratch / "made", scratch / "results" / "palpate", "-o", table, "--json", numbers],
                    check=True)
     told = json.loads(numbers.read_text())["summary"]["palpate"]
-    # Of nine effects five are named at this coarse mesh, and one of a twin's wrongly: one less each allows for rounding.
-    assert told["named"] >= 4 and told["wrong"] <= 2 and told["blamed"] == 0, told
+    # All four effects are named at this coarse mesh: one less allows for rounding.
+    assert told["named"] >= 3 and told["wrong"] <= 1 and told["blamed"] == 0, told
     assert "<script" not in table.read_text() and "Set by set" in table.read_text()
     # What a newcomer may get wrong: a verdict of his own making, a forecast with a row missing.
     mine = scratch / "mine" / "01"

@@ -10,6 +10,7 @@
 #include "samples/lattice.h"
 #include "samples/organ.h"
 #include "skeleton/model/io/model_io.h"
+#include "tests/places.h"
 #include "tests/temporary_folder.h"
 
 namespace palpate::pipeline {
@@ -19,7 +20,7 @@ namespace fs = std::filesystem;
 
 std::vector<std::string> sample_names() {
     std::vector<std::string> names;
-    for (const auto& entry : fs::directory_iterator(PALPATE_SAMPLES)) {
+    for (const auto& entry : fs::directory_iterator(samples_folder)) {
         if (fs::exists(entry.path() / "case.yaml")) names.push_back(entry.path().filename().string());
     }
     std::sort(names.begin(), names.end());
@@ -31,7 +32,7 @@ class Sample : public ::testing::TestWithParam<std::string> {};
 TEST_P(Sample, KeepsWhatItPromises) {
     const TemporaryFolder scratch;
     const commands::Outcome outcome = commands::run(
-        {.input = fs::path(PALPATE_SAMPLES) / GetParam() / "case.yaml", .output = scratch / "run", .overrides = {}},
+        {.input = fs::path(samples_folder) / GetParam() / "case.yaml", .output = scratch / "run", .overrides = {}},
         {.json = false, .force = false, .threads = 2, .seed = {}});
     EXPECT_EQ(outcome.code, commands::done) << outcome.json["expectations_not_met"];
 }
@@ -47,7 +48,7 @@ INSTANTIATE_TEST_SUITE_P(All, Sample, ::testing::ValuesIn(sample_names()), [](co
 TEST(Experiments, AreWhatTheirCodeMakes) {
     for (const samples::Experiment& experiment :
          {samples::make_cube_experiment(), samples::make_sheet_experiment(), samples::make_two_strings()}) {
-        const fs::path folder = fs::path(PALPATE_SAMPLES) / experiment.start.name;
+        const fs::path folder = fs::path(samples_folder) / experiment.start.name;
         const identify::MeasurementSet committed = identify::read_measurement_set(folder / "set");
         ASSERT_EQ(committed.states.size(), experiment.set.states.size());
         for (std::size_t s = 0; s < committed.states.size(); ++s) {
@@ -66,7 +67,7 @@ TEST(Experiments, AreWhatTheirCodeMakes) {
 TEST(Organ, IsWhatItsCodeMakes) {
     const TemporaryFolder scratch;
     mesh::write_surface(scratch / "organ.stl", samples::make_organ());
-    EXPECT_EQ(mesh::read_text(scratch / "organ.stl"), mesh::read_text(fs::path(PALPATE_SAMPLES) / "organ/organ.stl"));
+    EXPECT_EQ(mesh::read_text(scratch / "organ.stl"), mesh::read_text(fs::path(samples_folder) / "organ/organ.stl"));
 }
 
 }  // namespace

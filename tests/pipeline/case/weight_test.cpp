@@ -9,6 +9,7 @@
 #include "pipeline/body/reference_body.h"
 #include "pipeline/command_line/commands.h"
 #include "tests/messages.h"
+#include "tests/places.h"
 #include "tests/temporary_folder.h"
 
 namespace palpate::pipeline {
@@ -16,7 +17,7 @@ namespace {
 
 /// The measured beam of silicone, with nothing hung from it: it sags by 6.5 mm along -z.
 identify::MeasurementSet sagging_beam() {
-    auto set = identify::read_measurement_set(std::filesystem::path(PALPATE_SAMPLES) / "dragonskin-beam");
+    auto set = identify::read_measurement_set(std::filesystem::path(samples_folder) / "dragonskin-beam");
     std::erase_if(set.states, [](const identify::LoadState& state) {
         return std::ranges::any_of(state.contacts, [](const mesh::Contact& c) { return !c.force.isZero(0); });
     });
@@ -45,7 +46,7 @@ TEST(Weight, IsLeftAloneBesideALoadOrWithoutAMaterial) {
     take_weight_as_load(nothing_told, notes);
     EXPECT_FALSE(nothing_told.gravity);
     identify::MeasurementSet pressed =
-        identify::read_measurement_set(std::filesystem::path(PALPATE_SAMPLES) / "dragonskin-beam");
+        identify::read_measurement_set(std::filesystem::path(samples_folder) / "dragonskin-beam");
     take_weight_as_load(pressed, notes);
     EXPECT_FALSE(pressed.gravity);
     EXPECT_TRUE(notes.empty());
@@ -70,7 +71,7 @@ TEST(OwnTetrahedra, StayWhenASetIsReadWrittenAndComputedOn) {
 
 TEST(Check, TellsWhatReadingsAreGoodFor) {
     const commands::Outcome outcome = commands::check(
-        {.input = std::filesystem::path(PALPATE_SAMPLES) / "dragonskin-beam", .output = {}, .overrides = {}}, {});
+        {.input = std::filesystem::path(samples_folder) / "dragonskin-beam", .output = {}, .overrides = {}}, {});
     EXPECT_TRUE(says(outcome.text, {"measured coordinates", "independent data"}));
     EXPECT_GT(outcome.json["independent_readings"].get<int>(), 3);
 }

@@ -11,6 +11,7 @@
 
 #include "mesh/formats/surface/read_surface.h"
 #include "pipeline/case/settings/settings.h"
+#include "tests/places.h"
 #include "tests/temporary_folder.h"
 
 namespace palpate::pipeline {
@@ -27,7 +28,7 @@ struct Finished {
 };
 
 Finished palpate(const std::string& arguments) {
-    const std::string command = std::string(PALPATE_PROGRAM) + " " + arguments + " 2>/dev/null";
+    const std::string command = std::string(program_file) + " " + arguments + " 2>/dev/null";
     FILE* pipe = popen(command.c_str(), "r");
     std::string out;
     std::array<char, 4096> buffer{};
@@ -88,7 +89,7 @@ TEST(CommandLine, JsonStandsAloneOnStandardOutput) {
 
 /// What stands on standard error.
 std::string complaint(const std::string& arguments) {
-    const std::string command = std::string(PALPATE_PROGRAM) + " " + arguments + " 2>&1 >/dev/null";
+    const std::string command = std::string(program_file) + " " + arguments + " 2>&1 >/dev/null";
     FILE* pipe = popen(command.c_str(), "r");
     std::string out;
     std::array<char, 4096> buffer{};

@@ -7,6 +7,7 @@
 
 #include "identify/recordings/assembly/import_set.h"
 #include "tests/messages.h"
+#include "tests/places.h"
 #include "tests/temporary_folder.h"
 
 namespace palpate::identify {
@@ -23,7 +24,7 @@ struct Rigs : ::testing::Test {
     }
     /// Imported, written and read back.
     MeasurementSet set_of(const std::string& rig) {
-        got = import_set({.map = fs::path(PALPATE_SAMPLES) / "import" / rig / "map.yaml", .files = {rigs / rig}});
+        got = import_set({.map = fs::path(samples_folder) / "import" / rig / "map.yaml", .files = {rigs / rig}});
         write_measurement_set(scratch / rig, got.set);
         return read_measurement_set(scratch / rig);
     }

@@ -17,6 +17,7 @@
 #include "pipeline/case/settings/overrides.h"
 #include "pipeline/command_line/commands.h"
 #include "tests/messages.h"
+#include "tests/places.h"
 #include "tests/temporary_folder.h"
 
 namespace palpate::pipeline {
@@ -126,7 +127,7 @@ TEST(Settings, BeyondWhatIsAllowedAreRefusedByTheFlagsName) {
 
 /// PALPATE_UPDATE=1 writes the schema.
 TEST(Settings, HaveTheSchemaThatIsPublished) {
-    const std::filesystem::path file = std::filesystem::path(PALPATE_SCHEMAS) / "case.schema.json";
+    const std::filesystem::path file = std::filesystem::path(schemas_folder) / "case.schema.json";
     ordered_json schema = ordered_json::parse(mesh::read_text(file));
     const ordered_json published = schema;
     for (const CaseSetting& setting : settings()) {

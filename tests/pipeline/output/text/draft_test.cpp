@@ -7,11 +7,12 @@
 #include "mesh/errors.h"
 #include "mesh/text/atomic_file.h"
 #include "tests/messages.h"
+#include "tests/places.h"
 
 namespace palpate::pipeline {
 namespace {
 
-const std::filesystem::path drafts = std::filesystem::path(PALPATE_SAMPLES) / "../tests/pipeline/output/text/drafts";
+const std::filesystem::path drafts = std::filesystem::path(samples_folder) / "../tests/pipeline/output/text/drafts";
 
 std::vector<skeleton::EffectParameter> place() {
     return {{"cx", 29.38114, "mm"}, {"cy", -1.97537, "mm"}, {"cz", -2.828, "mm"}, {"radius", 9.28, "mm"}};

@@ -17,6 +17,7 @@
 #include "mesh/text/unfinished.h"
 #include "pipeline/run/folder/run_folder.h"
 #include "tests/messages.h"
+#include "tests/places.h"
 #include "tests/temporary_folder.h"
 
 namespace palpate::pipeline {
@@ -46,7 +47,7 @@ pid_t start_run(const TemporaryFolder& scratch, const std::string& output, std::
         const rlimit limit{grant->most, grant->most};
         if (setrlimit(grant->resource, &limit) != 0) _exit(127);
     }
-    execl(PALPATE_PROGRAM, "palpate", "run", input.c_str(), "-o", folder.c_str(), "--spheres", "8", "--particles", "40",
+    execl(program_file, "palpate", "run", input.c_str(), "-o", folder.c_str(), "--spheres", "8", "--particles", "40",
           "--parameters", "uniform", "--threads", "1", nullptr);
     _exit(127);
 }
