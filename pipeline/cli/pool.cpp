@@ -4,7 +4,7 @@
 #include "pipeline/analysis/specimens.h"
 #include "pipeline/command_line/commands.h"
 #include "pipeline/command_line/subcommands.h"
-#include "pipeline/output/html/population.h"
+#include "pipeline/output/html/several/population.h"
 #include "pipeline/output/json/population.h"
 #include "pipeline/output/text/population.h"
 

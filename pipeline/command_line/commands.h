@@ -131,7 +131,8 @@ struct ExportOptions {
 Outcome export_model(const ExportOptions& options, const Common& common);
 
 struct ReportOptions {
-    std::filesystem::path run, output;
+    std::vector<std::filesystem::path> runs;  // several: side by side on one page
+    std::filesystem::path output;             // empty: report.html in the run folder, of one
 };
 Outcome report(const ReportOptions& options, const Common& common);
 

@@ -6,12 +6,11 @@
 #include <nlohmann/json.hpp>
 
 #include "mesh/text/atomic_file.h"
-#include "pipeline/output/html/charts/charts.h"
-#include "pipeline/output/html/charts/picture.h"
 #include "pipeline/output/html/escape.h"
 #include "pipeline/output/html/page/page_parts.h"
 #include "pipeline/output/html/run_files.h"
 #include "pipeline/output/html/sections/damping_section.h"
+#include "pipeline/output/html/sections/error_section.h"
 #include "pipeline/output/html/sections/fit_sections.h"
 #include "pipeline/output/html/sections/inquiry_sections.h"
 #include "pipeline/output/html/sections/stiffness_section.h"
@@ -19,7 +18,6 @@
 #include "pipeline/output/text/comparison.h"
 #include "pipeline/output/text/diagnosis.h"
 #include "pipeline/output/text/words.h"
-#include "pipeline/output/text/worst.h"
 
 namespace palpate::pipeline {
 namespace {
@@ -47,12 +45,6 @@ std::string before_and_after(const RunFiles& files, double before, const char* k
     if (files.errors_after.empty()) return fmt::format("{:.3g}", before);
     const json& last = files.ladder["steps"].back()[key];
     return fmt::format("{:.3g} → {:.3g}", files.ladder["steps"].front()[key].get<double>(), last.get<double>());
-}
-
-/// "nothing added" or "with gravity".
-std::string with_what(const RunFiles& files) {
-    const std::vector<std::string> added = added_effects(files);
-    return added.empty() ? "nothing added" : "with " + listed(added);
 }
 
 /// The material that finite elements come to, of the last step.
@@ -92,77 +84,8 @@ std::string tiles(const RunFiles& files) {
            "</div>";
 }
 
-std::string figure(const std::string& picture, const std::string& words) {
-    return "<figure>" + picture + "<figcaption class=\"soft\">" + words + "</figcaption></figure>";
-}
-
-std::string pictures(const RunFiles& files) {
-    double highest = 0;
-    for (const Dot& dot : files.errors_before) highest = std::max(highest, dot.value);
-    const bool strange = std::ranges::any_of(files.errors_before, [](const Dot& dot) { return dot.strange; });
-    std::string html =
-        "<div class=\"pair\">" +
-        figure(skeleton_picture(files.model), "Spheres and links; spheres that are held in orange.") +
-        figure(dot_picture(files.model, files.errors_before, highest, "mm"),
-               std::string("Where the model is wrong") + (files.errors_after.empty() ? "." : ", nothing added.") +
-                   (strange ? " Orange rings: finite elements do not explain it either." : ""));
-    if (!files.errors_after.empty()) {
-        const auto effects = files.ladder["steps"].back()["effects"].get<std::vector<std::string>>();
-        html += figure(dot_picture(files.model, files.errors_after, highest, "mm"),
-                       "The same with " + listed(effects) + ", in the same colours.");
-    }
-    return html + "</div>";
-}
-
 /// What a print-out of one page leaves out.
 std::string aside(const std::string& html) { return html.empty() ? "" : "<div class=\"aside\">" + html + "</div>"; }
-
-/// Errors of the states, of compare.json's "probes"; `share`: over their displacements.
-std::vector<Bar> error_bars(const RunFiles& files, const json& compare, bool share) {
-    const json held_out = files.record.value("held_out_probes", json::array());
-    std::vector<Bar> bars;
-    for (const json& p : compare["probes"]) {
-        const bool kept = std::find(held_out.begin(), held_out.end(), p["probe"]) != held_out.end();
-        const std::string label = fmt::format("probe {}, time {:g}{}", p["probe"].get<int>(), p["time"].get<double>(),
-                                              kept ? ", held out" : "");
-        const json& value = share ? p["relative"] : p["rms_mm"];
-        if (value.is_number()) bars.push_back({label, (share ? 100 : 1) * value.get<double>(), kept});
-    }
-    return bars;
-}
-
-std::string probe_chart(const RunFiles& files) {
-    const bool held_out = !files.record.value("held_out_probes", json::array()).empty();
-    std::string html = "<div class=\"pair\">";
-    if (files.improved.is_object()) {
-        html +=
-            bar_chart(error_bars(files, files.compare, false), "Error of each state, nothing added", "mm rms") +
-            bar_chart(error_bars(files, files.improved, false), "Error of each state, " + with_what(files), "mm rms");
-    } else {
-        html += bar_chart(error_bars(files, files.compare, false), "Error of each state", "mm rms") +
-                bar_chart(error_bars(files, files.compare, true), "Error over displacement of each state", "%");
-    }
-    return html + "</div>" + (held_out ? "<p class=\"soft\">Orange: held out of the fit.</p>" : "");
-}
-
-/// The worst probes and markers, and the part of the body, as compare prints them.
-std::string worst_section(const json& compare) {
-    const std::string table = worst_table(compare);
-    return table.empty() ? "" : "<pre class=\"table\" tabindex=\"0\">" + escape(table) + "</pre>";
-}
-
-std::string error_section(const RunFiles& files) {
-    std::string html = "<h2 id=\"errors\">Where it is wrong</h2>";
-    if (files.improved.is_object()) {
-        html += "<p>" +
-                escape(compare_in_words(files.improved, "The model " + with_what(files) + ", fitted to all probes,")) +
-                "</p>" + worst_section(files.improved);
-    } else {
-        if (!files.diagnosis.is_null()) html += "<p>" + escape(compare_in_words(files.compare)) + "</p>";
-        html += worst_section(files.compare);
-    }
-    return html + aside(pictures(files) + probe_chart(files));
-}
 
 std::string stage_table(const RunFiles& files) {
     std::string rows;

@@ -11,6 +11,7 @@
 #include "mesh/formats/yaml/yaml_fields.h"
 #include "mesh/text/atomic_file.h"
 #include "pipeline/output/csv/posterior.h"
+#include "pipeline/output/text/words.h"
 #include "skeleton/model/io/model_io.h"
 
 namespace palpate::pipeline {
@@ -91,6 +92,11 @@ std::vector<Dot> errors_after(const fs::path& step) {
 std::vector<std::string> added_effects(const RunFiles& files) {
     if (files.ladder.is_null()) return {};
     return files.ladder["steps"].back()["effects"].get<std::vector<std::string>>();
+}
+
+std::string with_what(const RunFiles& files) {
+    const std::vector<std::string> added = added_effects(files);
+    return added.empty() ? "nothing added" : "with " + listed(added);
 }
 
 RunFiles read_run(const fs::path& run) {

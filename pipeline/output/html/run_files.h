@@ -30,6 +30,9 @@ struct RunFiles {
 /// The effects that are in a ladder's last step.
 std::vector<std::string> added_effects(const RunFiles& files);
 
+/// "nothing added" or "with gravity".
+std::string with_what(const RunFiles& files);
+
 /// @throws IoError when there is no such file, InvalidInput when it is no JSON.
 nlohmann::json read_json(const std::filesystem::path& file);
 

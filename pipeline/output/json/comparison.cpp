@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <map>
+#include <utility>
 
 #include "pipeline/output/actuator_unit.h"
 #include "pipeline/output/damping.h"
@@ -40,6 +42,26 @@ json driven_by(const identify::MeasurementSet& set, int probe, double time) {
         drives.push_back(fmt::format("{} at {:.3g} {}", actuator.name, one.value, unit_of(actuator)));
     }
     return drives.empty() ? json() : json(fmt::format("{}", fmt::join(drives, ", ")));
+}
+
+/// How much acts in a state: the sum of its forces [N], how far tools are moved [mm], or what actuators are set to
+/// [their unit]; null where such things act together.
+json load_of(const identify::MeasurementSet& set, int probe, double time) {
+    const identify::LoadState* state = identify::find_state(set, {probe, time});
+    if (!state) return nullptr;
+    std::map<std::pair<std::string, std::string>, double> loads;  // (by what, unit): how much
+    const auto add = [&](const char* by, const char* unit, double amount) {
+        if (amount > 0) loads[{by, unit}] += amount;
+    };
+    for (const mesh::Contact& contact : state->contacts) add("forces", "N", contact.force.norm());
+    for (const mesh::ToolMotion& motion : state->motions)
+        add("tools", "mm", motion.translation.array().isNaN().select(0, motion.translation).matrix().norm());
+    for (const identify::Actuation& one : state->actuations)
+        add("actuators", unit_of(set.actuators[one.actuator]), std::abs(one.value));
+    if (loads.empty()) return {{"by", "nothing"}, {"value", 0.0}, {"unit", nullptr}};
+    if (loads.size() > 1) return nullptr;
+    const auto& [kind, amount] = *loads.begin();
+    return {{"by", kind.first}, {"value", amount}, {"unit", kind.second}};
 }
 
 /// Rms error of each marker over all states, with its place at rest.
@@ -94,6 +116,7 @@ json to_json(const identify::Comparison& c, const identify::MeasurementSet& set)
                                     {"rms_mm", p.rms},
                                     {"max_mm", p.max},
                                     {"relative", known(p.relative)},
+                                    {"load", load_of(set, p.probe, p.time)},
                                     {"at", pressed_at(set, p.probe, p.time)},
                                     {"driven_by", driven_by(set, p.probe, p.time)}});
     }

@@ -45,6 +45,7 @@ def palpate(*arguments):
     done = subprocess.run([program, *map(str, arguments)], capture_output=True, text=True)
     if done.returncode != 0:
         failures.append(f"palpate {' '.join(map(str, arguments))}: exit code {done.returncode}: {done.stderr[-500:]}")
+    return done.stdout
 
 
 for case in sorted(source.glob("samples/*/case.yaml")):
@@ -100,6 +101,9 @@ with tempfile.TemporaryDirectory() as scratch:
 
     palpate("run", at / "case/case.yaml", "-o", at / "second", "--probes", 6, "--spheres", 8, "--parameters",
             "uniform", "--particles", 40, "--edge-length", 8, "--seed", 2)
+    told = palpate("report", at / "run", at / "second", "-o", at / "runs.html", "--json")
+    (at / "runs.json").write_text(told)
+    check("runs", at / "runs.json")
     palpate("pool", at / "run", at / "second", "-o", at / "pooled")
     check("population", at / "pooled/population.json")
 

@@ -17,14 +17,13 @@
 #include "pipeline/analysis/playback.h"
 #include "pipeline/command_line/commands.h"
 #include "pipeline/output/csv/posterior.h"
-#include "pipeline/output/html/charts/charts.h"
 #include "pipeline/output/html/findings.h"
 #include "pipeline/output/html/report.h"
-#include "pipeline/output/html/sections/fit_sections.h"
-#include "pipeline/output/html/sections/inquiry_sections.h"
+#include "pipeline/output/html/sections/error_section.h"
 #include "pipeline/output/html/view_data.h"
 #include "skeleton/model/io/model_io.h"
 #include "skeleton/statics/equilibrium.h"
+#include "tests/pipeline/output/html/beam_run.h"
 #include "tests/temporary_folder.h"
 
 namespace palpate::pipeline {
@@ -32,29 +31,10 @@ namespace {
 
 using nlohmann::json;
 using ::testing::AllOf;
+using ::testing::DoubleNear;
 using ::testing::HasSubstr;
 using ::testing::Not;
-
-commands::RunOptions beam_options(const std::filesystem::path& from, const std::filesystem::path& to) {
-    commands::RunOptions options{.input = from / "beam.stl", .output = to, .overrides = {}};
-    options.overrides.set("volume.edge_length", 14);
-    options.overrides.set("skeleton.spheres", 6);
-    options.overrides.set("probing.probes", 6);
-    options.overrides.set("identify.particles", 40);
-    options.overrides.set("identify.parameters", "uniform");
-    return options;
-}
-
-/// A run on a small beam, made once for all tests.
-const std::filesystem::path& beam_run() {
-    static const TemporaryFolder scratch;
-    static const std::filesystem::path run = [] {
-        mesh::write_surface(scratch / "beam.stl", mesh::make_box({0, 0, 0}, {100, 20, 20}, {10, 2, 2}));
-        commands::run(beam_options(scratch.path(), scratch / "run"), {});
-        return scratch / "run";
-    }();
-    return run;
-}
+using ::testing::Pointwise;
 
 json data_of(const std::filesystem::path& run, std::size_t budget = 3'000'000) {
     return view_data(run, json::parse(mesh::read_text(run / "run.json")),
@@ -84,6 +64,31 @@ TEST(ReportPage, HoldsEverySectionThatTheRunHasAndNoOther) {
     }
     EXPECT_THAT(page, AllOf(Not(HasSubstr("id=\"missing\"")), Not(HasSubstr("id=\"ladder\""))));
     EXPECT_THAT(page, HasSubstr("<a href=\"#stiffness\">Stiffness</a>"));
+}
+
+/// The run's file and the page's chart of it, where one kind of load acts; none where kinds cannot be compared.
+TEST(ReportPage, DrawsTheErrorOverTheLoad) {
+    RunFiles files = read_run(beam_run());
+    std::vector<double> told;
+    for (const json& p : files.compare["probes"]) {
+        const bool is_loaded = p["load"]["value"] > 0;
+        EXPECT_EQ(p["load"]["by"], is_loaded ? "forces" : "nothing");
+        EXPECT_EQ(p["load"]["unit"], is_loaded ? json("N") : json());
+        told.push_back(p["load"]["value"]);
+    }
+    const identify::MeasurementSet set = identify::read_measurement_set(beam_run() / "measurements");
+    std::vector<double> acting;
+    for (const identify::LoadState& state : set.states) {
+        acting.push_back(0);
+        for (const mesh::Contact& contact : state.contacts) acting.back() += contact.force.norm();
+    }
+    EXPECT_THAT(told, Pointwise(DoubleNear(1e-6), acting));
+
+    EXPECT_THAT(error_section(files), AllOf(HasSubstr("Error of each state over its load"), HasSubstr("forces [N]")));
+    files.compare["probes"][0]["load"] = {{"by", "tools"}, {"value", 1.0}, {"unit", "mm"}};
+    EXPECT_THAT(error_section(files), Not(HasSubstr("over its load")));
+    files.compare["probes"][0]["load"] = nullptr;
+    EXPECT_THAT(error_section(files), Not(HasSubstr("over its load")));
 }
 
 TEST(ReportPage, OfNoRunSaysSo) {
@@ -260,63 +265,6 @@ TEST(LinkUncertainty, FollowsTheScopeOfEachRow) {
     ASSERT_EQ(by_link.size(), 1U);  // a sphere's is none of a link's
     EXPECT_TRUE(std::isnan(by_link[0].values(0, 0)));
     EXPECT_EQ(by_link[0].values(2, 0), 0.1);
-}
-
-TEST(MissingSection, PutsEveryCandidateInWords) {
-    const json diagnosis = {{"verdict", "missing-effect"},
-                            {"explanation", {"gravity"}},
-                            {"noise_mm", 0.1},
-                            {"noise_known", true},
-                            {"baseline",
-                             {{"law", "neo-hooke"},
-                              {"young_mpa", 0.1},
-                              {"poisson", nullptr},
-                              {"rms_mm", 2.0},
-                              {"held_out_rms_mm", 2.1},
-                              {"whitened_rms", 20.0}}},
-                            {"ranking",
-                             {{{"effect", "gravity"},
-                               {"log_bayes_factor", 412.3},
-                               {"probability", 1.0},
-                               {"rms_mm", 0.1},
-                               {"held_out_rms_mm", 0.11},
-                               {"whitened_rms", 1.0},
-                               {"predicted_rms_mm", 0.1},
-                               {"parameters", {{"gz", {{"value", -9810.0}, {"sd", 12.0}, {"unit", "mm/s^2"}}}}},
-                               {"sentence", "Gravity is <missing>."}},
-                              {{"effect", "contact"},
-                               {"log_bayes_factor", 3.0},
-                               {"probability", 0.0},
-                               {"rms_mm", nullptr},
-                               {"held_out_rms_mm", nullptr},
-                               {"whitened_rms", nullptr},
-                               {"predicted_rms_mm", 1.7},
-                               {"parameters", json::object()},
-                               {"objection", "too much of the misfit"}}}}};
-    EXPECT_THAT(
-        missing_section(diagnosis),
-        AllOf(HasSubstr("<b>Claimed.</b> Gravity is &lt;missing&gt;."), HasSubstr("gz -9810 ± 12 mm/s^2"),
-              HasSubstr("The body meets an unreported flat obstacle"), HasSubstr("No claim: too much of the misfit."),
-              HasSubstr("Screened only: it would leave 1.7 mm rms."), HasSubstr("above 0.99"), HasSubstr("below 0.01"),
-              Not(HasSubstr("left out"))));
-    EXPECT_EQ(missing_section(nullptr), "");
-}
-
-TEST(SpheresSection, DrawsTheCurveWhereThereIsOne) {
-    const auto step = [](int spheres, double rms, bool own) {
-        return json{
-            {"own", own}, {"spheres", spheres}, {"error", {{"rms", rms}, {"median", rms / 2}, {"p90", 2 * rms}}}};
-    };
-    const json steps{step(8, 0.3, true), step(64, 0.1, false)};
-    EXPECT_THAT(spheres_section({{"rungs", steps}}),
-                AllOf(HasSubstr("rms at 8: 30"), HasSubstr("90th percentile at 64: 20"), HasSubstr("8 free spheres")));
-    EXPECT_EQ(spheres_section(nullptr), "");
-}
-
-TEST(LineChart, NeedsTwoPlaces) {
-    EXPECT_EQ(line_chart({{"a", {}}}, "t", "x"), "");
-    EXPECT_EQ(line_chart({{"a", {{1, 2}}}}, "t", "x"), "");
-    EXPECT_THAT(line_chart({{"a", {{1, 2}, {2, 2}}}}, "t", "x"), HasSubstr("polyline"));
 }
 
 }  // namespace

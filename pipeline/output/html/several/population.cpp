@@ -1,4 +1,4 @@
-#include "pipeline/output/html/population.h"
+#include "pipeline/output/html/several/population.h"
 
 #include <fmt/format.h>
 

@@ -1,0 +1,133 @@
+#include "pipeline/output/html/sections/error_section.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <vector>
+
+#include "pipeline/output/html/charts/charts.h"
+#include "pipeline/output/html/charts/picture.h"
+#include "pipeline/output/html/escape.h"
+#include "pipeline/output/text/comparison.h"
+#include "pipeline/output/text/words.h"
+#include "pipeline/output/text/worst.h"
+
+namespace palpate::pipeline {
+namespace {
+
+using nlohmann::json;
+
+std::string figure(const std::string& picture, const std::string& words) {
+    return "<figure>" + picture + "<figcaption class=\"soft\">" + words + "</figcaption></figure>";
+}
+
+std::string pictures(const RunFiles& files) {
+    double highest = 0;
+    for (const Dot& dot : files.errors_before) highest = std::max(highest, dot.value);
+    const bool strange = std::ranges::any_of(files.errors_before, [](const Dot& dot) { return dot.strange; });
+    std::string html =
+        "<div class=\"pair\">" +
+        figure(skeleton_picture(files.model), "Spheres and links; spheres that are held in orange.") +
+        figure(dot_picture(files.model, files.errors_before, highest, "mm"),
+               std::string("Where the model is wrong") + (files.errors_after.empty() ? "." : ", nothing added.") +
+                   (strange ? " Orange rings: finite elements do not explain it either." : ""));
+    if (!files.errors_after.empty()) {
+        const auto effects = files.ladder["steps"].back()["effects"].get<std::vector<std::string>>();
+        html += figure(dot_picture(files.model, files.errors_after, highest, "mm"),
+                       "The same with " + listed(effects) + ", in the same colours.");
+    }
+    return html + "</div>";
+}
+
+/// Errors of the states, of compare.json's "probes"; `share`: over their displacements.
+std::vector<Bar> error_bars(const RunFiles& files, const json& compare, bool share) {
+    const json held_out = files.record.value("held_out_probes", json::array());
+    std::vector<Bar> bars;
+    for (const json& p : compare["probes"]) {
+        const bool kept = std::find(held_out.begin(), held_out.end(), p["probe"]) != held_out.end();
+        const std::string label = fmt::format("probe {}, time {:g}{}", p["probe"].get<int>(), p["time"].get<double>(),
+                                              kept ? ", held out" : "");
+        const json& value = share ? p["relative"] : p["rms_mm"];
+        if (value.is_number()) bars.push_back({label, (share ? 100 : 1) * value.get<double>(), kept});
+    }
+    return bars;
+}
+
+std::string probe_chart(const RunFiles& files) {
+    const bool held_out = !files.record.value("held_out_probes", json::array()).empty();
+    std::string html = "<div class=\"pair\">";
+    if (files.improved.is_object()) {
+        html +=
+            bar_chart(error_bars(files, files.compare, false), "Error of each state, nothing added", "mm rms") +
+            bar_chart(error_bars(files, files.improved, false), "Error of each state, " + with_what(files), "mm rms");
+    } else {
+        html += bar_chart(error_bars(files, files.compare, false), "Error of each state", "mm rms") +
+                bar_chart(error_bars(files, files.compare, true), "Error over displacement of each state", "%");
+    }
+    return html + "</div>" + (held_out ? "<p class=\"soft\">Orange: held out of the fit.</p>" : "");
+}
+
+/// "forces [N]": what acts in the states of a comparison; "" where that is not one thing, or nothing.
+std::string load_axis(const json& compare) {
+    std::set<std::string> axes;
+    for (const json& p : compare["probes"]) {
+        const json load = p.value("load", json());
+        if (!load.is_object()) return {};
+        if (load["unit"].is_string())
+            axes.insert(fmt::format("{} [{}]", load["by"].get<std::string>(), load["unit"].get<std::string>()));
+    }
+    return axes.size() == 1 ? *axes.begin() : "";
+}
+
+/// The error of each state over how much acts in it.
+ChartLine errors_under_load(const json& compare, const std::string& label) {
+    ChartLine dots{.label = label, .points = {}, .drawn = ChartLine::Drawn::dots};
+    for (const json& p : compare["probes"]) {
+        const json load = p.value("load", json());
+        if (load.is_object()) dots.points.emplace_back(load["value"].get<double>(), p["rms_mm"].get<double>());
+    }
+    return dots;
+}
+
+/// Whether the error comes with the load: there without any, in proportion, or faster.
+std::string load_chart(const RunFiles& files) {
+    const std::string axis = load_axis(files.compare);
+    if (axis.empty()) return {};
+    std::vector<ChartLine> curves{errors_under_load(files.compare, "nothing added")};
+    if (files.improved.is_object()) curves.push_back(errors_under_load(files.improved, with_what(files)));
+    const std::string chart = line_chart(curves, "Error of each state over its load [mm rms]", axis);
+    if (chart.empty()) return {};
+    std::string words =
+        "An error that is present without load does not come from stiffness; one in proportion to the load does; one "
+        "that grows faster indicates a nonlinearity.";
+    // With an effect in, the model moves without load, too: its exponent is not about what acts alone.
+    if (const json exponent = files.compare.value("load_exponent", json());
+        exponent.is_object() && !files.compare["adequate"].get<bool>())
+        words += " Nothing added: " + escape(exponent["words"].get<std::string>()) + ".";
+    return "<div class=\"pair\">" + figure(chart, words) + "</div>";
+}
+
+/// The worst probes and markers, and the part of the body, as compare prints them.
+std::string worst_section(const json& compare) {
+    const std::string table = worst_table(compare);
+    return table.empty() ? "" : "<pre class=\"table\" tabindex=\"0\">" + escape(table) + "</pre>";
+}
+
+}  // namespace
+
+std::string error_section(const RunFiles& files) {
+    std::string html = "<h2 id=\"errors\">Where it is wrong</h2>";
+    if (files.improved.is_object()) {
+        html += "<p>" +
+                escape(compare_in_words(files.improved, "The model " + with_what(files) + ", fitted to all probes,")) +
+                "</p>" + worst_section(files.improved);
+    } else {
+        if (!files.diagnosis.is_null()) html += "<p>" + escape(compare_in_words(files.compare)) + "</p>";
+        html += worst_section(files.compare);
+    }
+    return html + "<div class=\"aside\">" + pictures(files) + probe_chart(files) + load_chart(files) + "</div>";
+}
+
+}  // namespace palpate::pipeline
