@@ -17,8 +17,10 @@ namespace {
 /// Folders by their last names where these tell them apart, else as they were given.
 std::vector<NamedRun> read_runs(const std::vector<std::filesystem::path>& folders) {
     std::vector<std::string> names;
+    names.reserve(folders.size());
     for (const auto& folder : folders) names.push_back(std::filesystem::weakly_canonical(folder).filename().string());
     std::vector<NamedRun> runs;
+    runs.reserve(folders.size());
     for (std::size_t r = 0; r < folders.size(); ++r)
         runs.push_back(
             {std::ranges::count(names, names[r]) == 1 ? names[r] : folders[r].string(), read_run(folders[r])});
