@@ -13,7 +13,9 @@ namespace {
 
 using nlohmann::json;
 
-/// The run of the least value; none where one has no value, two share it, or their states differ.
+std::string in_mm(const json& value) { return value.is_number() ? fmt::format("{:.3g} mm", value.get<double>()) : "–"; }
+
+/// The run of the least value; none where one has no value, two share it as far as it is told, or their states differ.
 std::optional<std::size_t> least(const json& runs, const std::function<json(const json&)>& value_of) {
     if (!runs["same_states"].get<bool>()) return std::nullopt;
     std::vector<double> values;
@@ -23,7 +25,7 @@ std::optional<std::size_t> least(const json& runs, const std::function<json(cons
         values.push_back(value.get<double>());
     }
     const auto best = std::ranges::min_element(values);
-    if (std::ranges::count(values, *best) > 1) return std::nullopt;
+    if (std::ranges::count(values, in_mm(*best), in_mm) > 1) return std::nullopt;
     return static_cast<std::size_t>(best - values.begin());
 }
 
@@ -36,8 +38,6 @@ std::optional<std::size_t> least_held_out(const json& runs) {
         if (run["held_out_probes"] != runs["runs"][0]["held_out_probes"]) return std::nullopt;
     return least(runs, held_out);
 }
-
-std::string in_mm(const json& value) { return value.is_number() ? fmt::format("{:.3g} mm", value.get<double>()) : "–"; }
 
 std::string or_none(const json& value) { return value.is_string() ? value.get<std::string>() : "–"; }
 
@@ -83,7 +83,7 @@ std::string best_run_in_words(const json& runs) {
             "{} has the least error on the probes it was fitted to, {} rms. The runs share no held-out probes, so a "
             "model with more parameters may merely fit more of the noise.",
             named(*best), in_mm(fitted(runs["runs"][*best])));
-    return "No run has a smaller error than all others.";
+    return "No run has a smaller error than all others, to three digits.";
 }
 
 std::string runs_table(const json& runs) {

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <string>
 #include <vector>
 
@@ -69,17 +68,20 @@ std::string settings_table(const json& runs) {
     return in_table(rows);
 }
 
-/// The least error of each state stands out.
+/// The least error of each state stands out, where it is less than the others as far as they are told.
 std::string state_table(const json& runs) {
     std::string rows = heading(runs, "state");
     for (const json& state : runs["states"]) {
+        std::vector<std::string> errors;
+        errors.reserve(state["rms_mm"].size());
+        for (const json& rms : state["rms_mm"]) errors.push_back(fmt::format("{:.3g}", rms.get<double>()));
+        const std::string& least =
+            *std::ranges::min_element(errors, {}, [](const auto& told) { return std::stod(told); });
+        const bool stands_out = std::ranges::count(errors, least) == 1;
         rows += "<tr>" +
                 table_cell(fmt::format("probe {}, time {:g}", state["probe"].get<int>(), state["time"].get<double>()));
-        double least = INFINITY;
-        for (const json& rms : state["rms_mm"]) least = std::min(least, rms.get<double>());
-        for (const json& rms : state["rms_mm"])
-            rows +=
-                table_cell(fmt::format("{:.3g}", rms.get<double>()), rms == least ? " style=\"font-weight:600\"" : "");
+        for (const std::string& told : errors)
+            rows += table_cell(told, stands_out && told == least ? " style=\"font-weight:600\"" : "");
         rows += "</tr>";
     }
     return in_table(rows);
