@@ -32,11 +32,11 @@ std::optional<std::size_t> least(const json& runs, const std::function<json(cons
 json held_out(const json& run) { return run["held_out_rms_mm"]; }
 json fitted(const json& run) { return run["rms_mm"]["now"]; }
 
-/// The same, on held-out probes; none where these are not the same in all runs.
-std::optional<std::size_t> least_held_out(const json& runs) {
-    for (const json& run : runs["runs"])
-        if (run["held_out_probes"] != runs["runs"][0]["held_out_probes"]) return std::nullopt;
-    return least(runs, held_out);
+/// Has every run an error on the same held-out probes?
+bool share_held_out(const json& runs) {
+    return std::ranges::all_of(runs["runs"], [&](const json& run) {
+        return held_out(run).is_number() && run["held_out_probes"] == runs["runs"][0]["held_out_probes"];
+    });
 }
 
 std::string or_none(const json& value) { return value.is_string() ? value.get<std::string>() : "–"; }
@@ -57,7 +57,8 @@ std::vector<RunNumber> run_numbers(const json& runs) {
     });
     add("rms error, nothing added", [](const json& run) { return in_mm(run["rms_mm"]["nothing_added"]); });
     add("rms error", [](const json& run) { return in_mm(fitted(run)); }).best = least(runs, fitted);
-    add("rms error, held out", [](const json& run) { return in_mm(held_out(run)); }).best = least_held_out(runs);
+    add("rms error, held out", [](const json& run) { return in_mm(held_out(run)); }).best =
+        share_held_out(runs) ? least(runs, held_out) : std::nullopt;
     add("error over displacement",
         [](const json& run) { return run["relative"].is_number() ? percent(run["relative"].get<double>()) : "–"; });
     add("noise", [](const json& run) { return in_mm(run["noise_mm"]); });
@@ -74,16 +75,19 @@ std::vector<RunNumber> run_numbers(const json& runs) {
 std::string best_run_in_words(const json& runs) {
     if (!runs["same_states"].get<bool>())
         return "These runs differ in body, loads or states: their errors are listed, not ranked.";
-    const auto named = [&](std::size_t run) { return runs["runs"][run]["run"].get<std::string>(); };
-    if (const auto best = least_held_out(runs))
-        return fmt::format("{} has the least error on held-out probes, {} rms.", named(*best),
-                           in_mm(held_out(runs["runs"][*best])));
-    if (const auto best = least(runs, fitted))
-        return fmt::format(
-            "{} has the least error on the probes it was fitted to, {} rms. The runs share no held-out probes, so a "
-            "model with more parameters may merely fit more of the noise.",
-            named(*best), in_mm(fitted(runs["runs"][*best])));
-    return "No run has a smaller error than all others, to three digits.";
+    const bool is_foretold = share_held_out(runs);
+    const auto best = least(runs, is_foretold ? held_out : fitted);
+    if (!best)
+        return fmt::format("No run has a smaller error{} than all others, to three digits.",
+                           is_foretold ? " on held-out probes" : "");
+    const json& run = runs["runs"][*best];
+    const auto name = run["run"].get<std::string>();
+    if (is_foretold)
+        return fmt::format("{} has the least error on held-out probes, {} rms.", name, in_mm(held_out(run)));
+    return fmt::format(
+        "{} has the least error on the probes it was fitted to, {} rms. The runs share no held-out probes, so a model "
+        "with more parameters may merely fit more of the noise.",
+        name, in_mm(fitted(run)));
 }
 
 std::string runs_table(const json& runs) {

@@ -74,6 +74,9 @@ TEST(RunsSideBySide, AreRankedByWhatWasHeldOutOfAll) {
     foretold.files.ladder = ladder(0.2, 1);
     EXPECT_THAT(best_run_in_words(runs_json({fitted, foretold})),
                 HasSubstr("foretold has the least error on held-out probes, 0.2 mm"));
+    foretold.files.ladder = ladder(0.3002, 1);
+    EXPECT_THAT(best_run_in_words(runs_json({fitted, foretold})),
+                HasSubstr("No run has a smaller error on held-out probes"));
     foretold.files.ladder = ladder(0.2, 2);
     EXPECT_THAT(best_run_in_words(runs_json({fitted, foretold})),
                 HasSubstr("fitted has the least error on the probes it was fitted to"));
