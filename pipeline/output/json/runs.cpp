@@ -49,7 +49,7 @@ const json& final_comparison(const RunFiles& files) {
     return files.improved.is_object() ? files.improved : files.compare;
 }
 
-/// What was done to the body in the states, and where its markers are.
+/// What was done to the body in each state, and where the body lies.
 json states_of(const json& compare) {
     json states = json::array();
     for (const json& p : compare["probes"])
@@ -96,9 +96,11 @@ json errors_by_state(const std::vector<NamedRun>& runs) {
 json runs_json(const std::vector<NamedRun>& runs) {
     json all = {{"format", "palpate-runs/1"}, {"runs", json::array()}, {"settings", differing_settings(runs)}};
     bool same_states = true;
+    const json states = states_of(runs.front().files.compare);
     for (const NamedRun& run : runs) {
         all["runs"].push_back(run_json(run));
-        same_states = same_states && states_of(run.files.compare) == states_of(runs.front().files.compare);
+        same_states =
+            same_states && states_of(run.files.compare) == states && states_of(final_comparison(run.files)) == states;
     }
     all["same_states"] = same_states;
     all["states"] = same_states ? errors_by_state(runs) : json::array();
