@@ -14,6 +14,7 @@
 #include "mesh/text/atomic_file.h"
 #include "pipeline/case/read_case.h"
 #include "pipeline/case/subject.h"
+#include "pipeline/output/findings.h"
 #include "pipeline/output/html/run_files.h"
 #include "pipeline/output/text/words.h"
 #include "pipeline/play/touch/set_text.h"
@@ -151,6 +152,24 @@ json corrected_sets(const skeleton::Model& model, const identify::MeasurementSet
     return numbers;
 }
 
+/// What was diagnosed in a run, or null.
+json diagnosis_of(const fs::path& run) {
+    const fs::path file = run / "diagnose/diagnosis.json";
+    return fs::exists(file) ? read_json(file) : json();
+}
+
+/// Markers that look swapped: the probe and time of each pair, and their numbers in the set.
+json exchanged_in(const json& diagnosis, const std::optional<identify::MeasurementSet>& set) {
+    json result = json::array();
+    if (!set || diagnosis.is_null()) return result;
+    for (json pair : diagnosis.value("exchanged_markers", json::array())) {
+        for (json& id : pair["markers"])
+            id = std::ranges::find(set->markers, id.get<int>(), &identify::Marker::id) - set->markers.begin();
+        result.push_back(std::move(pair));
+    }
+    return result;
+}
+
 /// What the page says of an effect: its meaning, and its numbers.
 ordered_json effect_json(const skeleton::EffectRecord& effect) {
     const auto known = identify::effect_named(effect.name);
@@ -198,6 +217,7 @@ PlayData play_data(const fs::path& input, const fs::path& set_folder) {
         set.reset();
     }
 
+    const json diagnosis = diagnosis_of(input);
     json sets = json::array();
     ordered_json models = ordered_json::array(), first;
     for (const Candidate& candidate : candidates) {
@@ -210,6 +230,7 @@ PlayData play_data(const fs::path& input, const fs::path& set_folder) {
         for (const std::string& notice : body.notices()) data.notes.push_back(candidate.name + ": " + notice + ".");
         ordered_json text = ordered_json::parse(mesh::read_text(candidate.file));
         ordered_json one = {{"name", candidate.name}, {"about", candidate.about}, {"told", candidate.errors}};
+        one["findings"] = findings_json(model.effects, diagnosis);
         one["effects"] = ordered_json::array();
         for (const skeleton::EffectRecord& effect : model.effects) one["effects"].push_back(effect_json(effect));
         if (set) one["sets"] = corrected_sets(model, *set, sets);
@@ -220,6 +241,9 @@ PlayData play_data(const fs::path& input, const fs::path& set_folder) {
     data.models = models.size();
     data.states = set ? set->states.size() : 0;
 
+    const json where = diagnosis.is_null() ? json() : diagnosis.value("where", json());
+    if (where.is_object() && diagnosis["explanation"].empty()) data.notes.push_back(where["sentence"]);
+
     fs::path ladder = input / "ladder.json";
     if (!fs::exists(ladder)) ladder = input / "improve/ladder.json";
     const bool has_steps = std::ranges::any_of(candidates, [](const Candidate& c) { return !c.errors.is_null(); });
@@ -229,8 +253,9 @@ PlayData play_data(const fs::path& input, const fs::path& set_folder) {
     }
     const json held_out =
         fs::exists(ladder) ? read_json(ladder).value("held_out_probes", json::array()) : json::array();
-    data.content = {
-        {"name", data.name}, {"models", models}, {"sets", sets}, {"held_out", held_out}, {"notes", data.notes}};
+    data.content = {{"name", data.name},    {"models", models},
+                    {"sets", sets},         {"exchanged", exchanged_in(diagnosis, set)},
+                    {"held_out", held_out}, {"notes", data.notes}};
     return data;
 }
 

@@ -27,6 +27,7 @@
 #include "pipeline/output/identification.h"
 #include "pipeline/output/json/comparison.h"
 #include "pipeline/output/json/reference_comparison.h"
+#include "pipeline/output/vtk/findings_file.h"
 #include "pipeline/output/vtk/series.h"
 #include "pipeline/output/vtk/view_script.h"
 #include "pipeline/run/folder/run_folder.h"
@@ -90,6 +91,9 @@ public:
         measure_sphere_curve(folder_, subject_, {.repaired = {}, .surface = surface_, .volume = body_, .notes = {}},
                              start, common_);
         write_view_script(folder_.path() / "view.py");
+        const skeleton::Model& found =
+            results.improved.is_null() ? model_ : skeleton::read_model(folder_.path() / "improve/model.json");
+        write_findings(folder_.path() / "findings.vtp", found, set_, results.diagnosis);
         write_report(folder_.path(), folder_.path() / "report.html");
         return conclude(results);
     }

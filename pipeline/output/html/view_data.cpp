@@ -9,7 +9,7 @@
 #include "mesh/errors.h"
 #include "mesh/formats/vtk/poly_data.h"
 #include "pipeline/analysis/link_uncertainty.h"
-#include "pipeline/output/html/findings.h"
+#include "pipeline/output/findings.h"
 #include "pipeline/output/html/packed_rows.h"
 #include "pipeline/output/text/words.h"
 #include "skeleton/model/io/model_io.h"

@@ -12,7 +12,7 @@ from paraview.simple import *
 
 script = globals().get("__file__") or sys.argv[0]
 run = os.path.dirname(os.path.abspath(script))
-ORANGE, GREY, DARK = [0.78, 0.45, 0.1], [0.6, 0.64, 0.68], [0.1, 0.1, 0.12]
+ORANGE, GREY, DARK, FOUND = [0.78, 0.45, 0.1], [0.6, 0.64, 0.68], [0.1, 0.1, 0.12], [0.69, 0.23, 0.55]
 
 
 def path(*names):
@@ -181,7 +181,11 @@ def stiffness_view(view):
     low, high = model.CellData["elongation [N/mm]"].GetRange(0) if model.CellData.GetArray("elongation [N/mm]") else (1, 1)
     colour(view, tubes, "CELLS", "elongation [N/mm]", low, max(high, 1.01 * low), logarithmic=True)
     plain(Show(balls_of(model, "radius [mm]", 2.0), view), GREY, 0.15)
-    return "Stiffness of the links (%s/model.vtp)" % best
+    told = "Stiffness of the links (%s/model.vtp)" % best
+    if os.path.exists(path("findings.vtp")):  # at rest, as the model is here
+        plain(Show(XMLPolyDataReader(FileName=[path("findings.vtp")]), view), FOUND, 0.7)
+        told += "; what was found to be missing in purple"
+    return told
 
 
 def ladder_view(view):

@@ -21,7 +21,7 @@ class Player {
     this.triangles = Int32Array.from(first.skin.triangles.flat());
     const box = new Box().hold(this.rest), canvas = this.at('canvas'), roomToPull = 1.5;
     this.camera = new Camera(box, canvas.clientWidth / canvas.clientHeight || 1, roomToPull);
-    this.size = box.size();
+    Object.assign(this, {size: box.size(), middle: box.middle()});
     this.colours = new Float32Array(this.rest.length);
     this.pinned = [];        // touches that go on pulling
     this.loads = [];         // touches of the probe that is replayed

@@ -33,9 +33,11 @@ class SeenPlayer extends Player {
       scene.glyphs('ball', [ballAt(row3(skin, this.points[this.chosen.point]), 0.012 * size, loadColour)]);
     }
     if (errors && this.at('show-markers').checked) this.drawMarkers(errors);
+    if (this.at('show-findings').checked) this.drawFindings();
     const skeleton = this.at('show-skeleton').checked;
     if (skeleton) this.drawSkeleton();
-    if (this.at('show-skin').checked) scene.surface(skin, this.colours, skeleton || errors ? 0.5 : 1);
+    const within = skeleton || errors || (this.at('show-findings').checked && this.findings.length > 0);
+    if (this.at('show-skin').checked) scene.surface(skin, this.colours, within ? 0.5 : 1);
     this.at('high').textContent = inUnit(high, 'mm');
     this.at('what').textContent = byError ? 'error of this probe, spread between markers' : 'displacement from rest';
   }
@@ -50,6 +52,29 @@ class SeenPlayer extends Player {
     scene.glyphs('ball', measured);
     scene.glyphs('ball', modelled);
     scene.glyphs('tube', gaps);
+  }
+  /// What the model's effects are, where they can be drawn, and the force or change that no effect is named for.
+  get findings() {
+    const off = (name) => this.model.effects.some((e) => e.name === name && !this.isOn(e));
+    return this.model.findings.filter((f) => f.kind !== 'words' && !off(f.effect));
+  }
+  /// Gravity, fibres and lumps go with the sphere nearest to them; walls and clamps stay.
+  drawFindings() {
+    const {spheres} = this.model.text, at = Float32Array.from(spheres.flatMap((s) => s.center));
+    const body = {middle: this.middle, size: this.size, spheres: spheres.map((s) => s.center), held: spheres.map((s) => s.held)};
+    for (const found of this.findings) {
+      const moves = this.centres && !['plane', 'springs'].includes(found.kind);
+      const near = moves ? nearestVertex(at, found.center ?? body.middle) : -1;
+      const by = moves ? minus3(row3(this.centres, near), row3(at, near)) : [0, 0, 0];
+      for (const {shape, glyph, opacity} of findingGlyphs([found], body))
+        this.scene.glyphs(shape, [{...glyph, start: plus3(glyph.start, by), end: plus3(glyph.end, by)}], opacity);
+    }
+    // Markers that look swapped in the probe that is replayed.
+    const {state} = this, here = (pair) => pair.probe === state?.probe && pair.time === state?.time;
+    for (const {markers} of this.data.exchanged.filter(here)) {
+      const [start, end] = markers.map((m) => state.readings.find(([marker]) => marker === m)?.slice(1));
+      if (start && end) this.scene.glyphs('tube', [{start, end, radius: 0.004 * this.size, colour: foundColour}]);
+    }
   }
   drawSkeleton() {
     const {scene, size, centres} = this, text = this.model.text;

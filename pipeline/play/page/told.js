@@ -69,6 +69,7 @@ class ToldPlayer extends SeenPlayer {
   tellErrors() {
     const shown = this.set >= 0;
     this.at('errors').hidden = this.at('replay').hidden = this.at('markers-label').hidden = !shown;
+    this.at('findings-label').hidden = !this.findings.length && !this.data.exchanged.length;
     if (!shown) return;
     const off = this.model.effects.filter((e) => e.played && !this.isOn(e)).map((e) => e.name);
     const {verdict} = this, told = this.data.models.filter((m) => m.told);

@@ -22,6 +22,7 @@ function findingGlyphs(findings, body) {
     } else if (found.kind === 'ball') {
       const r = found.radius, [x, y, z] = found.center;
       add('ball', [x, y, z - r], [x, y, z + r], r, text, 0.55);
+      if (found.vector) add('arrow', found.center, along(found.center, unit(found.vector), 0.25 * size), 0.012 * size, '');
     } else if (found.kind === 'plane') {
       const n = unit(found.vector), height = n.reduce((sum, c, i) => sum + c * middle[i], 0) - found.offset;
       const foot = along(middle, n, -height);

@@ -82,11 +82,15 @@ function startView() {
   // First the state that goes most wrong, which is what the page is about.
   const first = run.steps[0].states.reduce((best, s, i, all) => (s.rms > (all[best].rms || 0) ? i : best), 0);
 
+  const farthest = run.steps[0].states[first];
+  const worstMarker = farthest.markers.id[farthest.lengths.indexOf(largest(farthest.lengths))];
+  const series = new SeriesChart(run, titles, worstMarker, (state) => show(shown.step, state));
+
   const isDark = matchMedia('(prefers-color-scheme: dark)');
   let onPaper = false;
   isDark.addEventListener('change', () => requestDraw());
 
-  let shown = {step: 0, state: first}, before = shown, began = -1e9, playing = 0, drawn = {glyphs: []};
+  let shown = {step: 0, state: first}, before = shown, began = -1e9, playing = 0, drawn = {glyphs: []}, pointed = null;
   const still = matchMedia('(prefers-reduced-motion: reduce)').matches;
   const transition = still ? 0 : 300;  // [ms]
 
@@ -151,7 +155,7 @@ function startView() {
       const modelled = Array.from(markers.rest, (r, i) => r + magnify * (markers.measured[i] - markers.error[i]));
       scene.glyphs('ball', markers.id.map((id, i) => {
         const place = point3(modelled, i);
-        drawn.glyphs.push({at: place, text: `marker ${id}: ${state.lengths[i].toPrecision(3)} mm off`});
+        drawn.glyphs.push({at: place, marker: id, text: `marker ${id}: ${state.lengths[i].toPrecision(3)} mm off`});
         return ball(place, 0.009 * size, values ? scale.colour(values.markers[i]) : unknownColour);
       }));
     }
@@ -169,7 +173,7 @@ function startView() {
     if (at('show-positions').checked) {
       const measured = added(Array.from(markers.rest), markers.measured, magnify);
       scene.glyphs('ball', markers.id.map((id, i) => {
-        drawn.glyphs.push({at: point3(measured, i), text: `marker ${id}, as measured`});
+        drawn.glyphs.push({at: point3(measured, i), marker: id, text: `marker ${id}, as measured`});
         return ball(point3(measured, i), 0.0055 * size, ink);
       }));
     }
@@ -233,6 +237,7 @@ function startView() {
     before = shown;
     shown = {step, state};
     began = performance.now();
+    series.show(state);
     requestDraw();
   }
   function goTo(frame) {
@@ -254,14 +259,16 @@ function startView() {
   at('frame').addEventListener('input', () => goTo(+at('frame').value));
   at('play').addEventListener('click', () => play(!playing));
   steer(at('canvas'), camera, {draw: requestDraw, move: (by) => goTo(frame() + by), play: () => play(!playing),
-    hint: (x, y) => hint(at('hint'), camera, drawn.glyphs, at('canvas'), x, y)});
+    hint: (x, y) => { pointed = hint(at('hint'), camera, drawn.glyphs, at('canvas'), x, y); }});
+  at('canvas').addEventListener('click', () => { if (pointed?.marker !== undefined) series.chooseMarker(pointed.marker); });
   new ResizeObserver(requestDraw).observe(at('canvas'));
   addEventListener('beforeprint', () => { onPaper = true; draw(); });
   addEventListener('afterprint', () => { onPaper = false; requestDraw(); });
+  series.show(first);
   requestDraw();
 }
 
-/// Tells what lies nearest to the pointer.
+/// Tells what lies nearest to the pointer, and gives it; null where nothing does.
 function hint(box, camera, glyphs, canvas, x, y) {
   let best = 14, found = null;
   for (const glyph of glyphs) {
@@ -275,6 +282,7 @@ function hint(box, camera, glyphs, canvas, x, y) {
     box.style.left = `${Math.min(x + 12, canvas.clientWidth - 150)}px`;
     box.style.top = `${y + 12}px`;
   }
+  return found;
 }
 
 document.addEventListener('DOMContentLoaded', startView);

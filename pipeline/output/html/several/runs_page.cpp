@@ -31,7 +31,7 @@ std::string in_table(const std::string& rows) { return "<div class=\"wide\"><tab
 
 /// One column a run, one row a number: the best run is marked.
 std::string overview(const json& runs) {
-    std::string rows = heading(runs, "");
+    std::string rows = heading(runs, "Run");
     for (const RunNumber& number : run_numbers(runs)) {
         rows += "<tr>" + table_cell(number.name);
         for (std::size_t r = 0; r < number.of_runs.size(); ++r)

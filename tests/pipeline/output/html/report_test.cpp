@@ -17,7 +17,6 @@
 #include "pipeline/analysis/playback.h"
 #include "pipeline/command_line/commands.h"
 #include "pipeline/output/csv/posterior.h"
-#include "pipeline/output/html/findings.h"
 #include "pipeline/output/html/report.h"
 #include "pipeline/output/html/sections/error_section.h"
 #include "pipeline/output/html/view_data.h"
@@ -138,33 +137,6 @@ TEST(ViewData, HoldsTheBodyAndEachAnswer) {
     EXPECT_LT(static_cast<std::size_t>(held), data["states"].size());
     for (const json& state : data["states"])
         EXPECT_FALSE(state["measured"].is_null()) << "simulated: the field is known";
-}
-
-/// What was found is drawn where it is, without what the readings do not determine of it.
-TEST(FindingsJson, TellsWhatCanBeDrawn) {
-    const json diagnosis = {{"ranking",
-                             {{{"effect", "gravity"},
-                               {"sentence", "Gravity is missing: 9.2 m/s^2 along -z."},
-                               {"parameters",
-                                {{"gx", {{"value", 4700.0}, {"sd", 4200.0}}},
-                                 {"gy", {{"value", -90.0}, {"sd", 320.0}}},
-                                 {"gz", {{"value", -9200.0}, {"sd", 460.0}}}}}}}}};
-    const json found = findings_json(
-        {{"gravity", {{"gx", 4700, "mm/s^2"}, {"gy", -90, "mm/s^2"}, {"gz", -9200, "mm/s^2"}}},
-         {"inclusion", {{"cx", 1, "mm"}, {"cy", 2, "mm"}, {"cz", 3, "mm"}, {"radius", 4, "mm"}, {"ratio", 8, "1"}}},
-         {"contact",
-          {{"nx", 0, "1"}, {"ny", 0, "1"}, {"nz", 1, "1"}, {"offset", -5, "mm"}, {"stiffness", 1, "N/mm^3"}}}},
-        diagnosis);
-    ASSERT_EQ(found.size(), 3U);
-    EXPECT_EQ(found[0]["kind"], "arrow");
-    EXPECT_EQ(found[0]["vector"], json({0.0, -90.0, -9200.0}));
-    EXPECT_EQ(found[0]["words"], "Gravity is missing: 9.2 m/s^2 along -z.");
-    EXPECT_EQ(found[1]["kind"], "ball");
-    EXPECT_EQ(found[1]["center"], json({1.0, 2.0, 3.0}));
-    EXPECT_EQ(found[1]["radius"], 4.0);
-    EXPECT_EQ(found[2]["kind"], "plane");
-    EXPECT_EQ(found[2]["offset"], -5.0);
-    EXPECT_THAT(found[1]["words"].get<std::string>(), HasSubstr("hard"));
 }
 
 /// Where not all states fit, those with the largest errors are kept.

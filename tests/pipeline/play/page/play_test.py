@@ -200,7 +200,9 @@ def check_ladder(browser, run, page):
     whole = wait_for_verdict(browser)
     height = "p.settle(); const s = p.numerics.shape(); let z = 0; for (let i = 2; i < s.length; i += 3) z += s[i]; return 3 * z / s.length;"
     hangs = browser.run(height)
+    expect(browser.run("return p.findings.map((f) => f.kind);") == ["arrow"], "gravity is not drawn")
     browser.run("p.at('effect-gravity').click();")
+    expect(browser.run("return p.findings;") == [], "gravity is drawn where it is switched off")
     rises = browser.run(height)
     without = wait_for_verdict(browser)
     print(f"gravity off: the mean height goes from {hangs:.3g} to {rises:.3g} mm, the error from {whole['all']:.3g} to {without['all']:.3g} mm")

@@ -48,6 +48,19 @@
     await press('.'); expect(at('frame').value !== slider, 'a full stop goes to no other state');
     await press(' '); expect(at('play').getAttribute('aria-pressed') === 'true', 'the space bar does not play');
     await press(' ');
+    // how a marker moves: along another axis the curve is another one, and a click shows a state
+    const plot = at('series-plot'), curve = () => plot.querySelector('polyline').getAttribute('points');
+    if (!at('series').hidden) {
+      expect(plot.querySelectorAll('polyline').length === at('step').options.length, 'not each model has a curve');
+      const inAll = curve();
+      await choose('series-axis', '2', 'change');
+      expect(curve() !== inAll, 'the curve is the same along z as in all');
+      const shown = at('state').value, dots = plot.querySelectorAll('circle');
+      dots[dots.length - 1 === +shown ? 0 : dots.length - 1].dispatchEvent(new MouseEvent('click', {bubbles: true}));
+      await settled(); drawn();
+      expect(at('state').value !== shown, 'a click on a measured point shows no other state');
+      expect(/measured .* mm/.test(at('series-told').textContent), 'the motion is not told');
+    }
     // any number's density can be chosen, as by the keys of a list
     const number = at('density-of');
     if (number) {

@@ -1,4 +1,4 @@
-#include "pipeline/output/html/findings.h"
+#include "pipeline/output/findings.h"
 
 #include <fmt/format.h>
 
@@ -16,6 +16,10 @@ using nlohmann::json;
 double number(const skeleton::EffectRecord& effect, const std::string& name) {
     const auto found = std::ranges::find(effect.parameters, name, &skeleton::EffectParameter::name);
     return found == effect.parameters.end() ? 0 : found->value;
+}
+
+bool has(const skeleton::EffectRecord& effect, const std::string& name) {
+    return std::ranges::find(effect.parameters, name, &skeleton::EffectParameter::name) != effect.parameters.end();
 }
 
 json vector(const skeleton::EffectRecord& effect, const std::array<const char*, 3>& names) {
@@ -58,38 +62,39 @@ std::string words_of(const skeleton::EffectRecord& effect, const json* candidate
 }  // namespace
 
 json findings_json(const std::vector<skeleton::EffectRecord>& effects, const json& diagnosis) {
-    constexpr std::array gravity{"gx", "gy", "gz"}, normal{"nx", "ny", "nz"}, centre{"cx", "cy", "cz"};
+    constexpr std::array gravity{"gx", "gy", "gz"}, normal{"nx", "ny", "nz"}, centre{"cx", "cy", "cz"},
+        force{"fx", "fy", "fz"};
     json findings = json::array();
     for (const skeleton::EffectRecord& effect : effects) {
         const json* candidate = candidate_of(diagnosis, effect.name);
-        json found{{"words", words_of(effect, candidate)}};
-        if (effect.name == "gravity") {
+        json found{{"effect", effect.name}, {"words", words_of(effect, candidate)}, {"kind", "words"}};
+        if (has(effect, gravity.front())) {
             found["kind"] = "arrow";
             found["vector"] = vector(effect, gravity);
             leave_undetermined_out(found["vector"], gravity, candidate);
-        } else if (effect.name == "anisotropy") {
-            found["kind"] = "axis";
-            found["vector"] = vector(effect, normal);
-        } else if (effect.name == "inclusion") {
+        } else if (has(effect, centre.front())) {
             found["kind"] = "ball";
             found["center"] = vector(effect, centre);
             found["radius"] = number(effect, "radius");
-        } else if (effect.name == "contact") {
-            found["kind"] = "plane";
+            if (has(effect, force.front())) found["vector"] = vector(effect, force);
+        } else if (has(effect, normal.front())) {
+            const bool is_plane = has(effect, "offset");
+            found["kind"] = is_plane ? "plane" : "axis";
             found["vector"] = vector(effect, normal);
-            found["offset"] = number(effect, "offset");
+            if (is_plane) found["offset"] = number(effect, "offset");
         } else if (effect.name == "compliant-support") {
             found["kind"] = "springs";
-        } else {
-            found["kind"] = "words";
         }
         findings.push_back(std::move(found));
     }
     // What no effect is named for.
     const json where = diagnosis.is_object() ? diagnosis.value("where", json()) : json();
     if (where.is_object() && diagnosis["explanation"].empty()) {
-        findings.push_back(
-            {{"words", where["sentence"]}, {"kind", "ball"}, {"center", where["at"]}, {"radius", where["spread_mm"]}});
+        findings.push_back({{"effect", ""},
+                            {"words", where["sentence"]},
+                            {"kind", "ball"},
+                            {"center", where["at"]},
+                            {"radius", where["spread_mm"]}});
     }
     return findings;
 }

@@ -1,0 +1,18 @@
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <vector>
+
+#include "skeleton/effects/effect.h"
+
+namespace palpate::pipeline {
+
+/// What of a model's effects can be drawn in the body, as html/page/findings.js and vtk/findings_file.h draw it: an
+/// {effect, words, kind} each, with what its kind has: "arrow" (gravity) and "axis" (fibres) a `vector`; "ball" (an
+/// inclusion, a force on a part) `center`, `radius` and, of a force, its `vector`; "plane" (contact) `vector`, its
+/// normal, and `offset`; "springs" (a compliant support) and "words" nothing. `effect` is empty for what no effect is
+/// named for.
+/// `diagnosis`: as in diagnosis.json, or null; tells what of a vector is determined.
+nlohmann::json findings_json(const std::vector<skeleton::EffectRecord>& effects, const nlohmann::json& diagnosis);
+
+}  // namespace palpate::pipeline

@@ -1,0 +1,207 @@
+#include "pipeline/output/vtk/findings_file.h"
+
+#include <vtkAppendPolyData.h>
+#include <vtkArrowSource.h>
+#include <vtkDiskSource.h>
+#include <vtkLineSource.h>
+#include <vtkNew.h>
+#include <vtkPoints.h>
+#include <vtkPolyData.h>
+#include <vtkSmartPointer.h>
+#include <vtkSphereSource.h>
+#include <vtkTransform.h>
+#include <vtkTransformPolyDataFilter.h>
+#include <vtkTriangleFilter.h>
+#include <vtkTubeFilter.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <numbers>
+#include <vector>
+
+#include "mesh/formats/vtk/vtk_files.h"
+#include "pipeline/output/findings.h"
+
+namespace palpate::pipeline {
+namespace {
+
+using nlohmann::json;
+
+/// As findings_json and the report have them.
+constexpr std::array kinds{"arrow", "axis", "ball", "plane", "springs", "swapped"};
+
+Vec3 vector_of(const json& numbers) {
+    const auto xyz = numbers.get<std::array<double, 3>>();
+    return {xyz[0], xyz[1], xyz[2]};
+}
+
+/// Triangles of all findings.
+class Drawing {
+public:
+    explicit Drawing(const skeleton::Model& model) : model_(model) {
+        const Points& skin = model.surface.vertices;
+        middle_ = (skin.colwise().minCoeff() + skin.colwise().maxCoeff()).transpose() / 2;
+        size_ = (skin.colwise().maxCoeff() - skin.colwise().minCoeff()).maxCoeff();
+    }
+
+    void draw(const json& finding) {
+        const auto kind = finding["kind"].get<std::string>();
+        if (kind == "words") return;
+        if (kind == "arrow") {
+            const Vec3 down = vector_of(finding["vector"]).normalized();
+            arrow(middle_ + 0.12 * size_ * down, 0.25 * size_ * down);
+        } else if (kind == "axis") {
+            const Vec3 along = vector_of(finding["vector"]).normalized();
+            for (const double sign : {1, -1}) arrow(middle_, sign * 0.3 * size_ * along);
+        } else if (kind == "ball") {
+            ball(vector_of(finding["center"]), finding["radius"]);
+            if (finding.contains("vector"))
+                arrow(vector_of(finding["center"]), 0.25 * size_ * vector_of(finding["vector"]).normalized());
+        } else if (kind == "plane") {
+            const Vec3 normal = vector_of(finding["vector"]).normalized();
+            disk(middle_ - (normal.dot(middle_) - finding["offset"].get<double>()) * normal, normal);
+        } else if (kind == "springs") {
+            springs();
+        }
+        number(kind);
+    }
+
+    /// Two markers that look swapped, where they are at rest.
+    void draw_swapped(const Vec3& a, const Vec3& b) {
+        tube({a, b});
+        number(kinds.back());
+    }
+
+    mesh::Surface surface() const {
+        mesh::Surface result;
+        result.vertices = Eigen::Map<const Points>(places_.data()->data(), std::ssize(places_), 3);
+        result.triangles = Eigen::Map<const Triangles>(corners_.data()->data(), std::ssize(corners_), 3);
+        return result;
+    }
+    mesh::MeshData data() const {
+        const auto as_array = [](const std::vector<int>& numbers) {
+            return Eigen::VectorXd(
+                Eigen::Map<const Eigen::VectorXi>(numbers.data(), std::ssize(numbers)).cast<double>());
+        };
+        return {.cells = {{"finding", as_array(finding_)}, {"kind", as_array(kind_)}}};
+    }
+    bool is_empty() const { return corners_.empty(); }
+
+private:
+    void arrow(const Vec3& from, const Vec3& along) {
+        const vtkNew<vtkArrowSource> unit;  // along x
+        unit->SetTipResolution(24);
+        unit->SetShaftResolution(24);
+        const vtkSmartPointer<vtkTransform> place = turned(from, Vec3::UnitX(), along);
+        place->Scale(along.norm(), along.norm(), along.norm());
+        add(unit.Get(), place);
+    }
+    void ball(const Vec3& center, double radius) {
+        const vtkNew<vtkSphereSource> unit;
+        unit->SetRadius(radius);
+        unit->SetThetaResolution(32);
+        unit->SetPhiResolution(16);
+        add(unit.Get(), turned(center, Vec3::UnitX(), Vec3::UnitX()));
+    }
+    void disk(const Vec3& foot, const Vec3& normal) {
+        const vtkNew<vtkDiskSource> unit;  // across z
+        unit->SetInnerRadius(0);
+        unit->SetOuterRadius(0.35 * size_);
+        unit->SetCircumferentialResolution(48);
+        add(unit.Get(), turned(foot, Vec3::UnitZ(), normal));
+    }
+    void tube(const std::vector<Vec3>& places) {
+        const vtkNew<vtkPoints> points;
+        for (const Vec3& place : places) points->InsertNextPoint(place.data());
+        const vtkNew<vtkLineSource> line;
+        line->SetPoints(points);
+        const vtkNew<vtkTubeFilter> round;
+        round->SetInputConnection(line->GetOutputPort());
+        round->SetRadius(0.004 * size_);
+        round->SetNumberOfSides(12);
+        round->CappingOn();
+        add(round.Get(), turned(Vec3::Zero(), Vec3::UnitX(), Vec3::UnitX()));
+    }
+    /// Springs from spheres that are held, away from the body.
+    void springs() {
+        std::vector<Vec3> places;
+        for (const skeleton::Sphere& sphere : model_.spheres)
+            if (sphere.held) places.push_back(sphere.center);
+        constexpr std::size_t about = 6;
+        const std::size_t step = std::max<std::size_t>(1, (places.size() + about - 1) / about);
+        for (std::size_t i = 0; i < places.size(); i += step) {
+            const Vec3 away = (places[i] - middle_).normalized();
+            const Vec3 side = away.unitOrthogonal();
+            std::vector<Vec3> turns{places[i]};
+            for (int turn = 1; turn <= 7; ++turn) {
+                const double out = turn == 7 ? 0 : turn % 2 == 1 ? 0.02 : -0.02;
+                turns.push_back(places[i] + size_ * (0.02 * turn * away + out * side));
+            }
+            tube(turns);
+        }
+    }
+
+    /// From the origin to a place, with the direction `from` turned to `to`.
+    static vtkSmartPointer<vtkTransform> turned(const Vec3& place, const Vec3& from, const Vec3& to) {
+        const auto result = vtkSmartPointer<vtkTransform>::New();
+        result->Translate(place.data());
+        const Eigen::AngleAxisd turn(Eigen::Quaterniond::FromTwoVectors(from, to));
+        result->RotateWXYZ(turn.angle() * 180 / std::numbers::pi, turn.axis().data());
+        return result;
+    }
+    void add(vtkPolyDataAlgorithm* unit, vtkTransform* place) {
+        const vtkNew<vtkTransformPolyDataFilter> placed;
+        placed->SetInputConnection(unit->GetOutputPort());
+        placed->SetTransform(place);
+        const vtkNew<vtkTriangleFilter> triangles;
+        triangles->SetInputConnection(placed->GetOutputPort());
+        triangles->Update();
+        vtkPolyData* shape = triangles->GetOutput();
+        const auto before = static_cast<int>(places_.size());
+        for (vtkIdType p = 0; p < shape->GetNumberOfPoints(); ++p) {
+            std::array<double, 3>& at = places_.emplace_back();
+            shape->GetPoint(p, at.data());
+        }
+        for (vtkIdType c = 0; c < shape->GetNumberOfCells(); ++c) {
+            vtkIdType count = 0;
+            const vtkIdType* corners = nullptr;
+            shape->GetCellPoints(c, count, corners);
+            std::array<int, 3>& triangle = corners_.emplace_back();
+            for (std::size_t k = 0; k < 3; ++k) triangle[k] = before + static_cast<int>(corners[k]);
+        }
+    }
+    /// The triangles since the last finding are of this one.
+    void number(const std::string& kind) {
+        finding_.resize(corners_.size(), count_++);
+        kind_.resize(corners_.size(), static_cast<int>(std::ranges::find(kinds, kind) - kinds.begin()));
+    }
+
+    const skeleton::Model& model_;
+    Vec3 middle_;
+    double size_;
+    int count_ = 0;
+    std::vector<std::array<double, 3>> places_;
+    std::vector<std::array<int, 3>> corners_;
+    std::vector<int> finding_, kind_;  // of each triangle
+};
+
+}  // namespace
+
+void write_findings(const std::filesystem::path& file, const skeleton::Model& model,
+                    const identify::MeasurementSet& set, const json& diagnosis) {
+    Drawing drawing(model);
+    for (const json& finding : findings_json(model.effects, diagnosis)) drawing.draw(finding);
+    const json swapped = diagnosis.is_object() ? diagnosis.value("exchanged_markers", json::array()) : json::array();
+    for (const json& pair : swapped) {
+        const auto rest_of = [&](int id) { return std::ranges::find(set.markers, id, &identify::Marker::id)->rest; };
+        drawing.draw_swapped(rest_of(pair["markers"][0]), rest_of(pair["markers"][1]));
+    }
+    if (drawing.is_empty()) {
+        std::filesystem::remove(file);
+        return;
+    }
+    mesh::write_vtp(file, drawing.surface(), drawing.data());
+}
+
+}  // namespace palpate::pipeline
