@@ -18,6 +18,11 @@
 namespace palpate::identify {
 namespace {
 
+bool is_loaded_from_outside(const LoadState& state) {
+    return !state.motions.empty() || !state.actuations.empty() ||
+           std::ranges::any_of(state.contacts, [](const mesh::Contact& contact) { return !contact.force.isZero(0); });
+}
+
 constexpr double adequate_rms = 1.1;       // in sigmas: with thousands of readings no p-value forgives rounding
 constexpr double adequate_p_value = 1e-3;  // what is right is refused once in a thousand times, as by a diagnosis
 constexpr int worst_readings = 10;
@@ -159,8 +164,8 @@ Comparison compare(const skeleton::Model& model, const MeasurementSet& set, int 
         totals.add(states[s], errors[s]);
         result.probes.push_back(error_of(state, states[s], errors[s]));
         result.max = std::max(result.max, result.probes.back().max);
-        under_load.push_back(
-            {rms(predicted[s] - states[s].rest), result.probes.back().rms, noise_of(states[s]), states[s].coordinates});
+        under_load.push_back({rms(predicted[s] - states[s].rest), result.probes.back().rms, noise_of(states[s]),
+                              states[s].coordinates, is_loaded_from_outside(state)});
     }
     if (totals.coordinates == 0) {
         if (!reactions)

@@ -54,13 +54,14 @@ LoadExponent fit_line(const std::vector<LogPoint>& points) {
 }
 
 /// What the states without load say of the error, which loaded ones alone do not tell.
-enum class Unloaded { none_read, without_error, with_error };
+enum class Unloaded { none_read, moved, without_error, with_error };
 
 const char* words_for(const LoadExponent& exponent, Unloaded unloaded) {
     if (exponent.sd > 0.5) return "the errors scatter too much to tell how they grow with the load";
     if (exponent.value < least_growth && unloaded == Unloaded::none_read)
         return "the errors do not grow with the load; an unloaded state is needed to see whether they exist without "
                "any";
+    if (exponent.value < least_growth && unloaded == Unloaded::moved) return "the errors do not grow with the load";
     if (exponent.value < least_growth && unloaded == Unloaded::without_error)
         return "nothing is wrong without load, and from probe to probe the errors do not grow with it: places differ "
                "more than loads";
@@ -107,7 +108,8 @@ std::optional<LoadExponent> load_exponent(const std::vector<ErrorUnderLoad>& sta
         points.insert(points.end(), silent.begin(), silent.end());
     }
     LoadExponent exponent = fit_line(points);
-    exponent.words = words_for(exponent, unloaded.empty()                   ? Unloaded::none_read
+    const bool is_read = std::ranges::any_of(states, [](const ErrorUnderLoad& state) { return !state.loaded; });
+    exponent.words = words_for(exponent, unloaded.empty() ? (is_read ? Unloaded::moved : Unloaded::none_read)
                                          : silent.size() == unloaded.size() ? Unloaded::without_error
                                                                             : Unloaded::with_error);
     return exponent;

@@ -20,6 +20,7 @@ struct ErrorUnderLoad {
     double rms = 0;       // [mm]
     double noise = 0;     // its share that is noise, rms [mm]; 0 when unknown
     int coordinates = 1;  // measured
+    bool loaded = true;   // from outside; else it moves by what acts in every state, as gravity
 };
 
 /// p in error ~ load^p, from a line through ln(error) over ln(load), the noise taken off in squares.

@@ -80,7 +80,7 @@ public:
         note_mesh_error();
         if (options_.refit.magnitude == MagnitudeUse::alternative && result_.best().has_known_magnitude)
             result_.notes.emplace_back(
-                "Gravity was taken to have the earth's magnitude, 9.8 m/s^2, which the evidence prefers; '--gravity "
+                "Gravity has the earth's magnitude, 9.81 m/s^2, as the evidence prefers that to a free one; '--gravity "
                 "unknown' leaves it free.");
         if (std::string note = note_of_correction(result_.problem, moved_); !note.empty())
             result_.notes.push_back(std::move(note));

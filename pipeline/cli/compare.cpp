@@ -91,7 +91,7 @@ void Subcommands::add_compare(CLI::App& app) {
     sub->add_option("--tolerance", compare.tolerance, "Exit code 5 where the rms error is larger [mm]")
         ->check(CLI::NonNegativeNumber);
     sub->add_flag("--no-reference", compare.no_reference,
-                  "Leave the body in finite elements out: fast, but without an error budget");
+                  "Leave the finite-element model out: fast, but without an error budget");
     add_flag(sub, compare.overrides, "volume.edge_length");
 }
 

@@ -199,8 +199,8 @@ void Subcommands::add_improve(CLI::App& app) {
     what->require_option(1);
     sub->add_option(
            "--draft", improve.draft,
-           "C++ file for what --residual adds, as an effect of your own to be taken on from there; the effect is\n"
-           "called as the file is")
+           "Write what --residual adds as a C++ file, to develop an effect of your own from; the name of the file\n"
+           "is that of the effect")
         ->needs("--residual");
     add_body(sub, improve.body, "by default, but for what links alone have");
     add_flags_of(sub, improve.overrides, "Identification");

@@ -71,8 +71,8 @@ void add_flags_of(CLI::App* command, CaseOverrides& overrides, std::string_view 
 void add_body(CLI::App* command, std::string& body, const std::string& when) {
     command
         ->add_option("--body", body,
-                     "What the errors are judged on: reference (finite elements, " + when +
-                         ")\nor skeleton, whose coarseness may be taken for physics")
+                     "Model that is diagnosed: reference (finite elements, " + when +
+                         ")\nor skeleton, whose coarseness may be mistaken for physics")
         ->check(CLI::IsMember({"reference", "skeleton"}));
 }
 

@@ -55,11 +55,8 @@ std::string step_in_words(const json& step) {
     const auto effects = step["effects"].get<std::vector<std::string>>();
     std::string text = (effects.empty() ? "Nothing added: " : "With " + listed(effects) + ": ") + millimetres(step);
     if (step["reference"].is_object()) {
-        text += "; in finite elements " + millimetres(step["reference"]);
-        if (step["predicted_rms_mm"].is_number()) {
-            text += fmt::format(", where the screen had expected {:.3g}", step["predicted_rms_mm"].get<double>());
-        }
-        if (step["reference"].contains("young_mpa")) text += ", with " + material_in_words(step["reference"]);
+        text += "; finite elements: " + millimetres(step["reference"]);
+        if (step["reference"].contains("young_mpa")) text += ", " + material_in_words(step["reference"]);
     }
     return text + ".";
 }

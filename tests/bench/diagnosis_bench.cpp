@@ -176,7 +176,7 @@ std::string diagnosed(const Truth& truth, const Options& options, Tally& tally) 
         if (options.ladder && !found.explanation.empty()) {
             text += fmt::format("| | | | | {} | | | | | | | |\n", climbed(*body, set, found, options));
         }
-        tally.add(truth, found, outcome);
+        tally.add(truth, found, outcome, identify::material_of(*body, found.best()));
     } catch (const std::exception& e) {
         text += fmt::format("| {} | {} | {:.1f} | failed: {} | | | | | | | {:.0f} | inconclusive |\n", truth.set,
                             joined(truth.effects), truth.strength, e.what(), seconds());

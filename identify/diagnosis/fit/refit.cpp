@@ -230,7 +230,27 @@ Eigen::MatrixXd scatter_of_probes(const Problem& problem, const Refit& at) {
     return at.covariance * sum * at.covariance * (probes / std::max(probes - 1, 1.0));
 }
 
-void conclude(const Problem& problem, const FitPriors& priors, Refit& at) {
+/// How far the error of the mesh that was taken off the readings moves the numbers (p), as if all of it were left in.
+Eigen::VectorXd shift_by_mesh(const Problem& problem, const FitPriors& priors, const Refit& at) {
+    const Eigen::Index others = at.nuisances.columns.cols() - at.nuisances.of_mesh;
+    const Whitening V(at.V->weights(), at.nuisances.columns.leftCols(others), at.nuisances.precisions.head(others));
+    const Eigen::MatrixXd VA = V.apply(at.columns);
+    Eigen::MatrixXd H = at.columns.transpose() * VA;
+    H.diagonal() += priors.precisions();
+    return H.llt().solve(VA.transpose() * problem.discretisation.cwiseQuotient(problem.sigma));
+}
+
+/// Covariance of the numbers beside that of the noise: as the probes disagree, and by the share of the mesh's error
+/// that halved edges do not tell.
+Eigen::MatrixXd scatter_of(const Problem& problem, const FitPriors& priors, const RefitOptions& options,
+                           const Refit& at) {
+    const Eigen::MatrixXd of_probes = scatter_of_probes(problem, at);
+    if (at.nuisances.of_mesh == 0 || problem.discretisation.size() == 0) return of_probes;
+    const Eigen::VectorXd shift = options.nuisances.discretisation * shift_by_mesh(problem, priors, at);
+    return of_probes + shift * shift.transpose();
+}
+
+void conclude(const Problem& problem, const FitPriors& priors, const RefitOptions& options, Refit& at) {
     const auto N = static_cast<double>(problem.rows());
     const Eigen::VectorXd x = at.explanation.all();
     // ln Z = -(chi^2 + priors)/2 - ln |V| / 2 - sum ln sd + ln |covariance| / 2
@@ -248,7 +268,7 @@ void conclude(const Problem& problem, const FitPriors& priors, Refit& at) {
         at.most_pulled_nuisance = at.nuisances.names[most];
     }
     at.residual = at.V->residual(at.error);
-    at.scatter = scatter_of_probes(problem, at);
+    at.scatter = scatter_of(problem, priors, options, at);
 }
 
 /// Where the numbers begin of an effect whose magnitude is known, and that; none: no effect has one.
@@ -288,7 +308,7 @@ void try_magnitude(const BodyModel& model, const Problem& problem, const FitPrio
             with.forward = solve_forward(model, problem, with.explanation, options.threads, &at.forward.q);
             with.error = error_of(problem, with.forward);
             with.covariance += follow * (found.covariance - own) * follow.transpose();
-            conclude(problem, priors, with);
+            conclude(problem, priors, options, with);
             with.has_known_magnitude = true;
             at = std::move(with);
         } catch (const SolverFailure&) {  // it stays where it is
@@ -336,7 +356,7 @@ Refit refit(const BodyModel& model, const Problem& problem, const Explanation& e
     } else {
         at.nuisances = start->nuisances;
     }
-    conclude(problem, priors, at);
+    conclude(problem, priors, options, at);
     if (options.magnitude != MagnitudeUse::none) try_magnitude(model, problem, priors, options, at);
     at.forward.tangents.reset();  // many fits are kept
     return at;

@@ -21,7 +21,7 @@ struct Refit {
     Eigen::VectorXd prior_mean, prior_sd;  // of all numbers
     bool has_known_magnitude = false;      // an effect's numbers have the magnitude that is known
     Eigen::MatrixXd covariance;            // of all numbers, posterior
-    Eigen::MatrixXd scatter;               // of the same, by how far the probes disagree about them
+    Eigen::MatrixXd scatter;               // of the same, as probes disagree and the mesh errs
     double log_evidence = 0;               // less the constant that the readings share
     int steps = 0;                         // Gauss-Newton's
     bool converged = false;

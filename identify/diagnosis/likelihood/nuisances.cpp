@@ -229,12 +229,14 @@ Nuisances make_nuisances(const BodyModel& model, const Problem& problem, const E
     const ToolNuisances tools = tool_nuisances(model, problem, setting, forward);
     const std::vector<Eigen::MatrixXd> columns =
         sensitivities(model, problem, explanation, forward, {signatures, tools.signatures}, threads);
-    Nuisances result{columns.front(), Eigen::Map<Eigen::VectorXd>(all.precisions.data(), std::ssize(all.precisions)),
-                     all.names};
+    Nuisances result{.columns = columns.front(),
+                     .precisions = Eigen::Map<Eigen::VectorXd>(all.precisions.data(), std::ssize(all.precisions)),
+                     .names = all.names};
     add(tools.names, columns.back(), options.play, result);
     // What was taken off for the mesh, more or less of it.
     if (problem.discretisation.size() > 0) {
         add({"error of the mesh"}, problem.discretisation.cwiseQuotient(problem.sigma), options.discretisation, result);
+        result.of_mesh = 1;
     }
     return result;
 }

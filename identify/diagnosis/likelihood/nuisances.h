@@ -28,6 +28,7 @@ struct NuisanceOptions {
 struct Nuisances {
     Eigen::MatrixXd columns;
     Eigen::VectorXd precisions;
+    Eigen::Index of_mesh = 0;        // how many of the last columns are the error of the mesh
     std::vector<std::string> names;  // "contact of radius 2 mm at (0, 0, 8) shifted", ...
 };
 

@@ -95,9 +95,11 @@ std::string objection_of_overfit(const Diagnosis& diagnosis, const FittedExplana
                                  const DiagnoseOptions& options) {
     const double unseen = explained.held_out.whitened_rms;
     if (unseen <= 1 + options.noise_accuracy) return {};
-    if (unseen <= largest_held_out(diagnosis.problem, explained.fit, options.false_refusals)) return {};
-    return fmt::format("it overfits single probes: the error of held-out probes is {:.2f} times that of fitted ones",
-                       unseen / explained.fit.whitened_rms);
+    const double most = largest_held_out(diagnosis.problem, explained.fit, options.false_refusals);
+    if (unseen <= most) return {};
+    return fmt::format(
+        "on held-out probes its normalised error is {:.3g}, where a right explanation has at most {:.3g}", unseen,
+        most);
 }
 
 std::string objection_to(const Diagnosis& diagnosis, const FittedExplanation& explained,

@@ -22,7 +22,7 @@ public:
         static const EffectDescription text{
             .name = "compliant-support",
             .kind = EffectKind::body,
-            .meaning = "What holds the body gives way: springs over the supports.",
+            .meaning = "The support is compliant: springs hold the body in place of a rigid clamp.",
             .parameters = {"stiffness [N/mm]: of all springs together",
                            "turning [-]: how stiffly it turns, over springs that are spread evenly"},
             .reveals = "the body moves and turns at its base in proportion to the force there",

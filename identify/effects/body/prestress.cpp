@@ -40,10 +40,11 @@ public:
     }
 
     std::string sentence(const skeleton::EffectRecord& record) const override {
-        const auto& p = record.parameters;
+        const auto largest = std::ranges::max_element(
+            record.parameters, {}, [](const skeleton::EffectParameter& s) { return std::abs(s.value); });
         return fmt::format(
-            "The body is under stress at rest: ({:.2g}, {:.2g}, {:.2g}) along the axes, over its shear modulus.",
-            p[0].value, p[1].value, p[2].value);
+            "The body is prestressed: its largest component of stress is {} = {:.2g} times the shear modulus.",
+            largest->name, largest->value);
     }
 
     std::optional<std::uint64_t> stream() const override { return 3; }

@@ -15,7 +15,7 @@ public:
         static const EffectDescription text{
             .name = "volume",
             .kind = EffectKind::body,
-            .meaning = "Poisson's ratio is not the one that the set declares: the body keeps its volume otherwise.",
+            .meaning = "Poisson's ratio differs from the one that the set declares.",
             .parameters = {"poisson [-]: Poisson's ratio"},
             .reveals = "sides that bulge more or less than they should under a squeeze",
             .confused_with = {"stiffening", "anisotropy"},

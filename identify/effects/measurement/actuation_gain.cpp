@@ -17,7 +17,7 @@ public:
             .name = "actuation-gain",
             .kind = EffectKind::measurement,
             .meaning =
-                "The true pressure, tension or length of an actuator is its reported one times a gain of its own.",
+                "The true pressure, tension or length of an actuator is a multiple of the reported one.",
             .parameters = {"gain of <actuator> [-]: true over reported value of that actuator"},
             .reveals = "states that are off in proportion to what one actuator is set to",
             .confused_with = {"stiffening", "pressure"},

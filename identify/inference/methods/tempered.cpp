@@ -277,7 +277,7 @@ IdentifyResult identify_tempered(const skeleton::Model& model, const Measurement
                         result.modes.size()));
     }
     if (!std::isnan(result.forecast_error.relative)) {
-        result.notes.push_back(fmt::format("a probe that is held out of the fit is off by {}{}",
+        result.notes.push_back(fmt::format("prediction error on held-out probes, beyond the noise: {}{}",
                                            calibration.fit.spectrum.is_whole ? "" : "at least ",
                                            mesh::share_of(result.forecast_error.relative, "its displacement")));
     }

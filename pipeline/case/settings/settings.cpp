@@ -179,15 +179,16 @@ void add_body(std::vector<CaseSetting>& all) {
     body("mesh", choice(
                      "unit", "unit of the mesh", units, [](auto& c) -> auto& { return c.unit; }));
     body("mesh", number(
-                     "longest", "scale the mesh to this longest side [mm]; 0: not", {0, no_unit_is_so_large},
+                     "longest", "scale the mesh to this longest side [mm]; 0: as it is", {0, no_unit_is_so_large},
                      [](auto& c) -> auto& { return c.longest; }));
     body("mesh",
          number(
              "label", "the body's label in a label image", {-1e9, 1e9}, [](auto& c) -> auto& { return c.label; }));
-    body("mesh",
-         choice(
-             "keep", "pieces of the surface that do not touch: the largest, all, or all but crumbs where one is left",
-             kept_pieces, [](auto& c) -> auto& { return c.keep; }));
+    body("mesh", choice(
+                     "keep",
+                     "separate pieces of the surface; automatic: one piece and tiny fragments, which are dropped; the "
+                     "largest; or all",
+                     kept_pieces, [](auto& c) -> auto& { return c.keep; }));
     // What the set says counts beside these: stages depend on what comes of both.
     body("", number(
                  "material.young", "Young's modulus [MPa]", {1e-9, no_unit_is_so_large},
@@ -266,7 +267,7 @@ void add_identification(std::vector<CaseSetting>& all) {
         "identify.method", "particle filter: tempered from the fit, or Algorithm 1 of the paper", methods,
         [](auto& c) -> auto& { return c.identify.method; }));
     identification(choice(
-        "identify.domain", "what is weighed: positions of markers (tempered's default) or net forces (burion2008's)",
+        "identify.domain", "what is fitted: positions of markers (tempered's default) or net forces (burion2008's)",
         domains, [](auto& c) -> auto& { return c.identify.domain; }));
     identification(choice(
         "identify.law", "law of equilibrium; automatic: the one that fits", law_choices,
@@ -295,11 +296,11 @@ void add_identification(std::vector<CaseSetting>& all) {
 
 void add_diagnosis(std::vector<CaseSetting>& all) {
     CaseSetting reference = yes_or_no(
-        "diagnose.reference", "diagnose on the body in finite elements: minutes",
+        "diagnose.reference", "diagnose, on the finite-element model: minutes",
         [](auto& c) -> auto& { return c.diagnose.reference; });
     reference.flag = "--no-reference";
     reference.flag_value = "false";
-    reference.flag_help = "do not diagnose: fast";
+    reference.flag_help = "skip the diagnosis: fast";
     reference.group = "Diagnosis";
     all.push_back(reference);
     all.push_back(texts(
@@ -308,12 +309,12 @@ void add_diagnosis(std::vector<CaseSetting>& all) {
     all.push_back(with_flag(
         "Diagnosis", choice(
                          "diagnose.gravity",
-                         "what is known of gravity: earth, unknown, or automatic: the earth's is an alternative where "
+                         "what is known of gravity; automatic: the earth's magnitude is tried beside a free one where "
                          "the density is given",
                          gravities, [](auto& c) -> auto& { return c.diagnose.gravity; })));
     all.push_back(with_flag(
         "Diagnosis", number(
-                         "diagnose.false_claims", "probability of naming an effect where none is missing, at most",
+                         "diagnose.false_claims", "largest probability of naming an effect where none is missing",
                          {1e-12, 0.1}, [](auto& c) -> auto& { return c.diagnose.false_claims; })));
 }
 

@@ -53,13 +53,19 @@ std::string material_tiles(const RunFiles& files) {
     if (!fit.is_object()) return {};
     json body = fit;
     body.erase("regions");
-    const std::string words = material_in_words(body), of = ", finite elements, " + with_what(files);
+    const std::string words = material_in_words(body), of = " (finite elements), " + with_what(files);
     const std::size_t ratio = words.find(", ν");
     std::string html = tile(words.substr(0, ratio), "Young's modulus" + of);
     if (ratio != std::string::npos) html += tile(words.substr(ratio + 2), "Poisson's ratio");
     for (const json& region : fit.value("regions", json::array()))
         html += tile(region_in_words(region), "Young's modulus of '" + region["name"].get<std::string>() + "'" + of);
     return html;
+}
+
+/// A name of the files as words: "missing effect".
+std::string with_spaces(std::string name) {
+    for (const char joint : {'-', '_'}) std::ranges::replace(name, joint, ' ');
+    return name;
 }
 
 std::string tiles(const RunFiles& files) {
@@ -70,10 +76,10 @@ std::string tiles(const RunFiles& files) {
     const json& error = files.compare["error"];
     const json& noise = error["noise_mm"];
     std::string html = "<div class=\"tiles\">";
-    if (!files.diagnosis.is_null()) html += tile(files.diagnosis["verdict"].get<std::string>(), "verdict");
+    if (!files.diagnosis.is_null()) html += tile(with_spaces(files.diagnosis["verdict"].get<std::string>()), "verdict");
     html += tile(before_and_after(files, error["rms_mm"].get<double>(), "rms_mm") + " mm",
-                 files.errors_after.empty() ? "rms error of the model" : "rms error of the model, " + with_what(files));
-    if (noise.is_number()) html += tile(fmt::format("{:.2g} mm", noise.get<double>()), "noise of the measurements");
+                 "rms error of the real-time model" + (files.errors_after.empty() ? "" : ", " + with_what(files)));
+    if (noise.is_number()) html += tile(fmt::format("{:.2g} mm", noise.get<double>()), "measurement noise, rms");
     return html +
            tile(share_of(files.improved.is_object() ? files.improved["error"]["relative"] : error["relative"]),
                 "rms error over rms displacement" + (files.improved.is_object() ? ", " + with_what(files) : "")) +
@@ -81,7 +87,7 @@ std::string tiles(const RunFiles& files) {
            tile(fmt::format("{} + {}", files.model.spheres.size() - held, held), "spheres, free + held") +
            tile(std::to_string(files.model.links.size()), "links") +
            tile(fmt::format("{} of {}", informed, files.posterior.size()), "stiffnesses that the data inform") +
-           "</div>";
+           "</div><p class=\"soft\">Rms errors are per coordinate; largest errors are distances.</p>";
 }
 
 /// What a print-out of one page leaves out.
@@ -97,8 +103,8 @@ std::string stage_table(const RunFiles& files) {
         for (const auto& [key, value] : s["figures"].items()) {
             if (!value.is_number() && !value.is_string()) continue;
             figures += figures.empty() ? "" : ", ";
-            figures +=
-                key + " " + (value.is_number() ? fmt::format("{:.4g}", value.get<double>()) : value.get<std::string>());
+            figures += with_spaces(key) + " " +
+                       (value.is_number() ? fmt::format("{:.4g}", value.get<double>()) : value.get<std::string>());
         }
         rows += fmt::format("<tr><td>{}</td><td>{:.1f}</td><td>{:.0f}</td><td style=\"text-align:left\">{}</td></tr>",
                             stage, s["seconds"].get<double>(), s["peak_memory_mb"].get<double>(), escape(figures));
@@ -112,6 +118,9 @@ std::string assumption_list(const RunFiles& files) {
     std::string items;
     for (const json& a : files.record.value("assumptions", json::array()))
         items += "<li>" + escape(a.get<std::string>()) + "</li>";
+    const json skeleton = files.record["stages"].value("skeleton", json::object());
+    for (const json& note : skeleton.value(json::json_pointer("/figures/notes"), json::array()))
+        items += "<li>" + escape(note.get<std::string>()) + "</li>";
     const std::string of_model = files.best == "improve" ? "The model " + with_what(files) + ": " : "";
     for (const std::string& note : files.notes) items += "<li>" + escape(of_model + note) + "</li>";
     for (const json* asked : {&files.diagnosis, &files.ladder}) {
@@ -145,13 +154,16 @@ std::string file_section(const RunFiles& files) {
         "/model.json --probes probes.csv -o played</code></li><li><code>paraview --script=view.py</code> opens the run "
         "in "
         "ParaView</li><li><code>" +
-        files.best +
-        "/posterior.csv</code> holds every stiffness with its interval, <code>compare/compare.json</code> "
-        "every error</li>";
-    if (improved) html += "<li><code>improve/ladder.pvd</code>: play it, and the error falls</li>";
+        files.best + "/posterior.csv</code> holds every stiffness with its interval, <code>" +
+        (improved
+             ? "improve/compare.json</code> every error of this model, <code>compare/compare.json</code> those of the "
+               "baseline</li>"
+             : "compare/compare.json</code> every error</li>");
+    if (improved)
+        html += "<li><code>improve/ladder.pvd</code>: the errors at each step of the ladder, as an animation</li>";
     if (files.quality.is_null())
         html += "<li><code>palpate run ... --sphere-curve</code> measures what fewer and more spheres would do</li>";
-    return html + "<li><code>palpate info .</code> in the run folder tells what lies there</li></ul>";
+    return html + "<li><code>palpate info .</code> in the run folder lists its files</li></ul>";
 }
 
 std::string contents(const std::string& page) {
@@ -169,12 +181,13 @@ std::string contents(const std::string& page) {
 void write_report(const fs::path& run, const fs::path& page) {
     const RunFiles files = read_run(run);
     const std::string name = escape(files.model.name.empty() ? run.filename().string() : files.model.name);
-    std::string sections = aside(missing_section(files.diagnosis)) + ladder_section(files.ladder) +
+    std::string sections = aside(missing_section(files.diagnosis)) + ladder_section(files.ladder, files.compare) +
                            aside(budget_section(files.compare, files.improved)) + error_section(files);
     std::string more = stiffness_section(files.posterior, files.particles, files.prior, files.best + "/posterior.csv") +
                        damping_section(run / files.best) + convergence_section(run / "identify/convergence.csv") +
                        spheres_section(files.quality) + assumption_list(files) + file_section(files);
-    more += "<h2 id=\"times\">Times</h2>" + stage_table(files);
+    more += "<h2 id=\"times\">Times</h2><p class=\"soft\">identify and compare are of the baseline.</p>" +
+            stage_table(files);
     more +=
         "<h2 id=\"settings\">Settings</h2><details open><summary>case.yaml: every setting, defaults included"
         "</summary><pre tabindex=\"0\">" +

@@ -43,7 +43,7 @@ std::string noise_words(const json& compare) {
     } else if (budget.is_object() && budget["missing_physics"].get<double>() < budget["reduction"].get<double>()) {
         left = "what is left beyond it is mostly the coarseness of the skeleton";
     }
-    return fmt::format(" The noise is {:.3g} mm: {}.", error["noise_mm"].get<double>(), left);
+    return fmt::format(" The measurement noise is {:.3g} mm rms: {}.", error["noise_mm"].get<double>(), left);
 }
 
 /// Where a model that was fitted well fails on what it has not seen.
@@ -65,17 +65,17 @@ std::string held_out_words(const json& compare) {
 std::string reference_words(const json& compare) {
     const json baseline = compare.value("baseline", json()), reference = compare.value("reference", json());
     if (!baseline.is_object() || !reference.is_object()) return {};
-    return fmt::format(" The same body in finite elements ({}, {}) is off by {:.3g} mm rms: {}.",
-                       baseline["law"].get<std::string>(), material_in_words(baseline),
+    return fmt::format(" The finite-element model ({}, {}) is off by {:.3g} mm rms: {}.",
+                       law_in_words(baseline["law"].get<std::string>()), material_in_words(baseline),
                        reference["rms_mm"].get<double>(), in_sigmas(reference["whitened_rms"]));
 }
 
-/// How the error goes with the load, where it is more than finite elements leave.
+/// How the error varies with the load, where it is more than finite elements leave.
 std::string load_words(const json& compare) {
     if (!compare.contains("load_exponent") || compare["adequate"].get<bool>() || is_explained_by_reference(compare))
         return {};
     const json& exponent = compare["load_exponent"];
-    return fmt::format(" The error goes with the load to the power {}: {}.",
+    return fmt::format(" The error varies with the load to the power {}: {}.",
                        mesh::with_sd(exponent["value"].get<double>(), exponent["sd"].get<double>()),
                        exponent["words"].get<std::string>());
 }
@@ -83,11 +83,9 @@ std::string load_words(const json& compare) {
 std::string budget_words(const json& compare) {
     const json budget = compare.value("budget", json());
     if (!budget.is_object()) return {};
-    return fmt::format(
-        " Of the mean square error {} is noise, {} the coarseness of the skeleton, {} {}.",
-        percent(budget["noise"].get<double>()), percent(budget["reduction"].get<double>()),
-        percent(budget["missing_physics"].get<double>()),
-        is_explained_by_reference(compare) ? "uncertainty of contacts and clamps" : "physics that it lacks");
+    return fmt::format(" Of the mean square error {} is noise, {} the coarseness of the skeleton, {} unexplained.",
+                       percent(budget["noise"].get<double>()), percent(budget["reduction"].get<double>()),
+                       percent(budget["missing_physics"].get<double>()));
 }
 
 /// The regions that noise does not explain, worst first.

@@ -31,24 +31,24 @@ std::string how_likely(double log_ratio) {
     return fmt::format("{:.2g} times as likely", std::exp(log_ratio));
 }
 
-/// A fit that leaves less and is not claimed: what speaks against it are the numbers that it takes.
+/// A fit that leaves less and is not claimed: what speaks against it are its parameters.
 std::string why_closer_is_not_likelier(const json& first, const json& second) {
     const std::size_t own = first["parameters"].size(), others = second["parameters"].size();
     const bool fits_closer = first["rms_mm"].is_number() && second["rms_mm"].is_number() &&
                              second["rms_mm"].get<double>() < first["rms_mm"].get<double>();
     if (!fits_closer || others <= own) return {};
     return fmt::format(
-        ", though it leaves {:.3g} mm rms: it takes {} free numbers for that against {}, more than it "
-        "gains by them",
+        ". It leaves {:.3g} mm rms, but with {} parameters instead of {}, which the Bayes factor penalises",
         second["rms_mm"].get<double>(), others, own);
 }
 
 std::string without_it(const json& diagnosis) {
     const json& baseline = diagnosis["baseline"];
-    std::string text = fmt::format(" Without it the model errs by {:.3g} mm rms", baseline["rms_mm"].get<double>());
-    if (baseline.contains("load_exponent")) {
-        text += and_under_load(baseline["load_exponent"]);
-    }
+    // A skeleton has no Young's modulus.
+    std::string text = fmt::format(" Without it the rms error of the {} is {:.3g} mm",
+                                   baseline["young_mpa"].is_number() ? "finite-element model" : "model",
+                                   baseline["rms_mm"].get<double>());
+    if (baseline.contains("load_exponent")) text += and_under_load(baseline["load_exponent"]);
     return text + ".";
 }
 
@@ -56,17 +56,17 @@ std::string without_it(const json& diagnosis) {
 std::string material_words(const json& diagnosis) {
     const json explained = diagnosis.value("explained", json());
     if (!explained.is_object()) return {};
-    return fmt::format(" With it finite elements have {}; without it they would have {}.", material_in_words(explained),
+    return fmt::format(" The fit gives {}; without it, {}.", material_in_words(explained),
                        material_in_words(diagnosis["baseline"]));
 }
 
 std::string drop_words(const json& diagnosis, const json& candidate) {
     if (!candidate["rms_mm"].is_number()) return {};
-    std::string text = fmt::format(" {} it should lower the error from {:.3g} to {:.3g} mm rms",
-                                   candidate["kind"] == "body" ? "Adding" : "Correcting for",
-                                   diagnosis["baseline"]["rms_mm"].get<double>(), candidate["rms_mm"].get<double>());
+    std::string text =
+        fmt::format(" {} it lowers the error to {:.3g} mm", candidate["kind"] == "body" ? "Adding" : "Correcting for",
+                    candidate["rms_mm"].get<double>());
     if (candidate["held_out_rms_mm"].is_number()) {
-        text += fmt::format(" ({:.3g} on probes held out one by one)", candidate["held_out_rms_mm"].get<double>());
+        text += fmt::format(" ({:.3g} mm on probes held out one by one)", candidate["held_out_rms_mm"].get<double>());
     }
     return text + ", " + in_sigmas(candidate["whitened_rms"]) + "." + material_words(diagnosis);
 }
@@ -146,11 +146,11 @@ std::string adequate(const json& diagnosis) {
     return text + fmt::format(" and is no claim: {}.", ranking[0]["objection"].get<std::string>());
 }
 
-/// Where it is, whatever its name: what an effect that is named need not repeat.
+/// Where it is, without assuming a specific effect: what an effect that is named need not repeat.
 std::string located(const json& diagnosis) {
     const json where = diagnosis.value("where", json());
     if (!where.is_object() || diagnosis["verdict"] == "missing-effect") return {};
-    return " Located, whatever its name: " + where["sentence"].get<std::string>();
+    return " Without assuming a specific effect: " + where["sentence"].get<std::string>();
 }
 
 std::string next_probe(const json& probe) {

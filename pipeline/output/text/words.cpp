@@ -19,7 +19,7 @@ std::string modulus_in_words(double young, double sd) {
 
 std::string poisson_in_words(const json& material) {
     const double ratio = material["poisson"].get<double>(), sd = number_or_nothing(material, "poisson_sd");
-    if (material.value("poisson_declared", false)) return fmt::format("ν = {:.3g} (the set's)", ratio);
+    if (material.value("poisson_declared", false)) return fmt::format("ν = {:.3g} (declared)", ratio);
     constexpr double incompressible = 0.499;  // beyond it nothing that is measured changes
     const double least = ratio - 2 * sd;
     if (ratio > incompressible) return fmt::format("ν above {:.3f}", std::min(least, incompressible));
@@ -49,7 +49,7 @@ std::string in_sigmas(const json& whitened_rms) {
 std::string region_in_words(const json& region) {
     const double young = region["young_mpa"].get<double>();
     return region["sd"].is_number() ? modulus_in_words(young, region["sd"].get<double>())
-                                    : fmt::format("E = {:.3g} MPa (the set's)", young);
+                                    : fmt::format("E = {:.3g} MPa (declared)", young);
 }
 
 std::string material_in_words(const json& material) {
@@ -64,7 +64,13 @@ std::string material_in_words(const json& material) {
 
 std::string and_under_load(const json& load_exponent) {
     const std::string words = load_exponent["words"];
-    return words == "the error is there without any load" ? ", with or without load" : ", and " + words;
+    return words == "the error is there without any load" ? ", already without load" : ", and " + words;
+}
+
+std::string law_in_words(const std::string& law) {
+    if (law == "neo-hooke") return "neo-Hookean law";
+    if (law == "svk") return "St Venant-Kirchhoff law";
+    return law + " law";
 }
 
 std::string probability_in_words(double probability) {

@@ -70,8 +70,8 @@ std::string part_of_body(const json& at, const json& box) {
 std::string worst_table(const json& compare) {
     const std::vector<json> probes = worst_of(compare["probes"]), markers = worst_of(compare["markers"]);
     if (probes.empty() || markers.empty()) return {};
-    std::string text = fmt::format("  {:<24} {:>10} {:>10} {:>9}  {}\n", "Worst probes", "rms mm", "most mm",
-                                   "of moved", "pressed at, or driven by");
+    std::string text = fmt::format("  {:<24} {:>10} {:>10} {:>9}  {}\n", "Largest errors", "rms mm", "max mm",
+                                   "% moved", "load applied at");
     for (const json& p : probes) {
         text +=
             fmt::format("  {:<24} {:>10.3g} {:>10.3g} {:>9}  {}\n",
@@ -79,7 +79,7 @@ std::string worst_table(const json& compare) {
                         p["rms_mm"].get<double>(), p["max_mm"].get<double>(),
                         p["relative"].is_number() ? percent(p["relative"].get<double>()) : "-", what_acts(p, compare));
     }
-    text += fmt::format("  {:<24} {:>10} {:>20}  {}\n", "Worst markers", "rms mm", "", "at rest at");
+    text += fmt::format("  {:<24} {:>10} {:>20}  {}\n", "Markers", "rms mm", "", "rest position");
     for (const json& m : markers) {
         text += fmt::format("  {:<24} {:>10.3g} {:>20}  {}\n", "marker " + marker_name(m), m["rms_mm"].get<double>(),
                             "", where(m["at"], compare));

@@ -57,7 +57,18 @@ std::string joined(const std::vector<std::string>& names) {
     return sorted.empty() ? "nothing" : fmt::format("{}", fmt::join(sorted, " + "));
 }
 
-void Tally::add(const Truth& truth, const identify::Diagnosis& found, Outcome outcome) {
+void Tally::add_material(const Truth& truth, const identify::MaterialEstimate& material) {
+    const auto add = [&](const std::string& name, double value, double sd) {
+        const auto known = truth.numbers.find(name);
+        if (known == truth.numbers.end() || !(sd > 0)) return;
+        numbers_[name].push_back({value / known->second - 1, (value - known->second) / sd});
+    };
+    add("material young", material.young, material.young_sd);
+    add("material poisson", material.poisson, material.poisson_sd);
+}
+
+void Tally::add(const Truth& truth, const identify::Diagnosis& found, Outcome outcome,
+                const identify::MaterialEstimate& material) {
     ++counts_[outcome];
     ++named_[joined(truth.effects)][said(found)];
     if (truth.effects.empty()) {
@@ -67,7 +78,9 @@ void Tally::add(const Truth& truth, const identify::Diagnosis& found, Outcome ou
         for (const identify::Candidate& one : found.ranking) most = std::max(most, one.log_bayes_factor);
         null_evidence_.push_back(most);
     }
-    if (outcome != Outcome::right || truth.effects.empty() || !found.explained) return;
+    if (outcome != Outcome::right) return;
+    add_material(truth, material);
+    if (truth.effects.empty() || !found.explained) return;
     before_[joined(truth.effects)].push_back(found.baseline.whitened_rms);
     after_[joined(truth.effects)].push_back(found.explained->fit.whitened_rms);
     for (const auto& effect : found.explained->effects) {

@@ -5,13 +5,16 @@
 #include <vector>
 
 #include "diagnosis/truth.h"
+#include "identify/diagnosis/material_estimate.h"
 
 namespace palpate::bench {
 
 /// What a bench found over many sets.
 class Tally {
 public:
-    void add(const Truth& truth, const identify::Diagnosis& found, Outcome outcome);
+    /// `material`: what the best fit comes to.
+    void add(const Truth& truth, const identify::Diagnosis& found, Outcome outcome,
+             const identify::MaterialEstimate& material);
     void add(const Tally& more);
     void add_failure() { ++counts_[Outcome::inconclusive]; }
 
@@ -25,6 +28,7 @@ private:
         double z = 0;      // in standard deviations
     };
 
+    void add_material(const Truth& truth, const identify::MaterialEstimate& material);
     void print_numbers() const;
     void print_reliability() const;
 

@@ -38,6 +38,10 @@ std::map<std::string, double> numbers_of(const fs::path& file) {
             numbers[effect.at("effect").get<std::string>() + " " + name] = number.at("value").get<double>();
         }
     }
+    if (truth.contains("material")) {
+        numbers["material young"] = truth["material"].at("young_mpa").get<double>();
+        numbers["material poisson"] = truth["material"].at("poisson").get<double>();
+    }
     return numbers;
 }
 

@@ -14,7 +14,7 @@ struct Truth {
     std::string set;
     std::vector<std::string> effects;       // empty: nothing is hidden
     double strength = 0;                    // beyond what another stiffness does, over the noise
-    std::map<std::string, double> numbers;  // "gravity gx": as far as they are told
+    std::map<std::string, double> numbers;  // "gravity gx", "material young": as far as they are told
     bool holds(const std::string& effect) const;
 };
 

@@ -239,6 +239,8 @@ TEST(LoadExponent, PlacesThatDifferMoreThanLoadsAreNoErrorWithoutLoad) {
     std::vector<ErrorUnderLoad> states;
     for (int i = 0; i < 60; ++i) states.push_back({5 * std::exp(-0.065 * i), 0.5 * std::exp(0.016 * i), 0.01, 100});
     EXPECT_NE(load_exponent(states)->words.find("an unloaded state is needed"), std::string::npos);
+    states.back().loaded = false;  // its own weight alone moves it
+    EXPECT_EQ(load_exponent(states)->words, "the errors do not grow with the load");
     states.push_back({0, 0.01, 0.01, 100});  // it was read, and is right
     EXPECT_NE(load_exponent(states)->words.find("nothing is wrong without load"), std::string::npos);
     states.push_back({0, 0.5, 0.01, 100});  // at another time it is not

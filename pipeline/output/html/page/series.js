@@ -77,7 +77,7 @@ class SeriesChart {
     this.at('series').hidden = run.states.length < 2 || !ids.length;
     this.at('series-marker').replaceChildren(...ids.map((id) => new Option(id, id)));
     this.at('series-marker').value = worst;
-    this.at('series-axis').replaceChildren(...['x', 'y', 'z', 'in all'].map((name, i) => new Option(name, i)));
+    this.at('series-axis').replaceChildren(...['x', 'y', 'z', 'magnitude'].map((name, i) => new Option(name, i)));
     this.at('series-axis').value = 3;
     this.at('series-key').append(...run.steps.map((step, m) => {
       const key = document.createElement('span'), line = document.createElement('i');

@@ -39,7 +39,10 @@ function startView() {
   const ofLinks = (step, quantity) => run.steps[step].quantities.find((q) => q.name === quantity.name)?.values ?? [];
 
   const count = run.states.length;
-  const titles = run.states.map((s) => `${s.probe} at ${+s.time.toPrecision(4)} s${s.loads.length ? '' : ', no force'}${s.held_out ? ', held out' : ''}`);
+  const timed = run.states.some((s) => s.time !== 0), pressed = run.states.some((s) => s.loads.length);
+  const force = (s) => +s.loads.reduce((sum, l) => sum + Math.hypot(l[3], l[4], l[5]), 0).toPrecision(3);
+  const titles = run.states.map((s) => [`${s.probe}${timed ? ` at ${+s.time.toPrecision(4)} s` : ''}`,
+    ...(pressed ? [s.loads.length ? `${force(s)} N` : 'no force'] : []), ...(s.held_out ? ['held out'] : [])].join(', '));
   const fill = (select, texts) => select.replaceChildren(...texts.map((t, i) => new Option(t, i)));
   fill(at('state'), titles);
   fill(at('step'), run.steps.map((s) => s.name));
@@ -217,7 +220,7 @@ function startView() {
     at('gradient').style.background = gradient;
     at('what').textContent = `${quantity.name}${quantity.logarithmic ? ', logarithmic' : ''}: ${quantity.words}`;
     const model = run.steps.length > 1 ? `Model: ${run.steps[shown.step].name}. ` : '';
-    at('told').textContent = `${model}Probe ${titles[shown.state]}: off by ${number(state.rms)} mm rms, ${number(state.largest)} mm at most.`;
+    at('told').textContent = `${model}Probe ${titles[shown.state]}: rms error ${number(state.rms)} mm per coordinate, largest distance ${number(state.largest)} mm.`;
     const found = run.steps[shown.step].findings.map((f) => f.words);
     at('found').hidden = !found.length || !at('show-findings').checked;
     at('found').replaceChildren(document.createElement('i'), found.join(' '));

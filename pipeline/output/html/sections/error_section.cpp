@@ -28,15 +28,14 @@ std::string pictures(const RunFiles& files) {
     for (const Dot& dot : files.errors_before) highest = std::max(highest, dot.value);
     const bool strange = std::ranges::any_of(files.errors_before, [](const Dot& dot) { return dot.strange; });
     std::string html =
-        "<div class=\"pair\">" +
-        figure(skeleton_picture(files.model), "Spheres and links; spheres that are held in orange.") +
+        "<div class=\"pair\">" + figure(skeleton_picture(files.model), "Spheres and links. Orange: held spheres.") +
         figure(dot_picture(files.model, files.errors_before, highest, "mm"),
-               std::string("Where the model is wrong") + (files.errors_after.empty() ? "." : ", nothing added.") +
-                   (strange ? " Orange rings: finite elements do not explain it either." : ""));
+               std::string("Marker errors") + (files.errors_after.empty() ? "." : ", baseline.") +
+                   (strange ? " Orange ring: the finite-element model does not explain the error either." : ""));
     if (!files.errors_after.empty()) {
         const auto effects = files.ladder["steps"].back()["effects"].get<std::vector<std::string>>();
         html += figure(dot_picture(files.model, files.errors_after, highest, "mm"),
-                       "The same with " + listed(effects) + ", in the same colours.");
+                       "Marker errors with " + listed(effects) + ", on the same scale.");
     }
     return html + "</div>";
 }
@@ -105,7 +104,7 @@ std::string load_chart(const RunFiles& files) {
     // With an effect in, the model moves without load, too: its exponent is not about what acts alone.
     if (const json exponent = files.compare.value("load_exponent", json());
         exponent.is_object() && !files.compare["adequate"].get<bool>())
-        words += " Nothing added: " + escape(exponent["words"].get<std::string>()) + ".";
+        words += " Baseline: " + escape(exponent["words"].get<std::string>()) + ".";
     return "<div class=\"pair\">" + figure(chart, words) + "</div>";
 }
 

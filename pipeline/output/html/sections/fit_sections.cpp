@@ -44,12 +44,13 @@ Trace read_trace(const std::filesystem::path& file) {
 std::string convergence_section(const std::filesystem::path& convergence) {
     if (!std::filesystem::exists(convergence)) return {};
     const Trace trace = read_trace(convergence);
-    return "<h2 id=\"convergence\">Convergence</h2><p>The search went down to the most probable stiffnesses; then "
-           "particles went from a proposal (temperature 0) to the posterior (1). Few effective samples mean a coarse "
-           "picture of it.</p><div class=\"pair\">" +
+    return "<h2 id=\"convergence\">Convergence</h2><p>An optimiser found the most probable stiffnesses; the particles "
+           "were "
+           "then tempered from a proposal (exponent 0) to the posterior (exponent 1). With few effective samples the "
+           "posterior is poorly resolved.</p><div class=\"pair\">" +
            line_chart({trace.fit}, "Search: −ln of the posterior density", "step") +
            line_chart({trace.samples}, "Particles: effective samples", "step") +
-           line_chart({trace.temperature}, "Particles: temperature", "step") + "</div>";
+           line_chart({trace.temperature}, "Particles: tempering exponent", "step") + "</div>";
 }
 
 std::string spheres_section(const json& quality) {

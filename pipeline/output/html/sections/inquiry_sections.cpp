@@ -51,9 +51,8 @@ std::string why_not_the_closer(const json& candidate, const json& claimed) {
     const std::size_t own = candidate["parameters"].size(), others = claimed["parameters"].size();
     if (own <= others) return {};
     return fmt::format(
-        " It leaves less than {}, and takes {} free numbers for that where {} has {}: any numbers fit something of the "
-        "noise, and evidence takes that off.",
-        claimed["effect"].get<std::string>(), own, claimed["effect"].get<std::string>(), others);
+        " It fits closer than {}, but with {} parameters instead of {}, which the Bayes factor penalises.",
+        claimed["effect"].get<std::string>(), own, others);
 }
 
 /// What an effect would mean, and what became of it.
@@ -67,14 +66,15 @@ std::string candidate_words(const json& candidate, bool claimed, double baseline
         }
     }
     if (candidate.contains("objection"))
-        words += " No claim: " + escape(candidate["objection"].get<std::string>()) + ".";
+        words += " Not claimed: " + escape(candidate["objection"].get<std::string>()) + ".";
     if (!candidate["rms_mm"].is_number() && candidate["predicted_rms_mm"].is_number() && !claimed) {
         constexpr double hardly = 0.99;  // of what is left without it
         const bool has_evidence =
             candidate["log_bayes_factor"].is_number() && candidate["log_bayes_factor"].get<double>() > 0;
         words += has_evidence && candidate["predicted_rms_mm"].get<double>() < hardly * baseline_rms
-                     ? fmt::format(" Screened only: it would leave {} mm rms.", number(candidate["predicted_rms_mm"]))
-                     : " Screened only: it would explain nothing.";
+                     ? fmt::format(" Not refitted: its linear estimate leaves {} mm rms.",
+                                   number(candidate["predicted_rms_mm"]))
+                     : " Not refitted: by its linear estimate it explains nothing.";
     }
     words += escape(why_not);
     const std::string numbers = parameters(candidate["parameters"]);
@@ -98,32 +98,34 @@ std::string ranking_table(const json& diagnosis) {
             is_claimed || claimed.size() != 1 ? "" : why_not_the_closer(c, diagnosis["ranking"][0]);
         rows += fmt::format("<tr{}><td>{}</td>", is_claimed ? " class=\"claimed\"" : "",
                             escape(c["effect"].get<std::string>())) +
-                named_cell("evidence", evidence(c["log_bayes_factor"])) +
+                named_cell("ln Bayes factor", evidence(c["log_bayes_factor"])) +
                 named_cell("probability",
                            c["probability"].is_number() ? probability_in_words(c["probability"].get<double>()) : "–") +
-                named_cell("error with it", c["rms_mm"].is_number() ? number(c["rms_mm"]) + " mm" : "") +
+                named_cell("rms error", c["rms_mm"].is_number() ? number(c["rms_mm"]) + " mm" : "") +
                 named_cell("held out", c["rms_mm"].is_number() && c["held_out_rms_mm"].is_number()
                                            ? number(c["held_out_rms_mm"]) + " mm"
                                            : "") +
-                named_cell("over the noise", c["whitened_rms"].is_number() ? number(c["whitened_rms"]) + " ×" : "") +
+                named_cell("normalised", c["whitened_rms"].is_number() ? number(c["whitened_rms"]) : "") +
                 "<td class=\"words\">" + candidate_words(c, is_claimed, baseline_rms, why_not) + "</td></tr>";
     }
-    return "<div class=\"wide\"><table class=\"cards\"><thead><tr><th>effect</th><th>evidence</th><th>probability</th>"
-           "<th>error with it</th><th>held out</th><th>over the noise</th><th class=\"words\">in words</th>"
+    return "<div class=\"wide\"><table class=\"cards\"><thead><tr><th>effect</th><th>ln Bayes "
+           "factor</th><th>probability</th>"
+           "<th>rms error</th><th>held out</th><th>normalised</th><th class=\"words\">finding</th>"
            "</tr></thead><tbody>" +
            rows + "</tbody></table></div>";
 }
 
 std::string baseline_line(const json& diagnosis) {
     const json& b = diagnosis["baseline"];
-    std::string text =
-        fmt::format("Without any of them: law {}, {}", b["law"].get<std::string>(), material_in_words(b));
+    std::string text = fmt::format(
+        "Baseline, without any effect: {}, {}; {} mm rms, {} mm held out, normalised {}. Measurement noise "
+        "({}): {} mm rms.",
+        law_in_words(b["law"].get<std::string>()), material_in_words(b), number(b["rms_mm"]),
+        number(b["held_out_rms_mm"]), number(b["whitened_rms"]),
+        diagnosis["noise_known"].get<bool>() ? "declared" : "estimated", number(diagnosis["noise_mm"]));
     if (const json explained = diagnosis.value("explained", json()); explained.is_object())
-        text += "; with what is claimed: " + material_in_words(explained);
-    return text + fmt::format(". Without any: {} mm rms, {} held out, {} times the noise ({} mm, {}).",
-                              number(b["rms_mm"]), number(b["held_out_rms_mm"]), number(b["whitened_rms"]),
-                              number(diagnosis["noise_mm"]),
-                              diagnosis["noise_known"].get<bool>() ? "as told" : "estimated");
+        text += " With what is claimed: " + material_in_words(explained) + ".";
+    return text;
 }
 
 std::string in_lines(const std::string& text) {
@@ -158,44 +160,54 @@ std::string where_line(const json& diagnosis) {
         kinds += fmt::format("{}{} {}", kinds.empty() ? "" : ", ", kind, evidence(ln));
     // Where an effect has a name, its own numbers tell more.
     const std::string how = diagnosis["verdict"] == "unexplained"
-                                ? "Fitted where models show such a source, else to first order"
-                                : "To first order, about the model without any effect";
-    return fmt::format("<p><b>Whatever its name:</b> {} <span class=\"soft\">{}; evidence by kind: {}.</span></p>",
-                       escape(where["sentence"].get<std::string>()), how, escape(kinds));
+                                ? "Fitted where models show such a source, else a linearised estimate"
+                                : "A linearised estimate about the baseline";
+    return fmt::format(
+        "<p><b>Without assuming a specific effect:</b> {} <span class=\"soft\">{}; ln Bayes factors by kind of source, "
+        "not comparable with those of the table: {}.</span></p>",
+        escape(where["sentence"].get<std::string>()), how, escape(kinds));
+}
+
+/// Which probes were held out, and how; `states`: as in compare.json.
+std::string held_out_line(const json& held_out, const json& states) {
+    if (held_out.empty()) return {};
+    std::string probes;
+    for (const json& probe : held_out) probes += (probes.empty() ? "" : ", ") + probe.dump();
+    const bool in_turn = std::ranges::all_of(
+        states, [&](const json& state) { return std::ranges::find(held_out, state["probe"]) != held_out.end(); });
+    return "<p class=\"soft\">Orange: cross-validation error" +
+           (in_turn ? ", a third of the probes held out in turn" : " on probes " + probes + ", held out of each fit") +
+           ". The table above holds out one probe at a time.</p>";
 }
 
 }  // namespace
 
 std::string missing_section(const json& diagnosis) {
     if (diagnosis.is_null()) return {};
-    return "<h2 id=\"missing\">What is missing</h2>" + where_line(diagnosis) + ranking_table(diagnosis) +
-           "<p class=\"soft\">Evidence: ln of the Bayes factor against nothing missing; a claim takes at least 10, and "
-           "a "
-           "lead of 5. Held out: the error on each probe by a fit to all others, one by one. Over the noise: rms error "
-           "over "
-           "what noise and unknown contacts explain; 1 is as good as it gets. " +
-           escape(baseline_line(diagnosis)) + " Judged on the body in finite elements.</p>";
+    const bool is_named = diagnosis["verdict"] == "missing-effect";  // its own numbers come first
+    return "<h2 id=\"missing\">What is missing</h2>" + (is_named ? "" : where_line(diagnosis)) +
+           ranking_table(diagnosis) +
+           "<p class=\"soft\">ln Bayes factor: evidence against the baseline; an effect is claimed from 10 on, with a "
+           "lead "
+           "of 5. Held out: rms error on each probe by a fit to all others, one by one. Normalised: rms of the errors, "
+           "each over its standard deviation by measurement noise and unknown contacts; 1 is fully explained. " +
+           escape(baseline_line(diagnosis)) + " All numbers are of the finite-element model.</p>" +
+           (is_named ? where_line(diagnosis) : "");
 }
 
-std::string ladder_section(const json& ladder) {
+std::string ladder_section(const json& ladder, const json& compare) {
     if (ladder.is_null()) return {};
-    std::string held_out;
-    for (const json& probe : ladder["held_out_probes"]) held_out += (held_out.empty() ? "" : ", ") + probe.dump();
     return "<h2 id=\"ladder\">Ladder</h2><p>" + in_lines(ladder_in_words(ladder)) + "</p><div class=\"pair\">" +
-           group_chart(groups_of(ladder, false), "Error of the skeleton", "mm rms") +
-           group_chart(groups_of(ladder, true), "Error of the body in finite elements", "mm rms") + "</div>" +
-           (held_out.empty() ? ""
-                             : "<p class=\"soft\">Orange: on held-out probes (" + held_out +
-                                   "), a quarter of all at once, or a third in turn where they are few. The table "
-                                   "above holds out one "
-                                   "at a time, so its numbers differ a little.</p>");
+           group_chart(groups_of(ladder, false), "Error of the real-time model", "mm rms") +
+           group_chart(groups_of(ladder, true), "Error of the finite-element model", "mm rms") + "</div>" +
+           held_out_line(ladder["held_out_probes"], compare["probes"]);
 }
 
 std::string budget_section(const json& compare, const json& improved) {
     const auto shares_of = [](const json& budget, const std::string& title) {
         return share_bar({{"noise", budget["noise"].get<double>(), "#9aa5b1"},
                           {"coarseness of the skeleton", budget["reduction"].get<double>(), "#2a6f97"},
-                          {"missing physics", budget["missing_physics"].get<double>(), "#c8741a"}},
+                          {"unexplained", budget["missing_physics"].get<double>(), "#c8741a"}},
                          title);
     };
     const json before = compare.value("budget", json());
@@ -203,17 +215,19 @@ std::string budget_section(const json& compare, const json& improved) {
     if (!before.is_object()) return {};
     std::string html = "<h2 id=\"budget\">Error budget</h2>";
     if (after.is_object()) {
-        html += "<p>Before anything was added:</p>" + shares_of(before, "Shares of the mean square error before") +
-                fmt::format(
-                    "<p>With what was missing, of a mean square that is {:.2g} times as large:</p>",
-                    std::pow(improved["error"]["rms_mm"].get<double>() / compare["error"]["rms_mm"].get<double>(), 2)) +
-                shares_of(after, "Shares of the mean square error after");
+        const double left =
+            std::pow(improved["error"]["rms_mm"].get<double>() / compare["error"]["rms_mm"].get<double>(), 2);
+        html += "<p>Baseline:</p>" + shares_of(before, "Shares of the mean square error, baseline") +
+                fmt::format("<p>With the missing effect added, {:.2g} % of that mean square error:</p>", 100 * left) +
+                shares_of(after, "Shares of the mean square error, effect added");
     } else {
         html += shares_of(before, "Shares of the mean square error");
     }
     return html +
-           "<p class=\"soft\">Shares of the mean square error. Noise goes with better sensors, coarseness with more "
-           "spheres, missing physics with the effect that is missing.</p>";
+           "<p class=\"soft\">Shares of the mean square error of the real-time model. Better sensors reduce the noise, "
+           "more "
+           "spheres the coarseness of the skeleton; unexplained are missing physics and details of contacts and "
+           "clamps.</p>";
 }
 
 }  // namespace palpate::pipeline

@@ -61,7 +61,7 @@ std::vector<std::pair<std::string, std::vector<Eigen::Index>>> by_kind(const Row
 }
 
 std::string kinds_of(const Rows& posterior, const ParticleSet& particles, PriorKind prior) {
-    std::string html = "<h3>Before and after</h3><div class=\"densities\">";
+    std::string html = "<h3>Prior and posterior</h3><div class=\"densities\">";
     bool pooled = false;
     for (const auto& [kind, places] : by_kind(posterior)) {
         const bool alone = places.size() == 1;
@@ -72,9 +72,9 @@ std::string kinds_of(const Rows& posterior, const ParticleSet& particles, PriorK
                 : pooled_density(fmt::format("{}, all {}", kind, places.size()), posterior, particles, places, prior));
     }
     html +=
-        "</div><p class=\"soft\">Dashed: density before measuring (prior). Filled: after it (posterior, of the "
-        "weighted "
-        "particles). Above, its median and 95 %";
+        "</div><p class=\"soft\">Dashed: prior density. Filled: posterior density, of the weighted particles. Above, "
+        "its "
+        "median and 95 %";
     return html + (pooled ? "; of several numbers together those of their medians, each over the middle of its prior. "
                             "Where the two agree, the data are uninformative.</p>"
                           : ".</p>");
@@ -95,8 +95,8 @@ std::string one_by_one(const Rows& posterior, const ParticleSet& particles, Prio
     }
     return fmt::format(
                "<h3>One by one</h3><p><label>Number <select id=\"density-of\">{}</select></label> <span "
-               "class=\"soft\">{}the one first that the measurements tell most of; ● known better than "
-               "before</span></p>"
+               "class=\"soft\">{}the one first that the measurements tell most of; ● narrower than "
+               "its prior</span></p>"
                "<div class=\"densities\" id=\"density\">{}</div>",
                options, all > most_chosen ? fmt::format("{} of {}, ", most_chosen, all) : "",
                pictures.front().get<std::string>()) +
@@ -124,8 +124,9 @@ std::string stiffness_section(const Rows& posterior, const ParticleSet& particle
                               const std::string& file) {
     const auto informed = std::ranges::count_if(posterior, [](const auto& row) { return row.informed; });
     std::string html = fmt::format(
-        "<h2 id=\"stiffness\">Stiffness</h2><p>{} of {} numbers are known better than before (●): the others are what "
-        "the body's shape and first material make them.</p>",
+        "<h2 id=\"stiffness\">Stiffness</h2><p>The measurements constrain {} of {} stiffnesses of the model to use "
+        "(●); the "
+        "others keep their prior, computed from the body's shape and initial material.</p>",
         informed, posterior.size());
     const bool drawn = particles.weights.size() > 0 && particles.stiffness.cols() == std::ssize(posterior) &&
                        particles.stiffness.minCoeff() > 0;

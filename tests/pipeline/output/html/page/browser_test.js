@@ -31,7 +31,7 @@
     const other = at('state').value === '0' ? '1' : '0', told = at('told').textContent;
     await choose('state', other, 'change'); changes('another probe');
     expect(at('told').textContent !== told, 'the words stay the same for another probe');
-    expect(/mm rms/.test(at('told').textContent), 'the error is not told');
+    expect(/rms error .* mm/.test(at('told').textContent), 'the error is not told');
     for (let i = 1; i < at('colour').options.length; ++i) { await choose('colour', String(i), 'input'); }
     changes('colouring by stiffness');
     expect(at('what').textContent.includes('['), 'the legend has no unit');
@@ -54,7 +54,7 @@
       expect(plot.querySelectorAll('polyline').length === at('step').options.length, 'not each model has a curve');
       const inAll = curve();
       await choose('series-axis', '2', 'change');
-      expect(curve() !== inAll, 'the curve is the same along z as in all');
+      expect(curve() !== inAll, 'the curve is the same along z as in magnitude');
       const shown = at('state').value, dots = plot.querySelectorAll('circle');
       dots[dots.length - 1 === +shown ? 0 : dots.length - 1].dispatchEvent(new MouseEvent('click', {bubbles: true}));
       await settled(); drawn();
