@@ -12,15 +12,14 @@ namespace {
 class VolumeEffect : public EffectHypothesis {
 public:
     const EffectDescription& description() const override {
-        static const EffectDescription text{
-            .name = "volume",
-            .kind = EffectKind::body,
-            .meaning = "Poisson's ratio differs from the one that the set declares.",
-            .parameters = {"poisson [-]: Poisson's ratio"},
-            .reveals = "sides that bulge more or less than they should under a squeeze",
-            .confused_with = {"stiffening", "anisotropy"},
-            .separating_probe = "squeeze the body and read the bulge at its sides",
-            .next_probe = "load"};
+        static const EffectDescription text{.name = "volume",
+                                            .kind = EffectKind::body,
+                                            .meaning = "Poisson's ratio differs from the one that the set declares.",
+                                            .parameters = {"poisson [-]: Poisson's ratio"},
+                                            .reveals = "sides that bulge more or less than they should under a squeeze",
+                                            .confused_with = {"stiffening", "anisotropy"},
+                                            .separating_probe = "squeeze the body and read the bulge at its sides",
+                                            .next_probe = "load"};
         return text;
     }
 
