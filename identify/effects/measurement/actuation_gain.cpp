@@ -16,8 +16,7 @@ public:
         static const EffectDescription text{
             .name = "actuation-gain",
             .kind = EffectKind::measurement,
-            .meaning =
-                "The true pressure, tension or length of an actuator is a multiple of the reported one.",
+            .meaning = "The true pressure, tension or length of an actuator is a multiple of the reported one.",
             .parameters = {"gain of <actuator> [-]: true over reported value of that actuator"},
             .reveals = "states that are off in proportion to what one actuator is set to",
             .confused_with = {"stiffening", "pressure"},
