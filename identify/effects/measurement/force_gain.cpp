@@ -20,7 +20,8 @@ public:
             .name = "force-gain",
             .kind = EffectKind::measurement,
             .meaning =
-                "The true force of a probe is a multiple of the reported one; loads of different size along one line at "
+                "The true force of a probe is a multiple of the reported one; loads of different size along one line "
+                "at "
                 "one place share it.",
             .parameters = {"probe<N> [-]: true over reported force of that probe"},
             .reveals = "whole probes that are off in proportion to their load, in no order of place or direction",

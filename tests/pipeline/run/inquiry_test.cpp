@@ -132,7 +132,7 @@ TEST_F(HeavyBeam, DiagnosisAndLadderHaveTheKeysOfTheContract) {
     }
 }
 
-TEST_F(HeavyBeam, RepeatsNothingWmagnetInputsAreUnchanged) {
+TEST_F(HeavyBeam, RepeatsNothingWhenInputsAreUnchanged) {
     const json before = read(path("run/run.json"))["stages"];
     commands::run({.input = path("set"), .output = path("run"), .overrides = coarse()}, {});
     EXPECT_EQ(before, read(path("run/run.json"))["stages"]);
