@@ -40,9 +40,14 @@ Vec3 vector_of(const json& numbers) {
 class Drawing {
 public:
     explicit Drawing(const skeleton::Model& model) : model_(model) {
-        const Points& skin = model.surface.vertices;
-        middle_ = (skin.colwise().minCoeff() + skin.colwise().maxCoeff()).transpose() / 2;
-        size_ = (skin.colwise().maxCoeff() - skin.colwise().minCoeff()).maxCoeff();
+        Points body = model.surface.vertices;  // a model may do without
+        if (body.rows() == 0) {
+            body.resize(std::ssize(model.spheres), 3);
+            for (Eigen::Index s = 0; s < body.rows(); ++s)
+                body.row(s) = model.spheres[static_cast<std::size_t>(s)].center.transpose();
+        }
+        middle_ = (body.colwise().minCoeff() + body.colwise().maxCoeff()).transpose() / 2;
+        size_ = (body.colwise().maxCoeff() - body.colwise().minCoeff()).maxCoeff();
     }
 
     void draw(const json& finding) {

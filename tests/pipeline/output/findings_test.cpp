@@ -122,6 +122,9 @@ TEST(FindingsFile, GoesWhereNothingIsFound) {
     model.effects = {{"gravity", {{"gx", 0, "mm/s^2"}, {"gy", 0, "mm/s^2"}, {"gz", -9810, "mm/s^2"}}}};
     write_findings(file, model, {}, nullptr);
     ASSERT_TRUE(std::filesystem::exists(file));
+    model.surface = {};  // spheres alone
+    write_findings(file, model, {}, nullptr);
+    EXPECT_GT(points_of(mesh::read_poly_data(file), 0).rows(), 0);
     model.effects.clear();
     write_findings(file, model, {}, nullptr);
     EXPECT_FALSE(std::filesystem::exists(file));
