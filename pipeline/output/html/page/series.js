@@ -4,16 +4,17 @@
 const seriesColours = ['var(--soft)', 'var(--amber)', 'var(--blue)', '#8a5fb0', '#3c9a76'];
 
 /// How a marker moves along an axis (0, 1, 2) or in all (3) [mm], over the times of a probe that has several, else over
-/// all states in order: {over, states, x, measured, models}; `states` are numbers of the run's.
+/// all states in order: {overTime, states, x, measured, models}; `states` are numbers of the run's. A model's value is
+/// NaN where its step set the reading aside.
 function seriesOf(run, marker, axis, shown) {
   const {probe} = run.states[shown], all = run.states.map((_, s) => s);
   const ofProbe = all.filter((s) => run.states[s].probe === probe), overTime = ofProbe.length > 2;
-  const rowIn = (s) => run.steps[0].states[s].markers.id.indexOf(marker);
-  const states = (overTime ? ofProbe : all).filter((s) => rowIn(s) >= 0);
+  const rowIn = (step, s) => step.states[s].markers.id.indexOf(marker), raw = run.steps[0];
+  const states = (overTime ? ofProbe : all).filter((s) => rowIn(raw, s) >= 0);
   const along = (v) => (axis < 3 ? v[axis] : Math.hypot(...v));
-  const measured = (s) => point3(run.steps[0].states[s].markers.measured, rowIn(s));
+  const measured = (s) => point3(raw.states[s].markers.measured, rowIn(raw, s));
   const modelled = (step, s) => {
-    const error = point3(step.states[s].markers.error, rowIn(s));
+    const row = rowIn(step, s), error = row < 0 ? [NaN, NaN, NaN] : point3(step.states[s].markers.error, row);
     return measured(s).map((v, c) => v - error[c]);
   };
   return {overTime, states, x: states.map((s) => (overTime ? run.states[s].time : s)),
@@ -30,7 +31,7 @@ function niceStep(range, parts) {
 /// A series as the inside of an SVG; `titles` name the states, `shown` is the one that the view shows.
 function seriesDrawing(series, run, titles, shown) {
   const left = 56, right = 628, top = 10, bottom = 152;
-  const values = [...series.measured, ...series.models.flatMap((m) => m.values)];
+  const values = [...series.measured, ...series.models.flatMap((m) => m.values.filter(Number.isFinite))];
   const low = Math.min(0, ...values), most = Math.max(0, ...values), step = niceStep(most - low || 1, 4);
   const floor = Math.floor(low / step) * step, ceiling = Math.ceil(most / step) * step || step;
   const first = Math.min(...series.x), span = Math.max(...series.x) - first || 1;
@@ -59,7 +60,7 @@ function seriesDrawing(series, run, titles, shown) {
   const here = series.states.indexOf(shown);
   if (here >= 0) parts.push(`<line x1="${px(series.x[here])}" x2="${px(series.x[here])}" y1="${top}" y2="${bottom}" class="here"/>`);
   series.models.forEach((model, m) => {
-    const points = model.values.map((y, i) => `${px(series.x[i])},${py(y)}`).join(' ');
+    const points = model.values.map((y, i) => (Number.isFinite(y) ? `${px(series.x[i])},${py(y)}` : '')).join(' ');
     parts.push(`<polyline points="${points}" fill="none" stroke-width="2" stroke="${seriesColours[m % seriesColours.length]}"/>`);
   });
   series.measured.forEach((y, i) => parts.push(`<circle cx="${px(series.x[i])}" cy="${py(y)}" r="3.5" class="measured" data-state="${
@@ -98,7 +99,7 @@ class SeriesChart {
     const marker = +this.at('series-marker').value, axis = +this.at('series-axis').value;
     const series = seriesOf(this.run, marker, axis, state);
     this.at('series-plot').innerHTML = seriesDrawing(series, this.run, this.titles, state);
-    const here = series.states.indexOf(state), number = (v) => `${+v.toPrecision(3)} mm`;
+    const here = series.states.indexOf(state), number = (v) => (Number.isFinite(v) ? `${+v.toPrecision(3)} mm` : '–');
     this.at('series-plot').setAttribute('aria-label', `Motion of marker ${marker}, measured and by each model, over ${series.overTime ? 'time' : 'the probes'}`);
     this.at('series-told').textContent = here < 0 ? `Marker ${marker} was not read in probe ${this.titles[state]}.`
       : `Probe ${this.titles[state]}: measured ${number(series.measured[here])}; ${series.models.map((m) => `${m.name} ${number(m.values[here])}`).join(', ')}.`;
