@@ -46,7 +46,7 @@ std::string without_it(const json& diagnosis) {
     const json& baseline = diagnosis["baseline"];
     // A skeleton has no Young's modulus.
     std::string text = fmt::format(" Without it the rms error of the {} is {:.3g} mm",
-                                   baseline["young_mpa"].is_number() ? "finite-element model" : "model",
+                                   baseline.value("young_mpa", json()).is_number() ? "finite-element model" : "model",
                                    baseline["rms_mm"].get<double>());
     if (baseline.contains("load_exponent")) text += and_under_load(baseline["load_exponent"]);
     return text + ".";
