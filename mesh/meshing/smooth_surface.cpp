@@ -2,6 +2,7 @@
 
 #include <fmt/core.h>
 
+#include "mesh/core/closest_within.h"
 #include "mesh/errors.h"
 #include "mesh/meshing/smooth/bulges.h"
 #include "mesh/meshing/smooth/follow_boundary.h"
@@ -17,13 +18,30 @@ void SmoothSurfaceOptions::validate() const {
                         crease_angle));
 }
 
+namespace {
+
+/// Nodes at the border of what is held do not leave it.
+void keep_within(const std::vector<Region>& held, const Points& nodes, Points& moves) {
+    const std::vector<Region> regions = with_borders(held);
+    if (regions.empty()) return;
+    for (Eigen::Index n = 0; n < nodes.rows(); ++n) {
+        const Vec3 straight = nodes.row(n), curved = nodes.row(n) + moves.row(n);
+        if (contains(regions, straight) && !contains(regions, curved))
+            moves.row(n) = closest_within(regions, curved) - straight;
+    }
+}
+
+}  // namespace
+
 VolumeMesh curve_to(const VolumeMesh& body, const Surface& surface, const SmoothSurfaceOptions& options) {
     options.validate();
     if (!body.is_quadratic()) return body;
     const Bulges bulges = bulges_of(surface, options.crease_angle);
     const Points moves = moves_onto(body, surface, bulges, options.crease_angle);
     if (moves.isZero(0)) return body;
-    return move_nodes(body, follow_boundary(body, moves));
+    Points all = follow_boundary(body, moves);
+    keep_within(options.held, body.nodes, all);
+    return move_nodes(body, all);
 }
 
 }  // namespace palpate::mesh

@@ -1,12 +1,16 @@
 #pragma once
 
+#include <vector>
+
+#include "mesh/core/region.h"
 #include "mesh/core/surface.h"
 #include "mesh/core/volume_mesh.h"
 
 namespace palpate::mesh {
 
 struct SmoothSurfaceOptions {
-    double crease_angle = 60;  // edges sharper than this stay sharp [degrees], (0, 180)
+    double crease_angle = 60;       // edges sharper than this stay sharp [degrees], (0, 180)
+    std::vector<Region> held = {};  // whose nodes stay within them
     void validate() const;
 };
 

@@ -5,9 +5,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include "mesh/errors.h"
 #include "mesh/geometry/surface_tree.h"
+#include "mesh/meshing/follow_borders.h"
 #include "mesh/meshing/refine_surface.h"
 #include "mesh/meshing/remesh.h"
 #include "mesh/meshing/repair_surface.h"
@@ -35,6 +37,17 @@ mesh::Surface refined(const mesh::Surface& surface, const std::vector<FineZone>&
     return result;
 }
 
+/// Elements that end at the borders of what is held; those of a region keep to it.
+void follow_borders(MeshedBody& body, const std::vector<mesh::Region>& held, const mesh::Interfaces& interfaces) {
+    std::vector<char> fixed(static_cast<std::size_t>(body.surface.vertices.rows()), 0);
+    for (const mesh::Surface& interface : interfaces.followed())
+        fixed.insert(fixed.end(), static_cast<std::size_t>(interface.vertices.rows()), 1);
+    mesh::VolumeMesh volume = mesh::follow_borders(body.volume, held, body.repaired, fixed);
+    if (volume.nodes.rows() == body.volume.nodes.rows() && volume.nodes == body.volume.nodes) return;
+    body.volume = std::move(volume);
+    body.surface = mesh::boundary_surface(body.volume);
+}
+
 /// A surface filled with tetrahedra: where that fails with these edges, with shorter ones.
 void fill(MeshedBody& body, double edge, const MeshingOptions& options, const Progress& progress) {
     constexpr std::array shares{1.0, 0.8, 0.64};
@@ -48,6 +61,7 @@ void fill(MeshedBody& body, double edge, const MeshingOptions& options, const Pr
             mesh::Interfaces interfaces = mesh::remesh_interfaces(options.regions, body.surface, share * edge);
             body.volume =
                 mesh::tetrahedralise_within(body.surface, interfaces.followed(), {.edge_length = share * edge});
+            follow_borders(body, options.held, interfaces);
             body.interfaces = std::move(interfaces.surfaces);
             if (share < 1) body.notes.push_back(fmt::format("edges of {:.3g} mm: longer ones failed", share * edge));
             return;
@@ -121,6 +135,13 @@ std::vector<mesh::MaterialRegion> with_surfaces(std::vector<mesh::MaterialRegion
                                                 const std::vector<mesh::Surface>& interfaces) {
     for (std::size_t r = 0; r < regions.size(); ++r) regions[r].surface = interfaces[r];
     return regions;
+}
+
+std::vector<mesh::Region> held_regions(std::vector<mesh::Region> supports, const std::vector<mesh::Tool>& tools) {
+    for (const mesh::Tool& tool : tools)
+        if (const auto* grip = std::get_if<mesh::GripShape>(&tool.shape))
+            supports.insert(supports.end(), grip->regions.begin(), grip->regions.end());
+    return supports;
 }
 
 double thickness_of(const mesh::Surface& surface) {

@@ -6,6 +6,7 @@
 #include "mesh/core/material_region.h"
 #include "mesh/core/region.h"
 #include "mesh/core/surface.h"
+#include "mesh/core/tool.h"
 #include "mesh/core/volume_mesh.h"
 #include "mesh/progress.h"
 #include "pipeline/body/contact_zones.h"
@@ -17,6 +18,7 @@ struct MeshingOptions {
     bool linear_elements = false;
     std::vector<FineZone> fine = {};                 // where edges are shorter
     std::vector<mesh::MaterialRegion> regions = {};  // whose surfaces elements end at
+    std::vector<mesh::Region> held = {};             // supports and grips, at whose borders elements end, too
     double volume_change = 0.01;  // that remeshing may make, as a share: chords of a round body cut volume off
 };
 
@@ -41,6 +43,9 @@ MeshedBody ready_made_body(const mesh::VolumeMesh& mesh, const mesh::Surface& bo
 /// The regions with their surfaces as a body's elements follow them.
 std::vector<mesh::MaterialRegion> with_surfaces(std::vector<mesh::MaterialRegion> regions,
                                                 const std::vector<mesh::Surface>& interfaces);
+
+/// What a rig holds or moves as one: the supports and what its tools grip.
+std::vector<mesh::Region> held_regions(std::vector<mesh::Region> supports, const std::vector<mesh::Tool>& tools);
 
 /// Elements by default: 6 % of the longest side, and shorter where the body is thinner (`edge_for_thickness`) [mm].
 double default_edge_length(const mesh::Surface& surface);

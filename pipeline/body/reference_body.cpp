@@ -77,15 +77,18 @@ std::unique_ptr<identify::ReferenceBody> fill(const identify::MeasurementSet& se
     if (set.rest_volume) given = ready_made_body(*set.rest_volume, set.rest_surface, {.regions = set.regions});
     const auto given_nodes = given ? static_cast<double>(given->volume.nodes.rows()) : 0;
     const bool is_fitted = given && (given_nodes <= most_nodes || edge > thickness_of(set.rest_surface));
+    const std::vector<mesh::Region> held = held_regions(set.supports, set.tools);
     // Curving the elements gives back what their chords cut off.
-    const MeshedBody body =
-        is_fitted
-            ? *given
-            : make_body(
-                  set.rest_surface,
-                  {.edge_length = edge, .fine = contact_zones(set), .regions = set.regions, .volume_change = 0.06},
-                  progress);
-    const mesh::VolumeMesh curved = is_fitted ? body.volume : mesh::curve_to(body.volume, body.repaired);
+    const MeshedBody body = is_fitted ? *given
+                                      : make_body(set.rest_surface,
+                                                  {.edge_length = edge,
+                                                   .fine = contact_zones(set),
+                                                   .regions = set.regions,
+                                                   .held = held,
+                                                   .volume_change = 0.06},
+                                                  progress);
+    const mesh::VolumeMesh curved =
+        is_fitted ? body.volume : mesh::curve_to(body.volume, body.repaired, {.held = held});
     identify::ReferenceBodyOptions options;
     options.measured_on_mesh = is_fitted;
     if (given && !is_fitted && given_nodes <= enough_nodes) options.finer = given->volume;

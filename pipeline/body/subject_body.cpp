@@ -15,6 +15,7 @@ const std::string region_array = "region";
 
 MeshedBody make_body(const Subject& subject, MeshingOptions options, const Progress& progress) {
     options.regions = subject.regions;
+    options.held.insert(options.held.end(), subject.supports.begin(), subject.supports.end());
     if (!subject.volume) return make_body(subject.surface, options, progress);
     return ready_made_body(*subject.volume, subject.surface, options);
 }

@@ -75,10 +75,15 @@ Specimen finite_element_specimen(const Subject& subject, const BlindSetOptions& 
     const MeshedBody body = make_body(subject,
                                       {.edge_length = edge > 0 ? edge : default_edge,
                                        .fine = zones_of(driven, subject.surface),
+                                       .held = held_regions({}, driven.rig.tools),
                                        .volume_change = chords_cut_off},
                                       progress);
     specimen.notes = body.notes;
-    specimen.volume = body.is_ready_made ? body.volume : mesh::curve_to(body.volume, body.repaired);
+    specimen.volume = body.volume;
+    if (!body.is_ready_made) {
+        specimen.volume =
+            mesh::curve_to(body.volume, body.repaired, {.held = held_regions(subject.supports, driven.rig.tools)});
+    }
 
     identify::MeasurementSet& set = specimen.set;
     set.name = subject.settings.name;
