@@ -150,8 +150,8 @@ private:
         return {within, outside, closest_within(regions_, point_at(in)), in, edge.norm()};
     }
 
-    /// Moves nodes onto the border, the shortest ways first; those within that cannot be moved and are as good as on
-    /// it count as such.
+    /// Moves nodes onto the border, the shortest ways first. Those within that may not be moved and are next to it
+    /// count as being on it.
     bool move_near_nodes() {
         struct Way {
             int node;

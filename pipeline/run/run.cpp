@@ -106,6 +106,7 @@ private:
             return;
         }
         json key = settings_of_stage(c, "mesh");
+        key["supports"] = mesh::regions_to_yaml(subject_.supports);  // elements end at their borders
         if (!subject_.regions.empty()) key["regions"] = moduli_of(subject_.regions);
         const bool ran = folder_.stage({"mesh", key, subject_.files, {}, {"mesh/body.vtu", "mesh/surface.vtp"}}, [&] {
             const MeshedBody body = make_body(subject_, {c.edge_length, c.linear_elements}, Console::progress());

@@ -50,7 +50,7 @@ scripts = {
     "two": file("two.obj", bar + box(0, 40, 0, 80, 16, 16, first=9)) + "palpate mesh two.obj -o made.vtu",
     "unit": file("small.obj", box(0, 0, 0, 0.08, 0.016, 0.016)) + "palpate check small.obj",
     "nothing-held": case("{box: {min: [200, 0, 0], max: [210, 9, 9]}}") + probe_once.format("case.yaml"),
-    "too-little": case("{sphere: {center: [0, 0, 0], radius: 0.5}}") + probe_once.format("case.yaml"),
+    "too-little": case("{sphere: {center: [0, 0, 0], radius: 0.05}}") + probe_once.format("case.yaml"),
     "off": measured("sed -i 's/^middle.*/middle,50,10,35/' markers.csv") + check_set,
     "column": measured("sed -i '1s/.*/marker,X,Y,Z,colour/' markers.csv") + check_set,
     "comma": measured("sed -i 's/99.8,10,17.9/99,8,10,17,9/' positions.csv") + check_set,

@@ -362,6 +362,14 @@ Refit refit(const BodyModel& model, const Problem& problem, const Explanation& e
     return at;
 }
 
+Refit reassess(const BodyModel& model, const Problem& corrected, const RefitOptions& options, Refit fit) {
+    fit.error = error_of(corrected, fit.forward);
+    take_nuisances(model, corrected, options, fit);
+    conclude(corrected, FitPriors(model, fit.explanation, fit.numbers), options, fit);
+    fit.forward.tangents.reset();
+    return fit;
+}
+
 Whitening with_numbers_unknown(const Refit& fit) {
     Eigen::MatrixXd columns(fit.error.size(), fit.nuisances.columns.cols() + fit.columns.cols());
     columns << fit.nuisances.columns, fit.columns;

@@ -61,6 +61,9 @@ Refit refit(const BodyModel& model, const Problem& problem, const Explanation& e
 /// Whitening with the numbers of a fit among the unknowns, about where it stands: what readings tell of each other.
 Whitening with_numbers_unknown(const Refit& fit);
 
+/// A fit as it stands, to readings that were corrected: nuisances and evidence anew, its numbers as they were.
+Refit reassess(const BodyModel& model, const Problem& corrected, const RefitOptions& options, Refit fit);
+
 /// Half of chi^2 and of the priors' squares: what a refit lowers.
 double objective(const Refit& fit);
 

@@ -72,11 +72,20 @@ void Search::refit_tried(const Problem& corrected) {
     stages_ = problem_.by_stage ? problem_ : problem_.stage_by_stage();
     const double least = leader() ? 0.5 * leader()->log_bayes_factor : 0;
     for (FittedExplanation& one : tried_) {
-        if (one.log_bayes_factor < least) continue;
         report(progress_, "refit with a finer mesh's correction", 0.9);
-        Refit start = one.fit;
-        start.V.reset();
-        if (auto found = refit_from(one.fit.explanation, start, one.effects)) one = std::move(*found);
+        std::optional<FittedExplanation> found;
+        if (one.log_bayes_factor >= least) {
+            Refit start = one.fit;
+            start.V.reset();
+            found = refit_from(one.fit.explanation, start, one.effects);
+        }
+        if (found) {
+            one = std::move(*found);
+        } else {
+            // Evidence to other readings does not compare.
+            one.fit = reassess(model_, problem_for(one.fit.explanation), options_.refit, std::move(one.fit));
+            one.log_bayes_factor = one.fit.log_evidence - baselines_.best().log_evidence;
+        }
     }
 }
 

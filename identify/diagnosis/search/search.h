@@ -23,7 +23,7 @@ public:
     void single_effects();
     void put_together();  // @pre single_effects
     /// Fits once more, from where they stand, to a problem whose readings were corrected: the explanations with at
-    /// least half the leader's evidence. @pre the baselines were
+    /// least half the leader's evidence; the others are reassessed. @pre the baselines were
     void refit_tried(const Problem& corrected);
 
     std::vector<Candidate> ranking() const;  // by evidence, most first

@@ -79,6 +79,21 @@ TEST(Run, RepeatsNothingWhoseInputsAreUnchanged) {
     for (const char* other : {"identify", "compare"}) EXPECT_NE(before[other]["key"], after[other]["key"]) << other;
 }
 
+/// Elements end at the borders of supports.
+TEST(Run, OtherSupportsMakeAnotherMesh) {
+    const TemporaryFolder scratch;
+    const commands::RunOptions options = small_run(scratch);
+    commands::run(options, {});
+    const json before = record(scratch);
+    std::string settings = mesh::read_text(scratch / "run/case.yaml");
+    ASSERT_EQ(settings.find("\nsupports:"), std::string::npos) << "a bare mesh has none";
+    settings += "\nsupports:\n  - box: {min: [-1, -1, -1], max: [8, 21, 21]}\n";
+    mesh::write_text(scratch / "again.yaml", settings);
+    commands::run({.input = scratch / "again.yaml", .output = scratch / "run", .overrides = {}}, {});
+    EXPECT_NE(before["mesh"]["key"], record(scratch)["mesh"]["key"]);
+    EXPECT_NE(before["mesh"]["figures"], record(scratch)["mesh"]["figures"]);
+}
+
 TEST(Run, SettingsReadBackGiveTheSameRun) {
     const TemporaryFolder scratch;
     commands::run(small_run(scratch), {});
