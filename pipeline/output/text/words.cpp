@@ -22,7 +22,7 @@ std::string poisson_in_words(const json& material) {
     if (material.value("poisson_declared", false)) return fmt::format("ν = {:.3g} (declared)", ratio);
     constexpr double incompressible = 0.499;  // beyond it nothing that is measured changes
     const double least = ratio - 2 * sd;
-    constexpr double unknown = 0.125;        // 2 sd to either side are all that solids have, 0 to 0.5
+    constexpr double unknown = 0.125;  // 2 sd to either side are all that solids have, 0 to 0.5
     if (ratio > incompressible) return fmt::format("ν above {:.3f}", std::min(least, incompressible));
     if (sd > unknown) return fmt::format("ν hardly known ({})", mesh::with_sd(ratio, sd));
     return "ν = " + mesh::with_sd(ratio, sd);
