@@ -98,8 +98,8 @@ public:
         for (std::size_t e = 0; e < elements_.size(); ++e)
             for (int c = 0; c < 4; ++c) body.tetrahedra(static_cast<Eigen::Index>(e), c) = elements_[e][c];
         std::vector<char> is_inner(nodes_.size(), 1);
-        const Faces faces = boundary_faces(body.tetrahedra);
-        for (const int node : faces.reshaped()) is_inner[node] = 0;
+        body.faces = boundary_faces(body.tetrahedra);
+        for (const int node : body.faces.reshaped()) is_inner[node] = 0;
         std::vector<int> order(nodes_.size()), place(nodes_.size());
         std::iota(order.begin(), order.end(), 0);
         std::ranges::stable_sort(order, {}, [&](int node) { return is_inner[node]; });
@@ -109,7 +109,7 @@ public:
             body.nodes.row(static_cast<Eigen::Index>(i)) = nodes_[order[i]];
         }
         for (int& node : body.tetrahedra.reshaped()) node = place[node];
-        body.faces = boundary_faces(body.tetrahedra);
+        for (int& node : body.faces.reshaped()) node = place[node];
         return body;
     }
 
