@@ -218,6 +218,8 @@ TEST(Words, ACertaintyIsToldAsABound) {
     EXPECT_EQ(in_sigmas(0.876), "no more than noise and unknown contacts explain");
     EXPECT_EQ(in_sigmas(4.84), "4.8 times what noise and unknown contacts explain");
     EXPECT_EQ(in_sigmas(nullptr), "an unknown multiple of the noise");
+    EXPECT_THAT(material_in_words({{"young_mpa", 1.0}, {"poisson", -0.5}, {"poisson_sd", 0.4}}),
+                HasSubstr("ν hardly known (-0.5 ± 0.4)"));
     EXPECT_EQ(material_in_words({{"young_mpa", 1.0}, {"poisson", 0.4993}, {"poisson_sd", 0.001}}),
               "E = 1 MPa, ν above 0.497");
     EXPECT_EQ(material_in_words({{"young_mpa", 0.0148}, {"young_sd_mpa", 0.44}, {"poisson", nullptr}}),
