@@ -17,14 +17,14 @@ namespace palpate::mesh {
 namespace {
 
 // Shares of an edge, from the node that is closer to the border.
-constexpr double negligible = 0.02;  // a bar of 14 elements is held so exactly that it bends within 0.5 %
+constexpr double negligible = 0.02;  // of a bar of 14 elements: it bends with length^3, so by 0.4 % otherwise
 constexpr double rounding = 1e-5;    // borders belong to a region a little beyond what was written
 constexpr double flattest = 0.001;   // element that a cut may leave outside
-constexpr double close = 0.3;        // moved so far, a node leaves elements of half their quality
+constexpr double close = 0.3;        // a longer move flattens elements behind the node, a cut so near those before it
 
-constexpr double worst_allowed = 0.1;        // of an element that a move leaves; those of TetGen have 0.2 and more
+constexpr double worst_allowed = 0.1;        // of an element that a move leaves: a tenth of a regular one's
 constexpr double largest_turn = 15;          // of a way off the triangles it leads over [degrees]: no crease is lost
-constexpr double largest_off_surface = 0.1;  // of an edge: what its chord leaves at a curved surface is less
+constexpr double largest_off_surface = 0.1;  // of an edge: further off, the nearest point may lie on another side
 
 using Tetrahedron = std::array<int, 4>;
 
