@@ -93,101 +93,126 @@ public:
     }
 
     Ladder run(const std::vector<std::string>& effects, const Diagnosis* diagnosis) {
-        std::vector<std::string> added;
-        add_step(added, diagnosis);
+        diagnosis_ = diagnosis;
+        add_step({});
         for (std::size_t number = 1; number <= effects.size(); ++number) {
             report(progress_, fmt::format("ladder, step {}", number),
                    static_cast<double>(number) / static_cast<double>(effects.size() + 1));
-            added.push_back(effects[number - 1]);
-            const UniformFit near = near_;
-            const Verdict verdict = result_.verdict;
-            if (!fails(added, diagnosis)) {
-                if (!options_.only_better || !is_worse(added.back())) continue;
-                result_.steps.pop_back();
-            }
-            added.pop_back();
-            near_ = near;
-            result_.verdict = verdict;
+            climb({effects[number - 1]});
         }
+        add_those_that_need_each_other(effects);
         // What was named is missing, however little is left without it.
-        if (diagnosis && std::ranges::any_of(result_.not_added, [&](const EffectNotAdded& one) {
-                return std::ranges::find(diagnosis->explanation, one.effect) != diagnosis->explanation.end();
-            }))
+        if (std::ranges::any_of(result_.not_added, [&](const EffectNotAdded& one) { return is_named(one.effect); }))
             result_.verdict = Verdict::missing_effect;
-        finish(added, diagnosis);
+        finish();
         return std::move(result_);
     }
 
 private:
-    /// Adds the step. True where it has no equilibria, and effects are added only where they are better.
-    bool fails(const std::vector<std::string>& added, const Diagnosis* diagnosis) {
-        try {
-            add_step(added, diagnosis);
-            return false;
-        } catch (const SolverFailure& failure) {
-            if (!options_.only_better) throw;
-            result_.not_added.push_back(
-                {added.back(), fmt::format("with it a state of the set has no equilibrium: {}", failure.what())});
-            return true;
-        }
+    bool is_named(const std::string& effect) const {
+        return diagnosis_ && std::ranges::find(diagnosis_->explanation, effect) != diagnosis_->explanation.end();
     }
 
-    /// Does the last step predict held-out probes worse than the one before, on the body or on the skeleton?
-    bool is_worse(const std::string& name) {
+    /// Adds these effects, a rung each. Where only better ones are added and the last rung is worse than the one before
+    /// the first, or has no equilibria, none of them is: why not is told of each. True where they are added.
+    bool climb(const std::vector<std::string>& effects) {
+        const std::size_t height = result_.steps.size();
+        const UniformFit near = near_;
+        const Verdict verdict = result_.verdict;
+        std::optional<std::string> why_not;
+        try {
+            for (const std::string& name : effects) {
+                added_.push_back(name);
+                add_step(added_);
+            }
+            if (options_.only_better) why_not = what_is_worse(result_.steps[height - 1], effects);
+        } catch (const SolverFailure& failure) {
+            if (!options_.only_better) throw;
+            why_not = fmt::format("with it a state of the set has no equilibrium: {}", failure.what());
+        }
+        if (!why_not) return true;
+        for (const std::string& name : effects) result_.not_added.push_back({name, *why_not});
+        added_.resize(added_.size() - effects.size());
+        result_.steps.resize(height);
+        near_ = near;
+        result_.verdict = verdict;
+        return false;
+    }
+
+    /// Effects that a diagnosis names together are its explanation together: one alone may bend the others' share into
+    /// its own numbers and forecast worse than none. Those that failed are added once more, all of them, on what has
+    /// been added since.
+    void add_those_that_need_each_other(const std::vector<std::string>& effects) {
+        std::vector<std::string> failed;
+        bool others_came_since = false;
+        for (const std::string& name : effects) {
+            const bool is_added = std::ranges::find(added_, name) != added_.end();
+            if (!is_added && is_named(name)) failed.push_back(name);
+            others_came_since |= is_added && !failed.empty();
+        }
+        if (failed.empty() || (failed.size() == 1 && !others_came_since)) return;
+        const std::vector<EffectNotAdded> alone = result_.not_added;
+        const bool together = climb(failed);
+        result_.not_added = alone;
+        if (!together) return;
+        std::erase_if(result_.not_added,
+                      [&](const EffectNotAdded& one) { return std::ranges::find(failed, one.effect) != failed.end(); });
+    }
+
+    /// In words, where the last rung, to which these effects have led, predicts held-out probes worse than `before`, on
+    /// the body or on the skeleton.
+    std::optional<std::string> what_is_worse(const LadderStep& before, const std::vector<std::string>& effects) const {
         const LadderStep& now = result_.steps.back();
-        const LadderStep& before = result_.steps[result_.steps.size() - 2];
         // What a diagnosis names needs no better forecast, by as much as chance may make one worse; what was located in
         // what is left has nothing else to speak for it.
         constexpr double chance = 1.1;
-        const bool is_residual = options_.residual && options_.residual->effect.name == name;
+        const bool is_residual = options_.residual && options_.residual->effect.name == effects.back();
         if (is_residual && folds_.empty()) {
-            result_.not_added.push_back({name,
-                                         "there are too few probes to see whether others are forecast better; load the "
-                                         "body in three probes or more"});
-            return true;
+            return "there are too few probes to see whether others are forecast better; load the body in three probes "
+                   "or more";
         }
         const double most = is_residual ? 1 : chance;
-        const auto worse = [&](const char* what, const StepError& then, const StepError& since,
-                               const std::string& besides) {
-            if (!(since.held_out_rms_mm >= most * then.held_out_rms_mm)) return false;
-            result_.not_added.push_back(
-                {name, fmt::format("with it the {} is off by {:.3g} mm on held-out probes, {:.3g} mm without it{}",
-                                   what, since.held_out_rms_mm, then.held_out_rms_mm, besides)});
-            return true;
+        const auto is_worse = [&](const StepError& then, const StepError& since) {
+            return since.held_out_rms_mm >= most * then.held_out_rms_mm;
         };
-        std::string body;
-        if (now.reference && before.reference) {
-            if (worse("finite-element model", *before.reference, *now.reference, "")) return true;
-            body = fmt::format(" (finite elements: {:.3g} mm with it, {:.3g} mm without)",
-                               now.reference->held_out_rms_mm, before.reference->held_out_rms_mm);
-        }
-        return worse("skeleton", before.skeleton, now.skeleton, body);
+        const auto in_words = [](const char* what, const StepError& then, const StepError& since) {
+            return fmt::format("with it the {} is off by {:.3g} mm on held-out probes, {:.3g} mm without it", what,
+                               since.held_out_rms_mm, then.held_out_rms_mm);
+        };
+        const bool has_body = now.reference && before.reference;
+        if (has_body && is_worse(*before.reference, *now.reference))
+            return in_words("finite-element model", *before.reference, *now.reference);
+        if (!is_worse(before.skeleton, now.skeleton)) return {};
+        std::string text = in_words("skeleton", before.skeleton, now.skeleton);
+        if (has_body)
+            text += fmt::format(" (finite elements: {:.3g} mm with it, {:.3g} mm without)",
+                                now.reference->held_out_rms_mm, before.reference->held_out_rms_mm);
+        return text;
     }
 
     /// The body explained with these effects and no others.
-    Diagnosis explain(const MeasurementSet& set, const std::vector<std::string>& effects,
-                      const Diagnosis* diagnosis) const {
+    Diagnosis explain(const MeasurementSet& set, const std::vector<std::string>& effects) const {
         DiagnoseOptions options = options_.diagnose;
         options.screen = false;
-        for (const std::string& name : effects) options.known.push_back(start_of(name, diagnosis));
+        for (const std::string& name : effects) options.known.push_back(start_of(name));
         if (!set_readings_aside(effects)) options.without.push_back(effect_of_single_readings()->name());
         const bool has_residual = options_.residual && options_.residual->fit &&
                                   std::ranges::find(effects, options_.residual->effect.name) != effects.end();
-        if (diagnosis && has_residual) {
+        if (diagnosis_ && has_residual) {
             // Far from where the diagnosis ended: what it knows of the law and of the mesh's error does not hold.
             options.law = options_.residual->fit->explanation.law;
-            options.near = NeighbouringFit{&diagnosis->problem, &*options_.residual->fit, false};
-        } else if (diagnosis) {
-            options.law = diagnosis->law;
+            options.near = NeighbouringFit{&diagnosis_->problem, &*options_.residual->fit, false};
+        } else if (diagnosis_) {
+            options.law = diagnosis_->law;
             options.near =
-                NeighbouringFit{&diagnosis->problem, effects.empty() ? &diagnosis->baseline : &diagnosis->best()};
+                NeighbouringFit{&diagnosis_->problem, effects.empty() ? &diagnosis_->baseline : &diagnosis_->best()};
         }
         return diagnose(body_, set, options);
     }
 
-    skeleton::EffectRecord start_of(const std::string& name, const Diagnosis* diagnosis) const {
-        if (diagnosis) {
-            for (const Candidate& candidate : diagnosis->ranking) {
+    skeleton::EffectRecord start_of(const std::string& name) const {
+        if (diagnosis_) {
+            for (const Candidate& candidate : diagnosis_->ranking) {
                 if (candidate.effect->name() == name && !candidate.estimate.effect.name.empty()) {
                     return candidate.estimate.effect;
                 }
@@ -198,15 +223,15 @@ private:
         return told == options_.start.end() ? skeleton::EffectRecord{name, {}} : *told;
     }
 
-    void add_step(const std::vector<std::string>& effects, const Diagnosis* diagnosis) {
+    void add_step(const std::vector<std::string>& effects) {
         LadderStep step;
-        const Diagnosis found = explain(fitted_, effects, diagnosis);
+        const Diagnosis found = explain(fitted_, effects);
         const Refit& fit = found.best();
         step.effects = estimate(found);
         step.material = material_of(body_, fit);
         step.log_evidence = fit.log_evidence;
-        if (!effects.empty() && diagnosis) {
-            const auto& ranking = diagnosis->ranking;
+        if (!effects.empty() && diagnosis_) {
+            const auto& ranking = diagnosis_->ranking;
             const auto own =
                 std::ranges::find_if(ranking, [&](const Candidate& c) { return c.effect->name() == effects.back(); });
             if (own != ranking.end()) step.predicted_rms_mm = own->predicted_rms_mm;
@@ -319,10 +344,10 @@ private:
     }
 
     /// The last step once more, on all states and with particles: the model that is delivered.
-    void finish(const std::vector<std::string>& effects, const Diagnosis* diagnosis) {
+    void finish() {
         report(progress_, "the model on all states", 0.9);
-        const bool is_known = diagnosis && diagnosis->explanation == effects;
-        const Diagnosis& whole = result_.whole = is_known ? *diagnosis : explain(set_, effects, diagnosis);
+        const bool is_known = diagnosis_ && std::ranges::is_permutation(diagnosis_->explanation, added_);
+        const Diagnosis& whole = result_.whole = is_known ? *diagnosis_ : explain(set_, added_);
         LadderStep& last = result_.steps.back();
         last.effects = estimate(whole);
         last.material = material_of(body_, whole.best());
@@ -346,8 +371,10 @@ private:
         MeasurementSet fitted, held_out;
     };
     std::vector<Fold> folds_;
-    MeasurementSet fitted_;  // what the rungs are fitted to
-    UniformFit near_;        // the skeleton's, on the last rung
+    MeasurementSet fitted_;                 // what the rungs are fitted to
+    const Diagnosis* diagnosis_ = nullptr;  // of the whole set, where there is one
+    std::vector<std::string> added_;        // in the order of the rungs
+    UniformFit near_;                       // the skeleton's, on the last rung
     Ladder result_;
 };
 

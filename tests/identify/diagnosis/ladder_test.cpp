@@ -207,6 +207,29 @@ TEST_F(Climbed, WhatWasNamedAndIsNotAddedIsStillMissing) {
     EXPECT_EQ(ladder.verdict, Verdict::missing_effect);
 }
 
+TEST_F(Climbed, AnEffectThatNeedsAnotherIsAddedOnIt) {
+    // Without gravity, a support that gives way bends what it would otherwise hold: held-out probes are worse with it.
+    options_.only_better = true;
+    const MeasurementSet set = twin({{"compliant-support", numbers({1, 0})}, {"gravity", half_g_}}, 3);
+    const std::vector<std::string> both{"compliant-support", "gravity"};
+    Diagnosis diagnosis = diagnose(*reference_, set, options_.diagnose);
+    const auto climbed = [&] {
+        return identify::build_ladder(body_.chain(), *reference_, set, both, options_, &diagnosis);
+    };
+    diagnosis.explanation = {};
+    const Ladder of_one = climbed();
+    EXPECT_THAT(names_of(of_one.steps.back().effects), ElementsAre("gravity"));
+    ASSERT_EQ(of_one.not_added.size(), 1u);
+    EXPECT_EQ(of_one.not_added[0].effect, "compliant-support");
+
+    diagnosis.explanation = both;
+    const Ladder of_both = climbed();
+    EXPECT_THAT(of_both.not_added, IsEmpty());
+    ASSERT_EQ(of_both.steps.size(), 3u);
+    EXPECT_THAT(names_of(of_both.steps[2].validation_model.effects), ElementsAre("gravity", "compliant-support"));
+    EXPECT_LT(of_both.steps[2].reference->held_out_rms_mm, 0.1 * of_both.steps[1].reference->held_out_rms_mm);
+}
+
 TEST_F(Climbed, AResidualIsAddedWhereItMakesForecastsBetter) {
     const Eigen::VectorXd pull = numbers({32, 5, 5, std::log(4), 0, 0.006, -0.008});
     options_.residual = Residual{.effect = {"local-force", {{"cx", 28, "mm"}, {"fz", -0.01, "N"}}}};
