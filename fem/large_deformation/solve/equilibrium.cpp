@@ -5,9 +5,11 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <initializer_list>
+#include <optional>
 
 #include "fem/large_deformation/solve/newton.h"
-#include "fem/rig/tool_potential.h"
+#include "fem/rig/tool_approach.h"
 #include "mesh/errors.h"
 
 namespace palpate::fem {
@@ -46,6 +48,31 @@ BodySetting with_soft_contact(const BodySetting& setting) {
     for (auto& tool : soft.effects.tools)
         if (tool->parts()) tool = tool->softened(softness);
     return soft;
+}
+
+struct Approach {
+    BodySetting setting;
+    bool likely = true;  // that all tools have come so
+};
+
+/// With tools that come from off the body, those that part from it; none where that is no other way.
+std::optional<Approach> find_approach(const BodyShape& body, const BodySetting& setting) {
+    std::optional<Approach> result;
+    std::vector<Eigen::Index> held;
+    for (std::size_t node = 0; node < body.held.size(); ++node)
+        if (body.held[node]) held.push_back(static_cast<Eigen::Index>(node));
+    for (std::size_t t = 0; t < setting.effects.tools.size(); ++t) {
+        const ToolPotential& tool = *setting.effects.tools[t];
+        if (!(tool.way() > tool.reach())) continue;  // in one step from rest
+        const NodeWeights at = body.points(tool.acts_on(), setting.material.density);
+        const auto approach =
+            from_off_the_body(tool, body.mesh.nodes(at.nodes, Eigen::all), body.mesh.nodes(held, Eigen::all));
+        if (!approach) continue;
+        if (!result) result = Approach{setting};
+        result->setting.effects.tools[t] = approach->tool;
+        result->likely &= approach->likely;
+    }
+    return result;
 }
 
 /// With a share of what the material has grown by.
@@ -111,7 +138,6 @@ BodyEquilibrium find_equilibrium(const BodyShape& body, const EliminationOrder& 
     const Eigen::VectorXd grip = loaded.grip(result.u);
     const double load = unknowns.gather(loaded.net_force(result.u) - grip).norm();
     if (load == 0 && grip.isZero(0)) return result;
-    const int least_steps = steps_of_tools(setting.effects);
 
     Newton newton(order, options.iterations);
     Eigen::VectorXd& u = result.u;
@@ -136,12 +162,13 @@ BodyEquilibrium find_equilibrium(const BodyShape& body, const EliminationOrder& 
         return (near || elastically(1)) && newton.minimise(loaded, within(options.tolerance), u, guide);
     };
     // Each step starts where the last two point to; only the last has to be exact.
-    const auto in_steps = [&](int steps) {
+    const auto in_steps = [&](const BodySetting& way, int steps) {
+        steps *= steps_of_tools(way.effects);
         Eigen::VectorXd last = Eigen::VectorXd::Zero(f.size());
         u = last;
         for (int k = 1; k <= steps; ++k) {
             const double share = static_cast<double>(k) / steps;
-            const BodySetting less = with_growth(softly, share);
+            const BodySetting less = with_growth(way, share);
             const LoadedBody part(body, less, f, before, share);
             const Eigen::VectorXd ahead = 2 * u - last;
             last = u;
@@ -153,7 +180,14 @@ BodyEquilibrium find_equilibrium(const BodyShape& body, const EliminationOrder& 
         return !touches(setting.effects) || newton.minimise(loaded, within(options.tolerance), u);
     };
     bool found = from_start();
-    for (const int steps : {1, 4, 16}) found = found || (steps <= options.load_steps && in_steps(steps * least_steps));
+    const auto try_in = [&](const BodySetting& way, std::initializer_list<int> parts) {
+        for (const int steps : parts) found = found || (steps <= options.load_steps && in_steps(way, steps));
+    };
+    const auto approach = found ? std::nullopt : find_approach(body, softly);
+    if (approach && approach->likely) try_in(approach->setting, {1, 4});
+    try_in(softly, {1});
+    if (approach && !approach->likely) try_in(approach->setting, {1, 4});
+    try_in(softly, {4, 16});
     result.iterations = newton.iterations();
     result.factorisations = newton.factorisations();
     result.residual = newton.residual();
@@ -161,8 +195,8 @@ BodyEquilibrium find_equilibrium(const BodyShape& body, const EliminationOrder& 
         throw SolverFailure(fmt::format(
             "No equilibrium was found under a load of {:.4g} N (root of the sum of squares over nodes){} in {} steps, "
             "with the load in up to {} parts: {:.4g} N stay unbalanced. {}",
-            load, where_tools_are(setting.effects), result.iterations, options.load_steps * least_steps,
-            result.residual, advice(body, setting, f)));
+            load, where_tools_are(setting.effects), result.iterations,
+            options.load_steps * steps_of_tools(setting.effects), result.residual, advice(body, setting, f)));
     }
     return result;
 }

@@ -1,6 +1,7 @@
 // Rigid tools that touch, hold and move a body: what they weigh on it, and what it answers.
 
 #include "fem/elements/shape.h"
+#include "fem/rig/tool_approach.h"
 #include "mesh/errors.h"
 #include "tests/fem/hollow.h"
 #include "tests/fem/rig/layer_contact.h"
@@ -194,6 +195,42 @@ TEST(Tool, WhatIsAwayDoesNothing) {
     const BodySetting setting = rig.setting(away, MaterialLaw::neo_hookean);
     EXPECT_EQ(rig.body.equilibrium(setting, rig.none()).u, rig.none());
     EXPECT_EQ(rig.body.wrench(rig.none(), away), Wrench::Zero());
+}
+
+TEST(Tool, ThatRestsOnTheOtherSideComesFromOffTheBody) {
+    const Rigged rig;
+    const auto from_above = moved(sphere_tool(Vec3(3, 1, 4), 2), Vec3(0, 0, -0.25), Vec3::Zero(), rig.young);
+    const auto from_below = moved(sphere_tool(Vec3(3, 1, -2), 2), Vec3(0, 0, 5.75), Vec3::Zero(), rig.young);
+    const auto found = [&](const auto& tool) {
+        return rig.body.equilibrium(rig.setting(tool, MaterialLaw::neo_hookean), rig.none());
+    };
+    const BodyEquilibrium near = found(from_above), far = found(from_below);
+    EXPECT_LT((near.u - far.u).norm(), 1e-6 * near.u.norm());
+    EXPECT_LT(far.factorisations, 2 * near.factorisations);
+    // It is the tool in its pose, and off the body a little more than it is pressed in.
+    const auto approach = from_off_the_body(*from_below, rig.beam.mesh.nodes, Points::Zero(1, 3));
+    ASSERT_TRUE(approach);
+    EXPECT_TRUE(approach->likely);
+    EXPECT_EQ(approach->tool->origin(), from_below->origin());
+    EXPECT_NEAR(approach->tool->way(), 0.25, 0.1);
+    const auto off = approach->tool->part_way(0);
+    for (Eigen::Index node = 0; node < rig.beam.mesh.nodes.rows(); ++node)
+        EXPECT_EQ(off->terms(rig.beam.mesh.nodes.row(node), rig.beam.mesh.nodes.row(node)).energy, 0);
+}
+
+TEST(Tool, PushesABeamByMoreThanItsThickness) {
+    const Beam beam{{12, 1, 1}, {12, 2, 2}};
+    const auto pushed = moved(sphere_tool(Vec3(9, 0.5, 3), 2), Vec3(0, 0, -3.5), Vec3::Zero(), 0.3);
+    const BodySetting setting{MaterialLaw::neo_hookean, {.young = 0.3, .poisson = 0.4}, {.tools = {pushed}}};
+    const Eigen::VectorXd none = Eigen::VectorXd::Zero(beam.mesh.nodes.size());
+    const HyperelasticBody body = beam.body();
+    const Eigen::VectorXd u = body.equilibrium(setting, none).u;
+    EXPECT_LT(u.reshaped(3, u.size() / 3).row(2).minCoeff(), -3);
+    EXPECT_LT(body.wrench(u, pushed).z(), 0);
+    // On its far side the ball could stand as well.
+    const auto approach = from_off_the_body(*pushed, beam.mesh.nodes, Points::Zero(1, 3));
+    ASSERT_TRUE(approach);
+    EXPECT_FALSE(approach->likely);
 }
 
 /// A disc of the layer z in [-h, 0], bonded at its lower side: rings of 16 sectors, finer towards the radius a.
