@@ -7,7 +7,7 @@ namespace palpate::fem {
 namespace {
 
 constexpr double fine = 0.05;  // of the radius: how exactly it is found where a tool comes free
-constexpr double ahead = 0.5;  // cosine: within 60 degrees of where it was moved
+constexpr double ahead = 0.5;  // cosine: what comes free by going on has done more than half of that along its motion
 
 class ApproachingTool : public ToolPotential {
 public:

@@ -116,7 +116,7 @@ private:
     /// Adds these effects, a rung each. Where only better ones are added and the last rung is worse than the one before
     /// the first, or has no equilibria, none of them is: why not is told of each. True where they are added.
     bool climb(const std::vector<std::string>& effects) {
-        const std::size_t height = result_.steps.size();
+        const std::size_t height = result_.steps.size(), number = added_.size();
         const UniformFit near = near_;
         const Verdict verdict = result_.verdict;
         std::optional<std::string> why_not;
@@ -132,7 +132,7 @@ private:
         }
         if (!why_not) return true;
         for (const std::string& name : effects) result_.not_added.push_back({name, *why_not});
-        added_.resize(added_.size() - effects.size());
+        added_.resize(number);
         result_.steps.resize(height);
         near_ = near;
         result_.verdict = verdict;
