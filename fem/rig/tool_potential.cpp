@@ -45,10 +45,6 @@ std::shared_ptr<const ToolPotential> ToolPotential::part_way(double share) const
     return std::make_shared<ToolPotential>(tool_, part, young_);
 }
 
-std::shared_ptr<const ToolPotential> ToolPotential::softened(double times) const {
-    return std::make_shared<ToolPotential>(tool_, motion_, young_ / times);
-}
-
 double ToolPotential::reach() const { return !parts() ? INFINITY : at_once * tool_->shape->radius(); }
 
 double ToolPotential::way() const {
@@ -91,20 +87,26 @@ Eigen::VectorXd ToolPotential::grip_weights(const Points& rest) const {
     return weights;
 }
 
+Gap ToolPotential::gap(const Vec3& X, const Vec3& x) const {
+    const auto at_tool = [&](const Vec3& place) -> Vec3 { return R_.transpose() * (place - origin_) + tool().origin; };
+    Gap gap = tool_->shape->gap(at_tool(x), at_tool(X));
+    gap.normal = R_ * gap.normal;
+    gap.hessian = R_ * gap.hessian * R_.transpose();
+    return gap;
+}
+
 PointTerms ToolPotential::terms(const Vec3& X, const Vec3& x) const {
     if (!parts()) {
         const Vec3 away = x - origin_ - R_ * (X - tool().origin);
         return {.energy = away.squaredNorm() / 2, .gradient = away, .hessian = Mat3::Identity()};
     }
-    const auto at_tool = [&](const Vec3& place) -> Vec3 { return R_.transpose() * (place - origin_) + tool().origin; };
-    const Gap gap = tool_->shape->gap(at_tool(x), at_tool(X));
-    if (gap.value >= 0) return {};
-    const Vec3 n = R_ * gap.normal;
+    const Gap at = gap(X, x);
+    if (at.value >= 0) return {};
     // Far within, on the way to an equilibrium, the shape's curvature would only lead astray.
-    const double bend = -gap.value <= barely_within * tool_->shape->radius() ? gap.value : 0;
-    return {.energy = gap.value * gap.value / 2,
-            .gradient = gap.value * n,
-            .hessian = n * n.transpose() + bend * R_ * gap.hessian * R_.transpose()};
+    const double bend = -at.value <= barely_within * tool_->shape->radius() ? at.value : 0;
+    return {.energy = at.value * at.value / 2,
+            .gradient = at.value * at.normal,
+            .hessian = at.normal * at.normal.transpose() + bend * at.hessian};
 }
 
 PointOnTool::PointOnTool(const PointTerms& weighted, const Vec3& arm) {

@@ -36,12 +36,13 @@ public:
     virtual std::shared_ptr<const ToolPotential> part_way(double share) const;
     /// May it part from the body?
     bool parts() const { return !tool().bonded && !is_grip(); }
-    /// Some times less stiff.
-    std::shared_ptr<const ToolPotential> softened(double times) const;
     /// About how far it may move at once and still meet the side of the body that it is on [mm]; infinite when bonded.
     double reach() const;
     /// How far the motion takes its points from rest [mm].
     virtual double way() const;
+
+    /// Of a point X of the body that stands at x, where the tool is now, derivatives by x. @pre it is no grip.
+    Gap gap(const Vec3& X, const Vec3& x) const;
 
     ActsOn acts_on() const override { return is_grip() ? ActsOn::material : ActsOn::surface; }
     /// @throws InvalidInput when it is bonded to nothing.

@@ -1,5 +1,6 @@
 #include "fem/large_deformation/body/loaded_body.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace palpate::fem {
@@ -31,6 +32,33 @@ Eigen::VectorXd LoadedBody::grip(const Eigen::VectorXd& u) const {
     for (const PlacedTendon& tendon : tendons_)
         if (tendon.pull().actuator->by_length) tendon.add_gradient(u, -1, sum);
     return sum;
+}
+
+bool LoadedBody::may_part() const {
+    return std::ranges::any_of(tools_, [](const PlacedTool& tool) { return tool.parts(); });
+}
+
+std::vector<NearPoint> LoadedBody::near_points(const Eigen::VectorXd& u) const {
+    std::vector<NearPoint> points;
+    int first = 0;
+    for (const PlacedTool& tool : tools_)
+        if (tool.parts()) first = tool.add_near_points(u, first, points);
+    return points;
+}
+
+double LoadedBody::opening(const NearPoint& point, const Eigen::VectorXd& u) const {
+    return (body_.displacements(u, point.at->element) * point.at->N).dot(point.normal);
+}
+
+void LoadedBody::add_push(const NearPoint& point, double times, Eigen::VectorXd& sum) const {
+    body_.add(times * point.normal * point.at->N.transpose(), point.at->element, sum);
+}
+
+void LoadedBody::add_touch(const NearPoint& point, double times, const Unknowns& unknowns, LowerMatrix& K) const {
+    ElementTangent tangent;
+    for (auto& block : tangent.blocks) block.setZero();
+    add_outer(times * point.stiffness * point.normal * point.normal.transpose(), *point.at, tangent);
+    unknowns.add(point.at->element, tangent, K);
 }
 
 PointTerms LoadedBody::terms(const PlacedPotential& effect, std::size_t k, const Eigen::VectorXd& u) const {

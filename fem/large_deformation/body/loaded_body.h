@@ -33,6 +33,16 @@ public:
     /// Forces of tools on the nodes, and of tendons that are of a given length (3n) [N]: they are proportional to the
     /// body's stiffness.
     Eigen::VectorXd grip(const Eigen::VectorXd& u) const;
+    /// May a tool touch the body, and part from it?
+    bool may_part() const;
+    /// Points in reach of such tools.
+    std::vector<NearPoint> near_points(const Eigen::VectorXd& u) const;
+    /// By how much a point's gap grows with a step u, and the forces on the nodes that a unit force along its normal
+    /// is, added `times` over to `sum` (3n).
+    double opening(const NearPoint& point, const Eigen::VectorXd& u) const;
+    void add_push(const NearPoint& point, double times, Eigen::VectorXd& sum) const;
+    /// Adds the second derivative of a point's touch by its normal, `times` over.
+    void add_touch(const NearPoint& point, double times, const Unknowns& unknowns, LowerMatrix& K) const;
     /// Is no element inside out?
     bool admits(const Eigen::VectorXd& u) const;
     /// @throws SolverFailure where an element is inside out.

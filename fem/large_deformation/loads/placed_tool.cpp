@@ -58,6 +58,18 @@ void PlacedTool::add_hessian(const Eigen::VectorXd& u, const Unknowns& unknowns,
     begin(-1);
 }
 
+int PlacedTool::add_near_points(const Eigen::VectorXd& u, int first, std::vector<NearPoint>& points) const {
+    const double reach = potential_->reach();
+    for (std::size_t i = 0; i < chosen_.size(); ++i) {
+        const int k = chosen_[i];
+        const Vec3 X = points_.rest.row(k), x = X + points_.displacement(body_.mesh, k, u);
+        const Gap gap = potential_->gap(X, x);
+        if (gap.value < reach)
+            points.push_back({first + static_cast<int>(i), gap.value, gap.normal, weights_[i], &points_.carriers[k]});
+    }
+    return first + static_cast<int>(chosen_.size());
+}
+
 double PlacedTool::rounding() const {
     double squares = 0;
     for (const double weight : weights_) squares += weight * weight;

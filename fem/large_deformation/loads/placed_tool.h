@@ -5,6 +5,15 @@
 
 namespace palpate::fem {
 
+/// A point of a body's surface near a tool that it may touch.
+struct NearPoint {
+    int id = 0;            // among all points of all tools, the same in every displacement
+    double gap = 0;        // below 0: it is in touch [mm]
+    Vec3 normal;           // d gap / d x
+    double stiffness = 0;  // of the touch [N/mm]
+    const Carrier* at = nullptr;
+};
+
 /// A tool in some pose on a body of finite elements: the points that it may touch, or holds.
 class PlacedTool {
 public:
@@ -15,6 +24,11 @@ public:
     double add_gradient(const Eigen::VectorXd& u, double factor, Eigen::VectorXd& sum) const;
     /// Adds d^2 Pi / du^2.
     void add_hessian(const Eigen::VectorXd& u, const Unknowns& unknowns, LowerMatrix& K) const;
+
+    bool parts() const { return potential_->parts(); }
+    /// Adds the points that it may touch and that are in its reach, numbered from `first`; the number after the last
+    /// of all its points.
+    int add_near_points(const Eigen::VectorXd& u, int first, std::vector<NearPoint>& points) const;
 
     /// About the norm of what rounding of positions leaves of its forces [N].
     double rounding() const;

@@ -37,19 +37,6 @@ int steps_of_tools(const Effects& effects) {
     return static_cast<int>(std::ceil(std::min(most, limit)));
 }
 
-bool touches(const Effects& effects) {
-    return std::ranges::any_of(effects.tools, [](const auto& tool) { return tool->parts(); });
-}
-
-/// With what tools touch giving way more: where they do is found in few steps, and kept as the rest is added.
-BodySetting with_soft_contact(const BodySetting& setting) {
-    constexpr double softness = 10;
-    BodySetting soft = setting;
-    for (auto& tool : soft.effects.tools)
-        if (tool->parts()) tool = tool->softened(softness);
-    return soft;
-}
-
 struct Approach {
     BodySetting setting;
     bool likely = true;  // that all tools have come so
@@ -81,13 +68,6 @@ BodySetting with_growth(BodySetting setting, double share) {
     growth.everywhere *= share;
     for (Growth::Part& part : growth.parts) part.growth *= share;
     return setting;
-}
-
-/// Are tools where they were, or almost?
-bool is_near(const LoadedBody& body, const Unknowns& unknowns, const Eigen::VectorXd& u) {
-    Eigen::VectorXd net;
-    const Potential potential = body.potential(u, net);
-    return unknowns.gather(net).norm() < 0.1 * potential.grip;
 }
 
 std::string where_tools_are(const Effects& effects) {
@@ -149,16 +129,11 @@ BodyEquilibrium find_equilibrium(const BodyShape& body, const EliminationOrder& 
         const BodySetting less = with_growth(setting, share);
         return newton.minimise(LoadedBody(body, less, f, before, share, false), within(rough), u);
     };
-    const BodySetting softly = with_soft_contact(setting);
     const auto from_start = [&] {
         if (!start) return false;
         u = unknowns.scatter(unknowns.gather(*start));
         if (!loaded.admits(u)) return false;
         const bool near = loaded.conservative() || unknowns.gather(loaded.net_force(u)).norm() < 0.2 * load;
-        if (touches(setting.effects) && !is_near(loaded, unknowns, u)) {
-            const LoadedBody soft(body, softly, f, before);
-            newton.minimise(soft, within(rough), u);
-        }
         return (near || elastically(1)) && newton.minimise(loaded, within(options.tolerance), u, guide);
     };
     // Each step starts where the last two point to; only the last has to be exact.
@@ -173,21 +148,21 @@ BodyEquilibrium find_equilibrium(const BodyShape& body, const EliminationOrder& 
             const Eigen::VectorXd ahead = 2 * u - last;
             last = u;
             if (part.admits(ahead)) u = ahead;
-            const double tolerance = k == steps && !touches(setting.effects) ? options.tolerance : rough;
+            const double tolerance = k == steps ? options.tolerance : rough;
             if (k == 1 && !elastically(share)) return false;
             if (!newton.minimise(part, within(tolerance), u)) return false;
         }
-        return !touches(setting.effects) || newton.minimise(loaded, within(options.tolerance), u);
+        return true;
     };
     bool found = from_start();
     const auto try_in = [&](const BodySetting& way, std::initializer_list<int> parts) {
         for (const int steps : parts) found = found || (steps <= options.load_steps && in_steps(way, steps));
     };
-    const auto approach = found ? std::nullopt : find_approach(body, softly);
+    const auto approach = found ? std::nullopt : find_approach(body, setting);
     if (approach && approach->likely) try_in(approach->setting, {1, 4});
-    try_in(softly, {1});
+    try_in(setting, {1});
     if (approach && !approach->likely) try_in(approach->setting, {1, 4});
-    try_in(softly, {4, 16});
+    try_in(setting, {4, 16});
     result.iterations = newton.iterations();
     result.factorisations = newton.factorisations();
     result.residual = newton.residual();

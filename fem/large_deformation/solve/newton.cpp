@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 #include "mesh/system/interruption.h"
@@ -10,15 +11,16 @@ namespace palpate::fem {
 
 namespace {
 
-// A factor costs as much as 15 to 25 steps without one.
-constexpr double slow = 0.7;              // of what the last step promised: one that promises more asks for a factor
-constexpr std::size_t most_secants = 12;  // steps with one factor
-constexpr int halvings = 30;              // of a step
-constexpr double armijo = 1e-4;           // share of the decrease that the slope promises
-constexpr double least_shift = 1e-5;      // share of the diagonal's mean
-constexpr double watchdog_shift = 2e-2;   // where a watchdog_step landed: enough nearly always
-constexpr int most_astray = 10;           // shifts on end: on the way to an equilibrium there are up to three
-constexpr double roundings = 4;           // rounding is estimated as of independent errors; some go together
+// A factor costs as much as 15 to 25 steps without one, or solutions that what tools touch takes.
+constexpr std::size_t most_solutions = 20;  // of a step, for the factor to serve on
+constexpr double slow = 0.7;                // of what the last step promised: one that promises more asks for a factor
+constexpr std::size_t most_secants = 12;    // steps with one factor
+constexpr int halvings = 30;                // of a step
+constexpr double armijo = 1e-4;             // share of the decrease that the slope promises
+constexpr double least_shift = 1e-5;        // share of the diagonal's mean
+constexpr double watchdog_shift = 2e-2;     // where a watchdog_step landed: enough nearly always
+constexpr int most_astray = 10;             // shifts on end: on the way to an equilibrium there are up to three
+constexpr double roundings = 4;             // rounding is estimated as of independent errors; some go together
 // Share of the largest displacement that a Newton step moves at most where nothing lowers the potential any more:
 // readings are known to a thousandth of it at best, and the answer is good to far less than that.
 constexpr double nothing_more = 1e-6;
@@ -35,6 +37,14 @@ struct Newton::State {
         potential = body.potential(u, net);
         if (std::isfinite(potential.value)) r = unknowns.gather(net);
     }
+    /// Points that tools may touch.
+    const std::vector<NearPoint>& near_points(const LoadedBody& body) const {
+        if (!near_) near_ = body.near_points(u);
+        return *near_;
+    }
+
+private:
+    mutable std::optional<std::vector<NearPoint>> near_ = {};
 };
 
 Newton::Newton(const EliminationOrder& order, int iterations)
@@ -45,6 +55,7 @@ bool Newton::factor(const LoadedBody& body, const Eigen::VectorXd& u) {
     secants_.clear();
     std::fill_n(K_.valuePtr(), K_.nonZeros(), 0.0);
     body.add_tangent(u, order_.unknowns, K_);
+    if (body.may_part()) active_.hold(body, order_.unknowns, body.near_points(u), K_);
     in_use_ = &cholesky_;
     ++factorisations_;
     return cholesky_.factor(K_);
@@ -72,19 +83,25 @@ bool Newton::factor_with_shift(const LoadedBody& body, const Eigen::VectorXd& u)
     return false;
 }
 
-/// The step from here: what the factor and the secants since make of the net force. [Nocedal 1980]
-Eigen::VectorXd Newton::direction(const Eigen::VectorXd& force) const {
-    Eigen::VectorXd q = force, along(secants_.size());
+/// Steps from here: what the factor and the secants since make of net forces (unknowns x m). [Nocedal 1980]
+Eigen::MatrixXd Newton::directions(const Eigen::MatrixXd& forces) const {
+    MultiVector X = forces;
+    Eigen::MatrixXd along(static_cast<Eigen::Index>(secants_.size()), forces.cols());
     for (std::size_t k = secants_.size(); k-- > 0;) {
-        along(k) = secants_[k].s.dot(q) / secants_[k].sy;
-        q -= along(k) * secants_[k].y;
+        along.row(k) = secants_[k].s.transpose() * X / secants_[k].sy;
+        X -= secants_[k].y * along.row(k);
     }
-    MultiVector X = q;
     in_use_->solve(X);
-    q = X;
     for (std::size_t k = 0; k < secants_.size(); ++k)
-        q += (along(k) - secants_[k].y.dot(q) / secants_[k].sy) * secants_[k].s;
-    return q;
+        X += secants_[k].s * (along.row(k) - secants_[k].y.transpose() * X / secants_[k].sy);
+    return X;
+}
+
+/// The step from a state.
+Eigen::VectorXd Newton::step_from(const LoadedBody& body, const State& from) {
+    if (!body.may_part()) return directions(from.r);
+    return active_.step(body, order_.unknowns, from.r, from.near_points(body),
+                        [&](const Eigen::MatrixXd& forces) { return directions(forces); });
 }
 
 /// Shortens the step until the potential falls; the share of it taken, 0: none. That of a body that flows is but near
@@ -120,16 +137,19 @@ bool Newton::watchdog_step(const LoadedBody& body, const State& from, const Eige
     State over(body, order_.unknowns, from.u + order_.unknowns.scatter(step)), landed = over;
     if (!std::isfinite(over.potential.value) || !(factor(body, over.u) || factor_shifted(watchdog_shift))) return false;
     ++iterations_;
-    const Eigen::VectorXd next_step = direction(over.r);
+    const Eigen::VectorXd next_step = step_from(body, over);
     if (search(body, over, next_step, landed) == 0 || landed.potential.value >= best.potential.value) return false;
     predicted_decrease_ = next_step.dot(over.r);
-    remember(over, landed);
+    remember(body, over, landed);
     std::swap(best, landed);
     return true;
 }
 
-void Newton::remember(const State& from, const State& to) {
-    Secant secant{order_.unknowns.gather(to.u - from.u), from.r - to.r, 0};
+void Newton::remember(const LoadedBody& body, const State& from, const State& to) {
+    const auto force = [&](const State& state) {
+        return body.may_part() ? active_.held_force(body, order_.unknowns, state.r, state.near_points(body)) : state.r;
+    };
+    Secant secant{order_.unknowns.gather(to.u - from.u), force(from) - force(to), 0};
     secant.sy = secant.s.dot(secant.y);
     if (secant.sy > 0) secants_.push_back(std::move(secant));
 }
@@ -142,6 +162,7 @@ bool Newton::minimise(const LoadedBody& body, const NewtonTolerance& tolerance, 
     in_use_ = guide;
     predicted_decrease_ = INFINITY;
     secants_.clear();
+    if (body.may_part()) active_.start(here.near_points(body));
     for (int k = 0;; ++k) {
         Interruption::ask();
         u = here.u;
@@ -154,9 +175,10 @@ bool Newton::minimise(const LoadedBody& body, const NewtonTolerance& tolerance, 
         // An old factor serves as long as steps with it bring enough.
         Eigen::VectorXd step;
         if (factored) {
-            step = direction(here.r);
+            step = step_from(body, here);
             const double promises = step.dot(here.r);
-            factored = promises > 0 && promises < slow * predicted_decrease_ && secants_.size() < most_secants;
+            factored = promises > 0 && promises < slow * predicted_decrease_ && secants_.size() < most_secants &&
+                       active_.solutions() <= most_solutions;
             predicted_decrease_ = promises;
         }
         const bool fresh = !factored;
@@ -164,7 +186,7 @@ bool Newton::minimise(const LoadedBody& body, const NewtonTolerance& tolerance, 
             if (!factor_with_shift(body, here.u)) return false;
             astray = shift_ > 0 ? astray + 1 : 0;
             if (astray > most_astray) return false;
-            step = direction(here.r);
+            step = step_from(body, here);
             predicted_decrease_ = step.dot(here.r);
         }
 
@@ -178,7 +200,7 @@ bool Newton::minimise(const LoadedBody& body, const NewtonTolerance& tolerance, 
         if (fresh && shift_ == 0 && length < 1 && body.conservative()) {
             factored = watchdog_step(body, here, step, next);
         } else {
-            remember(here, next);
+            remember(body, here, next);
             factored = shift_ == 0;
         }
         std::swap(here, next);

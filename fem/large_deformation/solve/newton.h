@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "fem/large_deformation/body/loaded_body.h"
+#include "fem/large_deformation/solve/active_set.h"
 
 namespace palpate::fem {
 
@@ -15,8 +16,8 @@ struct NewtonTolerance {
 /// Finds where a loaded body's potential is least, over some unknowns; of one that flows, where its forces balance.
 ///
 /// Newton's method with line search. A factor of the tangent serves for further steps, mended by BFGS updates with the
-/// changes of force that they bring [Matthies & Strang 1979], as long as they bring enough. A tangent that is not
-/// positive definite is shifted until it is.
+/// changes of force that they bring [Matthies & Strang 1979], as long as they bring enough. What tools touch may change
+/// within a step. A tangent that is not positive definite is shifted until it is.
 class Newton {
 public:
     Newton(const EliminationOrder& order, int iterations);
@@ -35,17 +36,18 @@ public:
 private:
     struct State;  // what holds at one displacement
     struct Secant {
-        Eigen::VectorXd s, y;  // changes of displacement and of the potential's gradient
+        Eigen::VectorXd s, y;  // changes of displacement and of the potential's gradient, held points held
         double sy;
     };
 
     bool factor(const LoadedBody& body, const Eigen::VectorXd& u);
     bool factor_shifted(double share);
     bool factor_with_shift(const LoadedBody& body, const Eigen::VectorXd& u);
-    Eigen::VectorXd direction(const Eigen::VectorXd& force) const;
+    Eigen::MatrixXd directions(const Eigen::MatrixXd& forces) const;
+    Eigen::VectorXd step_from(const LoadedBody& body, const State& from);
     double search(const LoadedBody& body, const State& from, const Eigen::VectorXd& step, State& to) const;
     bool watchdog_step(const LoadedBody& body, const State& from, const Eigen::VectorXd& step, State& best);
-    void remember(const State& from, const State& to);
+    void remember(const LoadedBody& body, const State& from, const State& to);
 
     const EliminationOrder& order_;
     const int allowed_;
@@ -55,6 +57,7 @@ private:
     double shift_ = 0;                  // of the tangent's diagonal, as a share of its mean
     double predicted_decrease_ = 0;     // decrease of the potential, by its slope along the last step [N mm]
     std::vector<Secant> secants_;
+    ActiveSet active_;
     int iterations_ = 0, factorisations_ = 0;
     double residual_ = 0;
 };
