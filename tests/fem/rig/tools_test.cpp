@@ -197,6 +197,20 @@ TEST(Tool, WhatIsAwayDoesNothing) {
     EXPECT_EQ(rig.body.wrench(rig.none(), away), Wrench::Zero());
 }
 
+TEST(Tool, WhatItWillTouchIsFoundWithinAStep) {
+    // Nothing but where a tilted face touches a linear body is nonlinear: one factor and the points that part, or come
+    // in touch, are all that it takes.
+    const Rigged rig;
+    const auto tilted = moved(flat_tool(Vec3(3, 1, 2), 5), Vec3(0, 0, -0.3), Vec3(0.02, 0.1, 0), rig.young);
+    const auto deeper = moved(flat_tool(Vec3(3, 1, 2), 5), Vec3(0, 0, -0.35), Vec3(0.02, 0.12, 0), rig.young);
+    const BodyEquilibrium found = rig.body.equilibrium(rig.setting(tilted, MaterialLaw::linear), rig.none());
+    EXPECT_EQ(found.iterations, 1);
+    EXPECT_EQ(found.factorisations, 1);
+    const BodyEquilibrium again =
+        rig.body.equilibrium(rig.setting(deeper, MaterialLaw::linear), rig.none(), {}, &found.u);
+    EXPECT_EQ(again.iterations, 1);
+}
+
 TEST(Tool, ThatRestsOnTheOtherSideComesFromOffTheBody) {
     const Rigged rig;
     const auto from_above = moved(sphere_tool(Vec3(3, 1, 4), 2), Vec3(0, 0, -0.25), Vec3::Zero(), rig.young);
