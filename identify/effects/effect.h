@@ -171,7 +171,7 @@ public:
     virtual SynthesisNeeds needs() const { return {}; }
     /// Its numbers as they are told for that; by default those of its physics.
     virtual std::vector<skeleton::KnownParameter> numbers_to_hide() const;
-    /// The stream of random numbers that its own are drawn from, part of what a seed means: 0 to 19 are taken. None:
+    /// The stream of random numbers that its own are drawn from, part of what a seed means: 0 to 21 are taken. None:
     /// nothing is drawn; one number may be left out, which is then how strong it is.
     virtual std::optional<std::uint64_t> stream() const { return std::nullopt; }
     /// What is told is taken, the rest drawn. Several: other places for it, for where it can hardly be felt in the

@@ -27,6 +27,16 @@ Points TrueConditions::see(const std::vector<Marker>& rest, const Points& marker
     return ((markers.rowwise() - centre) * R.transpose()).rowwise() + (centre + shift.transpose());
 }
 
+Action TrueConditions::act(Action action) const {
+    for (mesh::ToolMotion& motion : action.motions) {
+        motion.translation *= share;
+        motion.rotation *= share;
+    }
+    for (mesh::ActuatorSetting& setting : action.settings)
+        if (setting.actuator == 0) setting.scale(actuator_gain);
+    return action;
+}
+
 double TrueConditions::scatter(double noise) const {
     const double width = outlier_width * noise;
     return outlier_share * width * width;

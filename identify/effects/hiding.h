@@ -18,6 +18,8 @@ namespace palpate::identify {
 struct TrueConditions {
     ModelSetting setting;
     double gain = 1;            // every second probe (2, 4, ...) presses so many times as hard as it reports
+    double share = 1;           // of the reported motion by which tools move
+    double actuator_gain = 1;   // the first actuator does so many times what it is set to
     Vec3 shift = Vec3::Zero();  // of the readings' frame [mm]
     Vec3 turn = Vec3::Zero();   // of it about the centre of the markers at rest, a rotation vector [rad]
     double lag = 0;             // readings answer to loads of so long before [s]
@@ -26,6 +28,8 @@ struct TrueConditions {
 
     /// Marker positions as they are read: y = c + shift + R(turn) (x - c), c the centre of the markers at rest.
     Points see(const std::vector<Marker>& rest, const Points& markers) const;
+    /// What tools and actuators do where they are reported to do `action`.
+    Action act(Action action) const;
     /// What readings that are off by themselves add to the mean square [mm^2]; `noise`: 1 sigma [mm].
     double scatter(double noise) const;
 };

@@ -90,10 +90,19 @@ private:
         }
     }
 
-    /// Creep is played by forces, and a gain is of forces.
+    /// Creep is played by forces, a gain is of forces, and a tool that goes from place to place does not slip on the
+    /// way between them.
     void refuse_what_rigs_do_not_show() const {
         if (specimen_.driven.empty()) return;
+        const auto places =
+            std::ranges::count_if(specimen_.driven, [](const LoadCourse& course) { return course.drive.tool >= 0; });
         for (const EffectSpec& spec : specs_) {
+            if (spec.effect == "slip" && places > 1) {
+                throw InvalidInput(
+                    fmt::format("effect 'slip' cannot be hidden where a tool presses at {} places, as "
+                                "it is a share of the motion from rest; press at one (--probes 1)",
+                                places));
+            }
             const bool of_forces = spec.effect == "force-gain";
             const bool creeps = spec.effect == "viscosity" && !options_.rig.tool.empty();
             if (!of_forces && !creeps) continue;
@@ -203,7 +212,7 @@ private:
         identify::Action action;
         action.motions = history.motions(history.lagged_force(row, conditions_.lag, {}));
         if (action.motions.empty()) return {};
-        const Eigen::VectorXd all = specimen_.model->reactions(q, conditions_.setting, action);
+        const Eigen::VectorXd all = specimen_.model->reactions(q, conditions_.setting, conditions_.act(action));
         std::vector<identify::ReactionReading> readings;
         readings.reserve(action.motions.size());
         for (std::size_t m = 0; m < action.motions.size(); ++m) {

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "identify/effects/effect.h"
+#include "mesh/errors.h"
 
 namespace palpate::identify {
 namespace {
@@ -68,6 +69,28 @@ public:
             }
         }
         return result;
+    }
+
+    void hide(const skeleton::EffectRecord& record, TrueConditions& conditions) const override {
+        conditions.actuator_gain = number_of(record, "gain");
+    }
+
+    std::vector<skeleton::KnownParameter> numbers_to_hide() const override { return {{"gain", "1"}}; }
+    std::optional<std::uint64_t> stream() const override { return 21; }
+
+    /// Of the first actuator.
+    std::vector<EffectSampler> samplers(SamplingContext& context, const SpecifiedNumbers& specified) const override {
+        const bool is_common = context.set.actuators.size() == 1 && context.set.tools.empty();
+        if (context.set.actuators.empty() || is_common) {
+            throw InvalidInput(
+                "effect 'actuation-gain' needs another actuator or a tool beside the first actuator, as a gain that "
+                "all loads share is the body's stiffness: add a --cavity, a --tendon or --tool");
+        }
+        constexpr double most = 100;
+        specified.positive_value("gain", 1, most);
+        const double sign = context.random.uniform() < 0.5 ? -1 : 1;
+        const auto at = [=](double x) { return specified.effect({{"gain", std::exp(sign * x)}}); };
+        return {{.at = at, .start = 0.3, .most = std::log(4.0), .is_specified = specified.has("gain")}};
     }
 
 private:

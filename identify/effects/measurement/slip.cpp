@@ -5,6 +5,7 @@
 
 #include "identify/effects/effect.h"
 #include "identify/loading/loads.h"
+#include "mesh/errors.h"
 
 namespace palpate::identify {
 namespace {
@@ -62,6 +63,21 @@ public:
             }
         }
         return result;
+    }
+
+    void hide(const skeleton::EffectRecord& record, TrueConditions& conditions) const override {
+        conditions.share = number_of(record, "share");
+    }
+
+    std::vector<skeleton::KnownParameter> numbers_to_hide() const override { return {{"share", "1"}}; }
+    std::optional<std::uint64_t> stream() const override { return 20; }
+
+    std::vector<EffectSampler> samplers(SamplingContext& context, const SpecifiedNumbers& specified) const override {
+        if (context.set.tools.empty()) throw InvalidInput("effect 'slip' needs a tool that moves: add --tool");
+        specified.positive_value("share", 1, 1);
+        const auto at = [=](double x) { return specified.effect({{"share", std::exp(-x)}}); };
+        // Two thirds of the motion lost are seen by eye.
+        return {{.at = at, .start = 0.3, .most = std::log(3.0), .is_specified = specified.has("share")}};
     }
 
 private:

@@ -47,6 +47,7 @@ public:
                 before.push_back(gain * history.lagged_force(earlier, conditions_.lag, {}));
             for (mesh::ActuatorSetting& setting : action.settings)
                 setting.earlier = identify::since_largest(before, setting.value);
+            action = conditions_.act(std::move(action));
         } else if (force != 0) {
             action.contacts = {history.contact};
             action.contacts.front().force *= force;

@@ -410,7 +410,8 @@ TEST(Catalogue, EachEffectDrawsFromTheStreamThatItAlwaysDid) {  // digits of a s
         {"volume", 4},     {"torsion", 5},           {"shear", 6},       {"stiffening", 7},
         {"anisotropy", 8}, {"viscosity", 9},         {"plasticity", 10}, {"inclusion", 11},
         {"contact", 12},   {"misalignment", 13},     {"force-gain", 14}, {"outliers", 15},
-        {"clock", 16},     {"swelling", 17},         {"damage", 18},     {"friction", 19}};
+        {"clock", 16},     {"swelling", 17},         {"damage", 18},     {"friction", 19},
+        {"slip", 20},      {"actuation-gain", 21}};
     for (const auto& [name, stream] : streams) EXPECT_EQ(find_effect(name)->stream(), stream) << name;
 }
 

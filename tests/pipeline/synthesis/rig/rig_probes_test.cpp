@@ -126,11 +126,40 @@ TEST_F(RigSet, ReadsTheReactionOfATool) {
     EXPECT_GT(along.norm(), 0.99);
 }
 
+TEST_F(RigSet, HidesThatAToolMovesLessThanReported) {
+    const auto reaction_at = [&](double depth, const char* effect) {
+        const BlindSet found = made({.tool = "sphere:radius=4", .depth = {depth}, .reaction_noise = 0}, {effect});
+        const identify::LoadState& pressed = found.set.states.at(1);
+        EXPECT_NEAR(pressed.motions.at(0).translation.norm(), depth, 1e-9);
+        return pressed.reactions.at(0).force.norm();
+    };
+    const double reported = reaction_at(1, "none"), slipped = reaction_at(1, "slip:share=0.8");
+    EXPECT_NEAR(slipped, reaction_at(0.8, "none"), 1e-4 * reported);
+    EXPECT_LT(slipped, 0.95 * reported);
+}
+
+TEST_F(RigSet, HidesThatAnActuatorDoesMoreThanItIsSetTo) {
+    const std::vector<std::string> tendons{"0,5,8 20,5,8 38,5,8", "0,5,2 20,5,2 38,5,2"};
+    const auto configurations = [&](double tension, const char* effect) {
+        return made({.tendon = tendons, .tension = {tension}}, {effect}).configurations;
+    };
+    const auto twice = configurations(0.1, "none"), gained = configurations(0.05, "actuation-gain:gain=2"),
+               bare = configurations(0.05, "none");
+    ASSERT_EQ(gained.size(), 3U);  // at rest, and each tendon drawn
+    EXPECT_LT((gained[1] - twice[1]).norm(), 1e-4 * (bare[1] - bare[0]).norm());
+    EXPECT_LT((gained[2] - bare[2]).norm(), 1e-4 * (bare[2] - bare[0]).norm());
+}
+
 TEST_F(RigSet, RefusesWhatItDoesNotShow) {
     const RigOptions press{.tool = "sphere:radius=4", .depth = {0.3}};
     for (const char* effect : {"force-gain", "viscosity"}) {
         EXPECT_TRUE(says(message_of<InvalidInput>([&] { made(press, {effect}); }), {effect, "--tool"}));
     }
+    EXPECT_TRUE(says(message_of<InvalidInput>([&] { made(press, {"slip"}, 3); }), {"slip", "places", "--probes 1"}));
+    const RigOptions draw{.tendon = {"0,5,8 38,5,8"}, .tension = {0.1}};
+    EXPECT_TRUE(says(message_of<InvalidInput>([&] { made(draw, {"slip"}); }), {"slip", "--tool"}));
+    EXPECT_TRUE(says(message_of<InvalidInput>([&] { made(draw, {"actuation-gain"}); }),
+                     {"actuation-gain", "beside", "--tendon"}));
 }
 
 }  // namespace
