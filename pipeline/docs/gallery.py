@@ -3,8 +3,8 @@
 
 The program hides an effect in a body (`palpate probe BODY --hide EFFECT`), fits the body without it, and once more with
 it (`palpate improve --add EFFECT`). The body is a bar of spheres and links; where links cannot show the effect or a rig
-drives the body, one of finite elements. Drawn is the state with the largest error: without the effect, with it, and where the former is wrong. Asks for Debian's
-python3-vtk9 and python3-matplotlib; all pictures take a quarter of an hour, that of slip half of it.
+drives the body, one of finite elements. Drawn is the state with the largest error: without the effect, with it, and
+where the former is wrong. Asks for Debian's python3-vtk9 and python3-matplotlib; all pictures take minutes.
 """
 
 import argparse
@@ -81,7 +81,7 @@ shown = {
     "friction": Shown("friction:tendons=0.6", ("--back",), (*tendons[0], "--tension", "0.1,0.3,0.5"), "bar"),
     "misalignment": Shown("misalignment"),
     "force-gain": Shown("force-gain"),
-    "slip": Shown("slip:share=0.7", coarse, ("--tool", "flat:radius=4", "--depth", "3,6", "--probes", 1), "sample", coarse),
+    "slip": Shown("slip:share=0.7", coarse, ("--tool", "flat:radius=4", "--depth", "2,4", "--probes", 1), "sample", coarse),
     "actuation-gain": Shown("actuation-gain:gain=1.4", (), (*tendons[0], *tendons[1], "--tension", "0.1,0.2,0.3"), "bar"),
     "clock": Shown("clock:lag=0.33", ("--levels", 4, "--back")),
     "outliers": Shown("outliers"),

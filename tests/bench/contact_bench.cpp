@@ -1,6 +1,6 @@
 // How many factors an equilibrium under a rigid tool takes: a slab of quadratic tetrahedra on a rigid base, pressed by
-// a sphere and by a flat punch. One thread. "cold" starts at rest; "softer" at the answer for a Poisson's ratio of 0.45
-// instead of 0.43, as a fit does; "deeper" at half the depth.
+// a sphere and by a flat punch. One thread. "cold" starts at rest; "other ratio" at the answer for a Poisson's ratio of
+// 0.45 instead of 0.43, as a fit does; "deeper" at that for half the depth.
 
 #include <fmt/format.h>
 #include <tbb/global_control.h>
@@ -27,9 +27,9 @@ public:
 
     void write_rows() const {
         const Eigen::VectorXd half = row("cold, half depth", 0.5, 0.45, nullptr);
-        row("softer, half depth", 0.5, 0.43, &half);
+        row("other ratio, half depth", 0.5, 0.43, &half);
         const Eigen::VectorXd whole = row("deeper", 1, 0.45, &half);
-        row("softer", 1, 0.43, &whole);
+        row("other ratio", 1, 0.43, &whole);
         row("cold", 1, 0.45, nullptr);
     }
 

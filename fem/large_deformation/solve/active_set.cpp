@@ -8,8 +8,52 @@ namespace palpate::fem {
 
 namespace {
 
-constexpr std::size_t most_in_step = 100;  // solutions, about four factors: the next step's costs one
+constexpr std::size_t most_in_step = 100;  // solutions, about four factors: the rest is left to the next step
 constexpr int most_rounds = 20;            // few are needed, unless they go round in circles
+
+/// What unit forces along the points' normals do: the steps H n_i, and by how much these open all gaps. Solved for as
+/// they are asked for.
+class Answers {
+public:
+    Answers(const LoadedBody& body, const Unknowns& unknowns, const ActiveSet::Points& points,
+            const ActiveSet::Inverse& H)
+        : body_(body), unknowns_(unknowns), points_(points), H_(H), steps_(points.size()), openings_(points.size()) {}
+
+    const Eigen::VectorXd& step(Eigen::Index i) const { return steps_[i]; }
+    const Eigen::VectorXd& openings(Eigen::Index i) const { return openings_[i]; }
+    Eigen::VectorXd openings_of(const Eigen::VectorXd& step) const {
+        const Eigen::VectorXd all = unknowns_.scatter(step);
+        Eigen::VectorXd result(std::ssize(points_));
+        for (Eigen::Index i = 0; i < result.size(); ++i) result[i] = body_.opening(points_[i], all);
+        return result;
+    }
+    /// False, and nothing done, where these take more solutions than are `left`, which falls by those.
+    bool solve(std::vector<Eigen::Index> which, std::size_t& left) {
+        std::erase_if(which, [&](Eigen::Index i) { return steps_[i].size() > 0; });
+        if (which.size() > left) return false;
+        if (which.empty()) return true;
+        left -= which.size();
+        Eigen::MatrixXd X(unknowns_.size(), std::ssize(which));
+        for (Eigen::Index j = 0; j < X.cols(); ++j) {
+            Eigen::VectorXd push = Eigen::VectorXd::Zero(std::ssize(unknowns_.number()) * 3);
+            body_.add_push(points_[which[j]], 1, push);
+            X.col(j) = unknowns_.gather(push);
+        }
+        X = H_(X);
+        for (Eigen::Index j = 0; j < X.cols(); ++j) {
+            steps_[which[j]] = X.col(j);
+            openings_[which[j]] = openings_of(X.col(j));
+        }
+        return true;
+    }
+
+private:
+    const LoadedBody& body_;
+    const Unknowns& unknowns_;
+    const ActiveSet::Points& points_;
+    const ActiveSet::Inverse& H_;
+    std::vector<Eigen::VectorXd> steps_, openings_;
+};
 
 }  // namespace
 
@@ -44,66 +88,42 @@ Eigen::VectorXd ActiveSet::held_force(const LoadedBody& body, const Unknowns& un
 
 Eigen::VectorXd ActiveSet::step(const LoadedBody& body, const Unknowns& unknowns, const Eigen::VectorXd& r,
                                 const Points& now, const Inverse& H) {
-    const Eigen::VectorXd free = H(held_force(body, unknowns, r, now));
-    solutions_ = 1;
     Points points = now;
     const Eigen::Index count = std::ssize(points);
-    Eigen::VectorXd side = Eigen::VectorXd::Ones(count);
+    Eigen::VectorXd side = Eigen::VectorXd::Ones(count), b(count);
     for (Eigen::Index i = 0; i < count; ++i) {
+        b[i] = points[i].gap;
         const auto held = held_.find(points[i].id);
         if (held == held_.end()) continue;
         side[i] = -1;
         points[i].normal = held->second;
     }
-    const auto openings = [&](const Eigen::VectorXd& step) {
-        const Eigen::VectorXd all = unknowns.scatter(step);
-        Eigen::VectorXd result(count);
-        for (Eigen::Index i = 0; i < count; ++i) result[i] = body.opening(points[i], all);
-        return result;
-    };
-    const auto push = [&](Eigen::Index i) {
-        Eigen::VectorXd forces = Eigen::VectorXd::Zero(std::ssize(unknowns.number()) * 3);
-        body.add_push(points[i], 1, forces);
-        return unknowns.gather(forces);
-    };
-    Eigen::VectorXd b = openings(free);
-    for (Eigen::Index i = 0; i < count; ++i) b[i] += points[i].gap;
+    Answers answers(body, unknowns, points, H);
+    const Eigen::VectorXd free = H(held_force(body, unknowns, r, now));
+    b += answers.openings_of(free);
 
-    std::vector<Eigen::VectorXd> answer(points.size()), opened(points.size());  // H n_i, and what it opens
+    std::size_t left = most_in_step;
     Eigen::VectorXd step = free, gaps = b;
     std::vector<Eigen::Index> changed;
     for (int round = 0; round < most_rounds; ++round) {
         const std::vector<Eigen::Index> before = std::exchange(changed, {});
-        std::vector<Eigen::Index> unsolved;
-        for (Eigen::Index i = 0; i < count; ++i) {
-            if (side[i] * gaps[i] >= 0) continue;
-            changed.push_back(i);
-            if (answer[i].size() == 0) unsolved.push_back(i);
-        }
-        if (changed == before || solutions_ + unsolved.size() > most_in_step) break;
-        if (!unsolved.empty()) {
-            solutions_ += unsolved.size();
-            Eigen::MatrixXd pushes(unknowns.size(), std::ssize(unsolved));
-            for (Eigen::Index j = 0; j < pushes.cols(); ++j) pushes.col(j) = push(unsolved[j]);
-            const Eigen::MatrixXd answers = H(pushes);
-            for (Eigen::Index j = 0; j < pushes.cols(); ++j) {
-                answer[unsolved[j]] = answers.col(j);
-                opened[unsolved[j]] = openings(answers.col(j));
-            }
-        }
+        for (Eigen::Index i = 0; i < count; ++i)
+            if (side[i] * gaps[i] < 0) changed.push_back(i);
+        if (changed == before || !answers.solve(changed, left)) break;
         Eigen::MatrixXd A(std::ssize(changed), std::ssize(changed));
         for (Eigen::Index j = 0; j < A.cols(); ++j) {
-            A.col(j) = opened[changed[j]](changed);
+            A.col(j) = answers.openings(changed[j])(changed);
             A(j, j) += side[changed[j]] / points[changed[j]].stiffness;
         }
         const Eigen::VectorXd forces = A.partialPivLu().solve(-b(changed).eval());
         step = free;
         gaps = b;
         for (Eigen::Index j = 0; j < A.cols(); ++j) {
-            step += forces[j] * answer[changed[j]];
-            gaps += forces[j] * opened[changed[j]];
+            step += forces[j] * answers.step(changed[j]);
+            gaps += forces[j] * answers.openings(changed[j]);
         }
     }
+    solutions_ = 1 + most_in_step - left;
     led_to_.emplace();
     for (Eigen::Index i = 0; i < count; ++i)
         if (gaps[i] < 0) led_to_->push_back(points[i].id);

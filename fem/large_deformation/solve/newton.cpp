@@ -11,8 +11,9 @@ namespace palpate::fem {
 
 namespace {
 
-// A factor costs as much as 15 to 25 steps without one, or solutions that what tools touch takes.
-constexpr std::size_t most_solutions = 20;  // of a step, for the factor to serve on
+// A factor costs as much as 15 to 25 solutions, of which a step takes one, and one for each point that comes in touch
+// or parts.
+constexpr std::size_t most_solutions = 20;  // in a step: one that takes more asks for a factor
 constexpr double slow = 0.7;                // of what the last step promised: one that promises more asks for a factor
 constexpr std::size_t most_secants = 12;    // steps with one factor
 constexpr int halvings = 30;                // of a step
