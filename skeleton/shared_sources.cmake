@@ -29,6 +29,7 @@ set(shared_skeleton_sources
   model/attach.cpp
   model/carried_point.cpp
   model/growth.cpp
+  model/link_modulus.cpp
   model/observation.cpp
   model/state.cpp
   model/io/json_fields.cpp

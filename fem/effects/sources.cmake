@@ -15,5 +15,6 @@ set(effect_sources
   point/compliant_support.cpp
   point/contact.cpp
   point/gravity.cpp
+  ../rig/round_shapes.cpp
   ../rig/tendon_terms.cpp)
 list(TRANSFORM effect_sources PREPEND "${CMAKE_CURRENT_LIST_DIR}/")

@@ -18,6 +18,7 @@
 #include "pipeline/synthesis/probing/probing.h"
 #include "pipeline/synthesis/probing/skeleton_probing.h"
 #include "pipeline/synthesis/rig/rig_probes.h"
+#include "skeleton/model/link_modulus.h"
 
 namespace palpate::pipeline {
 namespace {
@@ -25,20 +26,6 @@ namespace {
 constexpr double finer = 0.8;             // edges against those of the body that is fitted: twice the nodes
 constexpr double largest_pressure = 0.3;  // under a contact, of Young's modulus
 constexpr double chords_cut_off = 0.06;   // of the volume; curving the elements gives it back
-
-/// Young's modulus that the links stand for, the middle one: kE = E A / L, with the smaller sphere's section.
-double stiffness_of(const skeleton::Model& model) {
-    std::vector<double> all;
-    for (const skeleton::Link& link : model.links) {
-        const double radius = std::min(model.spheres[link.a].radius, model.spheres[link.b].radius);
-        const double section = std::numbers::pi * radius * radius;
-        if (section > 0) all.push_back(link.stiffness[0] * link.length / section);
-    }
-    if (all.empty()) return 1;
-    const auto middle = all.begin() + std::ssize(all) / 2;
-    std::ranges::nth_element(all, middle);
-    return *middle > 0 ? *middle : 1;
-}
 
 /// Do its free spheres stand where its skin is, as in lattices that are all nodes? A measurement set allows 5 %.
 bool is_bare(const skeleton::Model& model) {
@@ -143,7 +130,7 @@ Specimen skeleton_specimen(const skeleton::Model& model, const ProbeOptions& pro
         specimen.contacts = probing_contacts(model.surface, model.supports, probing, seed);
     }
     specimen.most_force = std::numeric_limits<double>::infinity();
-    specimen.stiffness = stiffness_of(model);
+    specimen.stiffness = skeleton::link_modulus(model);
     const skeleton::EquilibriumLaw law = options.law ? skeleton::EquilibriumLaw::linear : model.law;
     specimen.model = std::make_unique<identify::SkeletonBody>(model, set.markers, specimen.stiffness);
     const Eigen::VectorXd as_told = Eigen::VectorXd::Zero(std::ssize(specimen.model->parameters()));

@@ -5,15 +5,19 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 
+#include "fem/rig/round_shapes.h"
 #include "mesh/errors.h"
 #include "skeleton/effects/effect.h"
 #include "skeleton/model/growth.h"
 #include "skeleton/model/io/model_io.h"
+#include "skeleton/model/link_modulus.h"
 #include "skeleton/runtime/contacts/creep.h"
 #include "skeleton/runtime/kernels/motion.h"
 #include "skeleton/runtime/kernels/skinning.h"
 #include "skeleton/runtime/solver/solver.h"
+#include "skeleton/runtime/tools/rig.h"
 #include "skeleton/runtime/walk_order.h"
 
 namespace palpate::runtime {
@@ -65,12 +69,15 @@ void BodyOptions::validate() const {
         throw InvalidInput(fmt::format("contacts is {}; it must lie in 0 to 64", contacts));
     if (!(step_tolerance > 0 && step_tolerance < 1))
         throw InvalidInput(fmt::format("step_tolerance is {}; it must lie between 0 and 1", step_tolerance));
+    if (!(tool_compliance >= 1e-4 && tool_compliance <= 1))
+        throw InvalidInput(fmt::format("tool_compliance is {}; it must lie in 1e-4 to 1", tool_compliance));
 }
 
 struct Body::Impl {
     BodyOptions options;
     ReorderedModel reordered;
     ForceField field;
+    Rig rig;
     Solver solver;
     Skinning skinning;
     MassTable masses;
@@ -90,7 +97,8 @@ struct Body::Impl {
         : options(how),
           reordered(in_cuthill_mckee_order(model)),
           field(reordered.model),
-          solver(field, options.contacts),
+          rig(reordered.model),
+          solver(field, options.contacts, rig),
           skinning(with_grown_skin(reordered.model)),
           masses(mass_table(reordered.model, field.moves())),
           notices(what_is_not_played(model)),
@@ -134,6 +142,27 @@ struct Body::Impl {
             throw InvalidInput(fmt::format("contact {} is not in use; touch() gives contacts their numbers", number));
         contacts[number].at.place(pose.data());
         return contacts[number];
+    }
+    void require_tool(int number) const {
+        if (number < 0 || number >= rig.tools.count())
+            throw InvalidInput(
+                fmt::format("tool {} does not exist; add_ball() and its like give tools their numbers "
+                            "from 0",
+                            number));
+    }
+    // The layer gives way by c pi a / (2 E*) under a unit of pressure: c times what a disc of radius a = R / 3 sinks
+    // into an incompressible half-space under it. [Sneddon 1965]
+    int add_tool(const std::shared_ptr<const fem::RigidShape>& shape, double extent) {
+        constexpr double plane_strain = 4.0 / 3;  // E* / E
+        const double a = shape->radius() / 3, E = skeleton::link_modulus(reordered.model);
+        return rig.tools.add(shape, extent, 2 * plane_strain * E / (std::numbers::pi * a * options.tool_compliance));
+    }
+    void require_tendon(int number, double value) const {
+        if (number < 0 || number >= rig.tendons.count())
+            throw InvalidInput(
+                fmt::format("tendon {} does not exist; add_tendon() gives tendons their numbers from 0", number));
+        if (!(value >= 0) || !std::isfinite(value))
+            throw InvalidInput(fmt::format("tendon {} is set to {}; it must be at least 0", number, value));
     }
     int row(int sphere) const {
         if (sphere < 0 || sphere >= static_cast<int>(reordered.place.size()))
@@ -217,6 +246,8 @@ int Body::vertex_count() const { return static_cast<int>(impl_->reordered.model.
 
 void Body::reset() {
     impl_->pose = impl_->rest;
+    for (int tool = 0; tool < impl_->rig.tools.count(); ++tool) impl_->rig.tools.lift(tool);
+    for (int tendon = 0; tendon < impl_->rig.tendons.count(); ++tendon) impl_->rig.tendons.let_go(tendon);
     std::ranges::fill(impl_->momentum, 0.0);
     for (ContactState& contact : impl_->contacts) {
         contact.used = false;
@@ -332,6 +363,67 @@ Eigen::Vector3d Body::force(int contact) { return impl_->contact(contact).force(
 Eigen::Vector3d Body::effective_force(int contact) { return impl_->contact(contact).effective_force(); }
 Eigen::Vector3d Body::place(int contact) { return impl_->contact(contact).at.x(); }
 
+int Body::add_ball(double radius) {
+    require_above("the radius of a ball", radius, 0);
+    return impl_->add_tool(fem::ball_shape(Vec3::Zero(), radius), radius);
+}
+
+// What its shaft pushes aside lies within twice the radius of the face's middle.
+int Body::add_punch(double radius, const Eigen::Vector3d& axis) {
+    require_above("the radius of a punch", radius, 0);
+    require_above("the length of a punch's axis", axis.norm(), 0);
+    return impl_->add_tool(fem::punch_shape(Vec3::Zero(), {radius, axis}), 2 * radius);
+}
+
+void Body::place_tool(int tool, const Eigen::Vector3d& at, const Eigen::Quaterniond& turn) {
+    impl_->require_tool(tool);
+    if (!at.allFinite() || !turn.coeffs().allFinite())
+        throw InvalidInput(fmt::format("tool {} is placed at a point that is not finite", tool));
+    impl_->rig.tools.place(tool, at, turn.normalized().toRotationMatrix());
+}
+
+void Body::lift_tool(int tool) {
+    impl_->require_tool(tool);
+    impl_->rig.tools.lift(tool);
+}
+
+ToolLoad Body::tool_load(int tool) {
+    impl_->require_tool(tool);
+    return impl_->rig.tools.load(tool, impl_->pose.data());
+}
+
+// A thousand times as stiff as a bar of the links' modulus, its length and as thick, as fem::TendonTerms has it.
+int Body::add_tendon(const Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>& path) {
+    double length = 0;
+    for (Eigen::Index k = 1; k < path.rows(); ++k) length += (path.row(k) - path.row(k - 1)).norm();
+    return impl_->rig.tendons.add(path, 1e3 * skeleton::link_modulus(impl_->reordered.model) * length);
+}
+
+void Body::pull_tendon(int tendon, double tension) {
+    impl_->require_tendon(tendon, tension);
+    impl_->rig.tendons.pull(tendon, tension);
+}
+
+void Body::draw_tendon(int tendon, double length) {
+    impl_->require_tendon(tendon, length);
+    impl_->rig.tendons.draw(tendon, length);
+}
+
+void Body::let_tendon_go(int tendon) {
+    impl_->require_tendon(tendon, 0);
+    impl_->rig.tendons.let_go(tendon);
+}
+
+double Body::tendon_tension(int tendon) {
+    impl_->require_tendon(tendon, 0);
+    return impl_->rig.tendons.tension(tendon, impl_->pose.data());
+}
+
+void Body::set_pressure(double pressure) {
+    if (!std::isfinite(pressure)) throw InvalidInput(fmt::format("the pressure is {}; it must be finite", pressure));
+    impl_->field.set_pressure(pressure);
+}
+
 void Body::set_damping(const RayleighDamping& damping) {
     if (!(damping.alpha >= 0) || !(damping.beta >= 0))
         throw InvalidInput(
@@ -357,6 +449,10 @@ double Body::stable_step() {
 void Body::step_explicit(double h, int steps) {
     Impl& own = *impl_;
     own.require_time(h);
+    if (own.rig.any())
+        throw InvalidInput(
+            "a tool is placed or a tendon pulls, which are too stiff for explicit steps: step_implicit, or "
+            "lift the tool and let the tendon go first");
     if (steps < 1) return;
     const double dies = std::exp(-own.damping.alpha * h);
     drift(own.masses, 0.5 * h, own.momentum.data(), own.pose.data());

@@ -27,9 +27,18 @@ struct [[gnu::visibility("default")]] BodyOptions {
     // model has it, or else a ratio of 0.1.
     std::optional<double> damping_ratio = {};
     int contacts = 8;  // most at a time, in [0, 64]
+    // Of the layer by which a tool presses, as a share of what a body of the links' modulus gives way by under a
+    // contact of a third of the tool's radius, in [1e-4, 1].
+    double tool_compliance = 0.02;
     // Of implicit steps: how far off a sphere may be, as a share of the mean link length, in (0, 1).
     double step_tolerance = 1e-6;
     void validate() const;  // @throws InvalidInput naming option, value and bound
+};
+
+/// What a tool does to the body: a force, and its moment about where the tool is.
+struct ToolLoad {
+    Eigen::Vector3d force = Eigen::Vector3d::Zero();   // [N]
+    Eigen::Vector3d moment = Eigen::Vector3d::Zero();  // [N mm]
 };
 
 struct EquilibriumReport {
@@ -64,7 +73,7 @@ public:
     int vertex_count() const;
 
     // --- Where it is ---------------------------------------------------------------------------------------------
-    /// Back to rest: at rest, without contacts, and as new.
+    /// Back to rest: at rest, without contacts, tools away and tendons let go, and as new.
     void reset();
     Eigen::Vector3d position(int sphere) const;
     Eigen::Quaterniond orientation(int sphere) const;
@@ -98,13 +107,41 @@ public:
     Eigen::Vector3d effective_force(int contact);
     Eigen::Vector3d place(int contact);  // [mm]
 
+    // --- Rigid tools, which press on the skin without friction ----------------------------------------------------
+    /// A ball. The tool's number; it is away until it is placed. Adding a tool allocates, and so does one that touches
+    /// more of the body than any before. @throws InvalidInput for a radius that is not above 0, or a model without a
+    /// skin.
+    int add_ball(double radius);
+    /// The flat face of a round punch that presses along `axis`.
+    int add_punch(double radius, const Eigen::Vector3d& axis);
+    /// Moves a tool there. From one step to the next it may move by a quarter of its radius: what goes farther at once
+    /// may come out at the other side of the body.
+    void place_tool(int tool, const Eigen::Vector3d& at,
+                    const Eigen::Quaterniond& turn = Eigen::Quaterniond::Identity());
+    void lift_tool(int tool);  // away
+    /// What it does to the body as it stands; what a hand feels that moves it is the contrary. 0 where it is away.
+    ToolLoad tool_load(int tool);
+
+    // --- Actuation ------------------------------------------------------------------------------------------------
+    /// In the cavities that the skin encloses, beside the model's effects [MPa]. Allocates the first time.
+    /// @throws InvalidInput when there are none.
+    void set_pressure(double pressure);
+    /// A cable through points of the body (p x 3) [mm]: the first is fixed in space, the last to the body. Let go until
+    /// it is pulled. Allocates. @throws InvalidInput for less than two points, or two next to each other in one place.
+    int add_tendon(const Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>& path);
+    void pull_tendon(int tendon, double tension);  // >= 0 [N]
+    void draw_tendon(int tendon, double length);   // in, from its length at rest; it may go slack; >= 0 [mm]
+    void let_tendon_go(int tendon);
+    double tendon_tension(int tendon);  // as the body stands [N]
+
     // --- In time -------------------------------------------------------------------------------------------------
     void set_damping(const RayleighDamping& damping);
     const RayleighDamping& damping() const;
     /// Largest explicit step that is stable at rest, without contacts [s].
     double stable_step();
     /// `steps` steps of h by a symplectic rule of second order (drift, kick, drift). @throws InvalidInput when a
-    /// sphere that moves has no mass.
+    /// sphere that moves has no mass, or while a tool is placed or a tendon pulls, which are too
+    /// stiff for this rule.
     void step_explicit(double h, int steps = 1);
     /// One step of h by the implicit Euler rule, stable at any h. Factorisations serve on for as long as they lead to
     /// the answer. @throws SolverFailure when Newton's method does not end; the body stays as it was.

@@ -116,6 +116,59 @@ palpate_status palpate_contact(palpate_body* body, int contact, double force[3],
     });
 }
 
+palpate_status palpate_add_ball(palpate_body* body, double radius, int* tool) {
+    return guarded([&] { *tool = body->body.add_ball(radius); });
+}
+
+palpate_status palpate_add_punch(palpate_body* body, double radius, const double axis[3], int* tool) {
+    return guarded([&] { *tool = body->body.add_punch(radius, Vec3Of(axis)); });
+}
+
+palpate_status palpate_place_tool(palpate_body* body, int tool, const double at[3], const double turn[4]) {
+    return guarded([&] {
+        const Eigen::Quaterniond q =
+            turn ? Eigen::Quaterniond(Eigen::Map<const Eigen::Vector4d>(turn)) : Eigen::Quaterniond::Identity();
+        body->body.place_tool(tool, Vec3Of(at), q);
+    });
+}
+
+palpate_status palpate_lift_tool(palpate_body* body, int tool) {
+    return guarded([&] { body->body.lift_tool(tool); });
+}
+
+palpate_status palpate_tool_load(palpate_body* body, int tool, double force[3], double moment[3]) {
+    return guarded([&] {
+        const palpate::runtime::ToolLoad load = body->body.tool_load(tool);
+        copy(load.force, force);
+        copy(load.moment, moment);
+    });
+}
+
+palpate_status palpate_set_pressure(palpate_body* body, double pressure) {
+    return guarded([&] { body->body.set_pressure(pressure); });
+}
+
+palpate_status palpate_add_tendon(palpate_body* body, const double* path, int points, int* tendon) {
+    using Path = Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>;
+    return guarded([&] { *tendon = body->body.add_tendon(Eigen::Map<const Path>(path, points, 3)); });
+}
+
+palpate_status palpate_pull_tendon(palpate_body* body, int tendon, double tension) {
+    return guarded([&] { body->body.pull_tendon(tendon, tension); });
+}
+
+palpate_status palpate_draw_tendon(palpate_body* body, int tendon, double length) {
+    return guarded([&] { body->body.draw_tendon(tendon, length); });
+}
+
+palpate_status palpate_let_tendon_go(palpate_body* body, int tendon) {
+    return guarded([&] { body->body.let_tendon_go(tendon); });
+}
+
+palpate_status palpate_tendon_tension(palpate_body* body, int tendon, double* tension) {
+    return guarded([&] { *tension = body->body.tendon_tension(tendon); });
+}
+
 palpate_status palpate_stable_step(palpate_body* body, double* h) {
     return guarded([&] { *h = body->body.stable_step(); });
 }

@@ -1,6 +1,7 @@
 /* A calibrated model, alive, for programs in C and whatever speaks to C. Units: mm, N, s, tonne. Spheres, vertices and
  * triangles are numbered as in the model's file. What body.h says of each holds here. A body is for one thread at a
- * time. Stepping, equilibria and what is done at contacts allocate nothing, but for palpate_touch. */
+ * time. Stepping, equilibria and what is done at contacts allocate nothing, but for palpate_touch and tools that touch
+ * more of the body than before. */
 #ifndef PALPATE_RUNTIME_H
 #define PALPATE_RUNTIME_H
 
@@ -62,6 +63,25 @@ PALPATE_API palpate_status palpate_push(palpate_body* body, int contact, const d
 PALPATE_API palpate_status palpate_drag(palpate_body* body, int contact, const double to[3], double stiffness);
 /* What acts on the body at a contact [N], and where the contact is [mm]; either may be NULL. */
 PALPATE_API palpate_status palpate_contact(palpate_body* body, int contact, double force[3], double place[3]);
+
+/* Rigid tools, which press on the skin without friction: a ball, or the flat face of a round punch that presses along
+ * `axis` [mm]; away until it is placed. */
+PALPATE_API palpate_status palpate_add_ball(palpate_body* body, double radius, int* tool);
+PALPATE_API palpate_status palpate_add_punch(palpate_body* body, double radius, const double axis[3], int* tool);
+/* `turn`: a unit quaternion x, y, z, w; NULL: not turned. By a quarter of its radius a step at most. */
+PALPATE_API palpate_status palpate_place_tool(palpate_body* body, int tool, const double at[3], const double turn[4]);
+PALPATE_API palpate_status palpate_lift_tool(palpate_body* body, int tool);
+/* What it does to the body [N], and the moment of that about where it is [N mm]; either may be NULL. */
+PALPATE_API palpate_status palpate_tool_load(palpate_body* body, int tool, double force[3], double moment[3]);
+
+/* In the cavities that the skin encloses, beside the model's effects [MPa]. */
+PALPATE_API palpate_status palpate_set_pressure(palpate_body* body, double pressure);
+/* A cable through `points` points of the body, x, y, z each [mm]: the first is fixed in space, the last to the body. */
+PALPATE_API palpate_status palpate_add_tendon(palpate_body* body, const double* path, int points, int* tendon);
+PALPATE_API palpate_status palpate_pull_tendon(palpate_body* body, int tendon, double tension); /* [N] */
+PALPATE_API palpate_status palpate_draw_tendon(palpate_body* body, int tendon, double length);  /* in, from rest [mm] */
+PALPATE_API palpate_status palpate_let_tendon_go(palpate_body* body, int tendon);
+PALPATE_API palpate_status palpate_tendon_tension(palpate_body* body, int tendon, double* tension); /* [N] */
 
 PALPATE_API palpate_status palpate_stable_step(palpate_body* body, double* h);
 PALPATE_API palpate_status palpate_step_explicit(palpate_body* body, double h, int steps);

@@ -17,7 +17,10 @@ set(runtime_sources
   forces/point_effects.cpp
   forces/poses.cpp
   solver/learnt_curvature.cpp
-  solver/solver.cpp)
+  solver/solver.cpp
+  tools/stiffened_matrix.cpp
+  tools/tendons.cpp
+  tools/tools.cpp)
 list(TRANSFORM runtime_kernels PREPEND "${CMAKE_CURRENT_LIST_DIR}/")
 list(TRANSFORM runtime_sources PREPEND "${CMAKE_CURRENT_LIST_DIR}/")
 list(APPEND runtime_sources ${runtime_kernels})

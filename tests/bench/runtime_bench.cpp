@@ -80,7 +80,7 @@ void print_steps() {
 }
 
 void print_organ() {
-    const skeleton::Model model = bench::organ(200, 20000);
+    const skeleton::Model model = bench::organ(200, 5);
     Body body(model);
     const int contact = body.touch(model.surface.vertices.row(0).transpose());
     const Vec3 from = model.surface.vertices.row(0);
@@ -105,6 +105,54 @@ void print_organ() {
         "| implicit step of 1 ms | {:.3f} | {:.0f} |\n| skinning | {:.3f} | {:.0f} |\n| both | {:.3f} | {:.0f} |\n",
         body.sphere_count(), body.link_count(), body.vertex_count(), 1e3 * implicit, 1 / implicit, 1e3 * skin, 1 / skin,
         1e3 * both, 1 / both);
+}
+
+struct Ticks {
+    double median, late, longest;  // of a step, late: 99 of 100 are shorter [s]
+};
+
+// Steps of a millisecond, each after `move`.
+Ticks ticks(Body& body, const std::function<void(int tick)>& move) {
+    std::vector<double> each;
+    for (int tick = 0; tick < 4000; ++tick) {
+        each.push_back(seconds([&] {
+            move(tick);
+            body.step_implicit(1e-3);
+        }));
+    }
+    std::ranges::sort(each);
+    return {each[each.size() / 2], each[each.size() * 99 / 100], each.back()};
+}
+
+// A hand drags a point of the top in and about, or a ball presses there and slides, as deep and as far.
+void print_tools() {
+    fmt::print(
+        "\nSteps of 1 ms with a ball that presses 3 mm in and slides over 10 mm of the top, twice a second, and with "
+        "a\n"
+        "point that is dragged alike\n\n"
+        "| spheres | skin | dragged, median ms | 99 % | longest | ball, median ms | 99 % | longest | of the dragged |\n"
+        "| --- | --- | --- | --- | --- | --- | --- | --- | --- |\n");
+    for (const auto& [spheres, halvings] : {std::pair{40, 4}, std::pair{200, 5}}) {
+        const skeleton::Model model = bench::organ(spheres, halvings);
+        const Vec3 top(0, 0, model.surface.vertices.col(2).maxCoeff());
+        const auto way = [&](int tick) {
+            const double phase = 2 * 3.14159265 * 2e-3 * tick;
+            return Vec3(5 * std::sin(phase), 0, -1.5 + 1.5 * std::cos(2 * phase));
+        };
+        Body body(model);
+        const int contact = body.touch(top);
+        const Ticks dragged = ticks(body, [&](int tick) { body.drag(contact, top + way(tick), 0.5); });
+        body.reset();
+        constexpr double radius = 8;
+        const int ball = body.add_ball(radius);
+        const Ticks pressed = ticks(body, [&](int tick) {
+            body.place_tool(ball, top + Vec3(0, 0, radius) + way(tick));
+            body.tool_load(ball);
+        });
+        fmt::print("| {} | {} | {:.3f} | {:.3f} | {:.3f} | {:.3f} | {:.3f} | {:.3f} | {:.2f} |\n", body.sphere_count(),
+                   body.vertex_count(), 1e3 * dragged.median, 1e3 * dragged.late, 1e3 * dragged.longest,
+                   1e3 * pressed.median, 1e3 * pressed.late, 1e3 * pressed.longest, pressed.median / dragged.median);
+    }
 }
 
 void print_equilibria() {
@@ -182,6 +230,7 @@ int main(int argc, char** argv) {
     print_steps();
     palpate::bench::print_bullet();
     print_organ();
+    print_tools();
     print_equilibria();
     print_conservation(steps);
 }

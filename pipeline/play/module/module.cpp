@@ -179,6 +179,19 @@ EMSCRIPTEN_KEEPALIVE const double* play_compliance(int touch) {
     });
 }
 
+/// Brings a rigid ball to a place, which presses on the skin there.
+EMSCRIPTEN_KEEPALIVE int play_place_ball(double radius, double x, double y, double z) {
+    return guarded(-1, [&] { return touched().place_ball(radius, {x, y, z}), 0; });
+}
+EMSCRIPTEN_KEEPALIVE void play_lift_ball() { touched().lift_ball(); }
+/// Force of the ball on the body [N]: 3 numbers.
+EMSCRIPTEN_KEEPALIVE const double* play_ball_force() {
+    return guarded(static_cast<const double*>(nullptr), [] {
+        const Vec3 f = touched().ball_force();
+        return handed_out({f[0], f[1], f[2]});
+    });
+}
+
 /// Begins to judge a model with those of its effects on a set. How many states there are to judge.
 EMSCRIPTEN_KEEPALIVE int play_judge(int model, unsigned effects, int set) {
     return guarded(-1, [&] {

@@ -52,7 +52,8 @@ class HandledPlayer extends ToldPlayer {
     if (!hit) return false;
     const corners = [0, 1, 2].map((c) => row3(this.skin, this.triangles[3 * hit.triangle + c]));
     const normal = unit3(cross3(minus3(corners[1], corners[0]), minus3(corners[2], corners[0])));
-    const taken = this.attempt(() => this.take(pointIn(this.rest, this.triangles, hit), normal));
+    const taken = this.attempt(() => (this.at('with').value === 'ball'
+      ? this.takeBall(pointIn(this.skin, this.triangles, hit), normal) : this.take(pointIn(this.rest, this.triangles, hit), normal)));
     if (!taken) return false;
     this.hand.t = hit.t;
     this.hand.aside = minus3(this.hand.from, plus3(hit.ray.from, hit.ray.along, hit.t));
@@ -90,7 +91,9 @@ class HandledPlayer extends ToldPlayer {
       if (this.hand) this.letGo();
       else if (this.chosen.point >= 0) {
         const vertex = this.points[this.chosen.point];
-        this.attempt(() => this.take(row3(this.rest, vertex), normalAt(this.skin ?? this.rest, this.triangles, vertex)));
+        const normal = normalAt(this.skin ?? this.rest, this.triangles, vertex);
+        this.attempt(() => (this.at('with').value === 'ball' ? this.takeBall(row3(this.skin, vertex), normal)
+          : this.take(row3(this.rest, vertex), normal)));
       } else this.choosePoint(0);
     } else if (e.key === 'Escape') {
       this.letAllGo();

@@ -63,6 +63,9 @@ class Numerics {
     const n = this.doubles(this.wasm._play_at(touch), 13);
     return {force: [...n.slice(0, 3)], place: [...n.slice(3, 6)], rest: [...n.slice(6, 9)], radius: n[9], borne: [...n.slice(10)]};
   }
+  placeBall(radius, at) { this.told(this.wasm._play_place_ball(radius, ...at)); }
+  liftBall() { this.wasm._play_lift_ball(); }
+  ballForce() { return [...this.doubles(this.wasm._play_ball_force(), 3)]; }
   /// d place / d force (3 x 3, symmetric) [mm/N], or null where the body is not stable as it stands.
   compliance(touch) {
     const pointer = this.wasm._play_compliance(touch);

@@ -25,7 +25,8 @@ class Player {
     this.colours = new Float32Array(this.rest.length);
     this.pinned = [];        // touches that go on pulling
     this.loads = [];         // touches of the probe that is replayed
-    this.hand = null;        // {touch, from, target}: what is held now
+    this.hand = null;        // {touch, from, target}, or with a ball {ball, from, target}: what is held now
+    this.ball = null;        // {radius, at}: a ball that presses, in the hand or left where it was
     this.strongest = 1e-9;   // force that has been seen [N]
     this.wake();
 
@@ -57,7 +58,7 @@ class Player {
     const set = this.set < 0 ? null : this.data.sets[this.set], state = this.state;
     const known = [state?.gravity, set?.gravity].find((g) => g && g.every((v) => v !== null));
     this.numerics.start(this.chosen.model, this.effects, known ?? [0, 0, 0], state?.pressure ?? 0, anew);
-    if (anew) Object.assign(this, {hand: null, pinned: [], loads: [], motionless: false});
+    if (anew) Object.assign(this, {hand: null, ball: null, pinned: [], loads: [], motionless: false});
     const acting = (state?.contacts ?? []).filter((contact) => contact.slice(3, 6).some((f) => f !== 0));
     if (acting.length !== this.loads.length) {
       for (const touch of this.loads) this.numerics.release(touch);
@@ -98,8 +99,31 @@ class Player {
   pull(to) {
     if (!this.hand) return;
     this.hand.target = to;
-    this.numerics.drag(this.hand.touch, to, this.hand.spring);
+    if (!this.hand.ball) this.numerics.drag(this.hand.touch, to, this.hand.spring);
     this.wake();
+  }
+  /// Brings a ball up to the skin where it stands.
+  takeBall(place, normal) {
+    this.letGo();
+    const radius = +this.at('radius').value > 0 ? +this.at('radius').value : 0.03 * this.size;
+    const at = plus3(place, normal, radius);
+    this.numerics.placeBall(radius, at);
+    this.ball = {radius, at};
+    this.hand = {ball: this.ball, from: at, target: at, normal};
+    this.wake();
+  }
+  /// The ball follows the hand, by what it may go in a step.
+  moveBall() {
+    if (!this.hand?.ball) return;
+    const {ball, target} = this.hand, way = minus3(target, ball.at), most = 0.2 * ball.radius;
+    if (length3(way) === 0) return;
+    ball.at = length3(way) > most ? plus3(ball.at, unit3(way), most) : target;
+    this.numerics.placeBall(ball.radius, ball.at);
+    this.wake();
+  }
+  liftBall() {
+    if (this.ball) this.numerics.liftBall();
+    this.ball = null;
   }
   /// Takes hold with a force that stays as it is [N].
   press(rest, normal, force, radius) {
@@ -111,7 +135,9 @@ class Player {
   }
   letGo() {
     if (!this.hand) return;
-    if (this.at('hold').checked) {
+    if (this.hand.ball) {
+      if (!this.at('hold').checked) this.liftBall();
+    } else if (this.at('hold').checked) {
       if (this.hand.target) this.numerics.push(this.hand.touch, this.numerics.at(this.hand.touch).force);
       this.pinned.push(this.hand.touch);
     } else {
@@ -121,12 +147,13 @@ class Player {
     this.wake();
   }
   letAllGo() {
-    if (this.hand) this.numerics.release(this.hand.touch);
+    if (this.hand && !this.hand.ball) this.numerics.release(this.hand.touch);
+    this.liftBall();
     for (const touch of this.pinned) this.numerics.release(touch);
     Object.assign(this, {hand: null, pinned: []});
     this.wake();
   }
-  get touches() { return [...this.loads, ...this.pinned, ...(this.hand ? [this.hand.touch] : [])]; }
+  get touches() { return [...this.loads, ...this.pinned, ...(this.hand && !this.hand.ball ? [this.hand.touch] : [])]; }
   /// What acts now, as `palpate simulate` takes it.
   probesTable() {
     const rows = this.touches.map((t) => this.numerics.at(t))
@@ -156,10 +183,13 @@ class Player {
   /// One step on.
   step() {
     const before = this.centres ?? this.numerics.centres();
+    this.moveBall();
     const moved = this.attempt(() => (this.motionless ? this.numerics.equilibrium() : this.numerics.advance(frameTime)));
     if (!moved && !this.motionless && this.numerics.message().includes('mass')) this.motionless = true;
     // Too hard a pull: the hand gives way until the body bears it.
-    if (!moved && this.hand?.target) {
+    if (!moved && this.hand?.ball) {
+      this.pull(plus3(this.hand.ball.at, this.hand.normal, 0.2 * this.hand.ball.radius));
+    } else if (!moved && this.hand?.target) {
       const {place} = this.numerics.at(this.hand.touch);
       this.pull(times3(plus3(place, this.hand.target), 0.5));
     }

@@ -21,9 +21,14 @@ class SeenPlayer extends Player {
     coloured(values, high, this.colours);
 
     const contacts = this.touches.map((t) => this.numerics.at(t));
+    if (this.ball) {
+      const force = this.numerics.ballForce();
+      contacts.push({force, place: plus3(this.ball.at, unit3(force), this.ball.radius)});
+      scene.glyphs('ball', [ballAt(this.ball.at, this.ball.radius, loadColour)], 0.6);
+    }
     this.strongest = Math.max(this.strongest, ...contacts.map((c) => length3(c.force)));
     scene.glyphs('arrow', forceArrows(contacts, this.strongest, camera));
-    if (this.hand) {
+    if (this.hand && !this.hand.ball) {
       const {place} = this.numerics.at(this.hand.touch);
       scene.glyphs('ball', [ballAt(place, 0.012 * size, loadColour)]);
       if (this.hand.target && length3(minus3(this.hand.target, place)) > 1e-9) {

@@ -5,6 +5,10 @@ class ToldPlayer extends SeenPlayer {
   /// Force, way and stiffness at the hand.
   feel() {
     if (!this.hand) return null;
+    if (this.hand.ball) {
+      const strength = length3(this.numerics.ballForce()), moved = length3(minus3(this.hand.ball.at, this.hand.from));
+      return {strength, moved, stiffness: moved > 0 ? strength / moved : NaN, words: 'force over depth'};
+    }
     const {force, place} = this.numerics.at(this.hand.touch), strength = length3(force);
     const C = this.numerics.compliance(this.hand.touch);
     const along = strength > 1e-7 ? unit3(force) : this.hand.normal;
@@ -97,7 +101,7 @@ class ToldPlayer extends SeenPlayer {
   // --- A link ----------------------------------------------------------------------------------------------------
   link() {
     const {chosen, camera} = this, round = (v) => +v.toPrecision(5), state = this.state;
-    const pulled = [...this.pinned, ...(this.hand ? [this.hand.touch] : [])].slice(0, 1).map((t) => this.numerics.at(t))[0];
+    const pulled = [...this.pinned, ...(this.hand && !this.hand.ball ? [this.hand.touch] : [])].slice(0, 1).map((t) => this.numerics.at(t))[0];
     return inHash.write({
       model: chosen.model, off: [...chosen.off].join(','), probe: state ? chosen.probe : '',
       colour: this.at('colour').value, radius: this.at('radius').value,

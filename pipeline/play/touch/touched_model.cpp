@@ -55,12 +55,14 @@ void TouchedModel::take_over(const TouchedModel& other) {
             was.creeps ? push(t, was.vector) : push_without_creep(t, was.vector);
         }
     }
+    if (other.ball_.is_placed) place_ball(other.ball_.radius, other.ball_.at);
     stand_as(other.state());
 }
 
 void TouchedModel::reset() {
     body_.reset();
     std::ranges::fill(touches_, Touch());
+    ball_.is_placed = false;
 }
 
 int TouchedModel::touch(const Vec3& rest, double radius) {
@@ -109,6 +111,24 @@ void TouchedModel::drag(int touch, const Vec3& to, double stiffness) {
 Vec3 TouchedModel::force(int touch) { return body_.force(at(touch).contact); }
 Vec3 TouchedModel::effective_force(int touch) { return body_.effective_force(at(touch).contact); }
 Vec3 TouchedModel::place(int touch) { return body_.place(at(touch).contact); }
+
+void TouchedModel::place_ball(double radius, const Vec3& at) {
+    if (ball_.tool < 0 || ball_.radius != radius) {
+        lift_ball();
+        ball_.tool = body_.add_ball(radius);
+        ball_.radius = radius;
+    }
+    ball_.is_placed = true;
+    ball_.at = at;
+    body_.place_tool(ball_.tool, at);
+}
+
+void TouchedModel::lift_ball() {
+    if (ball_.tool >= 0) body_.lift_tool(ball_.tool);
+    ball_.is_placed = false;
+}
+
+Vec3 TouchedModel::ball_force() { return ball_.is_placed ? body_.tool_load(ball_.tool).force : Vec3::Zero().eval(); }
 
 void TouchedModel::advance(double h) {
     constexpr int parts = 4;

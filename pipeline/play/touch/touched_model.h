@@ -25,6 +25,14 @@ public:
     };
     static constexpr int most_touches = 16;
 
+    /// A rigid ball that presses on the skin.
+    struct Ball {
+        int tool = -1;           // of the body; -1: there was none yet
+        double radius = 0;       // [mm]
+        bool is_placed = false;  // else it is away
+        Vec3 at = Vec3::Zero();  // [mm]
+    };
+
     /// `gravity` [mm/s^2] and `pressure` [MPa] are known to act beside the model's effects. @throws as runtime::Body.
     TouchedModel(skeleton::Model model, const Vec3& gravity, double pressure);
 
@@ -47,6 +55,11 @@ public:
     Vec3 force(int touch);            // on the body [N]
     Vec3 effective_force(int touch);  // as runtime::Body has it [N]
     Vec3 place(int touch);            // [mm]
+
+    /// Brings a ball to a place; there is one at a time. @throws as runtime::Body::add_ball.
+    void place_ball(double radius, const Vec3& at);
+    void lift_ball();
+    Vec3 ball_force();  // on the body [N]
 
     /// h seconds on; in smaller steps where one does not end. @throws SolverFailure when these do not either.
     void advance(double h);
@@ -71,6 +84,7 @@ private:
     skeleton::StaticsSolver solver_;
     Eigen::VectorXd k_;
     std::vector<Touch> touches_;
+    Ball ball_;
     std::vector<skeleton::Load> unit_loads_;  // of touches, each 1 N
     Vec3 gravity_;
 };

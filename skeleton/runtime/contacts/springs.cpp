@@ -52,16 +52,17 @@ void Springs::take(skeleton::BlockCholesky& matrix, const std::vector<ContactSta
 }
 
 // z - Y (k^-1 + P Y)^-1 P z of z = A^-1 z.
-void Springs::solve(skeleton::BlockCholesky& matrix, Eigen::VectorXd& z) {
-    matrix.solve(z.data());
+void Springs::solve(skeleton::BlockCholesky& matrix, double* z) {
+    matrix.solve(z);
     const Eigen::Index size = 3L * used_;
     if (size == 0) return;
-    for (int s = 0; s < used_; ++s) Pz_.segment<3>(3L * s) = along(springs_[s], z.data());
+    for (int s = 0; s < used_; ++s) Pz_.segment<3>(3L * s) = along(springs_[s], z);
     const auto L = S_.topLeftCorner(size, size);
     auto y = Pz_.head(size);
     L.triangularView<Eigen::Lower>().solveInPlace(y);
     L.transpose().triangularView<Eigen::Upper>().solveInPlace(y);
-    for (Eigen::Index c = 0; c < size; ++c) z -= y[c] * Y_.col(c);
+    Eigen::Map<Eigen::VectorXd> all(z, Y_.rows());
+    for (Eigen::Index c = 0; c < size; ++c) all -= y[c] * Y_.col(c);
 }
 
 }  // namespace palpate::runtime

@@ -22,8 +22,8 @@ public:
     bool known() const { return known_; }
     /// Takes up the contacts as they pull at a pose.
     void take(skeleton::BlockCholesky& matrix, const std::vector<ContactState*>& contacts, const double* pose);
-    /// z <- (A + P^T k P)^-1 z.
-    void solve(skeleton::BlockCholesky& matrix, Eigen::VectorXd& z);
+    /// z <- (A + P^T k P)^-1 z (6 free).
+    void solve(skeleton::BlockCholesky& matrix, double* z);
 
 private:
     struct Spring {

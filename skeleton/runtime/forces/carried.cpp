@@ -1,6 +1,5 @@
 #include "skeleton/runtime/forces/carried.h"
 
-#include <Eigen/Geometry>
 #include <algorithm>
 
 #include "skeleton/model/state.h"

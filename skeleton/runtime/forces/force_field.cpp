@@ -123,7 +123,7 @@ void ForceField::make_cells() {
 }
 
 // What the cells bear: pressure from their volumes, on the sections of their links.
-double ForceField::set_pressure(const double* pose, const Rates& rates) {
+double ForceField::set_cell_pressure(const double* pose, const Rates& rates) {
     std::ranges::fill(swelling_, 0.0);
     add_swelling(full_, pose, rates, swelling_.data());
     double energy = 0;
@@ -134,12 +134,17 @@ double ForceField::set_pressure(const double* pose, const Rates& rates) {
     return energy;
 }
 
+void ForceField::set_pressure(double pressure) {
+    if (!effects_) effects_ = std::make_unique<PointEffects>(model_, fem::Effects{});
+    effects_->set_pressure(pressure);
+}
+
 double ForceField::evaluate(const double* pose, const Rates& rates, double* force) {
     std::fill_n(force, static_cast<std::size_t>(row_length) * row_count(model_), 0.0);
     double energy = add_paper_links(paper_, pose, rates, force);
     if (!full_.empty()) {
         const bool kept = !cells_.empty();
-        if (kept) energy += set_pressure(pose, rates);
+        if (kept) energy += set_cell_pressure(pose, rates);
         energy += add_full_links(full_, couplings_, pose, rates, kept ? pressure_.data() : nullptr, force);
     }
     if (!gravity_.isZero(0)) {
@@ -160,7 +165,7 @@ double ForceField::evaluate(const double* pose, const Rates& rates, double* forc
 const std::vector<ForceField::Block>& ForceField::curvature(const double* pose) {
     poses_.assign(pose);
     for (Block& block : blocks_) block.setZero();
-    if (!cells_.empty()) set_pressure(pose, {});
+    if (!cells_.empty()) set_cell_pressure(pose, {});
     add_link_curvature();
     add_cell_curvature();
     if (effects_) {

@@ -27,6 +27,9 @@ public:
     /// Acts on all masses beside the effects [mm/s^2].
     void set_gravity(const Vec3& g) { gravity_ = g; }
 
+    /// In the cavities of the skin, beside the effects [MPa]. @throws InvalidInput when it has none.
+    void set_pressure(double pressure);
+
     /// Sets the forces on all spheres (rows); returns the potential energy [N mm], without what was dissipated.
     double evaluate(const double* pose, const Rates& rates, double* force);
 
@@ -50,7 +53,7 @@ private:
     };
     int pair(int a, int b);
     void make_cells();
-    double set_pressure(const double* pose, const Rates& rates);
+    double set_cell_pressure(const double* pose, const Rates& rates);
     void add_link_curvature();
     void add_cell_curvature();
 

@@ -24,7 +24,7 @@ void add_carried(const RuntimePoint& point, const Vec3& f, double* rows) {
 }  // namespace
 
 PointEffects::PointEffects(const skeleton::Model& model, const fem::Effects& effects)
-    : supported_(model.spheres.size(), 0), surface_(effects.surface), pressure_(effects.pressure) {
+    : model_(model), supported_(model.spheres.size(), 0), surface_(effects.surface), of_effects_(effects.pressure) {
     for (const auto& potential : effects.points) {
         const skeleton::PointSet set = skeleton::point_set(model, potential->acts_on());
         Points stand(std::ssize(set.at), 3);
@@ -47,12 +47,21 @@ PointEffects::PointEffects(const skeleton::Model& model, const fem::Effects& eff
         for (const skeleton::Attachment& point : model.skin) vertices_.emplace_back().assign(point, model.spheres);
         pulls_.resize(vertices_.size());
     }
-    if (pressure_ == 0) return;
+    set_pressure(0);
+}
+
+void PointEffects::set_pressure(double pressure) {
+    const double all = of_effects_ + pressure;
+    if (all != 0 && walls_.empty()) take_walls();
+    pressure_ = all;
+}
+
+void PointEffects::take_walls() {
     std::map<int, int> corner_of;
-    for (std::array<int, 3> wall : skeleton::cavity_walls(model)) {
+    for (std::array<int, 3> wall : skeleton::cavity_walls(model_)) {
         for (int& corner : wall) {
             const auto [at, fresh] = corner_of.try_emplace(corner, static_cast<int>(corners_.size()));
-            if (fresh) corners_.emplace_back().assign(model.skin[corner], model.spheres);
+            if (fresh) corners_.emplace_back().assign(model_.skin[corner], model_.spheres);
             corner = at->second;
         }
         walls_.push_back(wall);
@@ -62,9 +71,10 @@ PointEffects::PointEffects(const skeleton::Model& model, const fem::Effects& eff
             "the model's skin encloses no cavity, in which a pressure could act: give it one, closed and turned "
             "inwards, or take the pressure away");
     growth_.resize(corners_.size());
-    const SphereRows rest = rest_rows(model);
+    const SphereRows rest = rest_rows(model_);
     SphereRows nothing(rest.size(), 0.0);
-    rest_volume_ = -add_pressure(rest.data(), nothing.data()) / pressure_;
+    pressure_ = 1;
+    rest_volume_ = -add_pressure(rest.data(), nothing.data());
 }
 
 double PointEffects::add_forces(const double* pose, double* force) {

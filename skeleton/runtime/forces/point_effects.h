@@ -14,11 +14,14 @@ class PointEffects {
 public:
     using Block = Eigen::Matrix<double, 6, 6>;
 
-    /// @throws InvalidInput when the model has nothing that one of them acts on.
+    /// Keeps a reference to the model. @throws InvalidInput when it has nothing that one of them acts on.
     PointEffects(const skeleton::Model& model, const fem::Effects& effects);
 
     /// Spheres that support points hang on (flags, N).
     const std::vector<char>& supported() const { return supported_; }
+
+    /// Beside that of the effects [MPa]. @throws InvalidInput when the model has no cavities.
+    void set_pressure(double pressure);
 
     /// Adds their forces to the spheres' rows; returns their energy [N mm].
     double add_forces(const double* pose, double* force);
@@ -38,7 +41,10 @@ private:
         std::vector<double> weights;
     };
     double add_skin(const double* pose, double* force);
+    void take_walls();
     double add_pressure(const double* pose, double* force);
+
+    const skeleton::Model& model_;
 
     std::vector<Placed> effects_;
     std::vector<char> supported_;
@@ -46,7 +52,7 @@ private:
     std::vector<skeleton::SkinTriangle> triangles_;  // where there are any
     std::vector<RuntimePoint> vertices_;             // of the skin
     std::vector<Vec3> pulls_;                        // on each of them [N]
-    double pressure_ = 0;                            // [MPa]
+    double pressure_ = 0, of_effects_ = 0;           // all of it, and that of the effects [MPa]
     std::vector<std::array<int, 3>> walls_;          // by their corners among `corners_`
     std::vector<RuntimePoint> corners_;
     std::vector<Vec3> growth_;  // of the volume by each corner

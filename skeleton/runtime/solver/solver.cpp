@@ -40,7 +40,7 @@ Eigen::Quaterniond turn_of(const Vec3& w) {
 
 }  // namespace
 
-Solver::Solver(ForceField& field, int contacts) : field_(field), matrix_(0, {}) {
+Solver::Solver(ForceField& field, int contacts, Rig& rig) : field_(field), rig_(rig), matrix_(0, {}) {
     const skeleton::Model& model = field.model();
     const int n = static_cast<int>(model.spheres.size());
     for (int i = 0; i < n; ++i) {
@@ -68,6 +68,7 @@ Solver::Solver(ForceField& field, int contacts) : field_(field), matrix_(0, {}) 
     for (Vector* v : {&net_, &direction_, &there_}) v->setZero(size);
     bfgs_ = LimitedMemoryBfgs(size);
     springs_ = Springs(block_of_, size, contacts);
+    stiffened_ = StiffenedMatrix(block_of_, size);
     const std::size_t rows = static_cast<std::size_t>(row_length) * row_count(model);
     for (SphereRows* r : {&force_, &velocity_, &trial_}) r->assign(rows, 0.0);
     x_predicted_.resize(n);
@@ -114,6 +115,7 @@ void Solver::balance(const Step& step, const std::vector<ContactState*>& contact
             Eigen::Map<Vec3>(force_.data() + row_length * sphere + 4) += torque;
         });
     }
+    rig_.add_forces(pose, force_.data());
     const double by = step.h > 0 ? (1 + step.alpha * step.h) / (step.h * step.h) : 0;
     for (std::size_t f = 0; f < free_.size(); ++f) {
         const int i = free_[f];
@@ -163,16 +165,28 @@ bool Solver::factor(const Step& step, const double* pose, double& shift) {
     factored_h_ = step.h;
     factored_alpha_ = step.alpha;
     factored_beta_ = step.beta;
-    springs_.forget();
+    forget_contacts();
     return true;
 }
 
 bool Solver::factor_is_expensive() const { return matrix_.cost_in_solutions() > expensive; }
 
-// way_ <- H net_, H the factored inverse with the springs of contacts, and what steps have told since.
-void Solver::correct() {
+// direction_ <- H net_, H the factored inverse with the springs of contacts and what tools and cables resist now, or,
+// where they do not, what steps have told since.
+void Solver::correct(const std::vector<ContactState*>& contacts, const double* pose) {
+    if (!springs_.known()) springs_.take(matrix_, contacts, pose);
     direction_ = net_;
-    bfgs_.solve(direction_, [&](Vector& v) { springs_.solve(matrix_, v); });
+    const auto solve = [&](double* v) { springs_.solve(matrix_, v); };
+    stiff_.clear();
+    rig_.add_rows(pose, stiff_);
+    if (!stiff_.rows.empty()) {
+        bfgs_.forget();  // it knows of other ones
+        stiffened_.take(stiff_, solve);
+        solve(direction_.data());
+        stiffened_.correct(direction_);
+        return;
+    }
+    bfgs_.solve(direction_, [&](Vector& v) { solve(v.data()); });
 }
 
 // No sphere turns by more than half a radian at once, no link's ends part by more than half its length.
@@ -247,8 +261,7 @@ Solver::Report Solver::solve(const Step& step, const std::vector<ContactState*>&
         }
         fresh = due;
         due = false;
-        if (!springs_.known()) springs_.take(matrix_, contacts, pose.data());
-        correct();
+        correct(contacts, pose.data());
         const double size = largest(direction_, length_);
         if (!std::isfinite(size)) return report;
         if (!fresh && size > slow * before_last) {
@@ -336,7 +349,7 @@ double Solver::stiffest_mode(const double* pose) {
 double Solver::softest_mode(const double* pose) {
     assemble(1, pose);
     factored_ = false;
-    springs_.forget();
+    forget_contacts();
     if (net_.size() == 0 || matrix_.factor(0, metric_)) return 0;
     Vector v(net_.size());
     for (Eigen::Index i = 0; i < v.size(); ++i) v[i] = std::sin(1.0 + static_cast<double>(i));

@@ -6,6 +6,8 @@
 #include "skeleton/runtime/contacts/springs.h"
 #include "skeleton/runtime/forces/force_field.h"
 #include "skeleton/runtime/solver/learnt_curvature.h"
+#include "skeleton/runtime/tools/rig.h"
+#include "skeleton/runtime/tools/stiffened_matrix.h"
 
 namespace palpate::runtime {
 
@@ -27,13 +29,16 @@ public:
         double residual = 0;  // [N]
     };
 
-    Solver(ForceField& field, int contacts);
+    Solver(ForceField& field, int contacts, Rig& rig);
 
     /// From `pose` to the answer, in place. `start`, `velocity`: rows at the beginning of a step.
     Report solve(const Step& step, const std::vector<ContactState*>& contacts, const double* start,
                  const double* velocity, SphereRows& pose);
     /// A contact was set, taken away or has another stiffness.
-    void forget_contacts() { springs_.forget(); }
+    void forget_contacts() {
+        springs_.forget();
+        stiffened_.forget();
+    }
 
     /// Is factorisation so expensive that reuse pays even for large corrections?
     bool factor_is_expensive() const;
@@ -53,7 +58,7 @@ private:
     void set_rates(const Step& step, const double* start, const double* pose);
     bool factor(const Step& step, const double* pose, double& shift);
     void assemble(double share, const double* pose);
-    void correct();
+    void correct(const std::vector<ContactState*>& contacts, const double* pose);
     double step_limit(const double* from) const;
     Eigen::Matrix<double, 6, 1> direction_of(int sphere) const;  // zero for one that is held
     void move(const double* from, double share, double* to) const;
@@ -62,6 +67,7 @@ private:
     Vector mass_times(const double* pose, const Vector& v, bool inverse) const;
 
     ForceField& field_;
+    Rig& rig_;
     double length_ = 1;  // mean of the links [mm]
     std::vector<int> free_, block_of_;
     std::vector<int> coupling_of_;  // of each pair of the field, -1: none
@@ -80,6 +86,8 @@ private:
     Vector net_, direction_, there_;  // (6 free)
 
     Springs springs_;
+    StiffRows stiff_;
+    StiffenedMatrix stiffened_;
     LimitedMemoryBfgs bfgs_{0};
 };
 

@@ -97,7 +97,7 @@ skeleton::Model free(skeleton::Model model) {
     return model;
 }
 
-skeleton::Model organ(int spheres, int vertices) {
+skeleton::Model organ(int spheres, int halvings) {
     // Cubes that fill an ellipsoid with half axes 2 : 1.4 : 1, in the volume of so many.
     const double unit = std::cbrt(spheres * 3 / (4 * 3.14159265 * 2 * 1.4));
     const Vec3 half = unit * Vec3(2, 1.4, 1);
@@ -114,14 +114,8 @@ skeleton::Model organ(int spheres, int vertices) {
         for (int b = a + 1; b < static_cast<int>(cells.size()); ++b)
             if ((cells[a] - cells[b]).squaredNorm() == 1) join(model, a, b, true);
 
-    model.surface = mesh::make_sphere(Vec3::Zero(), 1, vertices > 10242 ? 6 : 5);  // 40962 vertices, or 10242
-    const auto kept = std::min<Eigen::Index>(vertices, model.surface.vertices.rows());
-    std::vector<Eigen::Index> whole;
-    for (Eigen::Index t = 0; t < model.surface.triangles.rows(); ++t)
-        if (model.surface.triangles.row(t).maxCoeff() < kept) whole.push_back(t);
-    const Triangles triangles = model.surface.triangles(whole, Eigen::all);
-    const Points points = model.surface.vertices.topRows(kept);
-    model.surface.triangles = triangles;
+    model.surface = mesh::make_sphere(Vec3::Zero(), 1, halvings);
+    const Points points = model.surface.vertices;
     model.surface.vertices = points * (spacing * (half.array() + 0.3)).matrix().asDiagonal();
     std::mt19937_64 engine(3);
     std::normal_distribution<double> normal;

@@ -13,9 +13,9 @@ skeleton::Model lattice(const Eigen::Vector3i& n, bool full);
 skeleton::Model shuffled(skeleton::Model model);
 /// Nothing held.
 skeleton::Model free(skeleton::Model model);
-/// An ellipsoid filled with about so many spheres, full links and volumes, and a skin of about so many vertices, each
-/// on the six spheres nearest to it.
-skeleton::Model organ(int spheres, int vertices);
+/// An ellipsoid filled with about so many spheres, full links and volumes. Each vertex of its skin, an icosahedron whose
+/// edges were halved so often (5: 10,242 vertices), hangs on the six spheres nearest to it.
+skeleton::Model organ(int spheres, int halvings);
 /// A small triangle of skin on each free sphere, so that it can be pushed.
 skeleton::Model with_skin_on_spheres(skeleton::Model model);
 /// A force on the last sphere that moves it by that share of the body's size, in the linear answer.

@@ -179,6 +179,33 @@ def check_model(browser, run, page, scratch):
     expect(not lacks_names(browser), f"controls without a name: {lacks_names(browser)}")
 
 
+def check_ball(browser, page):
+    """A ball that comes up to a point by keys and goes on inwards pushes the skin before it; lifted, it lets it go."""
+    browser.open(page.as_uri(), 1366, 900)
+    browser.run("p.chooseProbe(-1); p.settle(); p.at('with').value = 'ball'; p.choosePoint(0); p.at('canvas').focus();")
+    browser.key("Enter")
+    pressed = browser.run("""
+      p.frame = () => {};
+      const {from, normal, ball} = p.hand;
+      p.pull(plus3(from, normal, -0.5 * ball.radius));
+      for (let i = 0; i < 60; ++i) p.step();
+      const skin = p.numerics.skin();
+      let within = 0;
+      for (let v = 0; v < skin.length / 3; ++v)
+        within = Math.max(within, ball.radius - length3(minus3(row3(skin, v), ball.at)));
+      p.draw();
+      return {...p.feel(), within: within / ball.radius, along: dot3(unit3(p.numerics.ballForce()), normal)};""")
+    browser.picture("ball")
+    print("ball: {strength:.3g} N at {moved:.3g} mm, {within:.1e} of its radius within the skin".format(**pressed))
+    expect(pressed["strength"] > 0 and pressed["along"] < -0.5, f"the ball presses with {pressed}")
+    expect(pressed["within"] < 0.05, f"the ball goes into the skin by {pressed['within']} of its radius")
+    lifted = browser.run("""
+      const before = p.numerics.shape();
+      p.letAllGo(); p.settle();
+      return [p.ball, length3(p.numerics.ballForce()), Math.max(...p.numerics.shape().map((x, i) => Math.abs(x - before[i])))];""")
+    expect(lifted[0] is None and lifted[1] == 0 and lifted[2] > 0.1, f"the ball that is lifted leaves {lifted}")
+
+
 def check_ladder(browser, run, page):
     """Each step's error is what ladder.json says, and a switch moves the body and the error."""
     ladder = json.loads((run / "improve/ladder.json").read_text())
@@ -340,6 +367,7 @@ with tempfile.TemporaryDirectory() as folder:
     browser = PlayerBrowser(at / "profile", "player", pictures)
     try:
         check_model(browser, at / "measured", page, at)
+        check_ball(browser, page)
         check_ladder(browser, at / "measured", page)
         check_creep(browser, at / "crept", at / "crept.html")
         check_phone(browser, page)

@@ -1,0 +1,93 @@
+#include "skeleton/runtime/tools/tendons.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "mesh/errors.h"
+#include "skeleton/model/attach.h"
+#include "skeleton/runtime/kernels/tables.h"
+
+namespace palpate::runtime {
+
+int Tendons::add(const Points& path, double stiffness) {
+    if (path.rows() < 2)
+        throw InvalidInput(fmt::format("a tendon's path has {} points; it must have 2 or more", path.rows()));
+    Tendon tendon;
+    tendon.anchor = path.row(0);
+    for (Eigen::Index k = 1; k < path.rows(); ++k) {
+        const double length = (path.row(k) - path.row(k - 1)).norm();
+        if (!(length > 0))
+            throw InvalidInput(fmt::format("points {} and {} of a tendon's path are in one place, ({:g}, {:g}, {:g})",
+                                           k, k + 1, path(k, 0), path(k, 1), path(k, 2)));
+        tendon.rest_length += length;
+        tendon.points.emplace_back().assign(skeleton::attach_to_links(model_, path.row(k)), model_.spheres);
+    }
+    tendon.stiffness = stiffness;
+    tendon.along.resize(tendon.points.size());
+    tendons_.push_back(std::move(tendon));
+    return count() - 1;
+}
+
+void Tendons::set(int tendon, Mode mode, double value) {
+    tendons_[tendon].mode = mode;
+    tendons_[tendon].value = value;
+}
+
+bool Tendons::any() const {
+    return std::ranges::any_of(tendons_, [](const Tendon& tendon) { return tendon.mode != Mode::free; });
+}
+
+void Tendons::place(Tendon& tendon, const double* pose) {
+    Vec3 from = tendon.anchor;
+    double length = 0;
+    for (std::size_t k = 0; k < tendon.points.size(); ++k) {
+        tendon.points[k].place(pose);
+        const Vec3 way = tendon.points[k].x() - from;
+        const double own = way.norm();
+        tendon.along[k] = own > 0 ? Vec3(way / own) : Vec3(Vec3::Zero());
+        length += own;
+        from = tendon.points[k].x();
+    }
+    const double taut = std::max(0.0, length - tendon.rest_length + tendon.value);
+    tendon.tension = tendon.mode == Mode::pulled ? tendon.value : tendon.stiffness * taut;
+    if (tendon.mode == Mode::free) tendon.tension = 0;
+}
+
+Vec3 Tendons::lengthening(const Tendon& tendon, std::size_t k) {
+    const bool is_last = k + 1 == tendon.along.size();
+    return is_last ? tendon.along[k] : Vec3(tendon.along[k] - tendon.along[k + 1]);
+}
+
+void Tendons::add_forces(const double* pose, double* force) {
+    for (Tendon& tendon : tendons_) {
+        if (tendon.mode == Mode::free) continue;
+        place(tendon, pose);
+        if (tendon.tension == 0) continue;
+        for (std::size_t k = 0; k < tendon.points.size(); ++k) {
+            tendon.points[k].pull_back(-tendon.tension * lengthening(tendon, k),
+                                       [&](int sphere, const Vec3& f, const Vec3& t) {
+                                           Eigen::Map<Vec3>(force + row_length * sphere) += f;
+                                           Eigen::Map<Vec3>(force + row_length * sphere + 4) += t;
+                                       });
+        }
+    }
+}
+
+void Tendons::add_rows(const double* pose, StiffRows& stiff) {
+    for (Tendon& tendon : tendons_) {
+        if (tendon.mode != Mode::drawn) continue;
+        place(tendon, pose);
+        if (tendon.tension == 0) continue;
+        stiff.rows.push_back({tendon.stiffness, tendon.points.size()});
+        for (std::size_t k = 0; k < tendon.points.size(); ++k)
+            stiff.moves.push_back({&tendon.points[k], lengthening(tendon, k)});
+    }
+}
+
+double Tendons::tension(int tendon, const double* pose) {
+    place(tendons_[tendon], pose);
+    return tendons_[tendon].tension;
+}
+
+}  // namespace palpate::runtime

@@ -1,0 +1,251 @@
+// Rigid tools that press on the skin: equilibria are those of the model in skeleton/ under the same tool.
+
+#include <gtest/gtest.h>
+
+#include <numbers>
+
+#include "fem/rig/tool_potential.h"
+#include "mesh/errors.h"
+#include "skeleton/model/link_modulus.h"
+#include "skeleton/runtime/body.h"
+#include "skeleton/statics/equilibrium.h"
+#include "tests/messages.h"
+#include "tests/skeleton/runtime/live_models.h"
+
+namespace palpate::runtime {
+namespace {
+
+/// A block with a skin, and where a ball just touches its top, between two vertices.
+class LiveTools : public testing::Test {
+protected:
+    LiveTools() {
+        give_skin(model_);
+        const mesh::Box box = mesh::bounding_box(model_.surface.vertices);
+        top_ = {0.7 * box.max.x() + 0.3 * box.min.x(), (box.min.y() + box.max.y()) / 2 + 1, box.max.z()};
+    }
+    Vec3 ball_within(double depth) const { return top_ + Vec3(0, 0, radius_ - depth); }
+
+    /// As skeleton/ has it, by a layer as stiff as the runtime's.
+    skeleton::Equilibrium expected(const mesh::Tool& tool, const mesh::ToolMotion& motion, double compliance) const {
+        const double a = radius_ / 3, E = skeleton::link_modulus(model_);
+        const double layer = 8.0 / 3 * E / (std::numbers::pi * a * compliance);  // [N/mm^3]
+        fem::Effects effects;
+        // Its own layer is young / (1e-4 R).
+        effects.tools.push_back(std::make_shared<fem::ToolPotential>(std::make_shared<const fem::RigidTool>(tool),
+                                                                     motion, layer * 1e-4 * radius_));
+        return skeleton::StaticsSolver(model_, effects).solve(skeleton::stiffness_vector(model_), {});
+    }
+    double apart(const Body& body, const skeleton::Equilibrium& other) const {
+        double most = 0;
+        for (int i = 0; i < body.sphere_count(); ++i)
+            most = std::max(most, (body.position(i) - Vec3(other.state.x.row(i))).norm());
+        return most;
+    }
+    double moved(const Body& body) const {
+        double most = 0;
+        for (int i = 0; i < body.sphere_count(); ++i)
+            most = std::max(most, (body.position(i) - model_.spheres[static_cast<std::size_t>(i)].center).norm());
+        return most;
+    }
+
+    skeleton::Model model_ = skeleton::testing::make_full_lattice({4, 3, 2});
+    double radius_ = 6;
+    Vec3 top_;
+};
+
+TEST_F(LiveTools, BallStandsInEquilibriumAsInTheModel) {
+    const BodyOptions options{.tool_compliance = 0.05};
+    Body body(model_, options);
+    const int ball = body.add_ball(radius_);
+    body.place_tool(ball, ball_within(1));
+    body.equilibrium();
+    const mesh::Tool same{.name = "ball", .shape = mesh::SphereShape{radius_}, .origin = ball_within(0)};
+    EXPECT_GT(moved(body), 0.2);
+    EXPECT_LT(apart(body, expected(same, {.translation = Vec3(0, 0, -1)}, options.tool_compliance)),
+              1e-6 * moved(body));
+    const ToolLoad load = body.tool_load(ball);
+    EXPECT_LT(load.force.z(), 0);
+    EXPECT_LT(load.moment.norm(), 1e-9 * radius_ * load.force.norm());  // all normals meet in the ball's middle
+}
+
+TEST_F(LiveTools, PunchStandsInEquilibriumAsInTheModel) {
+    const BodyOptions options{.tool_compliance = 0.05};
+    Body body(model_, options);
+    const int punch = body.add_punch(radius_, -Vec3::UnitZ());
+    body.place_tool(punch, top_ - Vec3(0, 0, 0.5));
+    body.equilibrium();
+    const mesh::Tool same{.name = "punch", .shape = mesh::FlatShape{radius_}, .origin = top_};
+    EXPECT_LT(apart(body, expected(same, {.translation = Vec3(0, 0, -0.5)}, options.tool_compliance)),
+              1e-6 * moved(body));
+    EXPECT_GT(body.tool_load(punch).moment.norm(), 0.01 * body.tool_load(punch).force.norm());
+}
+
+TEST_F(LiveTools, WorkOfAToolIsTheBodysEnergy) {
+    Body body(model_);
+    const int ball = body.add_ball(radius_);
+    const auto work_to = [&](double depth) {  // by Simpson's rule from the depth before
+        body.place_tool(ball, ball_within(depth));
+        body.equilibrium();
+        return -body.tool_load(ball).force.z();
+    };
+    double work = 0, before = work_to(0);
+    constexpr int intervals = 40;
+    constexpr double h = 1.0 / intervals;
+    for (int i = 0; i < intervals; ++i) {
+        const double middle = work_to((i + 0.5) * h), after = work_to((i + 1) * h);
+        work += h / 6 * (before + 4 * middle + after);
+        before = after;
+    }
+    EXPECT_NEAR(body.energy().potential, work, 0.02 * work);  // the layer stores its share, 2 % at most
+}
+
+TEST_F(LiveTools, SlidesOverTheSkinAsIfItHadBeenPlacedThere) {
+    Body body(model_);
+    const int ball = body.add_ball(radius_);
+    for (int step = 0; step <= 12; ++step) {
+        const Vec3 at = ball_within(0.8) + 0.9 * step * Vec3(-0.8, -0.6, 0);
+        body.place_tool(ball, at);
+        body.equilibrium();
+        if (step % 4 != 0) continue;
+        Body fresh(model_);
+        const int there = fresh.add_ball(radius_);
+        fresh.place_tool(there, at);
+        fresh.equilibrium();
+        const Vec3 force = fresh.tool_load(there).force;
+        EXPECT_LT((body.tool_load(ball).force - force).norm(), 1e-5 * force.norm()) << step;
+    }
+}
+
+TEST_F(LiveTools, StepsSettleInTheEquilibriumAndComeBack) {
+    Body body(model_, {.damping_ratio = 1});
+    const int ball = body.add_ball(radius_);
+    for (int i = 1; i <= 400; ++i) {
+        body.place_tool(ball, ball_within(std::min(1.0, 0.01 * i)));
+        body.step_implicit(1e-3);
+    }
+    const Vec3 held = body.tool_load(ball).force;
+    Body still(model_);
+    still.place_tool(still.add_ball(radius_), ball_within(1));
+    still.equilibrium();
+    EXPECT_LT((held - still.tool_load(0).force).norm(), 1e-3 * held.norm());
+
+    body.lift_tool(ball);
+    EXPECT_EQ(body.tool_load(ball).force, Vec3::Zero());
+    for (int i = 0; i < 400; ++i) body.step_implicit(1e-3);
+    EXPECT_LT(moved(body), 1e-3);
+}
+
+TEST_F(LiveTools, TwoBallsSqueezeABodyThatIsPulledToo) {
+    Body body(model_);
+    const int above = body.add_ball(radius_), below = body.add_ball(radius_);
+    const int contact = body.touch(model_.surface.vertices.row(100));
+    body.drag(contact, body.place(contact) + Vec3(0, 2, 0), 0.5);
+    const mesh::Box box = mesh::bounding_box(model_.surface.vertices);
+    body.place_tool(above, ball_within(1));
+    body.place_tool(below, Vec3(top_.x(), top_.y(), box.min.z() - radius_ + 1));
+    body.equilibrium();
+    const double up = body.tool_load(below).force.z(), down = body.tool_load(above).force.z();
+    EXPECT_GT(up, 0);
+    EXPECT_NEAR(up, -down, 0.2 * up);
+}
+
+class LiveActuation : public LiveTools {
+protected:
+    LiveActuation() {
+        path_.resize(3, 3);
+        const mesh::Box box = mesh::bounding_box(model_.surface.vertices);
+        const double y = 0.6 * box.max.y() + 0.4 * box.min.y(), z = 0.8 * box.max.z() + 0.2 * box.min.z();
+        path_ << box.min.x() - 5, y, z, (box.min.x() + box.max.x()) / 2, y, z, box.max.x() - 4, y, z;
+    }
+    skeleton::Equilibrium expected_under(double value, bool by_length) const {
+        fem::Effects effects;
+        effects.tendons.push_back({.actuator = std::make_shared<const mesh::TendonActuator>(path_, by_length),
+                                   .value = value,
+                                   .young = skeleton::link_modulus(model_)});
+        return skeleton::StaticsSolver(model_, effects).solve(skeleton::stiffness_vector(model_), {});
+    }
+    Points path_;
+};
+
+TEST_F(LiveActuation, TendonPullsAsInTheModel) {
+    Body body(model_);
+    const int tendon = body.add_tendon(path_);
+    EXPECT_EQ(body.tendon_tension(tendon), 0);
+    body.pull_tendon(tendon, 2);
+    body.equilibrium();
+    EXPECT_GT(moved(body), 0.5);
+    EXPECT_LT(apart(body, expected_under(2, false)), 1e-6 * moved(body));
+    EXPECT_EQ(body.tendon_tension(tendon), 2);
+}
+
+TEST_F(LiveActuation, TendonIsDrawnInAsInTheModelAndGoesSlack) {
+    Body body(model_);
+    const int tendon = body.add_tendon(path_);
+    body.draw_tendon(tendon, 1);
+    body.equilibrium();
+    EXPECT_GT(moved(body), 0.5);
+    EXPECT_LT(apart(body, expected_under(1, true)), 1e-6 * moved(body));
+    const double tension = body.tendon_tension(tendon);
+    EXPECT_GT(tension, 0);
+    // The same tension does the same.
+    const Vec3 tip = body.position(body.sphere_count() - 1);
+    body.pull_tendon(tendon, tension);
+    body.equilibrium();
+    EXPECT_LT((body.position(body.sphere_count() - 1) - tip).norm(), 1e-5 * moved(body));
+    // Pulled further by a ball it slackens.
+    body.draw_tendon(tendon, 0);
+    body.place_tool(body.add_ball(radius_), Vec3(path_(2, 0) + 8, path_(2, 1), path_(2, 2)));
+    body.equilibrium();
+    EXPECT_EQ(body.tendon_tension(tendon), 0);
+    body.let_tendon_go(tendon);
+    body.reset();
+    body.equilibrium();
+    EXPECT_LT(moved(body), 1e-6);
+}
+
+TEST_F(LiveActuation, PressureActsAsTheEffectDoes) {
+    add_cavity(model_);
+    Body body(model_);
+    body.set_pressure(0.02);
+    body.equilibrium();
+    skeleton::Model with = model_;
+    with.effects = {{"pressure", {{"pressure", 0.02, "MPa"}}}};
+    EXPECT_GT(moved(body), 1e-3);
+    EXPECT_LT(apart(body, skeleton::equilibrium(with, {})), 1e-6 * moved(body));
+    Body of_effect(with);
+    of_effect.set_pressure(-0.02);  // both together are none
+    of_effect.equilibrium();
+    EXPECT_LT(moved(of_effect), 1e-9);
+}
+
+TEST_F(LiveActuation, RefusesWhatCannotBe) {
+    Body body(model_);
+    EXPECT_TRUE(says(message_of<InvalidInput>([&] { body.set_pressure(1); }), {"no cavity"}));
+    body.equilibrium();  // and nothing has changed
+    EXPECT_TRUE(says(message_of<InvalidInput>([&] { body.add_tendon(path_.topRows(1)); }), {"1 points", "2 or more"}));
+    const Points twice = path_({0, 1, 1}, Eigen::all);
+    EXPECT_TRUE(says(message_of<InvalidInput>([&] { body.add_tendon(twice); }), {"points 2 and 3", "one place"}));
+    EXPECT_TRUE(says(message_of<InvalidInput>([&] { body.pull_tendon(0, 1); }), {"tendon 0", "add_tendon"}));
+    const int tendon = body.add_tendon(path_);
+    EXPECT_TRUE(says(message_of<InvalidInput>([&] { body.pull_tendon(tendon, -1); }), {"-1", "at least 0"}));
+}
+
+TEST_F(LiveTools, RefuseWhatCannotBe) {
+    Body body(model_);
+    EXPECT_TRUE(says(message_of<InvalidInput>([&] { body.add_ball(0); }), {"radius", "0"}));
+    EXPECT_TRUE(says(message_of<InvalidInput>([&] { body.add_punch(1, Vec3::Zero()); }), {"axis", "0"}));
+    EXPECT_TRUE(says(message_of<InvalidInput>([&] { body.place_tool(0, top_); }), {"tool 0", "add_ball"}));
+    const int ball = body.add_ball(1);
+    EXPECT_TRUE(says(message_of<InvalidInput>([&] { body.place_tool(ball, Vec3::Constant(NAN)); }), {"not finite"}));
+    body.place_tool(ball, top_);
+    EXPECT_TRUE(says(message_of<InvalidInput>([&] { body.step_explicit(1e-6); }), {"explicit", "step_implicit"}));
+    body.reset();
+    body.step_explicit(1e-6);  // it is away again
+    EXPECT_TRUE(says(message_of<InvalidInput>([] { BodyOptions{.tool_compliance = 2}.validate(); }),
+                     {"tool_compliance", "2", "1e-4 to 1"}));
+    skeleton::Model bare = skeleton::testing::make_full_lattice({3, 2, 2});
+    EXPECT_THROW(Body(bare).add_ball(1), InvalidInput);
+}
+
+}  // namespace
+}  // namespace palpate::runtime
