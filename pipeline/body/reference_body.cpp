@@ -62,6 +62,22 @@ std::vector<std::string> not_followed(const MeshedBody& body, const std::vector<
     return notes;
 }
 
+/// The surface filled with tetrahedra, with shorter edges where tools press: as short as `contact_zones` wants them,
+/// or, unless the edge length was told, longer, so that a diagnosis, which factors hundreds of tangents, is done in
+/// minutes. A factor of a body of so many nodes takes some 0.2 s; it grows with their square.
+MeshedBody filled(const identify::MeasurementSet& set, MeshingOptions options, bool is_told, const Progress& progress) {
+    constexpr Eigen::Index enough_nodes = 6000;
+    constexpr double longer = 1.35, longest = 3;  // edges in zones, at once and in all
+    options.fine = contact_zones(set);
+    MeshedBody body = make_body(set.rest_surface, options, progress);
+    if (is_told || options.fine.empty()) return body;
+    for (double all = longer; body.volume.nodes.rows() > enough_nodes && all < longest; all *= longer) {
+        for (FineZone& zone : options.fine) zone.edge *= longer;
+        body = make_body(set.rest_surface, options, progress);
+    }
+    return body;
+}
+
 std::unique_ptr<identify::ReferenceBody> fill(const identify::MeasurementSet& set, double edge_length,
                                               const Progress& progress,
                                               const std::vector<identify::InformativePrior>& priors,
@@ -79,14 +95,10 @@ std::unique_ptr<identify::ReferenceBody> fill(const identify::MeasurementSet& se
     const bool is_fitted = given && (given_nodes <= most_nodes || edge > thickness_of(set.rest_surface));
     const std::vector<mesh::Region> held = held_regions(set.supports, set.tools);
     // Curving the elements gives back what their chords cut off.
-    const MeshedBody body = is_fitted ? *given
-                                      : make_body(set.rest_surface,
-                                                  {.edge_length = edge,
-                                                   .fine = contact_zones(set),
-                                                   .regions = set.regions,
-                                                   .held = held,
-                                                   .volume_change = 0.06},
-                                                  progress);
+    const MeshedBody body =
+        is_fitted ? *given
+                  : filled(set, {.edge_length = edge, .regions = set.regions, .held = held, .volume_change = 0.06},
+                           edge_length > 0, progress);
     const mesh::VolumeMesh curved =
         is_fitted ? body.volume : mesh::curve_to(body.volume, body.repaired, {.held = held});
     identify::ReferenceBodyOptions options;

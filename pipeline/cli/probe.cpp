@@ -265,6 +265,10 @@ void add_rig_flags(CLI::App* command, RigOptions& rig) {
     command->add_option("--reaction-noise", rig.reaction_noise, "Standard deviation of the tool's force [N]")
         ->check(CLI::NonNegativeNumber)
         ->group("Rig");
+    command
+        ->add_flag_callback("--no-markers", [&] { rig.markers = false; },
+                            "No camera sees markers: the tool's force is all that is read")
+        ->group("Rig");
 }
 
 void add_fault_flags(CLI::App* command, BlindSetOptions& synthesis) {

@@ -204,6 +204,14 @@ private:
         read_reactions(set);
         blind_set_.strength = strength_of(specimen_, baseline, hidden);
         blind_set_.strength.add(conditions_.scatter(blind_set_.noise));
+        if (!options_.rig.markers) leave_markers_out(set);
+    }
+
+    /// As nothing but the tool's load cell reads.
+    static void leave_markers_out(identify::MeasurementSet& set) {
+        set.markers.clear();
+        set.position_noise.reset();
+        for (identify::LoadState& state : set.states) state.readings.clear();
     }
 
     /// Without noise.

@@ -19,6 +19,7 @@ void RigOptions::validate() const {
     belongs(!tendon.empty(), "--tendon", !tension.empty() || !pull.empty(), "--tension or --pull");
     belongs(!tension.empty() || !pull.empty(), tension.empty() ? "--pull" : "--tension", !tendon.empty(), "--tendon");
     belongs(reaction_noise.has_value(), "--reaction-noise", !tool.empty(), "--tool");
+    belongs(!markers, "--no-markers", !tool.empty(), "--tool");
     if (!tension.empty() && !pull.empty())
         throw InvalidInput("--tension and --pull are told; a tendon is pulled by one of them");
     const auto rising = [](const std::vector<double>& values, const char* name, const char* unit) {

@@ -5,8 +5,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "identify/diagnosis/likelihood/tool_nuisances.h"
+#include "identify/diagnosis/likelihood/tool_prints.h"
 #include "mesh/geometry/sampling.h"
 
 namespace palpate::identify {
@@ -146,13 +148,16 @@ private:
     std::vector<Eigen::Index> skin_;
 };
 
-/// The contacts that dent the body in each action: its own, and where it yields, the strongest at each place before.
-std::vector<std::vector<mesh::Contact>> contacts_that_dent(const Problem& problem, const ForwardSolution& forward,
+/// The contacts that dent the body in each action: its own and those of tools, and where it yields, the strongest at
+/// each place before.
+std::vector<std::vector<mesh::Contact>> contacts_that_dent(const BodyModel& model, const Problem& problem,
+                                                           const ModelSetting& setting, const ForwardSolution& forward,
                                                            bool yields) {
     std::vector<std::vector<mesh::Contact>> dents;
     dents.reserve(forward.actions.size());
     for (int k = 0; k < static_cast<int>(forward.actions.size()); ++k) {
         dents.push_back(forward.actions[k].contacts);
+        std::ranges::move(tool_prints(model, problem, setting, forward, k), std::back_inserter(dents.back()));
         if (!yields || problem.before(k) < 0) continue;
         for (const mesh::Contact& earlier : dents[problem.before(k)]) {
             const auto same = std::ranges::find(dents.back(), earlier.point, &mesh::Contact::point);
@@ -249,7 +254,7 @@ Eigen::VectorXd reading_weights(const BodyModel& model, const Problem& problem, 
     const double flow = setting.effects.plasticity ? options.flow : 0;
     const Border border(model, problem.rest.topRows(problem.markers));
     const std::vector<std::vector<mesh::Contact>> dents =
-        contacts_that_dent(problem, forward, problem.by_stage && flow > 0);
+        contacts_that_dent(model, problem, setting, forward, problem.by_stage && flow > 0);
     std::vector<Points> skin;  // what it moved by, in each action
     for (const Eigen::VectorXd& q : forward.q) skin.push_back(model.skin_positions(q, setting) - model.skin());
     Eigen::VectorXd variance = Eigen::VectorXd::Ones(problem.rows());  // in sigma^2

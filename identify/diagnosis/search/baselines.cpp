@@ -54,24 +54,32 @@ bool Baselines::could_match(const Problem& problem, int law, const Refit& fit) c
     return promised < objective(fit) + about * std::max(1.0, fit.whitened_rms * fit.whitened_rms);
 }
 
+/// The linear law first, as it is quick, unless tools or cables make it no quicker than the others; of these the last,
+/// which is the best behaved.
+std::vector<int> Baselines::order() const {
+    std::vector<int> order;
+    for (int law = laws() - 1; law > 0; --law) order.push_back(law);
+    const Eigen::VectorXd theta = Eigen::VectorXd::Zero(std::ssize(model_->parameters()));
+    const bool is_quick = !model_->is_nonlinear({0, theta, {}});
+    order.insert(is_quick ? order.begin() : order.end(), 0);
+    return order;
+}
+
 void Baselines::fit(const Problem& problem, std::vector<std::string>& notes, const Progress& progress) {
     std::string failure;
     std::optional<Refit> neighbour;  // of another law of large deformation
-    // The linear one first, then from the last, which is the best behaved of the others.
-    for (int i = 0; i < laws(); ++i) {
-        const int law = i == 0 ? 0 : laws() - i;
+    for (const int law : order()) {
         if (options_->law && *options_->law != law) continue;
         // Where more than this is left, whitened, other things matter than which of the laws of large deformation it
         // is.
         constexpr double much = 3;
         if (neighbour && neighbour->whitened_rms > much) continue;
         const std::string& name = model_->laws()[law];
-        report(progress, "baseline, law " + name, 0.1 + 0.1 * i);
+        report(progress, "baseline, law " + name, 0.1);
         if (neighbour && !could_match(problem, law, *neighbour)) continue;
         try {
             fits_[law] = fit_under(problem, law, neighbour ? &*neighbour : nullptr);
-            if (law == 0) continue;
-            neighbour = fits_[law];
+            if (law > 0) neighbour = fits_[law];
         } catch (const SolverFailure& e) {
             failure = e.what();
             large_deformation_failed_ |= law > 0 && !options_->law;

@@ -32,6 +32,7 @@ public:
 private:
     Explanation start(const Problem& problem, int law, const Eigen::VectorXd& theta) const;
     Refit fit_under(const Problem& problem, int law, const Refit* neighbour) const;
+    std::vector<int> order() const;
     bool could_match(const Problem& problem, int law, const Refit& fit) const;
 
     const BodyModel* model_;

@@ -105,8 +105,9 @@ std::string line_chart(const std::vector<ChartLine>& curves, const std::string& 
     return svg + "</svg>";
 }
 
-std::string bar_chart(const std::vector<Bar>& bars, const std::string& title, const std::string& unit) {
-    double highest = 0, scale = 1;
+std::string bar_chart(const std::vector<Bar>& bars, const std::string& title, const std::string& unit,
+                      std::optional<double> noise) {
+    double highest = noise.value_or(0), scale = 1;
     for (const Bar& bar : bars) highest = std::max(highest, bar.value);
     if (bars.empty() || highest <= 0) return {};
     std::string svg =
@@ -114,6 +115,11 @@ std::string bar_chart(const std::vector<Bar>& bars, const std::string& title, co
     const double pitch = (width - left - right) / static_cast<double>(bars.size());
     for (std::size_t i = 0; i < bars.size(); ++i) {
         svg += bar_svg(bars[i], left + pitch * (static_cast<double>(i) + 0.1), 0.8 * pitch, scale, unit);
+    }
+    if (noise) {
+        const double y = bottom - scale * *noise;
+        svg += stroke(left, y, width - right, y, R"(stroke="#1c2530" stroke-dasharray="2 3")") +
+               words_at(width - right, y - 4, "noise", "end");
     }
     return svg + "</svg>";
 }
@@ -169,7 +175,8 @@ std::string interval_chart(const std::vector<Interval>& intervals, const std::st
         const double share = std::log(std::clamp(value, low, high) / low) / std::log(high / low);
         return label_width + share * (width - label_width - right);
     };
-    std::string svg = open(lowest + 20, title) + words_at(0, 16, title + " [" + unit + "]");
+    const std::string printed = printed_unit(unit);
+    std::string svg = open(lowest + 20, title) + words_at(0, 16, title + " [" + printed + "]");
     for (double tick = low; tick <= high * 1.001; tick *= 10) {
         svg += stroke(x(tick), top, x(tick), lowest, R"(stroke="#d8dee5")") +
                words_at(x(tick), lowest + 14, fmt::format("{:g}", tick), "middle");
@@ -181,7 +188,7 @@ std::string interval_chart(const std::vector<Interval>& intervals, const std::st
         svg += stroke(x(v.prior_low), y, x(v.prior_high), y, R"(stroke="#d8dee5" stroke-width="8")");
         svg += stroke(x(v.low), y, x(v.high), y, R"(stroke="#2a6f97" stroke-width="3")");
         svg += fmt::format(R"(<circle cx="{:.1f}" cy="{:.1f}" r="4" fill="#2a6f97"><title>{:.4g} {}</title></circle>)",
-                           x(v.middle), y, v.middle, escape(unit));
+                           x(v.middle), y, v.middle, escape(printed));
     }
     return svg + "</svg>";
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -22,8 +23,9 @@ struct Bar {
     bool highlighted;
 };
 
-/// Bars side by side with a value axis, as SVG.
-std::string bar_chart(const std::vector<Bar>& bars, const std::string& title, const std::string& unit);
+/// Bars side by side with a value axis, as SVG. `noise`: a line across them at that value.
+std::string bar_chart(const std::vector<Bar>& bars, const std::string& title, const std::string& unit,
+                      std::optional<double> noise = {});
 
 /// Bars that belong together, with a label below.
 struct BarGroup {

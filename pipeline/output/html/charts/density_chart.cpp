@@ -81,7 +81,7 @@ std::string points_of(const Density& density, const Frame& frame) {
 
 std::string density_chart(const KnownBeforeAndAfter& known) {
     const Frame frame = frame_of(known);
-    const std::string unit = known.unit.empty() ? "× start value" : known.unit;
+    const std::string unit = known.unit.empty() ? "× start value" : printed_unit(known.unit);
     const std::string description =
         fmt::format("{}: {:.3g}, 95 % in {:.3g} to {:.3g} {}", known.name, known.middle, known.low, known.high, unit);
     const std::string filled = fmt::format("{:.1f},{:.1f} ", left, bottom) + points_of(known.posterior, frame) +

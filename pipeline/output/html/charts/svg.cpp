@@ -25,6 +25,12 @@ std::string words_at(double x, double y, const std::string& words, const char* a
     return fmt::format(R"(<text x="{:.1f}" y="{:.1f}" text-anchor="{}">{}</text>)", x, y, anchor, escape(words));
 }
 
+std::string printed_unit(const std::string& unit) {
+    std::string printed;
+    for (const char c : unit) printed += c == '*' ? std::string("·") : std::string(1, c);
+    return printed;
+}
+
 std::string stroke(double x1, double y1, double x2, double y2, const char* style) {
     return fmt::format(R"(<line x1="{:.1f}" y1="{:.1f}" x2="{:.1f}" y2="{:.1f}" {}/>)", x1, y1, x2, y2, style);
 }

@@ -16,6 +16,8 @@ double nice_step(double range);
 /// The beginning of a picture that a reader without eyes is `description`.
 std::string open_svg(double width, double height, const std::string& description);
 std::string words_at(double x, double y, const std::string& words, const char* anchor = "start");
+/// A unit as it is printed, "N·mm/rad" for "N*mm/rad".
+std::string printed_unit(const std::string& unit);
 std::string stroke(double x1, double y1, double x2, double y2, const char* style);
 
 }  // namespace palpate::pipeline

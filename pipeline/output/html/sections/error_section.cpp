@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <set>
 #include <vector>
 
@@ -54,15 +55,24 @@ std::vector<Bar> error_bars(const RunFiles& files, const json& compare, bool sha
     return bars;
 }
 
+/// 1 sigma of the readings [mm].
+std::optional<double> noise_of(const json& compare) {
+    const json& noise = compare["error"]["noise_mm"];
+    if (!noise.is_number()) return std::nullopt;
+    return noise.get<double>();
+}
+
 std::string probe_chart(const RunFiles& files) {
     const bool held_out = !files.record.value("held_out_probes", json::array()).empty();
+    const std::optional<double> noise = noise_of(files.compare);
     std::string html = "<div class=\"pair\">";
     if (files.improved.is_object()) {
         html +=
-            bar_chart(error_bars(files, files.compare, false), "Error of each state, nothing added", "mm rms") +
-            bar_chart(error_bars(files, files.improved, false), "Error of each state, " + with_what(files), "mm rms");
+            bar_chart(error_bars(files, files.compare, false), "Error of each state, nothing added", "mm rms", noise) +
+            bar_chart(error_bars(files, files.improved, false), "Error of each state, " + with_what(files), "mm rms",
+                      noise);
     } else {
-        html += bar_chart(error_bars(files, files.compare, false), "Error of each state", "mm rms") +
+        html += bar_chart(error_bars(files, files.compare, false), "Error of each state", "mm rms", noise) +
                 bar_chart(error_bars(files, files.compare, true), "Error over displacement of each state", "%");
     }
     return html + "</div>" + (held_out ? "<p class=\"soft\">Orange: held out of the fit.</p>" : "");
@@ -90,12 +100,20 @@ ChartLine errors_under_load(const json& compare, const std::string& label) {
     return dots;
 }
 
+/// The noise over all loads of some errors.
+ChartLine noise_line(const ChartLine& errors, double noise) {
+    const auto [least, most] = std::ranges::minmax(errors.points);
+    return {.label = "noise", .points = {{least.first, noise}, {most.first, noise}}, .drawn = ChartLine::Drawn::line};
+}
+
 /// Whether the error comes with the load: there without any, in proportion, or faster.
 std::string load_chart(const RunFiles& files) {
     const std::string axis = load_axis(files.compare);
     if (axis.empty()) return {};
     std::vector<ChartLine> curves{errors_under_load(files.compare, "nothing added")};
     if (files.improved.is_object()) curves.push_back(errors_under_load(files.improved, with_what(files)));
+    if (const auto noise = noise_of(files.compare); noise && !curves.front().points.empty())
+        curves.push_back(noise_line(curves.front(), *noise));
     const std::string chart = line_chart(curves, "Error of each state over its load [mm rms]", axis);
     if (chart.empty()) return {};
     std::string words =

@@ -76,6 +76,7 @@ TEST(RigProbes, RefuseWhatCannotBeMeant) {
     EXPECT_TRUE(says(message({.tendon = {"1,2,3 4,5,6"}}), {"--tendon", "--tension or --pull"}));
     EXPECT_TRUE(says(message({.tendon = {"1,2,3 4,5,6"}, .tension = {1}, .pull = {1}}), {"--tension", "--pull"}));
     EXPECT_TRUE(says(message({.pressure = {0.1}, .reaction_noise = 1}), {"--reaction-noise", "--tool"}));
+    EXPECT_TRUE(says(message({.pressure = {0.1}, .markers = false}), {"--no-markers", "--tool"}));
 }
 
 /// A bar with a tendon along it, and one that is pressed, as they are synthesised.
@@ -124,6 +125,18 @@ TEST_F(RigSet, ReadsTheReactionOfATool) {
     EXPECT_TRUE(pressed.reactions[0].moment.array().isNaN().all());  // its cell reads forces
     EXPECT_EQ(found.set.reaction_noise, 1e-9);
     EXPECT_GT(along.norm(), 0.99);
+}
+
+TEST_F(RigSet, MayLeaveAllButTheToolUnread) {
+    const RigOptions press{.tool = "sphere:radius=4", .depth = {1}, .reaction_noise = 1e-9};
+    RigOptions alone = press;
+    alone.markers = false;
+    const BlindSet seen = made(press, {"none"}), felt = made(alone, {"none"});
+    EXPECT_FALSE(seen.set.markers.empty());
+    EXPECT_TRUE(felt.set.markers.empty());
+    ASSERT_EQ(felt.set.states.size(), seen.set.states.size());
+    EXPECT_TRUE(felt.set.states[1].readings.empty());
+    EXPECT_EQ(felt.set.states[1].reactions.at(0).force, seen.set.states[1].reactions.at(0).force);
 }
 
 TEST_F(RigSet, HidesThatAToolMovesLessThanReported) {

@@ -1,0 +1,13 @@
+#pragma once
+
+#include "identify/diagnosis/fit/fit_priors.h"
+#include "identify/diagnosis/fit/refit.h"
+
+namespace palpate::identify {
+
+/// Covariance of a fit's numbers (p x p) beside that of the noise: as the probes disagree, and by the share of the
+/// mesh's error that halved edges do not tell.
+Eigen::MatrixXd scatter_of(const Problem& problem, const FitPriors& priors, const RefitOptions& options,
+                           const Refit& at);
+
+}  // namespace palpate::identify
