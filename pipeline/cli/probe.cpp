@@ -266,8 +266,9 @@ void add_rig_flags(CLI::App* command, RigOptions& rig) {
         ->check(CLI::NonNegativeNumber)
         ->group("Rig");
     command
-        ->add_flag_callback("--no-markers", [&] { rig.markers = false; },
-                            "No camera sees markers: the tool's force is all that is read")
+        ->add_flag_callback(
+            "--no-markers", [&] { rig.markers = false; },
+            "No camera sees markers: the tool's force is all that is read")
         ->group("Rig");
 }
 

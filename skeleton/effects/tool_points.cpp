@@ -1,5 +1,7 @@
 #include "skeleton/effects/tool_points.h"
 
+#include <numbers>
+
 #include "skeleton/model/attach.h"
 
 namespace palpate::skeleton {
@@ -45,9 +47,22 @@ Candidates on_skin(const Model& model) {
 
 }  // namespace
 
+double layer_stiffness(const mesh::Tool& tool, double young) {
+    constexpr double plane_strain = 4.0 / 3;  // E* / E of what keeps its volume
+    constexpr double touched = 1.0 / 3;       // of the radius of a round tool: pressed in by a ninth of it
+    double a = 0;
+    if (const auto* ball = std::get_if<mesh::SphereShape>(&tool.shape)) a = touched * ball->radius;
+    if (const auto* punch = std::get_if<mesh::FlatShape>(&tool.shape)) a = punch->radius;
+    if (const auto* solid = std::get_if<mesh::SurfaceShape>(&tool.shape))
+        a = touched * mesh::bounding_box(solid->surface.vertices).extent().minCoeff() / 2;
+    return 2 * plane_strain * young / (std::numbers::pi * a);
+}
+
 PointSet tool_points(const Model& model, const fem::ToolPotential& tool) {
     const Candidates all = tool.is_grip() ? gripped(model) : on_skin(model);
-    const Eigen::VectorXd weights = tool.weights(all.asked, all.set.weights);
+    const Eigen::VectorXd weights = tool.parts()
+                                        ? Eigen::VectorXd(layer_stiffness(tool.tool(), tool.young()) * all.set.weights)
+                                        : tool.weights(all.asked, all.set.weights);
     PointSet felt;
     std::vector<Eigen::Index> chosen;
     for (Eigen::Index k = 0; k < weights.size(); ++k) {

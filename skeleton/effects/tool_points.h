@@ -5,9 +5,16 @@
 
 namespace palpate::skeleton {
 
+/// Stiffness of the layer on a skeleton's skin by which a tool presses, for a body of the modulus `young` [N/mm^3]. A
+/// skeleton's skin goes with its spheres, and does not give way under a small tool as the material does: the layer does
+/// instead, by as much as an incompressible half-space under a disc of the tool's own radius, a flat punch, or of a
+/// third of it, where it is round: k = 2 E* / (pi a). [Sneddon 1965; a layer as Winkler has it]
+double layer_stiffness(const mesh::Tool& tool, double young);
+
 /// The points of a skeleton that a tool may touch, or holds, weighed by how stiffly [N/mm]; those that it never feels
 /// are left out.
-///   a shape: the skin's vertices, as fem::ToolPotential weighs them
+///   a shape that may part: the skin's vertices, by `layer_stiffness` and their area
+///   a bonded one: the skin's vertices, as fem::ToolPotential weighs them
 ///   a grip: the skin's vertices in its regions, and of each sphere with its centre there the six points where the axes
 ///     meet it, so that it is kept from turning
 /// @throws InvalidInput as fem::ToolPotential::weights, or where a shape meets a model without a skin.

@@ -5,11 +5,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 
 #include "fem/rig/round_shapes.h"
 #include "mesh/errors.h"
 #include "skeleton/effects/effect.h"
+#include "skeleton/effects/tool_points.h"
 #include "skeleton/model/growth.h"
 #include "skeleton/model/io/model_io.h"
 #include "skeleton/model/link_modulus.h"
@@ -69,8 +69,8 @@ void BodyOptions::validate() const {
         throw InvalidInput(fmt::format("contacts is {}; it must lie in 0 to 64", contacts));
     if (!(step_tolerance > 0 && step_tolerance < 1))
         throw InvalidInput(fmt::format("step_tolerance is {}; it must lie between 0 and 1", step_tolerance));
-    if (!(tool_compliance >= 1e-4 && tool_compliance <= 1))
-        throw InvalidInput(fmt::format("tool_compliance is {}; it must lie in 1e-4 to 1", tool_compliance));
+    if (!(tool_compliance >= 1e-4 && tool_compliance <= 10))
+        throw InvalidInput(fmt::format("tool_compliance is {}; it must lie in 1e-4 to 10", tool_compliance));
 }
 
 struct Body::Impl {
@@ -150,12 +150,9 @@ struct Body::Impl {
                             "from 0",
                             number));
     }
-    // The layer gives way by c pi a / (2 E*) under a unit of pressure: c times what a disc of radius a = R / 3 sinks
-    // into an incompressible half-space under it. [Sneddon 1965]
-    int add_tool(const std::shared_ptr<const fem::RigidShape>& shape, double extent) {
-        constexpr double plane_strain = 4.0 / 3;  // E* / E
-        const double a = shape->radius() / 3, E = skeleton::link_modulus(reordered.model);
-        return rig.tools.add(shape, extent, 2 * plane_strain * E / (std::numbers::pi * a * options.tool_compliance));
+    int add_tool(const mesh::Tool& tool, const std::shared_ptr<const fem::RigidShape>& shape, double extent) {
+        const double layer = skeleton::layer_stiffness(tool, skeleton::link_modulus(reordered.model));
+        return rig.tools.add(shape, extent, layer / options.tool_compliance);
     }
     void require_tendon(int number, double value) const {
         if (number < 0 || number >= rig.tendons.count())
@@ -303,6 +300,7 @@ const std::vector<float>& Body::skin() {
         contact.at.place(own.pose.data());
         add_dent(own.reordered.model, contact, own.skin);
     }
+    if (own.rig.tools.any()) own.rig.tools.press_out(own.pose.data(), own.skin);
     return own.skin;
 }
 
@@ -365,14 +363,16 @@ Eigen::Vector3d Body::place(int contact) { return impl_->contact(contact).at.x()
 
 int Body::add_ball(double radius) {
     require_above("the radius of a ball", radius, 0);
-    return impl_->add_tool(fem::ball_shape(Vec3::Zero(), radius), radius);
+    return impl_->add_tool({.name = "ball", .shape = mesh::SphereShape{radius}}, fem::ball_shape(Vec3::Zero(), radius),
+                           radius);
 }
 
 // What its shaft pushes aside lies within twice the radius of the face's middle.
 int Body::add_punch(double radius, const Eigen::Vector3d& axis) {
     require_above("the radius of a punch", radius, 0);
     require_above("the length of a punch's axis", axis.norm(), 0);
-    return impl_->add_tool(fem::punch_shape(Vec3::Zero(), {radius, axis}), 2 * radius);
+    const mesh::FlatShape punch{radius, axis};
+    return impl_->add_tool({.name = "punch", .shape = punch}, fem::punch_shape(Vec3::Zero(), punch), 2 * radius);
 }
 
 void Body::place_tool(int tool, const Eigen::Vector3d& at, const Eigen::Quaterniond& turn) {

@@ -27,9 +27,8 @@ struct [[gnu::visibility("default")]] BodyOptions {
     // model has it, or else a ratio of 0.1.
     std::optional<double> damping_ratio = {};
     int contacts = 8;  // most at a time, in [0, 64]
-    // Of the layer by which a tool presses, as a share of what a body of the links' modulus gives way by under a
-    // contact of a third of the tool's radius, in [1e-4, 1].
-    double tool_compliance = 0.02;
+    // Of the layer by which a tool presses, over that of the material (skeleton::layer_stiffness), in [1e-4, 10].
+    double tool_compliance = 1;
     // Of implicit steps: how far off a sphere may be, as a share of the mean link length, in (0, 1).
     double step_tolerance = 1e-6;
     void validate() const;  // @throws InvalidInput naming option, value and bound
@@ -82,7 +81,7 @@ public:
     Energy energy();
     Momenta momenta() const;
 
-    /// The skin as it stands, with the dents that contacts press into it: x, y, z of each vertex [mm].
+    /// The skin as it stands, with the dents that contacts and tools press into it: x, y, z of each vertex [mm].
     const std::vector<float>& skin();
     const std::vector<int>& triangles() const;  // three corners each, counter-clockwise seen from outside
 

@@ -11,21 +11,23 @@
 #include "mesh/errors.h"
 
 namespace palpate::identify {
-namespace {
 
-void check_tendon(const mesh::TendonActuator& tendon, const RestBody& body, const std::string& name) {
+void check_tendon(const mesh::TendonActuator& tendon, const RestBody& body, const std::string& name,
+                  const std::string& where) {
     const double allowed = 0.01 * body.box.longest_side();
     for (Eigen::Index i = 0; i < tendon.path.rows(); ++i) {
         const Vec3 point = tendon.path.row(i).transpose();
         const double distance = body.tree.closest(point).distance;
         if (body.holds(point) || distance <= allowed) continue;
         throw InvalidInput(
-            fmt::format("set.yaml: point {} of tendon '{}' at {} lies {:.4g} mm outside of the body, {:.4g} mm are "
+            fmt::format("{}: point {} of tendon '{}' at {} lies {:.4g} mm outside of the body, {:.4g} mm are "
                         "allowed. A tendon runs through the body; give its path where it enters, bends and ends, in "
-                        "the unit and frame of the set.",
-                        i + 1, name, place_in_words(point), distance, allowed));
+                        "the unit and frame of the body.",
+                        where, i + 1, name, place_in_words(point), distance, allowed));
     }
 }
+
+namespace {
 
 /// A tendon is straight between its points, whatever the body does: one whose points are far apart leaves a body that
 /// bends as the string leaves a bow.
@@ -84,7 +86,7 @@ void check_actuators(MeasurementSet& set) {
     std::map<std::vector<int>, std::string> actuator_of;  // of each cavity, by its triangles
     for (const mesh::Actuator& actuator : set.actuators) {
         if (const auto* tendon = std::get_if<mesh::TendonActuator>(&actuator.kind)) {
-            check_tendon(*tendon, body, actuator.name);
+            check_tendon(*tendon, body, actuator.name, "set.yaml");
             note_bowstring(*tendon, body, actuator.name, set.notes);
             continue;
         }

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <sstream>
 
+#include "identify/measurements/rig/rig_places.h"
 #include "mesh/errors.h"
 #include "mesh/geometry/surface_tree.h"
 #include "mesh/text/words.h"
@@ -152,9 +153,14 @@ RigProbes rig_probes(const mesh::Surface& surface, const std::vector<mesh::Regio
             add_actuator(fmt::format("chamber{}", c + 1), mesh::PressureActuator{near[c]}, options.pressure, result);
     }
     const bool by_length = !options.pull.empty();
-    for (std::size_t t = 0; t < options.tendon.size(); ++t)
-        add_actuator(fmt::format("tendon{}", t + 1), mesh::TendonActuator{path_of(options.tendon[t]), by_length},
-                     by_length ? options.pull : options.tension, result);
+    std::optional<identify::RestBody> body;
+    for (std::size_t t = 0; t < options.tendon.size(); ++t) {
+        const std::string name = fmt::format("tendon{}", t + 1);
+        const mesh::TendonActuator tendon{path_of(options.tendon[t]), by_length};
+        if (!body) body.emplace(surface);
+        identify::check_tendon(tendon, *body, name, "--tendon");
+        add_actuator(name, tendon, by_length ? options.pull : options.tension, result);
+    }
     return result;
 }
 

@@ -136,6 +136,18 @@ ToolLoad Tools::load(int tool, const double* pose) {
     return sum;
 }
 
+void Tools::press_out(const double* pose, std::vector<float>& skin) {
+    keep_known(pose);
+    for (const Tool& tool : tools_) {
+        if (!tool.is_placed) continue;
+        for (const int v : tool.near) {
+            Eigen::Map<Eigen::Vector3f> shown(skin.data() + 3L * v);
+            const fem::Gap gap = tool.gap(shown.cast<double>());
+            if (gap.value < 0) shown -= (gap.value * gap.normal).cast<float>();
+        }
+    }
+}
+
 void Tools::add_rows(const double* pose, StiffRows& stiff) {
     keep_known(pose);
     for (Tool& tool : tools_) {

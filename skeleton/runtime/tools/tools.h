@@ -31,6 +31,8 @@ public:
     void add_forces(const double* pose, double* force);
     ToolLoad load(int tool, const double* pose);
 
+    /// Moves what is shown of the skin (x, y, z of each vertex) out of the tools at a pose.
+    void press_out(const double* pose, std::vector<float>& skin);
     /// Adds a row for each vertex that is touched at a pose.
     void add_rows(const double* pose, StiffRows& stiff);
 

@@ -110,16 +110,16 @@ std::string bar_chart(const std::vector<Bar>& bars, const std::string& title, co
     double highest = noise.value_or(0), scale = 1;
     for (const Bar& bar : bars) highest = std::max(highest, bar.value);
     if (bars.empty() || highest <= 0) return {};
-    std::string svg =
-        open(bottom + 20, title) + words_at(0, 16, title + " [" + unit + "]") + value_axis(highest, scale);
+    std::string svg = open(bottom + 20, title) +
+                      words_at(0, 16, title + " [" + unit + "]" + (noise ? "; dotted: noise" : "")) +
+                      value_axis(highest, scale);
     const double pitch = (width - left - right) / static_cast<double>(bars.size());
     for (std::size_t i = 0; i < bars.size(); ++i) {
         svg += bar_svg(bars[i], left + pitch * (static_cast<double>(i) + 0.1), 0.8 * pitch, scale, unit);
     }
     if (noise) {
         const double y = bottom - scale * *noise;
-        svg += stroke(left, y, width - right, y, R"(stroke="#1c2530" stroke-dasharray="2 3")") +
-               words_at(width - right, y - 4, "noise", "end");
+        svg += stroke(left, y, width - right, y, R"(stroke="#1c2530" stroke-dasharray="2 3")");
     }
     return svg + "</svg>";
 }

@@ -71,6 +71,13 @@ std::string axes(const Frame& frame, const std::string& across) {
     return svg + words_at(width - right, height - 10, across, "end");
 }
 
+/// Three digits, without an exponent below 100,000.
+std::string three_digits(double x) {
+    if (x < 1000 || x >= 1e5) return fmt::format("{:.3g}", x);
+    const double unit = x < 1e4 ? 10 : 100;
+    return fmt::format("{:.0f}", unit * std::round(x / unit));
+}
+
 std::string points_of(const Density& density, const Frame& frame) {
     std::string points;
     for (const auto& [ln, value] : density) points += fmt::format("{:.0f},{:.1f} ", frame.x(ln), frame.y(value));
@@ -87,9 +94,9 @@ std::string density_chart(const KnownBeforeAndAfter& known) {
     const std::string filled = fmt::format("{:.1f},{:.1f} ", left, bottom) + points_of(known.posterior, frame) +
                                fmt::format("{:.1f},{:.1f}", width - right, bottom);
     return open_svg(width, height, description) + words_at(0, 14, known.name) +
-           words_at(
-               0, 32,
-               fmt::format("density of ln x; x = {:.3g} ({:.3g} to {:.3g})", known.middle, known.low, known.high)) +
+           words_at(0, 32,
+                    fmt::format("density of ln x; x = {} ({} to {})", three_digits(known.middle),
+                                three_digits(known.low), three_digits(known.high))) +
            axes(frame, fmt::format("x = {} [{}]", known.name.substr(0, known.name.find_first_of(":,")), unit)) +
            fmt::format(R"(<polygon points="{}" fill="{}" fill-opacity="0.3" stroke="{}" stroke-width="1.5"/>)", filled,
                        posterior_blue, posterior_blue) +

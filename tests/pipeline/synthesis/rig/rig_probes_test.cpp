@@ -75,6 +75,8 @@ TEST(RigProbes, RefuseWhatCannotBeMeant) {
     EXPECT_TRUE(says(message({.tendon = {"1,2,3"}, .tension = {1}}), {"--tendon", "1 point", "two or more"}));
     EXPECT_TRUE(says(message({.tendon = {"1,2,3 4,5,6"}}), {"--tendon", "--tension or --pull"}));
     EXPECT_TRUE(says(message({.tendon = {"1,2,3 4,5,6"}, .tension = {1}, .pull = {1}}), {"--tension", "--pull"}));
+    EXPECT_TRUE(says(message({.tendon = {"-9,2,3 4,5,6"}, .tension = {1}}),
+                     {"--tendon", "point 1", "'tendon1'", "9 mm outside", "0.6 mm"}));
     EXPECT_TRUE(says(message({.pressure = {0.1}, .reaction_noise = 1}), {"--reaction-noise", "--tool"}));
     EXPECT_TRUE(says(message({.pressure = {0.1}, .markers = false}), {"--no-markers", "--tool"}));
 }

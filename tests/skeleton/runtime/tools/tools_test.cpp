@@ -2,8 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <numbers>
-
 #include "fem/rig/tool_potential.h"
 #include "mesh/errors.h"
 #include "skeleton/model/link_modulus.h"
@@ -25,14 +23,11 @@ protected:
     }
     Vec3 ball_within(double depth) const { return top_ + Vec3(0, 0, radius_ - depth); }
 
-    /// As skeleton/ has it, by a layer as stiff as the runtime's.
+    /// As skeleton/ has it; its layer is as much stiffer as the body that a tool is told of.
     skeleton::Equilibrium expected(const mesh::Tool& tool, const mesh::ToolMotion& motion, double compliance) const {
-        const double a = radius_ / 3, E = skeleton::link_modulus(model_);
-        const double layer = 8.0 / 3 * E / (std::numbers::pi * a * compliance);  // [N/mm^3]
         fem::Effects effects;
-        // Its own layer is young / (1e-4 R).
-        effects.tools.push_back(std::make_shared<fem::ToolPotential>(std::make_shared<const fem::RigidTool>(tool),
-                                                                     motion, layer * 1e-4 * radius_));
+        effects.tools.push_back(std::make_shared<fem::ToolPotential>(
+            std::make_shared<const fem::RigidTool>(tool), motion, skeleton::link_modulus(model_) / compliance));
         return skeleton::StaticsSolver(model_, effects).solve(skeleton::stiffness_vector(model_), {});
     }
     double apart(const Body& body, const skeleton::Equilibrium& other) const {
@@ -81,7 +76,7 @@ TEST_F(LiveTools, PunchStandsInEquilibriumAsInTheModel) {
 }
 
 TEST_F(LiveTools, WorkOfAToolIsTheBodysEnergy) {
-    Body body(model_);
+    Body body(model_, {.tool_compliance = 0.02});
     const int ball = body.add_ball(radius_);
     const auto work_to = [&](double depth) {  // by Simpson's rule from the depth before
         body.place_tool(ball, ball_within(depth));
@@ -97,6 +92,21 @@ TEST_F(LiveTools, WorkOfAToolIsTheBodysEnergy) {
         before = after;
     }
     EXPECT_NEAR(body.energy().potential, work, 0.02 * work);  // the layer stores its share, 2 % at most
+}
+
+TEST_F(LiveTools, SkinIsShownOutsideOfTheBall) {
+    Body body(model_);
+    const int ball = body.add_ball(radius_);
+    body.place_tool(ball, ball_within(2));
+    body.equilibrium();
+    int touching = 0;
+    for (int v = 0; v < body.vertex_count(); ++v) {
+        const Vec3 x = Eigen::Map<const Eigen::Vector3f>(body.skin().data() + 3L * v).cast<double>();
+        const double away = (x - ball_within(2)).norm() - radius_;
+        EXPECT_GT(away, -1e-5);  // single precision
+        touching += away < 1e-5 ? 1 : 0;
+    }
+    EXPECT_GT(touching, 0);
 }
 
 TEST_F(LiveTools, SlidesOverTheSkinAsIfItHadBeenPlacedThere) {
@@ -241,8 +251,8 @@ TEST_F(LiveTools, RefuseWhatCannotBe) {
     EXPECT_TRUE(says(message_of<InvalidInput>([&] { body.step_explicit(1e-6); }), {"explicit", "step_implicit"}));
     body.reset();
     body.step_explicit(1e-6);  // it is away again
-    EXPECT_TRUE(says(message_of<InvalidInput>([] { BodyOptions{.tool_compliance = 2}.validate(); }),
-                     {"tool_compliance", "2", "1e-4 to 1"}));
+    EXPECT_TRUE(says(message_of<InvalidInput>([] { BodyOptions{.tool_compliance = 20}.validate(); }),
+                     {"tool_compliance", "20", "1e-4 to 10"}));
     skeleton::Model bare = skeleton::testing::make_full_lattice({3, 2, 2});
     EXPECT_THROW(Body(bare).add_ball(1), InvalidInput);
 }
