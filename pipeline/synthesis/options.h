@@ -19,7 +19,7 @@ struct RigOptions {
     std::vector<double> pull{};         // or the length that is drawn in [mm]
     std::optional<double> reaction_noise{};  // 1 sigma [N], >= 0; absent: 2 % of the rms force where something is
                                              // hidden, else none
-    bool markers = true;  // are read beside the tool's force
+    bool markers = true;                     // are read beside the tool's force
     bool empty() const { return tool.empty() && pressure.empty() && tendon.empty(); }
     void validate() const;  // @throws InvalidInput naming option, value and what belongs to it
 };
