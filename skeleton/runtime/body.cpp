@@ -145,10 +145,8 @@ struct Body::Impl {
     }
     void require_tool(int number) const {
         if (number < 0 || number >= rig.tools.count())
-            throw InvalidInput(
-                fmt::format("tool {} does not exist; add_ball() and its like give tools their numbers "
-                            "from 0",
-                            number));
+            throw InvalidInput(fmt::format(
+                "tool {} does not exist; add_ball() and add_punch() give tools their numbers from 0", number));
     }
     int add_tool(const mesh::Tool& tool, const std::shared_ptr<const fem::RigidShape>& shape, double extent) {
         const double layer = skeleton::layer_stiffness(tool, skeleton::link_modulus(reordered.model));
@@ -377,8 +375,10 @@ int Body::add_punch(double radius, const Eigen::Vector3d& axis) {
 
 void Body::place_tool(int tool, const Eigen::Vector3d& at, const Eigen::Quaterniond& turn) {
     impl_->require_tool(tool);
-    if (!at.allFinite() || !turn.coeffs().allFinite())
-        throw InvalidInput(fmt::format("tool {} is placed at a point that is not finite", tool));
+    if (!at.allFinite()) throw InvalidInput(fmt::format("tool {} is placed at a point that is not finite", tool));
+    if (!(turn.norm() > 0) || !turn.coeffs().allFinite())
+        throw InvalidInput(
+            fmt::format("tool {} is turned by a quaternion that is none: its length must be above 0", tool));
     impl_->rig.tools.place(tool, at, turn.normalized().toRotationMatrix());
 }
 

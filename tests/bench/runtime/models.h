@@ -13,8 +13,8 @@ skeleton::Model lattice(const Eigen::Vector3i& n, bool full);
 skeleton::Model shuffled(skeleton::Model model);
 /// Nothing held.
 skeleton::Model free(skeleton::Model model);
-/// An ellipsoid filled with about so many spheres, full links and volumes. Each vertex of its skin, an icosahedron whose
-/// edges were halved so often (5: 10,242 vertices), hangs on the six spheres nearest to it.
+/// An ellipsoid filled with about so many spheres, full links and volumes. Each vertex of its skin, an icosahedron
+/// whose edges were halved so often (5: 10,242 vertices), hangs on the six spheres nearest to it.
 skeleton::Model organ(int spheres, int halvings);
 /// A small triangle of skin on each free sphere, so that it can be pushed.
 skeleton::Model with_skin_on_spheres(skeleton::Model model);

@@ -247,6 +247,8 @@ TEST_F(LiveTools, RefuseWhatCannotBe) {
     EXPECT_TRUE(says(message_of<InvalidInput>([&] { body.place_tool(0, top_); }), {"tool 0", "add_ball"}));
     const int ball = body.add_ball(1);
     EXPECT_TRUE(says(message_of<InvalidInput>([&] { body.place_tool(ball, Vec3::Constant(NAN)); }), {"not finite"}));
+    EXPECT_TRUE(says(message_of<InvalidInput>([&] { body.place_tool(ball, top_, Eigen::Quaterniond(0, 0, 0, 0)); }),
+                     {"quaternion", "above 0"}));
     body.place_tool(ball, top_);
     EXPECT_TRUE(says(message_of<InvalidInput>([&] { body.step_explicit(1e-6); }), {"explicit", "step_implicit"}));
     body.reset();
