@@ -41,7 +41,12 @@ PlacedEffects::PlacedEffects(const Model& model, const fem::Effects& effects)
                 tool->tool().name));
         constexpr double barely_off = 1e-2;  // of the body's size: ten times what is left in balance, and more
         const PointSet set = tool_points(model, *tool);
-        place({tool, {}, tool, is_linear_ ? 0 : barely_off * size}, set, set.weights, pair);
+        if (tool->parts()) {
+            const auto layered = std::make_shared<const LayeredTool>(tool);
+            place({layered, {}, layered}, set, set.weights, pair);
+        } else {
+            place({tool, {}, tool, is_linear_ ? 0 : barely_off * size}, set, set.weights, pair);
+        }
     }
     skin_.for_each_block(rest_, [&](int a, int b, const Block&) { skin_blocks_.push_back(pair(a, b)); });
     for (const fem::TendonPull& pull : effects.tendons) {

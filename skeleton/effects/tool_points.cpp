@@ -58,6 +58,14 @@ double layer_stiffness(const mesh::Tool& tool, double young) {
     return 2 * plane_strain * young / (std::numbers::pi * a);
 }
 
+fem::PointTerms LayeredTool::terms(const Vec3& X, const Vec3& x) const {
+    const fem::Gap at = gap(X, x);
+    if (at.value >= 0) return {};
+    return {.energy = at.value * at.value / 2,
+            .gradient = at.value * at.normal,
+            .hessian = at.normal * at.normal.transpose() + at.value * at.hessian};
+}
+
 PointSet tool_points(const Model& model, const fem::ToolPotential& tool) {
     const Candidates all = tool.is_grip() ? gripped(model) : on_skin(model);
     const Eigen::VectorXd weights = tool.parts()

@@ -11,6 +11,22 @@ namespace palpate::skeleton {
 /// third of it, where it is round: k = 2 E* / (pi a). [Sneddon 1965; a layer as Winkler has it]
 double layer_stiffness(const mesh::Tool& tool, double young);
 
+/// A tool that may part as a skeleton feels it: a point may be deep in the layer, and the curvature of the tool's shape
+/// counts there as well.
+class LayeredTool final : public fem::ToolPotential {
+public:
+    explicit LayeredTool(std::shared_ptr<const fem::ToolPotential> tool)
+        : ToolPotential(*tool), tool_(std::move(tool)) {}
+    std::shared_ptr<const fem::ToolPotential> part_way(double share) const override {
+        return std::make_shared<LayeredTool>(tool_->part_way(share));
+    }
+    double way() const override { return tool_->way(); }
+    fem::PointTerms terms(const Vec3& X, const Vec3& x) const override;
+
+private:
+    std::shared_ptr<const fem::ToolPotential> tool_;
+};
+
 /// The points of a skeleton that a tool may touch, or holds, weighed by how stiffly [N/mm]; those that it never feels
 /// are left out.
 ///   a shape that may part: the skin's vertices, by `layer_stiffness` and their area
