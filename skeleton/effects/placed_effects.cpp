@@ -42,8 +42,7 @@ PlacedEffects::PlacedEffects(const Model& model, const fem::Effects& effects)
         constexpr double barely_off = 1e-2;  // of the body's size: ten times what is left in balance, and more
         const PointSet set = tool_points(model, *tool);
         if (tool->parts()) {
-            const auto layered = std::make_shared<const LayeredTool>(tool);
-            place({layered, {}, layered}, set, set.weights, pair);
+            place({std::make_shared<const LayeredTool>(tool), {}, tool}, set, set.weights, pair);
         } else {
             place({tool, {}, tool, is_linear_ ? 0 : barely_off * size}, set, set.weights, pair);
         }

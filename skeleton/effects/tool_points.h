@@ -11,17 +11,14 @@ namespace palpate::skeleton {
 /// third of it, where it is round: k = 2 E* / (pi a). [Sneddon 1965; a layer as Winkler has it]
 double layer_stiffness(const mesh::Tool& tool, double young);
 
-/// A tool that may part as a skeleton feels it: a point may be deep in the layer, and the curvature of the tool's shape
-/// counts there as well.
-class LayeredTool final : public fem::ToolPotential {
+/// A tool that may part, as a skeleton feels it. A point may be deep in the layer, where fem::ToolPotential leaves the
+/// curvature of the tool's shape out: here it counts, by central differences of the gradient.
+class LayeredTool final : public fem::PointPotential {
 public:
-    explicit LayeredTool(std::shared_ptr<const fem::ToolPotential> tool)
-        : ToolPotential(*tool), tool_(std::move(tool)) {}
-    std::shared_ptr<const fem::ToolPotential> part_way(double share) const override {
-        return std::make_shared<LayeredTool>(tool_->part_way(share));
-    }
-    double way() const override { return tool_->way(); }
+    explicit LayeredTool(std::shared_ptr<const fem::ToolPotential> tool) : tool_(std::move(tool)) {}
+    fem::ActsOn acts_on() const override { return tool_->acts_on(); }
     fem::PointTerms terms(const Vec3& X, const Vec3& x) const override;
+    bool is_one_sided() const override { return true; }
 
 private:
     std::shared_ptr<const fem::ToolPotential> tool_;
