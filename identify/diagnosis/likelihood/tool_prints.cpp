@@ -1,25 +1,19 @@
 #include "identify/diagnosis/likelihood/tool_prints.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace palpate::identify {
 namespace {
 
-/// The part of the skin that a tool touches.
-struct Print {
-    double area = 0;             // [mm^2]
-    Vec3 moment = Vec3::Zero();  // area times place at rest [mm^3]
-};
-
-Print print_of(const BodyModel& model, const Points& skin, const fem::ToolPotential& tool) {
-    Print print;
-    for (Eigen::Index s = 0; s < skin.rows(); ++s) {
-        const Vec3 rest = model.skin().row(s);
-        if (tool.gap(rest, skin.row(s)).value > 0) continue;
-        print.area += model.skin_areas()[s];
-        print.moment += model.skin_areas()[s] * rest;
-    }
-    return print;
+/// How far points of the skin are from a tool (s) [mm]; infinitely those that stand for no area but by rounding, as
+/// corners of quadratic faces do.
+Eigen::VectorXd gaps_of(const BodyModel& model, const Points& skin, const fem::ToolPotential& tool) {
+    Eigen::VectorXd gaps = Eigen::VectorXd::Constant(skin.rows(), INFINITY);
+    const double none = 1e-6 * model.skin_areas().maxCoeff();
+    for (Eigen::Index s = 0; s < skin.rows(); ++s)
+        if (model.skin_areas()[s] > none) gaps[s] = tool.gap(model.skin().row(s), skin.row(s)).value;
+    return gaps;
 }
 
 }  // namespace
@@ -33,11 +27,20 @@ std::vector<mesh::Contact> tool_prints(const BodyModel& model, const Problem& pr
     for (const mesh::ToolMotion& motion : model.motions(forward.q[k], setting, action)) {
         const auto tool = std::make_shared<const fem::RigidTool>(problem.rig->tools[motion.tool]);
         if (!tool->shape) continue;
-        const Print print = print_of(model, skin, {tool, motion, model.young(setting)});
-        if (print.area == 0) continue;
-        prints.push_back({.point = print.moment / print.area,
-                          .force = forward.stand[k].row(problem.markers + 2 * Eigen::Index{motion.tool}),
-                          .radius = std::sqrt(print.area / M_PI)});
+        const Vec3 felt = forward.stand[k].row(problem.markers + 2 * Eigen::Index{motion.tool});
+        if (felt.isZero(0)) continue;
+        // Tools touch faces between these points, which stand off by little then; the nearest always counts.
+        constexpr double barely_off = 0.01;  // of the tool's radius
+        const Eigen::VectorXd gaps = gaps_of(model, skin, {tool, motion, model.young(setting)});
+        const double most = std::max(barely_off * tool->shape->radius(), gaps.minCoeff());
+        double area = 0;
+        Vec3 moment = Vec3::Zero();
+        for (Eigen::Index s = 0; s < gaps.size(); ++s) {
+            if (gaps[s] > most) continue;
+            area += model.skin_areas()[s];
+            moment += model.skin_areas()[s] * model.skin().row(s).transpose();
+        }
+        prints.push_back({.point = moment / area, .force = felt, .radius = std::sqrt(area / M_PI)});
     }
     return prints;
 }

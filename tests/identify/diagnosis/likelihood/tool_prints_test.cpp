@@ -1,0 +1,66 @@
+#include "identify/diagnosis/likelihood/tool_prints.h"
+
+#include "identify/diagnosis/likelihood/nuisances.h"
+#include "tests/identify/diagnosed.h"
+
+namespace palpate::identify {
+namespace {
+
+/// The bar pressed by a ball from above, near its middle.
+class ToolPrint : public Diagnosed {
+protected:
+    ToolPrint() {
+        body_.mesh = mesh::to_quadratic(mesh::make_bar(Vec3::Zero(), Vec3(40, 10, 10), {16, 4, 4}));
+        rig_.tools.push_back({.name = "ball", .shape = mesh::SphereShape{4}, .origin = Vec3(20, 5, 14)});
+        model_ =
+            std::make_unique<ReferenceBody>(body_.mesh, body_.supports, body_.markers,
+                                            ReferenceBodyOptions{.young = 0.1, .measured_on_mesh = true, .rig = rig_});
+        LoadState state{.probe = 1, .time = 1};
+        state.motions = {{.tool = 0, .translation = Vec3(0, 0, -1)}};
+        state.reactions = {{.tool = 0, .force = Vec3::Zero()}};
+        MeasurementSet set = body_.set({LoadState{.probe = 0}, state});
+        set.tools = rig_.tools;
+        set.reaction_noise = 1e-4;
+        problem_ = make_problem(make_twin(*model_, set, truth(), sigma), sigma);
+        forward_ = solve_forward(*model_, problem_, truth(), 1);
+    }
+    int pressed() const { return problem_.loaded(0) ? 0 : 1; }
+
+    Rig rig_;
+    Problem problem_;
+    ForwardSolution forward_;
+};
+
+TEST_F(ToolPrint, IsWhereAndAsLargeAsTheContact) {
+    const ModelSetting setting = truth().setting();
+    EXPECT_TRUE(tool_prints(*model_, problem_, setting, forward_, 1 - pressed()).empty());
+    const std::vector<mesh::Contact> prints = tool_prints(*model_, problem_, setting, forward_, pressed());
+    ASSERT_EQ(prints.size(), 1U);
+    EXPECT_LT((prints[0].point - Vec3(20, 5, 10)).norm(), 1.3);  // half the 2.5 mm between the skin's points
+    EXPECT_LT(prints[0].radius, 4);                              // the ball's
+    EXPECT_GT(prints[0].radius, 0.5);                            // the bar sinks away from it, as it bends
+    const Vec3 felt = forward_.stand[static_cast<std::size_t>(pressed())].row(problem_.markers);
+    EXPECT_EQ(prints[0].force, felt);
+    EXPECT_LT(felt.z(), 0);
+}
+
+TEST_F(ToolPrint, MakesMarkersNextToItCountForLess) {
+    const NuisanceOptions dents_alone{.ragged = 0};
+    const Eigen::VectorXd weights = reading_weights(*model_, problem_, truth(), forward_, dents_alone);
+    double near = 1, far = 0;
+    for (Eigen::Index n = 0; n < problem_.rows(); ++n) {
+        if (!problem_.is_position(n)) continue;
+        if (problem_.action[n] != pressed()) {
+            EXPECT_EQ(weights[n], 1);
+            continue;
+        }
+        const double away = (problem_.rest.row(problem_.channel(n)).transpose() - Vec3(20, 5, 10)).norm();
+        if (away < 4) near = std::min(near, weights[n]);
+        if (away > 15) far = std::max(far, weights[n]);
+    }
+    EXPECT_LT(near, far);
+    EXPECT_LT(near, 1);
+}
+
+}  // namespace
+}  // namespace palpate::identify
