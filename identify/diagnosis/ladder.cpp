@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 
 #include "identify/comparison/compare.h"
@@ -73,6 +74,45 @@ void refuse_what_cannot_show(const EffectHypothesis& effect, const BodyModel& bo
                           "it: {}.",
                           effect.name(), effect.description().reveals));
 }
+
+/// How many times as far off on held-out probes a step is as another one: rms of the ratios of positions and of forces,
+/// as far as these are measured. 0 where nothing is held out.
+double forecast_ratio(const StepError& then, const StepError& since) {
+    double squares = 0;
+    int kinds = 0;
+    const auto add = [&](double before, double now) {
+        if (!(before > 0)) return;
+        squares += (now / before) * (now / before);
+        ++kinds;
+    };
+    add(then.held_out_rms_mm, since.held_out_rms_mm);
+    add(then.held_out_rms_n, since.held_out_rms_n);
+    return kinds > 0 ? std::sqrt(squares / kinds) : 0;
+}
+
+std::string forecast_in_words(const StepError& step) {
+    const bool positions = step.held_out_rms_mm > 0, forces = !std::isnan(step.held_out_rms_n);
+    const std::string text = positions || !forces ? fmt::format("{:.3g} mm", step.held_out_rms_mm) : "";
+    if (!forces) return text;
+    return text + (text.empty() ? "" : " and ") + fmt::format("{:.3g} N", step.held_out_rms_n);
+}
+
+double newtons(const Comparison& comparison) { return comparison.reactions ? comparison.reactions->rms : missing; }
+
+/// Mean squares of several folds together, each by the rows of its kind.
+class PooledError {
+public:
+    void add(double rms, Eigen::Index rows) {
+        if (rows == 0) return;
+        squares_ += static_cast<double>(rows) * rms * rms;
+        rows_ += rows;
+    }
+    double rms() const { return rows_ > 0 ? std::sqrt(squares_ / static_cast<double>(rows_)) : missing; }
+
+private:
+    double squares_ = 0;
+    Eigen::Index rows_ = 0;
+};
 
 class LadderBuilder {
 public:
@@ -173,11 +213,11 @@ private:
         }
         const double most = is_residual ? 1 : chance;
         const auto is_worse = [&](const StepError& then, const StepError& since) {
-            return since.held_out_rms_mm >= most * then.held_out_rms_mm;
+            return forecast_ratio(then, since) >= most;
         };
         const auto in_words = [](const char* what, const StepError& then, const StepError& since) {
-            return fmt::format("with it the {} is off by {:.3g} mm on held-out probes, {:.3g} mm without it", what,
-                               since.held_out_rms_mm, then.held_out_rms_mm);
+            return fmt::format("with it the {} is off by {} on held-out probes, {} without it", what,
+                               forecast_in_words(since), forecast_in_words(then));
         };
         const bool has_body = now.reference && before.reference;
         if (has_body && is_worse(*before.reference, *now.reference))
@@ -185,8 +225,8 @@ private:
         if (!is_worse(before.skeleton, now.skeleton)) return {};
         std::string text = in_words("skeleton", before.skeleton, now.skeleton);
         if (has_body)
-            text += fmt::format(" (finite elements: {:.3g} mm with it, {:.3g} mm without)",
-                                now.reference->held_out_rms_mm, before.reference->held_out_rms_mm);
+            text += fmt::format(" (finite elements: {} with it, {} without)", forecast_in_words(*now.reference),
+                                forecast_in_words(*before.reference));
         return text;
     }
 
@@ -236,8 +276,10 @@ private:
                 std::ranges::find_if(ranking, [&](const Candidate& c) { return c.effect->name() == effects.back(); });
             if (own != ranking.end()) step.predicted_rms_mm = own->predicted_rms_mm;
         }
-        StepError body{.rms_mm = fit.rms_mm, .whitened_rms = fit.whitened_rms};
-        body.relative = fit.rms_mm / found.problem.rms_mm(found.problem.displacement());
+        StepError body{.rms_mm = fit.rms_mm,
+                       .rms_n = fit.rms_n,
+                       .relative = found.problem.relative(fit.error.cwiseProduct(found.problem.sigma)),
+                       .whitened_rms = fit.whitened_rms};
         result_.verdict = found.verdict;
 
         // The skeleton with the same physics, fitted to what is left of the measurements.
@@ -245,7 +287,7 @@ private:
         const skeleton::Model model = with_effects(step.effects);
         step.model = step.validation_model = fitted_skeleton(model, part);
         const Comparison on_fitted = compare(step.model, part, options_.identify.threads);
-        step.skeleton = {.rms_mm = on_fitted.rms, .relative = on_fitted.relative};
+        step.skeleton = {.rms_mm = on_fitted.rms, .rms_n = newtons(on_fitted), .relative = on_fitted.relative};
         hold_out(effects, found, step, body);
         if (!body_is_skeleton_) step.reference = body;
         step.set = understood(set_, step.effects, {});
@@ -256,15 +298,16 @@ private:
     /// Errors on what is held out, pooled over the folds. `found`, `step`: as fitted to `fitted_`.
     void hold_out(const std::vector<std::string>& effects, const Diagnosis& found, LadderStep& step,
                   StepError& body) const {
-        double squares = 0, whitened = 0, skeleton_squares = 0, rows = 0;
+        PooledError positions, forces, whitened, positions_of_skeleton, forces_of_skeleton;
         for (const Fold& fold : folds_) {
             const bool is_fitted = folds_.size() == 1;
             const Diagnosis own = is_fitted ? found : explain_again(fold.fitted, found);
             const auto [unseen, predicted] = predict_unseen(effects, fold.held_out, own);
-            const auto N = static_cast<double>(make_problem(unseen, own.noise).rows());
-            squares += N * predicted.rms_mm * predicted.rms_mm;
-            whitened += N * predicted.whitened_rms * predicted.whitened_rms;
-            rows += N;
+            const Problem problem = make_problem(unseen, own.noise);
+            const Eigen::Index positions_read = problem.count_positions(), forces_read = problem.count_forces();
+            positions.add(predicted.rms_mm, positions_read);
+            forces.add(predicted.rms_n, forces_read);
+            whitened.add(predicted.whitened_rms, problem.rows());
 
             const std::vector<skeleton::EffectRecord> said = estimate(own);
             const MeasurementSet part = understood(fold.fitted, said, own.outliers.readings);
@@ -273,13 +316,17 @@ private:
                 model = with_effects(said);
                 model = refitted_skeleton(model, part);
             }
-            const double rms = compare(model, understood(unseen, said, {}), options_.identify.threads).rms;
-            skeleton_squares += N * rms * rms;
+            const Comparison compared = compare(model, understood(unseen, said, {}), options_.identify.threads);
+            positions_of_skeleton.add(compared.rms, positions_read);
+            forces_of_skeleton.add(newtons(compared), forces_read);
         }
         if (folds_.empty()) return;
-        body.held_out_rms_mm = std::sqrt(squares / rows);
-        body.held_out_whitened_rms = std::sqrt(whitened / rows);
-        step.skeleton.held_out_rms_mm = std::sqrt(skeleton_squares / rows);
+        const auto in_mm = [](const PooledError& error) { return std::isnan(error.rms()) ? 0 : error.rms(); };
+        body.held_out_rms_mm = in_mm(positions);
+        body.held_out_rms_n = forces.rms();
+        body.held_out_whitened_rms = whitened.rms();
+        step.skeleton.held_out_rms_mm = in_mm(positions_of_skeleton);
+        step.skeleton.held_out_rms_n = forces_of_skeleton.rms();
     }
 
     /// The same explanation fitted to another part of the set, under its law.
@@ -310,10 +357,6 @@ private:
         result.set = without_readings(held_out, off.readings);
         result.predicted = predict(body_, make_problem(result.set, found.noise), fit, how);
         return result;
-    }
-
-    static double rms_of(const Eigen::VectorXd& v) {
-        return std::sqrt(v.squaredNorm() / static_cast<double>(v.size()));
     }
 
     skeleton::Model with_effects(const std::vector<skeleton::EffectRecord>& effects) const {

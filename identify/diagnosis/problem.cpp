@@ -189,6 +189,27 @@ void add_reactions(const MeasurementSet& set, const std::vector<int>& action, Ro
     }
 }
 
+/// How many rows `counts` holds for.
+template <class Counts>
+Eigen::Index count_where(Eigen::Index rows, const Counts& counts) {
+    Eigen::Index count = 0;
+    for (Eigen::Index n = 0; n < rows; ++n) count += counts(n) ? 1 : 0;
+    return count;
+}
+
+/// rms of those values of the rows (N) that `counts` holds for; NaN where it holds for none.
+template <class Counts>
+double rms_where(const Eigen::VectorXd& values, const Counts& counts) {
+    double sum = 0;
+    int count = 0;
+    for (Eigen::Index n = 0; n < values.size(); ++n) {
+        if (!counts(n)) continue;
+        sum += values[n] * values[n];
+        ++count;
+    }
+    return count > 0 ? std::sqrt(sum / count) : missing;
+}
+
 }  // namespace
 
 bool is_loaded(const Action& action) {
@@ -360,15 +381,28 @@ int Problem::action_in(const Problem& other, int k) const {
     return like;
 }
 
+Eigen::Index Problem::count_positions() const {
+    return count_where(rows(), [this](Eigen::Index n) { return is_position(n); });
+}
+
+Eigen::Index Problem::count_forces() const {
+    return count_where(rows(), [this](Eigen::Index n) { return is_force(n); });
+}
+
 double Problem::rms_mm(const Eigen::VectorXd& values) const {
-    double sum = 0;
-    int count = 0;
-    for (Eigen::Index n = 0; n < rows(); ++n) {
-        if (!is_position(n)) continue;
-        sum += values[n] * values[n];
-        ++count;
-    }
-    return count > 0 ? std::sqrt(sum / count) : 0;
+    const double rms = rms_where(values, [this](Eigen::Index n) { return is_position(n); });
+    return std::isnan(rms) ? 0 : rms;
+}
+
+double Problem::rms_n(const Eigen::VectorXd& values) const {
+    return rms_where(values, [this](Eigen::Index n) { return is_force(n); });
+}
+
+double Problem::relative(const Eigen::VectorXd& error) const {
+    const double moved = rms_mm(displacement());
+    if (moved > 0) return rms_mm(error) / moved;
+    const double force = rms_n(measured);
+    return force > 0 ? rms_n(error) / force : missing;
 }
 
 }  // namespace palpate::identify

@@ -53,6 +53,9 @@ struct Problem {
     int channel(Eigen::Index n) const { return coordinate[n] / 3; }
     /// Is it a coordinate of a marker? Else it is a component of a tool's force or moment.
     bool is_position(Eigen::Index n) const { return channel(n) < markers; }
+    bool is_force(Eigen::Index n) const { return !is_position(n) && (channel(n) - markers) % 2 == 0; }
+    Eigen::Index count_positions() const;
+    Eigen::Index count_forces() const;  // of tools
     /// The stage before action k in the life of the body; -1: the body is new. @pre by_stage
     int before(int k) const;
     /// The same problem with an action for each stage: its rows are the same.
@@ -71,6 +74,10 @@ struct Problem {
     Eigen::VectorXd displacement() const;
     /// rms over the positions of some values of the rows (N) [mm]; 0 where there are none.
     double rms_mm(const Eigen::VectorXd& values) const;
+    /// The same over the forces of tools [N]; NaN where there are none.
+    double rms_n(const Eigen::VectorXd& values) const;
+    /// rms of errors (N) over rms displacement; of the forces where no position moved; NaN where there are none either.
+    double relative(const Eigen::VectorXd& error) const;
     /// Takes another discretisation error off what was measured.
     void correct_for(Eigen::VectorXd error);
     /// The problem with only those rows that `keep` (N flags) holds for.

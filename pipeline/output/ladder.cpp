@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "mesh/text/atomic_file.h"
 #include "pipeline/output/csv/particles.h"
@@ -11,6 +12,7 @@
 #include "pipeline/output/json/comparison.h"
 #include "pipeline/output/json/json_values.h"
 #include "pipeline/output/json/reference_comparison.h"
+#include "pipeline/output/text/errors.h"
 #include "pipeline/output/text/words.h"
 #include "pipeline/output/vtk/ladder_series.h"
 #include "pipeline/output/vtk/series.h"
@@ -22,9 +24,14 @@ namespace {
 using nlohmann::json;
 
 json errors_json(const identify::StepError& error) {
-    return {{"rms_mm", known(error.rms_mm)},
-            {"held_out_rms_mm", known(error.held_out_rms_mm)},
-            {"relative", known(error.relative)}};
+    json result = {{"rms_mm", known(error.rms_mm)},
+                   {"held_out_rms_mm", known(error.held_out_rms_mm)},
+                   {"relative", known(error.relative)}};
+    if (!std::isnan(error.rms_n)) {
+        result["reactions_rms_n"] = error.rms_n;
+        result["held_out_reactions_rms_n"] = known(error.held_out_rms_n);
+    }
+    return result;
 }
 
 json to_json(const identify::LadderStep& step) {
@@ -43,19 +50,16 @@ json to_json(const identify::LadderStep& step) {
     return result;
 }
 
-std::string millimetres(const json& error) {
-    std::string text = fmt::format("{:.3g} mm rms", error["rms_mm"].get<double>());
-    if (error["held_out_rms_mm"].is_number()) {
-        text += fmt::format(" ({:.3g} on held-out probes)", error["held_out_rms_mm"].get<double>());
-    }
-    return text;
+std::string error_in_words(const json& error) {
+    const std::string text = rms_in_words(error) + " rms", held_out = held_out_rms_in_words(error);
+    return held_out.empty() ? text : text + fmt::format(" ({} on held-out probes)", held_out);
 }
 
 std::string step_in_words(const json& step) {
     const auto effects = step["effects"].get<std::vector<std::string>>();
-    std::string text = (effects.empty() ? "Nothing added: " : "With " + listed(effects) + ": ") + millimetres(step);
+    std::string text = (effects.empty() ? "Nothing added: " : "With " + listed(effects) + ": ") + error_in_words(step);
     if (step["reference"].is_object()) {
-        text += "; finite elements: " + millimetres(step["reference"]);
+        text += "; finite elements: " + error_in_words(step["reference"]);
         if (step["reference"].contains("young_mpa")) text += ", " + material_in_words(step["reference"]);
     }
     return text + ".";

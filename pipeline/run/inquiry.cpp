@@ -13,6 +13,7 @@
 #include "pipeline/output/json/diagnosis.h"
 #include "pipeline/output/json/reference_comparison.h"
 #include "pipeline/output/ladder.h"
+#include "pipeline/output/text/errors.h"
 #include "pipeline/output/text/words.h"
 #include "pipeline/output/vtk/missing_series.h"
 #include "pipeline/run/summary.h"
@@ -135,9 +136,9 @@ json RunDiagnosis::improve(const skeleton::Model& model, const json& diagnosis) 
             Console::notice(fmt::format("with {}: {}", listed(effects), note.get<std::string>()));
     }
     report_stage(folder_, "improve", ran,
-                 steps.size() < 2 ? (effects.empty() ? "nothing to add" : "nothing added")
-                                  : fmt::format("{:.3g} to {:.3g} mm rms", steps.front()["rms_mm"].get<double>(),
-                                                steps.back()["rms_mm"].get<double>()));
+                 steps.size() < 2
+                     ? (effects.empty() ? "nothing to add" : "nothing added")
+                     : fmt::format("{} to {} rms", rms_in_words(steps.front()), rms_in_words(steps.back())));
     return result;
 }
 

@@ -62,7 +62,9 @@ void conclude(const Problem& problem, const FitPriors& priors, const RefitOption
                       priors.sd.array().log().sum() + factor.matrixLLT().diagonal().array().log().sum();
     at.prior_mean = priors.mean;
     at.prior_sd = priors.sd;
-    at.rms_mm = problem.rms_mm(at.error.cwiseProduct(problem.sigma));
+    const Eigen::VectorXd unscaled = at.error.cwiseProduct(problem.sigma);
+    at.rms_mm = problem.rms_mm(unscaled);
+    at.rms_n = problem.rms_n(unscaled);
     at.whitened_rms = std::sqrt(at.error.dot(at.V->apply(at.error).col(0)) / N);
     const Eigen::VectorXd nuisance_pulls = at.V->nuisances(at.error);
     if (nuisance_pulls.size() > 0) {

@@ -27,6 +27,7 @@ struct Refit {
     bool converged = false;
 
     double rms_mm = 0;                 // over all measured coordinates
+    double rms_n = missing;            // over all measured forces of tools; NaN where there are none
     double whitened_rms = 0;           // in sigmas of noise and nuisances: 1 is as good as it gets
     double nuisance_pull = 0;          // of the most strained nuisance, in its prior sd
     std::string most_pulled_nuisance;  // its name

@@ -44,8 +44,8 @@ struct FitResidual {
         return stack;
     }
 
-    /// What is left once columns are in, contacts as they are told: the fit's numbers and the effect's move, no
-    /// nuisance [mm].
+    /// What is left of the positions once columns are in, contacts as they are told: the fit's numbers and the
+    /// effect's move, no nuisance [mm].
     double predicted_rms(const Problem& problem, const Eigen::MatrixXd& columns, const Eigen::VectorXd& sd) const {
         Stack with = always;
         with.add(columns, sd.cwiseAbs2().cwiseInverse());
@@ -54,7 +54,7 @@ struct FitResidual {
                                           .cwiseQuotient(with.precisions.cwiseSqrt());
         const Eigen::VectorXd left =
             fit.error - fit.columns * (moved.head(off_mean.size()) - off_mean) - columns * moved.tail(columns.cols());
-        return std::sqrt(left.cwiseProduct(problem.sigma).squaredNorm() / static_cast<double>(d.size()));
+        return problem.rms_mm(left.cwiseProduct(problem.sigma));
     }
 };
 

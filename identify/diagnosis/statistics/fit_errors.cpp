@@ -61,12 +61,12 @@ std::vector<ErrorUnderLoad> under_load(const Problem& problem, const Eigen::Vect
 FitErrors errors_of(const Problem& problem, const Refit& fit) {
     const Eigen::VectorXd error = fit.error.cwiseProduct(problem.sigma);
     const Eigen::VectorXd left = fit.residual.cwiseProduct(problem.sigma);
-    const double displacement = mean_square(problem, problem.displacement());
 
     FitErrors result;
     result.rms = problem.rms_mm(error);
+    result.rms_n = problem.rms_n(error);
     result.max = longest(problem, error);
-    if (displacement > 0) result.relative = result.rms / std::sqrt(displacement);
+    result.relative = problem.relative(error);
     result.whitened_rms = fit.whitened_rms;
     result.nuisance_sd = problem.rms_mm(fit.V->nuisance_sd().cwiseProduct(problem.sigma));
     result.left =

@@ -11,8 +11,9 @@ namespace palpate::identify {
 
 /// How a fit errs, told as a comparison is.
 struct FitErrors {
-    double rms = 0, max = 0;    // [mm]; max: of the error vectors' lengths
-    double relative = missing;  // rms over rms displacement
+    double rms = 0, max = 0;    // of the positions [mm]; max: of the error vectors' lengths
+    double rms_n = missing;     // of the forces of tools; NaN where there are none
+    double relative = missing;  // rms over rms displacement; of the forces where no position moved
     double whitened_rms = 0;    // in sigmas of noise and nuisances
     double left = 0;            // mean square beyond the nuisances [mm^2]
     double nuisance_sd = 0;     // size of the nuisances, rms [mm]

@@ -31,7 +31,8 @@ HeldOut leave_probes_out(const Problem& problem, const Refit& fit) {
     const std::vector<int> group = held_out_groups(problem);
     const LeftOutErrors left = leave_out(Whitening(fit.V->weights(), A, precisions), d, group);
     const auto N = static_cast<double>(problem.rows());
-    return {problem.rms_mm(problem.sigma.cwiseProduct(left.error.col(0))), std::sqrt(left.chi_square[0] / N), {}};
+    const Eigen::VectorXd error = problem.sigma.cwiseProduct(left.error.col(0));
+    return {problem.rms_mm(error), problem.rms_n(error), std::sqrt(left.chi_square[0] / N), {}};
 }
 
 namespace {
@@ -133,7 +134,8 @@ HeldOut predict(const BodyModel& model, const Problem& merged, const Refit& fit,
     precisions << Eigen::VectorXd::Ones(own.cols()), nuisances.precisions;
     const Whitening V(reading_weights(model, unseen, explanation, forward, options.nuisances), A, precisions);
     const auto N = static_cast<double>(unseen.rows());
-    return {unseen.rms_mm(error.cwiseProduct(unseen.sigma)), std::sqrt(error.dot(V.apply(error).col(0)) / N),
+    const Eigen::VectorXd unscaled = error.cwiseProduct(unseen.sigma);
+    return {unseen.rms_mm(unscaled), unseen.rms_n(unscaled), std::sqrt(error.dot(V.apply(error).col(0)) / N),
             V.residual(error)};
 }
 

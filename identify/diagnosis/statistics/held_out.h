@@ -7,6 +7,7 @@ namespace palpate::identify {
 /// How well a fit predicts what it has not seen: each probe's readings from all others, by the fit's own linearisation.
 struct HeldOut {
     double rms_mm = 0;              // over all measured coordinates; the contacts' nuisances are unknown there
+    double rms_n = missing;         // over all measured forces of tools; NaN where there are none
     double whitened_rms = 0;        // in sigmas of noise and nuisances
     Eigen::VectorXd residual = {};  // residual of the predictions after marginalising the unknowns, in sigmas (N)
 };

@@ -43,8 +43,20 @@ std::string tile(const std::string& value, const std::string& what) {
 /// "2.6 → 0.63": before and after what was added, where something was.
 std::string before_and_after(const RunFiles& files, double before, const char* key) {
     if (files.errors_after.empty()) return fmt::format("{:.3g}", before);
-    const json& last = files.ladder["steps"].back()[key];
-    return fmt::format("{:.3g} → {:.3g}", files.ladder["steps"].front()[key].get<double>(), last.get<double>());
+    const json& steps = files.ladder["steps"];
+    return fmt::format("{:.3g} → {:.3g}", steps.front()[key].get<double>(), steps.back()[key].get<double>());
+}
+
+/// How far the real-time model is off: by the positions, or by the forces of tools where these alone were read.
+std::string error_tile(const RunFiles& files) {
+    const json& error = files.compare["error"];
+    const bool forces_alone = files.compare["probes"].empty() && error.contains("reactions");
+    const std::string value =
+        forces_alone ? before_and_after(files, error["reactions"]["rms_n"].get<double>(), "reactions_rms_n") + " N"
+                     : before_and_after(files, error["rms_mm"].get<double>(), "rms_mm") + " mm";
+    return tile(value, std::string(forces_alone ? "rms error of the forces, real-time model"
+                                                : "rms error of the real-time model") +
+                           (files.errors_after.empty() ? "" : ", " + with_what(files)));
 }
 
 /// The material that finite elements come to, of the last step.
@@ -77,8 +89,7 @@ std::string tiles(const RunFiles& files) {
     const json& noise = error["noise_mm"];
     std::string html = "<div class=\"tiles\">";
     if (!files.diagnosis.is_null()) html += tile(with_spaces(files.diagnosis["verdict"].get<std::string>()), "verdict");
-    html += tile(before_and_after(files, error["rms_mm"].get<double>(), "rms_mm") + " mm",
-                 "rms error of the real-time model" + (files.errors_after.empty() ? "" : ", " + with_what(files)));
+    html += error_tile(files);
     if (noise.is_number()) html += tile(fmt::format("{:.2g} mm", noise.get<double>()), "measurement noise, rms");
     return html +
            tile(share_of(files.improved.is_object() ? files.improved["error"]["relative"] : error["relative"]),

@@ -1,6 +1,7 @@
 #include "pipeline/output/json/diagnosis.h"
 
 #include <cmath>
+#include <optional>
 
 #include "identify/diagnosis/statistics/fit_errors.h"
 #include "pipeline/output/json/json_values.h"
@@ -27,6 +28,13 @@ std::string sentence_of(const identify::Candidate& candidate) {
                                       : candidate.effect->sentence(told.effect);
 }
 
+/// Errors of the forces of tools, where any was measured; of what was held out, too, where it was.
+void add_forces(json& result, double rms, const std::optional<identify::HeldOut>& held_out) {
+    if (std::isnan(rms)) return;
+    result["reactions_rms_n"] = rms;
+    if (held_out) result["held_out_reactions_rms_n"] = known(held_out->rms_n);
+}
+
 json to_json(const identify::Candidate& candidate, const identify::BodyModel& model) {
     const identify::EffectDescription& description = candidate.effect->description();
     json result = {{"effect", description.name},
@@ -44,6 +52,7 @@ json to_json(const identify::Candidate& candidate, const identify::BodyModel& mo
                    {"confused_with", description.confused_with}};
     if (candidate.refit) {
         result["rms_mm"] = known(candidate.refit->rms_mm);
+        add_forces(result, candidate.refit->rms_n, candidate.held_out);
         result["whitened_rms"] = known(candidate.refit->whitened_rms);
         result["law"] = model.laws()[candidate.refit->explanation.law];
     }
@@ -81,6 +90,7 @@ json baseline_of(const identify::Diagnosis& diagnosis, const identify::BodyModel
     result["whitened_rms"] = errors.whitened_rms;
     result["held_out_rms_mm"] = known(diagnosis.baseline_held_out.rms_mm);
     result["held_out_whitened_rms"] = known(diagnosis.baseline_held_out.whitened_rms);
+    add_forces(result, errors.rms_n, diagnosis.baseline_held_out);
     if (errors.load_exponent) {
         result["load_exponent"] = {{"value", errors.load_exponent->value},
                                    {"sd", errors.load_exponent->sd},
@@ -96,6 +106,7 @@ json explained_of(const identify::Diagnosis& diagnosis, const identify::BodyMode
     result["rms_mm"] = known(diagnosis.explained->fit.rms_mm);
     result["whitened_rms"] = known(diagnosis.explained->fit.whitened_rms);
     result["held_out_rms_mm"] = known(diagnosis.explained->held_out.rms_mm);
+    add_forces(result, diagnosis.explained->fit.rms_n, diagnosis.explained->held_out);
     return result;
 }
 

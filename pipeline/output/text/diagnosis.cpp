@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "pipeline/output/text/errors.h"
 #include "pipeline/output/text/words.h"
 
 namespace palpate::pipeline {
@@ -34,20 +35,20 @@ std::string how_likely(double log_ratio) {
 /// A fit that leaves less and is not claimed: what speaks against it are its parameters.
 std::string why_closer_is_not_likelier(const json& first, const json& second) {
     const std::size_t own = first["parameters"].size(), others = second["parameters"].size();
+    const char* rms = keys_of(first).fitted;
     const bool fits_closer = first["rms_mm"].is_number() && second["rms_mm"].is_number() &&
-                             second["rms_mm"].get<double>() < first["rms_mm"].get<double>();
+                             second[rms].get<double>() < first[rms].get<double>();
     if (!fits_closer || others <= own) return {};
-    return fmt::format(
-        ". It leaves {:.3g} mm rms, but with {} parameters instead of {}, which the Bayes factor penalises",
-        second["rms_mm"].get<double>(), others, own);
+    return fmt::format(". It leaves {} rms, but with {} parameters instead of {}, which the Bayes factor penalises",
+                       rms_in_words(second), others, own);
 }
 
 std::string without_it(const json& diagnosis) {
     const json& baseline = diagnosis["baseline"];
     // A skeleton has no Young's modulus.
-    std::string text = fmt::format(" Without it the rms error of the {} is {:.3g} mm",
+    std::string text = fmt::format(" Without it the rms error of the {} is {}",
                                    baseline.value("young_mpa", json()).is_number() ? "finite-element model" : "model",
-                                   baseline["rms_mm"].get<double>());
+                                   rms_in_words(baseline));
     if (baseline.contains("load_exponent")) text += and_under_load(baseline["load_exponent"]);
     return text + ".";
 }
@@ -62,12 +63,10 @@ std::string material_words(const json& diagnosis) {
 
 std::string drop_words(const json& diagnosis, const json& candidate) {
     if (!candidate["rms_mm"].is_number()) return {};
-    std::string text =
-        fmt::format(" {} it lowers the error to {:.3g} mm", candidate["kind"] == "body" ? "Adding" : "Correcting for",
-                    candidate["rms_mm"].get<double>());
-    if (candidate["held_out_rms_mm"].is_number()) {
-        text += fmt::format(" ({:.3g} mm on probes held out one by one)", candidate["held_out_rms_mm"].get<double>());
-    }
+    std::string text = fmt::format(" {} it lowers the error to {}",
+                                   candidate["kind"] == "body" ? "Adding" : "Correcting for", rms_in_words(candidate));
+    if (const std::string held_out = held_out_rms_in_words(candidate); !held_out.empty())
+        text += fmt::format(" ({} on probes held out one by one)", held_out);
     return text + ", " + in_sigmas(candidate["whitened_rms"]) + "." + material_words(diagnosis);
 }
 
@@ -106,8 +105,8 @@ std::string ambiguous(const json& diagnosis) {
     for (const json& candidate : diagnosis["ranking"]) {
         if (names.size() == 2 || !candidate["rms_mm"].is_number()) continue;
         names.push_back(candidate["effect"]);
-        each += fmt::format(" {} It would leave {:.3g} mm rms, {}.", sentence_of(candidate, true),
-                            candidate["rms_mm"].get<double>(), in_sigmas(candidate["whitened_rms"]));
+        each += fmt::format(" {} It would leave {} rms, {}.", sentence_of(candidate, true), rms_in_words(candidate),
+                            in_sigmas(candidate["whitened_rms"]));
     }
     std::string text = fmt::format("An effect is missing, but these measurements cannot decide which: {}.",
                                    fmt::format("{}", fmt::join(names, " or ")));
@@ -116,16 +115,16 @@ std::string ambiguous(const json& diagnosis) {
 
 std::string unexplained(const json& diagnosis) {
     const json& baseline = diagnosis["baseline"];
-    std::string text = fmt::format("An effect outside the catalogue is missing: the model error is {:.3g} mm rms, {}",
-                                   baseline["rms_mm"].get<double>(), in_sigmas(baseline["whitened_rms"]));
+    std::string text = fmt::format("An effect outside the catalogue is missing: the model error is {} rms, {}",
+                                   rms_in_words(baseline), in_sigmas(baseline["whitened_rms"]));
     if (baseline.contains("load_exponent")) {
         text += and_under_load(baseline["load_exponent"]);
     }
     text += ".";
     const json& ranking = diagnosis["ranking"];
     if (ranking.empty() || !ranking[0]["whitened_rms"].is_number()) return text;
-    text += fmt::format(" The nearest is {}, which leaves {:.3g} mm rms, {}.", ranking[0]["effect"].get<std::string>(),
-                        ranking[0]["rms_mm"].get<double>(), in_sigmas(ranking[0]["whitened_rms"]));
+    text += fmt::format(" The nearest is {}, which leaves {} rms, {}.", ranking[0]["effect"].get<std::string>(),
+                        rms_in_words(ranking[0]), in_sigmas(ranking[0]["whitened_rms"]));
     if (ranking[0].contains("objection")) {
         text += " It is not claimed: " + ranking[0]["objection"].get<std::string>() + ".";
     }
@@ -134,8 +133,8 @@ std::string unexplained(const json& diagnosis) {
 
 std::string adequate(const json& diagnosis) {
     const json& baseline = diagnosis["baseline"];
-    std::string text = fmt::format("The model is adequate for these measurements: residual {:.3g} mm rms, {}.",
-                                   baseline["rms_mm"].get<double>(), in_sigmas(baseline["whitened_rms"]));
+    std::string text = fmt::format("The model is adequate for these measurements: residual {} rms, {}.",
+                                   rms_in_words(baseline), in_sigmas(baseline["whitened_rms"]));
     const json& ranking = diagnosis["ranking"];
     if (ranking.empty()) return text;
     const json& bayes = ranking[0]["log_bayes_factor"];

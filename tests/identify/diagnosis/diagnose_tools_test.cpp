@@ -140,6 +140,26 @@ TEST_F(MovedByAGrip, TheModelThatIsDeliveredTellsTheSlipThatWasFound) {
     EXPECT_EQ(told[0].parameters[0].value, ladder.steps.back().effects[0].parameters[0].value);
 }
 
+TEST_F(MovedByAGrip, ForcesAloneDecideWhatMakesAModelBetter) {
+    MeasurementSet set = moved(truth("stiffening", Eigen::Vector2d(1, 0)));
+    for (LoadState& state : set.states) state.readings.clear();
+    LadderOptions options;
+    options.identify.scope = Scope::uniform;
+    options.identify.particles = 50;
+    options.diagnose.law = neo_hookean;
+    options.only_better = true;
+    const Ladder ladder = build_ladder(body_.chain(), *model_, set, {"stiffening"}, options);
+    EXPECT_TRUE(ladder.not_added.empty()) << ladder.not_added.front().why;
+    ASSERT_EQ(ladder.steps.size(), 2u);
+    const LadderStep &bare = ladder.steps[0], &stiffening = ladder.steps[1];
+    EXPECT_EQ(bare.skeleton.rms_mm, 0) << "no position was read";
+    EXPECT_GT(bare.reference->rms_n, 10 * *set.reaction_noise) << "the effect shows";
+    EXPECT_LT(stiffening.reference->rms_n, 0.1 * bare.reference->rms_n);  // up to play and compliance
+    EXPECT_LT(stiffening.reference->held_out_rms_n, 0.5 * bare.reference->held_out_rms_n);
+    EXPECT_LT(stiffening.skeleton.held_out_rms_n, bare.skeleton.held_out_rms_n);
+    EXPECT_LT(stiffening.skeleton.relative, bare.skeleton.relative);
+}
+
 TEST_F(MovedByAGrip, SensitivitiesAreDerivativesOfReactionsToo) {
     for (const bool differences : {false, true}) {
         const MeasurementSet set = differences ? since(moved(truth()), 3) : moved(truth());

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string_view>
 
 #include "identify/effects/catalogue.h"
 #include "mesh/errors.h"
@@ -11,6 +12,7 @@
 #include "pipeline/output/html/charts/charts.h"
 #include "pipeline/output/html/escape.h"
 #include "pipeline/output/ladder.h"
+#include "pipeline/output/text/errors.h"
 #include "pipeline/output/text/words.h"
 
 namespace palpate::pipeline {
@@ -45,8 +47,9 @@ std::string evidence(const json& value) {
 
 /// Why what leaves less than the claimed effect is not claimed, where evidence decides.
 std::string why_not_the_closer(const json& candidate, const json& claimed) {
+    const char* rms = keys_of(claimed).fitted;
     if (!candidate["rms_mm"].is_number() || !claimed["rms_mm"].is_number() || candidate.contains("objection") ||
-        candidate["rms_mm"].get<double>() >= claimed["rms_mm"].get<double>())
+        candidate[rms].get<double>() >= claimed[rms].get<double>())
         return {};
     const std::size_t own = candidate["parameters"].size(), others = claimed["parameters"].size();
     if (own <= others) return {};
@@ -71,10 +74,12 @@ std::string candidate_words(const json& candidate, bool claimed, double baseline
         constexpr double hardly = 0.99;  // of what is left without it
         const bool has_evidence =
             candidate["log_bayes_factor"].is_number() && candidate["log_bayes_factor"].get<double>() > 0;
-        words += has_evidence && candidate["predicted_rms_mm"].get<double>() < hardly * baseline_rms
-                     ? fmt::format(" Not refitted: its linear estimate leaves {} mm rms.",
-                                   number(candidate["predicted_rms_mm"]))
-                     : " Not refitted: by its linear estimate it explains nothing.";
+        const double predicted = candidate["predicted_rms_mm"].get<double>();
+        // The estimate is of positions: where forces alone were read, the evidence decides.
+        const bool explains = has_evidence && (predicted < hardly * baseline_rms || baseline_rms == 0);
+        words += !explains          ? " Not refitted: by its linear estimate it explains nothing."
+                 : baseline_rms > 0 ? fmt::format(" Not refitted: its linear estimate leaves {:.3g} mm rms.", predicted)
+                                    : " Not refitted.";
     }
     words += escape(why_not);
     const std::string numbers = parameters(candidate["parameters"]);
@@ -101,10 +106,8 @@ std::string ranking_table(const json& diagnosis) {
                 named_cell("ln Bayes factor", evidence(c["log_bayes_factor"])) +
                 named_cell("probability",
                            c["probability"].is_number() ? probability_in_words(c["probability"].get<double>()) : "–") +
-                named_cell("rms error", c["rms_mm"].is_number() ? number(c["rms_mm"]) + " mm" : "") +
-                named_cell("held out", c["rms_mm"].is_number() && c["held_out_rms_mm"].is_number()
-                                           ? number(c["held_out_rms_mm"]) + " mm"
-                                           : "") +
+                named_cell("rms error", c["rms_mm"].is_number() ? rms_in_words(c) : "") +
+                named_cell("held out", c["rms_mm"].is_number() ? held_out_rms_in_words(c) : "") +
                 named_cell("normalised", c["whitened_rms"].is_number() ? number(c["whitened_rms"]) : "") +
                 "<td class=\"words\">" + candidate_words(c, is_claimed, baseline_rms, why_not) + "</td></tr>";
     }
@@ -117,12 +120,13 @@ std::string ranking_table(const json& diagnosis) {
 
 std::string baseline_line(const json& diagnosis) {
     const json& b = diagnosis["baseline"];
-    std::string text = fmt::format(
-        "Baseline, without any effect: {}, {}; {} mm rms, {} mm held out, normalised {}. Measurement noise "
-        "({}): {} mm rms.",
-        law_in_words(b["law"].get<std::string>()), material_in_words(b), number(b["rms_mm"]),
-        number(b["held_out_rms_mm"]), number(b["whitened_rms"]),
-        diagnosis["noise_known"].get<bool>() ? "declared" : "estimated", number(diagnosis["noise_mm"]));
+    std::string text = fmt::format("Baseline, without any effect: {}, {}; {} rms, {} held out, normalised {}.",
+                                   law_in_words(b["law"].get<std::string>()), material_in_words(b), rms_in_words(b),
+                                   held_out_rms_in_words(b), number(b["whitened_rms"]));
+    if (keys_of(b).unit == std::string_view("mm"))
+        text +=
+            fmt::format(" Measurement noise ({}): {} mm rms.",
+                        diagnosis["noise_known"].get<bool>() ? "declared" : "estimated", number(diagnosis["noise_mm"]));
     if (const json explained = diagnosis.value("explained", json()); explained.is_object())
         text += " With what is claimed: " + material_in_words(explained) + ".";
     return text;
@@ -141,11 +145,11 @@ std::vector<BarGroup> groups_of(const json& ladder, bool reference) {
         const auto effects = step["effects"].get<std::vector<std::string>>();
         const json& error = reference ? step["reference"] : step;
         if (!error.is_object()) return {};
+        const ErrorKeys keys = keys_of(error);
         BarGroup group{effects.empty() ? "nothing added" : "with " + listed(effects), {}};
-        group.bars.push_back({"fitted", error["rms_mm"].get<double>(), false});
-        if (error["held_out_rms_mm"].is_number()) {
-            group.bars.push_back({"held out", error["held_out_rms_mm"].get<double>(), true});
-        }
+        group.bars.push_back({"fitted", error[keys.fitted].get<double>(), false});
+        if (error[keys.held_out].is_number())
+            group.bars.push_back({"held out", error[keys.held_out].get<double>(), true});
         groups.push_back(group);
     }
     return groups;
@@ -197,9 +201,10 @@ std::string missing_section(const json& diagnosis) {
 
 std::string ladder_section(const json& ladder, const json& compare) {
     if (ladder.is_null()) return {};
+    const std::string unit = std::string(keys_of(ladder["steps"].front()).unit) + " rms";
     return "<h2 id=\"ladder\">Ladder</h2><p>" + in_lines(ladder_in_words(ladder)) + "</p><div class=\"pair\">" +
-           group_chart(groups_of(ladder, false), "Error of the real-time model", "mm rms") +
-           group_chart(groups_of(ladder, true), "Error of the finite-element model", "mm rms") + "</div>" +
+           group_chart(groups_of(ladder, false), "Error of the real-time model", unit) +
+           group_chart(groups_of(ladder, true), "Error of the finite-element model", unit) + "</div>" +
            held_out_line(ladder["held_out_probes"], compare["probes"]);
 }
 

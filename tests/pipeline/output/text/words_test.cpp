@@ -6,6 +6,7 @@
 #include "pipeline/output/ladder.h"
 #include "pipeline/output/text/comparison.h"
 #include "pipeline/output/text/diagnosis.h"
+#include "pipeline/output/text/errors.h"
 #include "pipeline/output/text/words.h"
 #include "pipeline/output/text/worst.h"
 
@@ -187,8 +188,8 @@ TEST(LadderInWords, TellsEveryStepAndTheVerdict) {
              {"poisson_declared", true}}}}}},
         {"verdict", "adequate"}};
     EXPECT_THAT(ladder_in_words(ladder),
-                AllOf(HasSubstr("Nothing added: 6.4 mm rms (6.3 on held-out probes)."),
-                      HasSubstr("With gravity: 0.9 mm rms; finite elements: 0.8 mm rms (0.85 on held-out probes), "
+                AllOf(HasSubstr("Nothing added: 6.4 mm rms (6.3 mm on held-out probes)."),
+                      HasSubstr("With gravity: 0.9 mm rms; finite elements: 0.8 mm rms (0.85 mm on held-out probes), "
                                 "E = 0.242 ± 0.012 MPa, ν = 0.499 (declared)."),
                       HasSubstr("The residual of the finite-element model is noise.")));
     json worse = ladder;
@@ -197,6 +198,22 @@ TEST(LadderInWords, TellsEveryStepAndTheVerdict) {
     EXPECT_THAT(ladder_in_words(worse),
                 AllOf(HasSubstr("friction is not added: with it the skeleton is off by 2 mm.\n"),
                       HasSubstr("The model still lacks friction; a skeleton of more spheres")));
+}
+
+TEST(ErrorInWords, IsOfWhatWasRead) {
+    json error = {{"rms_mm", 0.12}, {"held_out_rms_mm", nullptr}};
+    EXPECT_EQ(rms_in_words(error), "0.12 mm");
+    EXPECT_EQ(held_out_rms_in_words(error), "");
+    error["held_out_rms_mm"] = 0.13;
+    error["reactions_rms_n"] = 0.004;
+    error["held_out_reactions_rms_n"] = 0.005;
+    EXPECT_EQ(rms_in_words(error), "0.12 mm and 0.004 N");
+    EXPECT_EQ(held_out_rms_in_words(error), "0.13 mm and 0.005 N");
+    EXPECT_STREQ(keys_of(error).unit, "mm");
+    error["rms_mm"] = error["held_out_rms_mm"] = 0.0;  // as of no positions
+    EXPECT_EQ(rms_in_words(error), "0.004 N");
+    EXPECT_EQ(held_out_rms_in_words(error), "0.005 N");
+    EXPECT_STREQ(keys_of(error).unit, "N");
 }
 
 TEST(LadderInWords, TellsNoiseFromWhatContactsExplain) {
