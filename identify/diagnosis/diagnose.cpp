@@ -82,7 +82,7 @@ public:
             result_.notes.emplace_back(
                 "Gravity has the earth's magnitude, 9.81 m/s^2, as the evidence prefers that to a free one; '--gravity "
                 "unknown' leaves it free.");
-        if (std::string note = note_of_correction(result_.problem, moved_); !note.empty())
+        if (std::string note = note_of_correction(result_.problem); !note.empty())
             result_.notes.push_back(std::move(note));
         return std::move(result_);
     }
@@ -133,7 +133,7 @@ private:
         const Eigen::VectorXd left_mm = result_.best().residual.cwiseProduct(result_.problem.sigma);
         const double left = result_.problem.rms_mm(left_mm);
         constexpr double most = 0.015;  // of the displacement: what meshes and their contacts may be off by
-        if (left > most * moved_) return;
+        if (left > most * moved_ || moved_ == 0) return;
         result_.notes.push_back(
             fmt::format("The residual, {:.3g} mm rms, is {:.2g} % of the displacement, which discretisation error may "
                         "explain. Shorter elements (--edge-length) reduce it; a noise of {:.3g} mm or more covers it.",

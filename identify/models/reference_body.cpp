@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <map>
 #include <mutex>
 #include <tuple>
@@ -182,6 +183,10 @@ struct ReferenceBody::Impl {
     /// The body on a finer mesh.
     struct Finer;
     fem::Lazy<Finer> finer;
+    /// The same on meshes that are finer under tools, each with its last equilibrium of each action, by motions.
+    struct FinerUnderTools;
+    mutable std::map<const mesh::VolumeMesh*, std::shared_ptr<FinerUnderTools>> finer_under_tools;
+    std::shared_ptr<FinerUnderTools> finer_for(const Action& action) const;
 
     // A contact's nodal forces per newton do not depend on the configuration: each is made once.
     using Place = std::tuple<double, double, double, double>;
@@ -222,12 +227,45 @@ struct ReferenceBody::Impl::Finer {
     Finer(const Impl& coarse, const fem::RefinedMesh& refined) : interpolation(refined.interpolation) {
         ReferenceBodyOptions own_options = coarse.options;
         own_options.finer.reset();
+        own_options.finer_under_tools = {};
         own = std::make_unique<Impl>(refined.mesh, coarse.supports, coarse.markers, own_options);
     }
 
     std::unique_ptr<const Impl> own;
     Eigen::SparseMatrix<double, Eigen::RowMajor> interpolation;
 };
+
+struct ReferenceBody::Impl::FinerUnderTools {
+    std::shared_ptr<const mesh::VolumeMesh> mesh;
+    Finer body;
+    std::mutex mutex;
+    std::map<std::vector<double>, Eigen::VectorXd> last;  // equilibria, by the action's motions
+
+    FinerUnderTools(const Impl& coarse, std::shared_ptr<const mesh::VolumeMesh> its_mesh)
+        : mesh(std::move(its_mesh)), body(coarse, {*mesh, fem::interpolation(coarse.body.mesh(), mesh->nodes)}) {}
+
+    /// Where a known equilibrium of the same motions stands, else what the coarse one comes to.
+    Eigen::VectorXd start(const std::vector<double>& motions, const Eigen::VectorXd& coarse) {
+        const std::scoped_lock lock(mutex);
+        if (const auto found = last.find(motions); found != last.end()) return found->second;
+        const Points u = body.interpolation * Eigen::Map<const Points>(coarse.data(), coarse.size() / 3, 3);
+        return Eigen::Map<const Eigen::VectorXd>(u.data(), u.size());
+    }
+    void keep(const std::vector<double>& motions, const Eigen::VectorXd& u) {
+        const std::scoped_lock lock(mutex);
+        last[motions] = u;
+    }
+};
+
+std::shared_ptr<ReferenceBody::Impl::FinerUnderTools> ReferenceBody::Impl::finer_for(const Action& action) const {
+    if (!options.finer_under_tools) return nullptr;
+    const std::shared_ptr<const mesh::VolumeMesh> mesh = options.finer_under_tools(action.motions).mesh;
+    if (!mesh) return nullptr;
+    const std::scoped_lock lock(mutex);
+    std::shared_ptr<FinerUnderTools>& own = finer_under_tools[mesh.get()];
+    if (!own) own = std::make_shared<FinerUnderTools>(*this, mesh);
+    return own;
+}
 
 ReferenceBody::ReferenceBody(const mesh::VolumeMesh& mesh, const std::vector<mesh::Region>& supports,
                              const std::vector<Marker>& markers, const ReferenceBodyOptions& options) {
@@ -406,11 +444,12 @@ Eigen::SparseMatrix<double> ReferenceBody::observation(const Eigen::VectorXd& q,
 
 std::optional<MeshError> ReferenceBody::discretisation_error(const Eigen::VectorXd& q, const ModelSetting& setting,
                                                              const Action& action, const Tangent& J) const {
-    // A finer mesh meets a tool that may part elsewhere, which its steps do not follow.
+    if (impl_->options.measured_on_mesh || action.memory || has_free_coordinates(action)) return std::nullopt;
+    // A finer mesh meets a tool that may part elsewhere, which few steps from here do not follow.
     const bool holds = std::ranges::all_of(action.motions, [&](const mesh::ToolMotion& motion) {
         return impl_->rig.tool(motion, young(setting))->is_grip();
     });
-    if (impl_->options.measured_on_mesh || action.memory || !holds || has_free_coordinates(action)) return std::nullopt;
+    if (!holds) return error_under_tools(q, setting, action);
     const Impl::Finer& finer = impl_->finer.get([&] {
         const mesh::VolumeMesh& coarse = impl_->body.mesh();
         const std::optional<mesh::VolumeMesh>& given = impl_->options.finer;
@@ -435,11 +474,41 @@ std::optional<MeshError> ReferenceBody::discretisation_error(const Eigen::Vector
     const std::optional<Eigen::VectorXd> u =
         fem::refined_equilibrium({finer.own->body, finer.interpolation}, q, factor, own, finer.own->load(action));
     if (!u) return std::nullopt;
-    MeshError error{finer.own->frames.positions(*u, small_strain) - impl_->frames.positions(q, small_strain),
-                    -reactions(q, setting, action)};
+    return difference(q, finer.own->frames.positions(*u, small_strain), finer.own->body, *u, setting, action);
+}
+
+std::optional<MeshError> ReferenceBody::error_under_tools(const Eigen::VectorXd& q, const ModelSetting& setting,
+                                                          const Action& action) const {
+    const std::shared_ptr<Impl::FinerUnderTools> finer = impl_->finer_for(action);
+    if (!finer) return std::nullopt;
+    const Impl& own = *finer->body.own;
+    std::vector<double> motions;
+    for (const mesh::ToolMotion& motion : action.motions) {
+        motions.push_back(motion.tool);
+        std::ranges::copy(motion.translation, std::back_inserter(motions));
+        std::ranges::copy(motion.rotation, std::back_inserter(motions));
+    }
+    const Eigen::VectorXd start = finer->start(motions, q);
+    const Eigen::VectorXd u =
+        own.body.equilibrium(own.setting(setting, action), own.load(action), {.tolerance = 1e-6}, &start).u;
+    finer->keep(motions, u);
+    return difference(q, own.frames.positions(u, in_small_strain(setting)), own.body, u, setting, action);
+}
+
+std::optional<double> ReferenceBody::left_of_mesh_error(const Action& action) const {
+    if (action.motions.empty() || !impl_->options.finer_under_tools) return std::nullopt;
+    const FinerMesh finer = impl_->options.finer_under_tools(action.motions);
+    if (!finer.mesh) return std::nullopt;
+    // It falls with the square of the edges, between a fit's e and what the finer mesh leaves, e / times^2.
+    return 1 / (finer.times * finer.times - 1);
+}
+
+MeshError ReferenceBody::difference(const Eigen::VectorXd& q, const Points& markers, const fem::HyperelasticBody& finer,
+                                    const Eigen::VectorXd& u, const ModelSetting& setting, const Action& action) const {
+    MeshError error{markers - observe(q, setting), -reactions(q, setting, action)};
     for (std::size_t t = 0; t < action.motions.size(); ++t)
         error.reactions.segment<6>(static_cast<Eigen::Index>(6 * t)) +=
-            finer.own->body.wrench(*u, impl_->rig.tool(action.motions[t], young(setting)));
+            finer.wrench(u, impl_->rig.tool(action.motions[t], young(setting)));
     return error;
 }
 

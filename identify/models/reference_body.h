@@ -1,5 +1,10 @@
 #pragma once
 
+#include <functional>
+#include <memory>
+#include <optional>
+#include <vector>
+
 #include "fem/hyperelastic_body.h"
 #include "identify/inference/priors/informative_prior.h"
 #include "identify/measurements/measurement_set.h"
@@ -9,6 +14,12 @@
 
 namespace palpate::identify {
 
+/// Quadratic tetrahedra of a body, finer in a part of it.
+struct FinerMesh {
+    std::shared_ptr<const mesh::VolumeMesh> mesh;  // null: there is none
+    double times = 1;                              // as short edges there
+};
+
 struct ReferenceBodyOptions {
     double density = 1e-9;               // [tonne/mm^3]
     std::optional<double> young = {};    // a first guess [MPa]
@@ -17,6 +28,8 @@ struct ReferenceBodyOptions {
     bool measured_on_mesh = false;  // what is measured was computed on this very mesh, and has its errors
     /// Quadratic tetrahedra of the same body that tell the error of the others; absent: those with halved edges.
     std::optional<mesh::VolumeMesh> finer = {};
+    /// The same where tools that may part touch it in an action: one that is finer there; absent: none tells.
+    std::function<FinerMesh(const std::vector<mesh::ToolMotion>&)> finer_under_tools = {};
     Rig rig = {};                                    // what may touch the body, and act within it
     std::vector<mesh::MaterialRegion> regions = {};  // whose surfaces the elements follow
     std::vector<InformativePrior> priors = {};       // of "young" and "compressibility", from other specimens
@@ -59,6 +72,7 @@ public:
     Eigen::SparseMatrix<double> observation(const Eigen::VectorXd& q, const ModelSetting& setting) const override;
     std::optional<MeshError> discretisation_error(const Eigen::VectorXd& q, const ModelSetting& setting,
                                                   const Action& action, const Tangent& J) const override;
+    std::optional<double> left_of_mesh_error(const Action& action) const override;
     Eigen::VectorXd advance(const Eigen::VectorXd& q, const Eigen::VectorXd& step,
                             const ModelSetting& setting) const override;
     std::shared_ptr<const Memory> remember(const Eigen::VectorXd& q, const ModelSetting& setting,
@@ -102,6 +116,13 @@ public:
 
 private:
     struct Impl;
+    /// The same where tools touch that hold no material.
+    std::optional<MeshError> error_under_tools(const Eigen::VectorXd& q, const ModelSetting& setting,
+                                               const Action& action) const;
+    /// Between an equilibrium on a finer mesh, where markers stand at `markers`, and one here.
+    MeshError difference(const Eigen::VectorXd& q, const Points& markers, const fem::HyperelasticBody& finer,
+                         const Eigen::VectorXd& u, const ModelSetting& setting, const Action& action) const;
+
     std::unique_ptr<Impl> impl_;
 };
 

@@ -4,8 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "mesh/geometry/surface_tree.h"
-
 namespace palpate::pipeline {
 namespace {
 
@@ -66,27 +64,24 @@ FineZone touched(const mesh::Tool& tool, const mesh::ToolMotion& motion, const m
 
 }  // namespace
 
-std::vector<FineZone> contact_zones(const identify::MeasurementSet& set) {
+std::vector<FineZone> zones_touched(const std::vector<mesh::Tool>& tools, const std::vector<mesh::ToolMotion>& motions,
+                                    const mesh::SurfaceTree& body) {
     constexpr double edges_over = 2.5;  // a contact's radius
     constexpr double margin = 1.3;      // its border is singular
-    constexpr double most_nodes = 6000;
     std::vector<FineZone> zones;
-    std::optional<mesh::SurfaceTree> body;
-    for (const identify::LoadState& state : set.states) {
-        for (const mesh::ToolMotion& motion : state.motions) {
-            if (std::holds_alternative<mesh::GripShape>(set.tools[motion.tool].shape)) continue;
-            if (!body) body.emplace(set.rest_surface);
-            FineZone zone = touched(set.tools[motion.tool], motion, *body);
-            if (zone.radius == 0) continue;
-            zone.edge = zone.radius / edges_over;
-            zone.radius *= margin;
-            const bool is_known = std::ranges::any_of(zones, [&](const FineZone& other) {
-                return (other.at - zone.at).norm() < 0.1 * zone.radius &&
-                       std::abs(other.radius - zone.radius) < 0.1 * zone.radius;
-            });
-            if (!is_known) zones.push_back(zone);
-        }
+    for (const mesh::ToolMotion& motion : motions) {
+        if (std::holds_alternative<mesh::GripShape>(tools[motion.tool].shape)) continue;
+        FineZone zone = touched(tools[motion.tool], motion, body);
+        if (zone.radius == 0) continue;
+        zone.edge = zone.radius / edges_over;
+        zone.radius *= margin;
+        zones.push_back(zone);
     }
+    return zones;
+}
+
+std::vector<FineZone> affordable(std::vector<FineZone> zones) {
+    constexpr double most_nodes = 6000;
     // Tetrahedra grow slower away from a zone than its surface asks for.
     constexpr double nodes_of_zone = 130;  // (radius / edge)^3, counted on a block
     double nodes = 0;
@@ -94,6 +89,23 @@ std::vector<FineZone> contact_zones(const identify::MeasurementSet& set) {
     const double longer = std::cbrt(std::max(1.0, nodes / most_nodes));
     for (FineZone& zone : zones) zone.edge *= longer;
     return zones;
+}
+
+std::vector<FineZone> contact_zones(const identify::MeasurementSet& set) {
+    std::vector<FineZone> zones;
+    std::optional<mesh::SurfaceTree> body;
+    for (const identify::LoadState& state : set.states) {
+        if (state.motions.empty()) continue;
+        if (!body) body.emplace(set.rest_surface);
+        for (const FineZone& zone : zones_touched(set.tools, state.motions, *body)) {
+            const bool is_known = std::ranges::any_of(zones, [&](const FineZone& other) {
+                return (other.at - zone.at).norm() < 0.1 * zone.radius &&
+                       std::abs(other.radius - zone.radius) < 0.1 * zone.radius;
+            });
+            if (!is_known) zones.push_back(zone);
+        }
+    }
+    return affordable(std::move(zones));
 }
 
 double edge_at(const Vec3& place, const std::vector<FineZone>& zones, double edge) {

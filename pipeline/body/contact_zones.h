@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "identify/measurements/measurement_set.h"
+#include "mesh/geometry/surface_tree.h"
 
 namespace palpate::pipeline {
 
@@ -13,8 +14,15 @@ struct FineZone {
     double edge = 0;         // within it [mm]
 };
 
-/// Where a set's tools press: as far as each reaches, by Hertz where it is round, with edges of two fifths of that.
-/// Where there are so many that they would take more than 6,000 quadratic nodes, edges are longer.
+/// Where tools that are moved so press into a body: as far as each reaches, by Hertz where it is round, with edges of
+/// two fifths of that. One that does not touch has no zone.
+std::vector<FineZone> zones_touched(const std::vector<mesh::Tool>& tools, const std::vector<mesh::ToolMotion>& motions,
+                                    const mesh::SurfaceTree& body);
+
+/// The same zones with edges so long that all take about 6,000 quadratic nodes at most.
+std::vector<FineZone> affordable(std::vector<FineZone> zones);
+
+/// Where a set's tools press in any state, affordable.
 std::vector<FineZone> contact_zones(const identify::MeasurementSet& set);
 
 /// The edge length wanted at a place: `edge` far away, growing by four fifths of the distance from the zones [mm].

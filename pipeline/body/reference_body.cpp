@@ -7,6 +7,7 @@
 #include <iterator>
 
 #include "fem/material.h"
+#include "identify/loading/loads.h"
 #include "mesh/errors.h"
 #include "mesh/meshing/smooth_surface.h"
 #include "mesh/regions/check_regions.h"
@@ -14,6 +15,7 @@
 #include "mesh/regions/labels.h"
 #include "mesh/supports/held_parts.h"
 #include "pipeline/body/body.h"
+#include "pipeline/body/meshes_under_tools.h"
 
 namespace palpate::pipeline {
 namespace {
@@ -65,8 +67,9 @@ std::vector<std::string> not_followed(const MeshedBody& body, const std::vector<
 /// The surface filled with tetrahedra, with shorter edges where tools press: as short as `contact_zones` wants them,
 /// or, unless the edge length was told, longer, as a diagnosis factors hundreds of tangents, at a cost that grows with
 /// the square of the nodes. Enough are about those of a body without tools (`reference_edge_length`: 2,500) and of the
-/// zone of one contact.
-MeshedBody filled(const identify::MeasurementSet& set, MeshingOptions options, bool is_told, const Progress& progress) {
+/// zone of one contact. `options`: told those edges, too.
+MeshedBody filled(const identify::MeasurementSet& set, MeshingOptions& options, bool is_told,
+                  const Progress& progress) {
     constexpr Eigen::Index enough_nodes = 6000;
     constexpr double longer = 1.35, longest = 3;  // edges in zones, at once and in all
     options.fine = contact_zones(set);
@@ -96,15 +99,18 @@ std::unique_ptr<identify::ReferenceBody> fill(const identify::MeasurementSet& se
     const bool is_fitted = given && (given_nodes <= most_nodes || edge > thickness_of(set.rest_surface));
     const std::vector<mesh::Region> held = held_regions(set.supports, set.tools);
     // Curving the elements gives back what their chords cut off.
-    const MeshedBody body =
-        is_fitted ? *given
-                  : filled(set, {.edge_length = edge, .regions = set.regions, .held = held, .volume_change = 0.06},
-                           edge_length > 0, progress);
+    MeshingOptions how{.edge_length = edge, .regions = set.regions, .held = held, .volume_change = 0.06};
+    const MeshedBody body = is_fitted ? *given : filled(set, how, edge_length > 0, progress);
     const mesh::VolumeMesh curved =
         is_fitted ? body.volume : mesh::curve_to(body.volume, body.repaired, {.held = held});
     identify::ReferenceBodyOptions options;
     options.measured_on_mesh = is_fitted;
     if (given && !is_fitted && given_nodes <= enough_nodes) options.finer = given->volume;
+    if (!is_fitted && std::ranges::any_of(set.tools, identify::may_part)) {
+        options.finer_under_tools = [meshes = std::make_shared<MeshesUnderTools>(set, how)](const auto& motions) {
+            return meshes->at(motions);
+        };
+    }
     options.rig = {set.tools, set.actuators};
     options.priors = priors;
     options.regions = with_surfaces(set.regions, body.interfaces);

@@ -53,7 +53,7 @@ void take_nuisances(const BodyModel& model, const Problem& problem, const RefitO
     at.V = whitening_of(model, problem, at.explanation, at.forward, options, at.nuisances);
 }
 
-void conclude(const Problem& problem, const FitPriors& priors, const RefitOptions& options, Refit& at) {
+void conclude(const Problem& problem, const FitPriors& priors, Refit& at) {
     const auto N = static_cast<double>(problem.rows());
     const Eigen::VectorXd x = at.explanation.all();
     // ln Z = -(chi^2 + priors)/2 - ln |V| / 2 - sum ln sd + ln |covariance| / 2
@@ -73,7 +73,7 @@ void conclude(const Problem& problem, const FitPriors& priors, const RefitOption
         at.most_pulled_nuisance = at.nuisances.names[most];
     }
     at.residual = at.V->residual(at.error);
-    at.scatter = scatter_of(problem, priors, options, at);
+    at.scatter = scatter_of(problem, priors, at);
 }
 
 /// Where the numbers begin of an effect whose magnitude is known, and that; none: no effect has one.
@@ -113,7 +113,7 @@ void try_magnitude(const BodyModel& model, const Problem& problem, const FitPrio
             with.forward = solve_forward(model, problem, with.explanation, options.threads, &at.forward.q);
             with.error = error_of(problem, with.forward);
             with.covariance += follow * (found.covariance - own) * follow.transpose();
-            conclude(problem, priors, options, with);
+            conclude(problem, priors, with);
             with.has_known_magnitude = true;
             at = std::move(with);
         } catch (const SolverFailure&) {  // it stays where it is
@@ -161,7 +161,7 @@ Refit refit(const BodyModel& model, const Problem& problem, const Explanation& e
     } else {
         at.nuisances = start->nuisances;
     }
-    conclude(problem, priors, options, at);
+    conclude(problem, priors, at);
     if (options.magnitude != MagnitudeUse::none) try_magnitude(model, problem, priors, options, at);
     at.forward.tangents.reset();  // many fits are kept
     return at;
@@ -170,7 +170,7 @@ Refit refit(const BodyModel& model, const Problem& problem, const Explanation& e
 Refit reassess(const BodyModel& model, const Problem& corrected, const RefitOptions& options, Refit fit) {
     fit.error = error_of(corrected, fit.forward);
     take_nuisances(model, corrected, options, fit);
-    conclude(corrected, FitPriors(model, fit.explanation, fit.numbers), options, fit);
+    conclude(corrected, FitPriors(model, fit.explanation, fit.numbers), fit);
     fit.forward.tangents.reset();
     return fit;
 }

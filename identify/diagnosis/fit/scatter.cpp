@@ -24,24 +24,25 @@ Eigen::MatrixXd scatter_of_probes(const Problem& problem, const Refit& at) {
     return at.covariance * sum * at.covariance * (probes / std::max(probes - 1, 1.0));
 }
 
-/// How far the error of the mesh that was taken off the readings moves the numbers (p), as if all of it were left in.
-Eigen::VectorXd shift_by_mesh(const Problem& problem, const FitPriors& priors, const Refit& at) {
-    const Eigen::Index others = at.nuisances.columns.cols() - at.nuisances.of_mesh;
+/// How far the numbers move by what may be left of each error of the mesh that was taken off the readings (p x errors).
+Eigen::MatrixXd shifts_by_mesh(const FitPriors& priors, const Refit& at) {
+    const Eigen::Index errors = at.nuisances.of_mesh, others = at.nuisances.columns.cols() - errors;
     const Whitening V(at.V->weights(), at.nuisances.columns.leftCols(others), at.nuisances.precisions.head(others));
     const Eigen::MatrixXd VA = V.apply(at.columns);
     Eigen::MatrixXd H = at.columns.transpose() * VA;
     H.diagonal() += priors.precisions();
-    return H.llt().solve(VA.transpose() * problem.discretisation.cwiseQuotient(problem.sigma));
+    const Eigen::MatrixXd left = at.nuisances.columns.rightCols(errors) *
+                                 at.nuisances.precisions.tail(errors).cwiseSqrt().cwiseInverse().asDiagonal();
+    return H.llt().solve(VA.transpose() * left);
 }
 
 }  // namespace
 
-Eigen::MatrixXd scatter_of(const Problem& problem, const FitPriors& priors, const RefitOptions& options,
-                           const Refit& at) {
+Eigen::MatrixXd scatter_of(const Problem& problem, const FitPriors& priors, const Refit& at) {
     const Eigen::MatrixXd of_probes = scatter_of_probes(problem, at);
-    if (at.nuisances.of_mesh == 0 || problem.discretisation.size() == 0) return of_probes;
-    const Eigen::VectorXd shift = options.nuisances.discretisation * shift_by_mesh(problem, priors, at);
-    return of_probes + shift * shift.transpose();
+    if (at.nuisances.of_mesh == 0) return of_probes;
+    const Eigen::MatrixXd shifts = shifts_by_mesh(priors, at);
+    return of_probes + shifts * shifts.transpose();
 }
 
 }  // namespace palpate::identify

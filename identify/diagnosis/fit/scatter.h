@@ -5,9 +5,8 @@
 
 namespace palpate::identify {
 
-/// Covariance of a fit's numbers (p x p) beside that of the noise: as the probes disagree, and by the share of the
-/// mesh's error that halved edges do not tell.
-Eigen::MatrixXd scatter_of(const Problem& problem, const FitPriors& priors, const RefitOptions& options,
-                           const Refit& at);
+/// Covariance of a fit's numbers (p x p) beside that of the noise: as the probes disagree, and by what finer meshes
+/// leave of the mesh's error.
+Eigen::MatrixXd scatter_of(const Problem& problem, const FitPriors& priors, const Refit& at);
 
 }  // namespace palpate::identify

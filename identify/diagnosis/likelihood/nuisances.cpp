@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <map>
 
 #include "identify/diagnosis/likelihood/tool_nuisances.h"
 #include "identify/diagnosis/likelihood/tool_prints.h"
@@ -37,6 +38,14 @@ public:
     std::vector<double> precisions;
     std::vector<Own> own;
 };
+
+/// How near the middle of a contact may be to a support before most of the force goes straight into it [radii].
+constexpr double next_to_support = 1.2;
+
+double distance_to_support(const BodyModel& model, const Vec3& point) {
+    if (model.support_points().rows() == 0) return INFINITY;
+    return (model.support_points().rowwise() - point.transpose()).rowwise().norm().minCoeff();
+}
 
 void add_contact(Collector& all, const BodyModel& model, const ModelSetting& setting, int k, const Action& action,
                  const mesh::Contact& contact, const NuisanceOptions& options) {
@@ -80,9 +89,7 @@ void add_contact(Collector& all, const BodyModel& model, const ModelSetting& set
                        },
                        {all.add("softness round the contact " + where, options.softness)}});
 
-    // Next to a support most of the force goes straight into it.
-    const double gap = (model.support_points().rowwise() - contact.point.transpose()).rowwise().norm().minCoeff();
-    if (gap < 1.2 * r) {
+    if (distance_to_support(model, contact.point) < next_to_support * r) {
         all.own.push_back({k,
                            [&model, setting, contact](const Eigen::VectorXd& q) -> Eigen::MatrixXd {
                                return model.contact_force(q, setting, contact);
@@ -157,7 +164,8 @@ std::vector<std::vector<mesh::Contact>> contacts_that_dent(const BodyModel& mode
     dents.reserve(forward.actions.size());
     for (int k = 0; k < static_cast<int>(forward.actions.size()); ++k) {
         dents.push_back(forward.actions[k].contacts);
-        std::ranges::move(tool_prints(model, problem, setting, forward, k), std::back_inserter(dents.back()));
+        std::ranges::transform(tool_prints(model, problem, setting, forward, k), std::back_inserter(dents.back()),
+                               &ToolPrint::contact);
         if (!yields || problem.before(k) < 0) continue;
         for (const mesh::Contact& earlier : dents[problem.before(k)]) {
             const auto same = std::ranges::find(dents.back(), earlier.point, &mesh::Contact::point);
@@ -188,6 +196,49 @@ double plastic_indentation(const fem::Plasticity& plasticity, double pressure) {
     constexpr double least_hardening = 0.01;  // what flows is confined by the elastic body round it
     const double first = 1.5 * plasticity.yield;
     return std::max(0.0, pressure / first - 1) / std::max(plasticity.hardening, least_hardening);
+}
+
+/// What a tool feels next to a support: each time by a gain of its own.
+void add_gains_at_support(const BodyModel& model, const Problem& problem, const ModelSetting& setting,
+                          const ForwardSolution& forward, double gain, Nuisances& result) {
+    for (int k = 0; k < static_cast<int>(problem.actions.size()); ++k) {
+        for (const ToolPrint& print : tool_prints(model, problem, setting, forward, k)) {
+            if (distance_to_support(model, print.contact.point) > next_to_support * print.contact.radius) continue;
+            const int tool = forward.actions[k].motions[print.motion].tool, force = problem.markers + 2 * tool;
+            Eigen::VectorXd column = Eigen::VectorXd::Zero(problem.rows());
+            for (Eigen::Index n = 0; n < problem.rows(); ++n) {
+                const int channel = problem.channel(n);
+                if (problem.action[n] == k && (channel == force || channel == force + 1))
+                    column[n] = forward.stand[k](channel, problem.coordinate[n] % 3) / problem.sigma[n];
+            }
+            add({fmt::format("gain next to the support, of the tool '{}' in probe {}", problem.rig->tools[tool].name,
+                             problem.probe[k])},
+                column, gain, result);
+        }
+    }
+}
+
+/// What was taken off for the mesh, more or less of it: alike in all actions, but for those in which tools that may
+/// part touch, each somewhere else, with a few elements.
+void add_errors_of_mesh(const BodyModel& model, const Problem& problem, double share, Nuisances& result) {
+    if (problem.discretisation.size() == 0) return;
+    std::vector<std::optional<double>> left;  // of each action's own
+    for (const Action& action : problem.actions) left.push_back(model.left_of_mesh_error(action));
+    std::map<int, Eigen::VectorXd> columns;  // of actions that have their own; -1: of all others
+    for (Eigen::Index n = 0; n < problem.rows(); ++n) {
+        if (problem.discretisation[n] == 0) continue;
+        const auto [column, is_new] = columns.try_emplace(left[problem.action[n]] ? problem.action[n] : -1);
+        if (is_new) column->second.setZero(problem.rows());
+        column->second[n] = problem.discretisation[n] / problem.sigma[n];
+    }
+    for (const auto& [k, column] : columns) {
+        if (k < 0)
+            add({"error of the mesh"}, column, share, result);
+        else
+            add({fmt::format("error of the mesh under a tool in probe {}", problem.probe[k])}, column, *left[k],
+                result);
+    }
+    result.of_mesh = std::ssize(columns);
 }
 
 }  // namespace
@@ -238,11 +289,8 @@ Nuisances make_nuisances(const BodyModel& model, const Problem& problem, const E
                      .precisions = Eigen::Map<Eigen::VectorXd>(all.precisions.data(), std::ssize(all.precisions)),
                      .names = all.names};
     add(tools.names, columns.back(), options.play, result);
-    // What was taken off for the mesh, more or less of it.
-    if (problem.discretisation.size() > 0) {
-        add({"error of the mesh"}, problem.discretisation.cwiseQuotient(problem.sigma), options.discretisation, result);
-        result.of_mesh = 1;
-    }
+    add_gains_at_support(model, problem, setting, forward, options.gain_at_support, result);
+    add_errors_of_mesh(model, problem, options.discretisation, result);
     return result;
 }
 

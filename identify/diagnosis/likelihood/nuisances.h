@@ -11,7 +11,7 @@ struct NuisanceOptions {
     double softness = 0.3;  // of ln stiffness within two radii of a contact
     double clamp = 0.6;     // of ln stiffness in each sector of what a support's border cuts
     int clamp_sectors = 30;
-    double gain_at_support = 0.3;  // of ln force of a probe that reaches a support
+    double gain_at_support = 0.3;  // of ln force of a probe, or what a tool feels, that reaches a support
     /// Of a tool's largest motion: its play, and what machine and grip yield under its largest force. Strain by
     /// the travel of a crosshead is off by some per cent, which is what extensometers are for.
     double play = 0.02;
@@ -34,8 +34,8 @@ struct Nuisances {
 
 /// For each place that is touched, whatever probes, loads and times, two shifts of the contact along the surface, its
 /// radius and the softness of the body round it; for each tool its play and the compliance of what moves it; the
-/// stiffness of sectors of pieces that a support's border cuts; a gain of its own for a place next to a support. Their
-/// signatures are taken at the played configurations.
+/// stiffness of sectors of pieces that a support's border cuts; a gain of its own for a contact next to a support.
+/// Their signatures are taken at the played configurations.
 Nuisances make_nuisances(const BodyModel& model, const Problem& problem, const Explanation& explanation,
                          const ForwardSolution& forward, int threads, const NuisanceOptions& options = {});
 

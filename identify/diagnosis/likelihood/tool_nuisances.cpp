@@ -6,6 +6,8 @@
 #include <map>
 #include <memory>
 
+#include "identify/diagnosis/likelihood/tool_prints.h"
+
 namespace palpate::identify {
 namespace {
 
@@ -18,31 +20,55 @@ Vec3 force_on_body(const Problem& problem, const ForwardSolution& forward, std::
     return forward.stand[k].row(problem.markers + 2 * Eigen::Index{tool});
 }
 
-/// The largest motion and force of a tool over all actions, and where its columns stand.
+/// How a tool moves the body in an action: from where it rests, or, where it comes in touch on its way, from there.
+Vec3 stroke_of(const BodyModel& model, const Problem& problem, const ModelSetting& setting,
+               const ForwardSolution& forward, int k, std::size_t motion) {
+    const mesh::ToolMotion& own = forward.actions[k].motions[motion];
+    if (!may_part(problem.rig->tools[own.tool])) return imposed(own);
+    for (const ToolPrint& print : tool_prints(model, problem, setting, forward, k))
+        if (print.motion == motion) return print.stroke * print.contact.force.normalized();
+    return Vec3::Zero();
+}
+
+/// The largest stroke and force of a tool over all actions, and where its columns stand.
 struct Range {
-    double motion = 0;  // [mm]
+    double stroke = 0;  // [mm]
     double force = 0;   // [N]
     int column = 0;     // of its play; that of the compliance follows
 };
 
-std::map<int, Range> ranges_of(const Problem& problem, const ForwardSolution& forward) {
+/// The strokes of each action's tools.
+using Strokes = std::vector<std::vector<Vec3>>;
+
+Strokes strokes_of(const BodyModel& model, const Problem& problem, const ModelSetting& setting,
+                   const ForwardSolution& forward) {
+    Strokes strokes(forward.actions.size());
+    for (std::size_t k = 0; k < strokes.size(); ++k) {
+        for (std::size_t i = 0; i < forward.actions[k].motions.size(); ++i)
+            strokes[k].push_back(stroke_of(model, problem, setting, forward, static_cast<int>(k), i));
+    }
+    return strokes;
+}
+
+std::map<int, Range> ranges_of(const Problem& problem, const ForwardSolution& forward, const Strokes& strokes) {
     std::map<int, Range> ranges;
     for (std::size_t k = 0; k < forward.actions.size(); ++k) {
-        for (const mesh::ToolMotion& motion : forward.actions[k].motions) {
-            Range& range = ranges[motion.tool];
-            range.motion = std::max(range.motion, imposed(motion).norm());
-            range.force = std::max(range.force, force_on_body(problem, forward, k, motion.tool).norm());
+        for (std::size_t i = 0; i < strokes[k].size(); ++i) {
+            const int tool = forward.actions[k].motions[i].tool;
+            Range& range = ranges[tool];
+            range.stroke = std::max(range.stroke, strokes[k][i].norm());
+            range.force = std::max(range.force, force_on_body(problem, forward, k, tool).norm());
         }
     }
     return ranges;
 }
 
 /// How far a tool falls short of its motion (6 x 2): by its play, and by the compliance of what moves it.
-Eigen::Matrix<double, 6, 2> shortfalls(const mesh::ToolMotion& motion, const Vec3& felt, const Range& range) {
+Eigen::Matrix<double, 6, 2> shortfalls(const mesh::ToolMotion& motion, const Vec3& stroke, const Vec3& felt,
+                                       const Range& range) {
     Eigen::Matrix<double, 6, 2> errors = Eigen::Matrix<double, 6, 2>::Zero();
-    const Vec3 u = imposed(motion);
-    if (u.norm() > 0) errors.col(0).head<3>() = -range.motion * u.normalized();
-    if (range.force > 0) errors.col(1).head<3>() = -range.motion / range.force * felt;
+    if (stroke.norm() > 0) errors.col(0).head<3>() = -range.stroke * stroke.normalized();
+    if (range.force > 0) errors.col(1).head<3>() = -range.stroke / range.force * felt;
     for (int axis = 0; axis < 3; ++axis) {
         if (std::isnan(motion.translation[axis])) errors.row(axis).setZero();  // it goes where no force acts
     }
@@ -51,7 +77,7 @@ Eigen::Matrix<double, 6, 2> shortfalls(const mesh::ToolMotion& motion, const Vec
 
 /// What tools do that fall short of their motions in action k: columns of their play and of their compliance.
 Signatures::InAction of_tools(const ReactionSlopes& slopes, const Problem& problem, const ForwardSolution& forward,
-                              int k, const std::map<int, Range>& ranges) {
+                              int k, const std::map<int, Range>& ranges, const std::vector<Vec3>& strokes) {
     Signatures::InAction own;
     const std::vector<mesh::ToolMotion>& motions = forward.actions[k].motions;
     const auto tools = std::ssize(motions);
@@ -60,7 +86,7 @@ Signatures::InAction of_tools(const ReactionSlopes& slopes, const Problem& probl
         const mesh::ToolMotion& motion = motions[static_cast<std::size_t>(i)];
         const Range& range = ranges.at(motion.tool);
         const Vec3 felt = force_on_body(problem, forward, static_cast<std::size_t>(k), motion.tool);
-        poses.block<6, 2>(6 * i, 2 * i) = shortfalls(motion, felt, range);
+        poses.block<6, 2>(6 * i, 2 * i) = shortfalls(motion, strokes[static_cast<std::size_t>(i)], felt, range);
         own.columns.insert(own.columns.end(), {range.column, range.column + 1});
     }
     own.forces = -slopes.by_step.transpose() * poses;
@@ -113,7 +139,8 @@ void add_cables(const BodyModel& model, const ModelSetting& setting, const Actio
 ToolNuisances tool_nuisances(const BodyModel& model, const Problem& problem, const ModelSetting& setting,
                              const ForwardSolution& forward) {
     ToolNuisances result;
-    std::map<int, Range> ranges = ranges_of(problem, forward);
+    const Strokes strokes = strokes_of(model, problem, setting, forward);
+    std::map<int, Range> ranges = ranges_of(problem, forward, strokes);
     for (auto& [tool, range] : ranges) {
         range.column = static_cast<int>(result.names.size());
         result.names.push_back(fmt::format("play of the tool '{}'", problem.rig->tools[tool].name));
@@ -125,15 +152,15 @@ ToolNuisances tool_nuisances(const BodyModel& model, const Problem& problem, con
         result.names.push_back(fmt::format("slack of the tendon '{}'", problem.rig->actuators[cable].name));
         result.names.push_back(fmt::format("give of the tendon '{}'", problem.rig->actuators[cable].name));
     }
-    result.signatures = {std::ssize(result.names),
-                         [&, setting, ranges, cables, first_cable](int k, const Eigen::VectorXd& q) {
-                             const Action& action = forward.actions[k];
-                             Signatures::InAction own;
-                             if (!action.motions.empty())
-                                 own = of_tools(model.reaction_slopes(q, setting, action), problem, forward, k, ranges);
-                             add_cables(model, setting, action, q, cables, first_cable, own);
-                             return own;
-                         }};
+    result.signatures = {
+        std::ssize(result.names), [&, setting, strokes, ranges, cables, first_cable](int k, const Eigen::VectorXd& q) {
+            const Action& action = forward.actions[k];
+            Signatures::InAction own;
+            if (!action.motions.empty())
+                own = of_tools(model.reaction_slopes(q, setting, action), problem, forward, k, ranges, strokes[k]);
+            add_cables(model, setting, action, q, cables, first_cable, own);
+            return own;
+        }};
     return result;
 }
 

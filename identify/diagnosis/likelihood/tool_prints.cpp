@@ -18,13 +18,15 @@ Eigen::VectorXd gaps_of(const BodyModel& model, const Points& skin, const fem::T
 
 }  // namespace
 
-std::vector<mesh::Contact> tool_prints(const BodyModel& model, const Problem& problem, const ModelSetting& setting,
-                                       const ForwardSolution& forward, int k) {
-    std::vector<mesh::Contact> prints;
+std::vector<ToolPrint> tool_prints(const BodyModel& model, const Problem& problem, const ModelSetting& setting,
+                                   const ForwardSolution& forward, int k) {
+    std::vector<ToolPrint> prints;
     const Action& action = forward.actions[k];
     if (action.motions.empty()) return prints;
     const Points skin = model.skin_positions(forward.q[k], setting);
-    for (const mesh::ToolMotion& motion : model.motions(forward.q[k], setting, action)) {
+    const std::vector<mesh::ToolMotion> motions = model.motions(forward.q[k], setting, action);
+    for (std::size_t i = 0; i < motions.size(); ++i) {
+        const mesh::ToolMotion& motion = motions[i];
         const auto tool = std::make_shared<const fem::RigidTool>(problem.rig->tools[motion.tool]);
         if (!tool->shape) continue;
         const Vec3 felt = forward.stand[k].row(problem.markers + 2 * Eigen::Index{motion.tool});
@@ -33,14 +35,16 @@ std::vector<mesh::Contact> tool_prints(const BodyModel& model, const Problem& pr
         constexpr double barely_off = 0.01;  // of the tool's radius
         const Eigen::VectorXd gaps = gaps_of(model, skin, {tool, motion, model.young(setting)});
         const double most = std::max(barely_off * tool->shape->radius(), gaps.minCoeff());
-        double area = 0;
+        double area = 0, stroke = 0;
         Vec3 moment = Vec3::Zero();
         for (Eigen::Index s = 0; s < gaps.size(); ++s) {
             if (gaps[s] > most) continue;
             area += model.skin_areas()[s];
             moment += model.skin_areas()[s] * model.skin().row(s).transpose();
+            stroke = std::max(stroke, (skin.row(s) - model.skin().row(s)).dot(felt.normalized()));
         }
-        prints.push_back({.point = moment / area, .force = felt, .radius = std::sqrt(area / M_PI)});
+        const mesh::Contact contact{.point = moment / area, .force = felt, .radius = std::sqrt(area / M_PI)};
+        prints.push_back({i, contact, stroke});
     }
     return prints;
 }

@@ -62,14 +62,16 @@ bool shows_next_to_noise(const Problem& problem, const Eigen::VectorXd& change) 
     return change.size() > 0 && rms_over_sigma(problem, change) >= much_for_noise;
 }
 
-std::string note_of_correction(const Problem& problem, double moved) {
-    if (problem.discretisation.size() == 0) return {};
-    const double error = problem.rms_mm(problem.discretisation), share = error / moved;
-    if (error < problem.rms_sigma()) return {};
+std::string note_of_correction(const Problem& problem) {
+    if (!shows_next_to_noise(problem, problem.discretisation)) return {};
+    const double mm = problem.rms_mm(problem.discretisation), share = problem.relative(problem.discretisation);
+    const bool of_forces = mm == 0;
+    if (!of_forces && mm < problem.rms_sigma()) return {};
     std::string note = fmt::format(
-        "The error of the body's mesh, {:.3g} mm rms or {:.2g} % of the displacement, was computed with halved edges "
-        "and taken off the readings.",
-        error, 100 * share);
+        "The error of the body's mesh, {:.3g} {} rms or {:.2g} % of the {}, was computed with shorter edges and taken "
+        "off the readings.",
+        of_forces ? problem.rms_n(problem.discretisation) : mm, of_forces ? "N" : "mm", 100 * share,
+        of_forces ? "forces" : "displacement");
     constexpr double most = 0.2;  // halved edges leave up to a third of it, more than most effects are worth
     if (share > most) {
         note +=

@@ -21,7 +21,7 @@ void correct_baselines_for_mesh(const BodyModel& model, Problem& problem, Baseli
 /// Does an error of the mesh, or a change of it, show next to the noise? `change` (N) [mm].
 bool shows_next_to_noise(const Problem& problem, const Eigen::VectorXd& change);
 
-/// What was taken off, where it would have shown; empty: it would not. `moved`: rms of the readings from rest [mm].
-std::string note_of_correction(const Problem& problem, double moved);
+/// What was taken off, where it would have shown; empty: it would not.
+std::string note_of_correction(const Problem& problem);
 
 }  // namespace palpate::identify

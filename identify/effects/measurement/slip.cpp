@@ -86,17 +86,19 @@ private:
         motion.rotation *= share;
     }
 
-    /// In their order; at rest in all states a tool cannot slip.
+    /// In their order; at rest in all states a tool cannot slip, and the way of one that roams is not a share of how
+    /// far it presses.
     static std::vector<int> moved_tools(const Problem& problem) {
-        std::vector<char> is_moved(problem.rig->tools.size(), 0);
+        std::vector<char> is_moved(problem.rig->tools.size(), 0), roaming = is_moved;
         for (const Stage& stage : problem.stages) {
             for (const mesh::ToolMotion& motion : stage.action.motions) {
                 if (is_off_rest(motion)) is_moved[motion.tool] = 1;
+                if (roams(problem.rig->tools[motion.tool], motion)) roaming[motion.tool] = 1;
             }
         }
         std::vector<int> tools;
         for (std::size_t t = 0; t < is_moved.size(); ++t)
-            if (is_moved[t]) tools.push_back(static_cast<int>(t));
+            if (is_moved[t] && !roaming[t]) tools.push_back(static_cast<int>(t));
         return tools;
     }
 };

@@ -79,6 +79,8 @@ std::vector<Place> places_for(const ToolSpec& tool, const mesh::Surface& surface
     constexpr double touching = 0.995;  // of the radius: nothing is nearer to a ball's centre but by rounding
     ProbeOptions many = probing;
     many.probes = std::min(candidates * probing.probes, ProbeOptions::most_probes);
+    // As far from supports as it is wide, or it would press what holds the body.
+    many.radius = std::max(many.radius, tool.radius / mesh::bounding_box(surface.vertices).longest_side());
     const mesh::SurfaceTree tree(surface);
     std::vector<Place> places;
     for (const mesh::Contact& contact : probing_contacts(surface, supports, many, seed)) {

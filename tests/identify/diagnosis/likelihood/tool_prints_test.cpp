@@ -7,9 +7,9 @@ namespace palpate::identify {
 namespace {
 
 /// The bar pressed by a ball from above, near its middle.
-class ToolPrint : public Diagnosed {
+class UnderABall : public Diagnosed {
 protected:
-    ToolPrint() {
+    UnderABall() {
         body_.mesh = mesh::to_quadratic(mesh::make_bar(Vec3::Zero(), Vec3(40, 10, 10), {16, 4, 4}));
         rig_.tools.push_back({.name = "ball", .shape = mesh::SphereShape{4}, .origin = Vec3(20, 5, 14)});
         model_ =
@@ -31,20 +31,23 @@ protected:
     ForwardSolution forward_;
 };
 
-TEST_F(ToolPrint, IsWhereAndAsLargeAsTheContact) {
+TEST_F(UnderABall, IsWhereAndAsLargeAsTheContact) {
     const ModelSetting setting = truth().setting();
     EXPECT_TRUE(tool_prints(*model_, problem_, setting, forward_, 1 - pressed()).empty());
-    const std::vector<mesh::Contact> prints = tool_prints(*model_, problem_, setting, forward_, pressed());
+    const std::vector<ToolPrint> prints = tool_prints(*model_, problem_, setting, forward_, pressed());
     ASSERT_EQ(prints.size(), 1U);
-    EXPECT_LT((prints[0].point - Vec3(20, 5, 10)).norm(), 1.3);  // half the 2.5 mm between the skin's points
-    EXPECT_LT(prints[0].radius, 4);                              // the ball's
-    EXPECT_GT(prints[0].radius, 0.5);                            // the bar sinks away from it, as it bends
+    EXPECT_LT((prints[0].contact.point - Vec3(20, 5, 10)).norm(), 1.3);  // half the 2.5 mm between the skin's points
+    EXPECT_LT(prints[0].contact.radius, 4);                              // the ball's
+    EXPECT_GT(prints[0].contact.radius, 0.5);                            // the bar sinks away from it, as it bends
     const Vec3 felt = forward_.stand[static_cast<std::size_t>(pressed())].row(problem_.markers);
-    EXPECT_EQ(prints[0].force, felt);
+    EXPECT_EQ(prints[0].contact.force, felt);
     EXPECT_LT(felt.z(), 0);
+    // The ball came 1 mm from where it just touched; what stands between the points of the skin it reaches first.
+    EXPECT_LT(prints[0].stroke, 1.05);
+    EXPECT_GT(prints[0].stroke, 0.7);
 }
 
-TEST_F(ToolPrint, MakesMarkersNextToItCountForLess) {
+TEST_F(UnderABall, MakesMarkersNextToItCountForLess) {
     const NuisanceOptions dents_alone{.ragged = 0};
     const Eigen::VectorXd weights = reading_weights(*model_, problem_, truth(), forward_, dents_alone);
     double near = 1, far = 0;
