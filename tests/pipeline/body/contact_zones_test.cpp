@@ -6,6 +6,7 @@
 
 #include "mesh/topology/check_surface.h"
 #include "pipeline/body/body.h"
+#include "pipeline/body/meshes_under_tools.h"
 
 namespace palpate::pipeline {
 namespace {
@@ -47,6 +48,27 @@ TEST(ContactZones, OfManyPlacesHaveLongerEdges) {
     const std::vector<FineZone> zones = contact_zones(set);
     ASSERT_EQ(zones.size(), 20U);
     EXPECT_GT(zones[0].edge, 2 * std::sqrt(5 * 1.25) / 2.5);
+}
+
+TEST(MeshesUnderTools, AreMadeOncePerPlaceAndFinerThere) {
+    identify::MeasurementSet set = block();
+    set.states = {moved(1, 0, Vec3(0, 0, -0.5)), moved(1, 0, Vec3(0, 0, -1.25)), moved(2, 0, Vec3(15, 15, -1))};
+    MeshesUnderTools meshes(set, {.edge_length = 8});
+    const identify::FinerMesh shallow = meshes.at(set.states[0].motions), deep = meshes.at(set.states[1].motions),
+                              elsewhere = meshes.at(set.states[2].motions);
+    ASSERT_TRUE(deep.mesh && elsewhere.mesh);
+    EXPECT_EQ(shallow.mesh, deep.mesh) << "one place";
+    EXPECT_NE(elsewhere.mesh, deep.mesh);
+    EXPECT_NEAR(deep.times, 8 / (std::sqrt(5 * 1.25) / 2.5), 1e-6);
+    const auto count_near = [](const mesh::VolumeMesh& mesh, const Vec3& place) {
+        return ((mesh.nodes.rowwise() - place.transpose()).rowwise().norm().array() < 4).count();
+    };
+    EXPECT_GT(count_near(*deep.mesh, Vec3(30, 30, 30)), 10 * count_near(*deep.mesh, Vec3(45, 45, 30)));
+    EXPECT_FALSE(meshes.at(moved(3, 0, Vec3(0, 0, 1)).motions).mesh) << "it does not touch";
+    EXPECT_FALSE(meshes.at(moved(3, 0, Vec3(-15, 0, -1)).motions).mesh) << "no state of the set is there";
+
+    MeshesUnderTools hardly(set, {.edge_length = 8, .fine = contact_zones(set)});
+    EXPECT_FALSE(hardly.at(set.states[1].motions).mesh) << "the other mesh is as fine there";
 }
 
 TEST(ContactZones, MakeABodyWithShortEdgesThere) {

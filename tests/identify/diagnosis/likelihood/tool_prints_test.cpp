@@ -1,6 +1,7 @@
 #include "identify/diagnosis/likelihood/tool_prints.h"
 
 #include "identify/diagnosis/likelihood/nuisances.h"
+#include "identify/diagnosis/likelihood/tool_nuisances.h"
 #include "tests/identify/diagnosed.h"
 
 namespace palpate::identify {
@@ -45,6 +46,32 @@ TEST_F(UnderABall, IsWhereAndAsLargeAsTheContact) {
     // The ball came 1 mm from where it just touched; what stands between the points of the skin it reaches first.
     EXPECT_LT(prints[0].stroke, 1.05);
     EXPECT_GT(prints[0].stroke, 0.7);
+}
+
+TEST_F(UnderABall, PlayIsAShareOfHowFarItPresses) {
+    const ModelSetting setting = truth().setting();
+    const double stroke = tool_prints(*model_, problem_, setting, forward_, pressed()).front().stroke;
+    // The same tool brought from afar to where it presses: the same columns.
+    const auto play_of = [&](const Vec3& origin) {
+        Problem problem = problem_;
+        auto rig = std::make_shared<Rig>(*problem.rig);
+        const Vec3 off = rig->tools[0].origin - origin;
+        rig->tools[0].origin = origin;
+        problem.rig = rig;
+        const ReferenceBody model(body_.mesh, body_.supports, body_.markers,
+                                  {.young = 0.1, .measured_on_mesh = true, .rig = *rig});
+        ForwardSolution forward = forward_;
+        for (Action& action : forward.actions)
+            for (mesh::ToolMotion& motion : action.motions) motion.translation += off;
+        const ToolNuisances tools = tool_nuisances(model, problem, setting, forward);
+        return tools.signatures.in_action(pressed(), forward.q[pressed()]);
+    };
+    const Signatures::InAction near = play_of(Vec3(20, 5, 14)), far = play_of(Vec3(20, 5, 94));
+    EXPECT_LT((near.reactions - far.reactions).norm(), 1e-9 * near.reactions.norm());
+    // By its whole stroke less it would not touch: the slope of its force times that is more than its force.
+    const Vec3 felt = forward_.stand[static_cast<std::size_t>(pressed())].row(problem_.markers);
+    EXPECT_GT(stroke, 0);
+    EXPECT_LT(near.reactions.col(0).head<3>().dot(felt), 0);
 }
 
 TEST_F(UnderABall, MakesMarkersNextToItCountForLess) {

@@ -2,7 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <memory>
+
 #include "identify/diagnosis/diagnose.h"
+#include "identify/diagnosis/likelihood/nuisances.h"
 #include "tests/identify/small_body.h"
 
 namespace palpate::identify {
@@ -98,6 +101,80 @@ TEST_F(Discretisation, OfWhatAGripFeelsIsToldToo) {
     EXPECT_LT((error->reactions - expected).norm(), 0.25 * expected.norm());
     const Points moved = truth.observe(exact, setting) - model.observe(q, setting);
     EXPECT_LT((error->markers - moved).norm(), 0.1 * moved.norm());
+}
+
+TEST_F(Discretisation, UnderAToolThatMayPartIsToldByAMeshThatIsFinerThere) {
+    Rig rig;
+    rig.tools.push_back({.name = "ball", .shape = mesh::SphereShape{6}, .origin = Vec3(20, 20, 10)});
+    const auto finer = std::make_shared<const mesh::VolumeMesh>(plate({24, 16, 3}));
+    ReferenceBodyOptions options{.rig = rig};
+    const auto offered = [&](double times) {
+        options.finer_under_tools = [=](const std::vector<mesh::ToolMotion>& motions) -> FinerMesh {
+            return motions.front().translation.z() < 0 ? FinerMesh{finer, times} : FinerMesh{};
+        };
+        return ReferenceBody(body_.mesh, body_.supports, body_.markers, options);
+    };
+    const ReferenceBody model = offered(4), truth(*finer, body_.supports, body_.markers, {.rig = rig});
+    const ModelSetting setting = bare_truth(model, 2).setting();
+    Action action;
+    action.motions = {{.tool = 0, .translation = Vec3(0, 0, -1.5)}};
+    for (const double deeper : {1.0, 1.1}) {  // the second starts from where it is not: from the coarse mesh
+        action.motions[0].translation *= deeper;
+        const Eigen::VectorXd q = model.equilibrium(setting, action), exact = truth.equilibrium(setting, action);
+        const auto told = [&] {
+            return model.discretisation_error(q, setting, action, *model.tangent(q, setting, action));
+        };
+        const auto error = told(), again = told();
+        ASSERT_TRUE(error && again);
+        const Eigen::VectorXd expected = truth.reactions(exact, setting, action) - model.reactions(q, setting, action);
+        EXPECT_GT(expected.norm(), 0.02 * model.reactions(q, setting, action).norm()) << "a few elements under a ball";
+        // Both are equilibria to a millionth of the forces.
+        const double rounding = 1e-4 * expected.norm();
+        EXPECT_LT((error->reactions - expected).norm(), rounding);
+        EXPECT_LT((again->reactions - expected).norm(), rounding) << "from the last one";
+        const Points moved = truth.observe(exact, setting) - model.observe(q, setting);
+        EXPECT_LT((error->markers - moved).norm(), 1e-4 * moved.norm());
+    }
+    EXPECT_NEAR(*model.left_of_mesh_error(action), 1.0 / 15, 1e-12);  // e - e/16 is taken off
+    EXPECT_FALSE(model.left_of_mesh_error({}));
+    action.motions[0].translation.z() = 1;
+    EXPECT_FALSE(model.left_of_mesh_error(action));
+}
+
+TEST_F(Discretisation, UnderToolsIsAnUnknownOfEachAction) {
+    Rig rig;
+    rig.tools.push_back({.name = "ball", .shape = mesh::SphereShape{6}, .origin = Vec3(20, 20, 10)});
+    const auto finer = std::make_shared<const mesh::VolumeMesh>(plate({10, 6, 2}));
+    ReferenceBodyOptions options{.rig = rig};
+    options.finer_under_tools = [=](const std::vector<mesh::ToolMotion>&) { return FinerMesh{finer, 2}; };
+    const ReferenceBody model(body_.mesh, body_.supports, body_.markers, options);
+    std::vector<LoadState> states{LoadState{.probe = 0}, set_.states[1]};
+    for (const double x : {0.0, 10.0}) {
+        LoadState state{.probe = static_cast<int>(states.size()), .time = 1};
+        state.motions = {{.tool = 0, .translation = Vec3(x, 0, -1)}};
+        state.reactions = {{.tool = 0, .force = Vec3::Zero()}};
+        states.push_back(state);
+    }
+    MeasurementSet set = body_.set(std::move(states));
+    set.tools = rig.tools;
+    set.reaction_noise = 1e-4;
+    const Explanation bare = bare_truth(model, 2);
+    Problem problem = make_problem(make_twin(model, set, bare, noise), noise);
+    const ForwardSolution forward = solve_forward(model, problem, bare, 1);
+    problem.correct_for(discretisation_error(model, problem, bare, forward, 1));
+    const Nuisances nuisances = make_nuisances(model, problem, bare, forward, 1);
+    // One for what is pressed by known forces, and one each for the two places of the ball.
+    ASSERT_EQ(nuisances.of_mesh, 3);
+    const Eigen::MatrixXd columns = nuisances.columns.rightCols(3);
+    const Eigen::VectorXd sd = nuisances.precisions.tail(3).cwiseSqrt().cwiseInverse();
+    EXPECT_NEAR(sd[0], NuisanceOptions{}.discretisation, 1e-12);
+    EXPECT_NEAR(sd[1], 1.0 / 3, 1e-12);
+    EXPECT_NEAR(sd[2], 1.0 / 3, 1e-12);
+    EXPECT_LT((columns.rowwise().sum() - problem.discretisation.cwiseQuotient(problem.sigma)).norm(), 1e-12);
+    for (Eigen::Index n = 0; n < problem.rows(); ++n) {
+        const int others = static_cast<int>((columns.row(n).array() != 0).count());
+        EXPECT_LE(others, 1);
+    }
 }
 
 TEST_F(Discretisation, OfSmallerLoadsIsScaledWhereNoiseHidesTheDifference) {

@@ -41,6 +41,16 @@ TEST(RigProbes, StartWhereTheToolJustTouches) {
     }
 }
 
+TEST(RigProbes, KeepToolsOffWhatHoldsTheBody) {
+    const double radius = 6;
+    const RigProbes made = probes_of({.tool = "sphere:radius=6", .depth = {0.5}}, 8);
+    const mesh::SurfaceTree tree(block());
+    for (const LoadCourse& course : made.courses) {
+        const Vec3 place = tree.closest(made.rig.tools[0].origin + course.drive.from).position;
+        EXPECT_GT(place.z(), 0.1 + radius);  // the block is held up to there
+    }
+}
+
 TEST(RigProbes, PressAPunchAlongItsAxisAlone) {
     const RigProbes made = probes_of({.tool = "flat:radius=3", .depth = {0.5}}, 3);
     const auto& punch = std::get<mesh::FlatShape>(made.rig.tools[0].shape);
