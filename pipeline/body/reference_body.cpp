@@ -70,7 +70,7 @@ std::vector<std::string> not_followed(const MeshedBody& body, const std::vector<
 /// zone of one contact. `options`: told those edges, too.
 MeshedBody filled(const identify::MeasurementSet& set, MeshingOptions& options, bool is_told,
                   const Progress& progress) {
-    constexpr Eigen::Index enough_nodes = 6000;
+    constexpr Eigen::Index enough_nodes = 4000;
     constexpr double longer = 1.35, longest = 3;  // edges in zones, at once and in all
     options.fine = contact_zones(set);
     MeshedBody body = make_body(set.rest_surface, options, progress);
