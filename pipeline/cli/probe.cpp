@@ -92,9 +92,12 @@ std::vector<std::string> names_of(const std::vector<HiddenEffect>& hidden) {
 
 /// What is hidden, in words: never its numbers.
 void describe_hidden(const BlindSet& blind_set, bool has_fields) {
+    const bool forces_alone = blind_set.set.markers.empty();
+    const double noise = forces_alone ? blind_set.set.reaction_noise.value_or(0) : blind_set.noise;
     for (const HiddenEffect& hidden : blind_set.hidden) {
-        Console::notice(fmt::format("Hidden: {}, which changes the readings by {:.3g} mm rms; the noise is {:.3g} mm.",
-                                    hidden.effect.name, hidden.strength.change, blind_set.noise));
+        Console::notice(
+            fmt::format("Hidden: {0}, which changes the readings by {1:.3g} {3} rms; the noise is {2:.3g} {3}.",
+                        hidden.effect.name, hidden.strength.change, noise, forces_alone ? "N" : "mm"));
     }
     if (blind_set.is_blind && has_fields) {
         Console::notice(

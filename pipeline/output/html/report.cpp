@@ -42,21 +42,27 @@ std::string tile(const std::string& value, const std::string& what) {
 
 /// "2.6 → 0.63": before and after what was added, where something was.
 std::string before_and_after(const RunFiles& files, double before, const char* key) {
-    if (files.errors_after.empty()) return fmt::format("{:.3g}", before);
+    if (!files.improved.is_object()) return fmt::format("{:.3g}", before);
     const json& steps = files.ladder["steps"];
     return fmt::format("{:.3g} → {:.3g}", steps.front()[key].get<double>(), steps.back()[key].get<double>());
 }
 
 /// How far the real-time model is off: by the positions, or by the forces of tools where these alone were read.
-std::string error_tile(const RunFiles& files) {
+std::string error_tiles(const RunFiles& files) {
+    const bool forces_alone = !reads_positions(files.compare);
     const json& error = files.compare["error"];
-    const bool forces_alone = files.compare["probes"].empty() && error.contains("reactions");
+    const json& relative = files.improved.is_object() ? files.improved["error"]["relative"] : error["relative"];
+    const std::string added = files.improved.is_object() ? ", " + with_what(files) : "";
     const std::string value =
         forces_alone ? before_and_after(files, error["reactions"]["rms_n"].get<double>(), "reactions_rms_n") + " N"
                      : before_and_after(files, error["rms_mm"].get<double>(), "rms_mm") + " mm";
-    return tile(value, std::string(forces_alone ? "rms error of the forces, real-time model"
-                                                : "rms error of the real-time model") +
-                           (files.errors_after.empty() ? "" : ", " + with_what(files)));
+    std::string html = tile(
+        value,
+        (forces_alone ? "rms error of tools' forces, real-time model" : "rms error of the real-time model") + added);
+    if (const json& noise = error["noise_mm"]; noise.is_number())
+        html += tile(fmt::format("{:.2g} mm", noise.get<double>()), "measurement noise, rms");
+    return html + tile(share_of(relative),
+                       (forces_alone ? "rms error over rms force" : "rms error over rms displacement") + added);
 }
 
 /// The material that finite elements come to, of the last step.
@@ -85,16 +91,9 @@ std::string tiles(const RunFiles& files) {
         std::count_if(files.model.spheres.begin(), files.model.spheres.end(), [](auto& s) { return s.held; });
     const auto informed =
         std::count_if(files.posterior.begin(), files.posterior.end(), [](auto& r) { return r.informed; });
-    const json& error = files.compare["error"];
-    const json& noise = error["noise_mm"];
     std::string html = "<div class=\"tiles\">";
     if (!files.diagnosis.is_null()) html += tile(with_spaces(files.diagnosis["verdict"].get<std::string>()), "verdict");
-    html += error_tile(files);
-    if (noise.is_number()) html += tile(fmt::format("{:.2g} mm", noise.get<double>()), "measurement noise, rms");
-    return html +
-           tile(share_of(files.improved.is_object() ? files.improved["error"]["relative"] : error["relative"]),
-                "rms error over rms displacement" + (files.improved.is_object() ? ", " + with_what(files) : "")) +
-           material_tiles(files) +
+    return html + error_tiles(files) + material_tiles(files) +
            tile(fmt::format("{} + {}", files.model.spheres.size() - held, held), "spheres, free + held") +
            tile(std::to_string(files.model.links.size()), "links") +
            tile(fmt::format("{} of {}", informed, files.posterior.size()), "stiffnesses that the data inform") +

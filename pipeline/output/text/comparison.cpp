@@ -19,11 +19,6 @@ std::string share(const json& error) {
     return mesh::share_of(error["relative"].get<double>(), "the displacement");
 }
 
-/// Were any positions read, or the forces of tools alone?
-bool has_positions(const json& compare) {
-    return !compare["error"].contains("reactions") || !compare.value("probes", json::array()).empty();
-}
-
 /// Is what the body in finite elements leaves noise, and the nuisances of contacts and clamps?
 bool is_explained_by_reference(const json& compare) {
     constexpr double adequate = 1.1;  // sigmas, as a diagnosis takes it
@@ -71,7 +66,7 @@ std::string reference_words(const json& compare) {
     const json baseline = compare.value("baseline", json()), reference = compare.value("reference", json());
     if (!baseline.is_object() || !reference.is_object()) return {};
     const std::string error =
-        has_positions(compare) ? fmt::format("{:.3g} mm rms: ", reference["rms_mm"].get<double>()) : "";
+        reads_positions(compare) ? fmt::format("{:.3g} mm rms: ", reference["rms_mm"].get<double>()) : "";
     return fmt::format(" The finite-element model ({}, {}) is off by {}{}.",
                        law_in_words(baseline["law"].get<std::string>()), material_in_words(baseline), error,
                        in_sigmas(reference["whitened_rms"]));
@@ -89,7 +84,7 @@ std::string load_words(const json& compare) {
 
 std::string budget_words(const json& compare) {
     const json budget = compare.value("budget", json());
-    if (!budget.is_object() || !has_positions(compare)) return {};
+    if (!budget.is_object() || !reads_positions(compare)) return {};
     return fmt::format(" Of the mean square error {} is noise, {} the coarseness of the skeleton, {} unexplained.",
                        percent(budget["noise"].get<double>()), percent(budget["reduction"].get<double>()),
                        percent(budget["missing_physics"].get<double>()));
@@ -117,7 +112,7 @@ std::string region_words(const json& compare) {
 std::string error_words(const json& compare, const std::string& model) {
     const json& error = compare["error"];
     std::string text;
-    if (has_positions(compare))
+    if (reads_positions(compare))
         text = fmt::format("{} is off by {:.3g} mm rms, {}, and by {:.3g} mm at most.", model,
                            error["rms_mm"].get<double>(), share(error), error["max_mm"].get<double>());
     if (error.contains("reactions")) {
@@ -134,10 +129,14 @@ std::string error_words(const json& compare, const std::string& model) {
 
 }  // namespace
 
+bool reads_positions(const json& compare) {
+    return !compare["error"].contains("reactions") || !compare.value("probes", json::array()).empty();
+}
+
 std::string compare_in_words(const json& compare, const std::string& model) {
     const json& error = compare["error"];
     std::string text = error_words(compare, model);
-    if (has_positions(compare)) {
+    if (reads_positions(compare)) {
         text += if_it_explains_nothing(error["relative"]);
     } else if (error["reactions"]["relative"].is_number() && error["reactions"]["relative"].get<double>() >= 1) {
         text += " That is more than was measured: this model does not tell what a tool feels.";

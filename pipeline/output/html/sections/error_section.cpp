@@ -29,10 +29,11 @@ std::string pictures(const RunFiles& files) {
     for (const Dot& dot : files.errors_before) highest = std::max(highest, dot.value);
     const bool strange = std::ranges::any_of(files.errors_before, [](const Dot& dot) { return dot.strange; });
     std::string html =
-        "<div class=\"pair\">" + figure(skeleton_picture(files.model), "Spheres and links. Orange: held spheres.") +
-        figure(dot_picture(files.model, files.errors_before, highest, "mm"),
-               std::string("Marker errors") + (files.errors_after.empty() ? "." : ", baseline.") +
-                   (strange ? " Orange ring: the finite-element model does not explain the error either." : ""));
+        "<div class=\"pair\">" + figure(skeleton_picture(files.model), "Spheres and links. Orange: held spheres.");
+    if (!reads_positions(files.compare)) return html + "</div>";  // the others are of markers
+    html += figure(dot_picture(files.model, files.errors_before, highest, "mm"),
+                   std::string("Marker errors") + (files.errors_after.empty() ? "." : ", baseline.") +
+                       (strange ? " Orange ring: the finite-element model does not explain the error either." : ""));
     if (!files.errors_after.empty()) {
         const auto effects = files.ladder["steps"].back()["effects"].get<std::vector<std::string>>();
         html += figure(dot_picture(files.model, files.errors_after, highest, "mm"),

@@ -12,6 +12,7 @@
 #include "pipeline/output/html/charts/charts.h"
 #include "pipeline/output/html/escape.h"
 #include "pipeline/output/ladder.h"
+#include "pipeline/output/text/comparison.h"
 #include "pipeline/output/text/errors.h"
 #include "pipeline/output/text/words.h"
 
@@ -217,7 +218,7 @@ std::string budget_section(const json& compare, const json& improved) {
     };
     const json before = compare.value("budget", json());
     const json after = improved.is_object() ? improved.value("budget", json()) : json();
-    if (!before.is_object()) return {};
+    if (!before.is_object() || !reads_positions(compare)) return {};  // the budget is of positions
     std::string html = "<h2 id=\"budget\">Error budget</h2>";
     if (after.is_object()) {
         const double left =
