@@ -63,8 +63,7 @@ json baseline_json(const identify::BodyModel& model, const identify::Problem& pr
     result["unsure_mm"] = identify::errors_of(problem, fit).nuisance_sd;
     result["discretisation_mm"] = nullptr;
     if (problem.discretisation.size() > 0) {
-        result["discretisation_mm"] =
-            std::sqrt(problem.discretisation.squaredNorm() / static_cast<double>(problem.rows()));
+        result["discretisation_mm"] = problem.rms_mm(problem.discretisation);
     }
     return result;
 }
