@@ -3,8 +3,6 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <type_traits>
-#include <variant>
 
 #include "mesh/geometry/surface_tree.h"
 
@@ -115,23 +113,6 @@ std::optional<Vec3> known_gravity(const MeasurementSet& set, const LoadState& st
 bool is_off_rest(const mesh::ToolMotion& motion) {
     const auto differs = [](double x) { return x != 0 && !std::isnan(x); };
     return std::ranges::any_of(motion.translation, differs) || std::ranges::any_of(motion.rotation, differs);
-}
-
-bool may_part(const mesh::Tool& tool) { return !tool.bonded && !std::holds_alternative<mesh::GripShape>(tool.shape); }
-
-bool roams(const mesh::Tool& tool, const mesh::ToolMotion& motion) {
-    if (!may_part(tool)) return false;
-    const auto half_width = [](const auto& shape) -> double {
-        using Shape = std::decay_t<decltype(shape)>;
-        if constexpr (std::is_same_v<Shape, mesh::SurfaceShape>)
-            return mesh::bounding_box(shape.surface.vertices).longest_side() / 2;
-        else if constexpr (std::is_same_v<Shape, mesh::GripShape>)
-            return INFINITY;
-        else
-            return shape.radius;
-    };
-    const Vec3& u = motion.translation;
-    return u.array().isNaN().select(0, u).matrix().norm() > std::visit(half_width, tool.shape);
 }
 
 bool is_known_to_act(const MeasurementSet& set, const LoadState& state) {

@@ -49,13 +49,6 @@ std::optional<Vec3> known_gravity(const MeasurementSet& set, const LoadState& st
 /// Is a tool elsewhere than where it rests? What is left free does not count.
 bool is_off_rest(const mesh::ToolMotion& motion);
 
-/// May a tool part from the body? Else it holds material, or is bonded to it.
-bool may_part(const mesh::Tool& tool);
-
-/// Does a motion take a tool that may part farther than it is wide, as one that comes from off the body or roams over
-/// it? How far it presses is not what it has moved by then.
-bool roams(const mesh::Tool& tool, const mesh::ToolMotion& motion);
-
 /// Does a force, gravity, pressure, tool or actuator act in a state, as far as is known?
 bool is_known_to_act(const MeasurementSet& set, const LoadState& state);
 

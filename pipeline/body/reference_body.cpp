@@ -7,7 +7,7 @@
 #include <iterator>
 
 #include "fem/material.h"
-#include "identify/loading/loads.h"
+#include "identify/loading/tool_motions.h"
 #include "mesh/errors.h"
 #include "mesh/meshing/smooth_surface.h"
 #include "mesh/regions/check_regions.h"

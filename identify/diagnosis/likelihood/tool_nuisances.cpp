@@ -7,6 +7,7 @@
 #include <memory>
 
 #include "identify/diagnosis/likelihood/tool_prints.h"
+#include "identify/loading/tool_motions.h"
 
 namespace palpate::identify {
 namespace {

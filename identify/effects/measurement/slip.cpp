@@ -5,6 +5,7 @@
 
 #include "identify/effects/effect.h"
 #include "identify/loading/loads.h"
+#include "identify/loading/tool_motions.h"
 #include "mesh/errors.h"
 
 namespace palpate::identify {

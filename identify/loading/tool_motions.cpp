@@ -1,0 +1,34 @@
+#include "identify/loading/tool_motions.h"
+
+#include <cmath>
+#include <type_traits>
+#include <variant>
+
+namespace palpate::identify {
+namespace {
+
+/// How far a tool reaches from its middle, about [mm]; infinite of one that holds material.
+double half_width(const mesh::Tool& tool) {
+    const auto of_shape = [](const auto& shape) -> double {
+        using Shape = std::decay_t<decltype(shape)>;
+        if constexpr (std::is_same_v<Shape, mesh::SurfaceShape>) {
+            return mesh::bounding_box(shape.surface.vertices).longest_side() / 2;
+        } else if constexpr (std::is_same_v<Shape, mesh::GripShape>) {
+            return INFINITY;
+        } else {
+            return shape.radius;
+        }
+    };
+    return std::visit(of_shape, tool.shape);
+}
+
+}  // namespace
+
+bool may_part(const mesh::Tool& tool) { return !tool.bonded && !std::holds_alternative<mesh::GripShape>(tool.shape); }
+
+bool roams(const mesh::Tool& tool, const mesh::ToolMotion& motion) {
+    const Vec3 moved = motion.translation.array().isNaN().select(0, motion.translation);
+    return may_part(tool) && moved.norm() > half_width(tool);
+}
+
+}  // namespace palpate::identify
