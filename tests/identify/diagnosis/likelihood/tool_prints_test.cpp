@@ -12,7 +12,10 @@ class UnderABall : public Diagnosed {
 protected:
     UnderABall() {
         body_.mesh = mesh::to_quadratic(mesh::make_bar(Vec3::Zero(), Vec3(40, 10, 10), {16, 4, 4}));
-        rig_.tools.push_back({.name = "ball", .shape = mesh::SphereShape{4}, .origin = Vec3(20, 5, 14)});
+        press_at(20);
+    }
+    void press_at(double x) {
+        rig_.tools = {{.name = "ball", .shape = mesh::SphereShape{4}, .origin = Vec3(x, 5, 14)}};
         model_ =
             std::make_unique<ReferenceBody>(body_.mesh, body_.supports, body_.markers,
                                             ReferenceBodyOptions{.young = 0.1, .measured_on_mesh = true, .rig = rig_});
@@ -72,6 +75,26 @@ TEST_F(UnderABall, PlayIsAShareOfHowFarItPresses) {
     const Vec3 felt = forward_.stand[static_cast<std::size_t>(pressed())].row(problem_.markers);
     EXPECT_GT(stroke, 0);
     EXPECT_LT(near.reactions.col(0).head<3>().dot(felt), 0);
+}
+
+TEST_F(UnderABall, ItsForceHasAGainOfItsOwnNextToASupport) {
+    const auto gains = [&] {
+        const Nuisances all = make_nuisances(*model_, problem_, truth(), forward_, 1);
+        std::vector<Eigen::Index> found;
+        for (std::size_t i = 0; i < all.names.size(); ++i)
+            if (all.names[i].starts_with("gain next to the support")) found.push_back(static_cast<Eigen::Index>(i));
+        return std::pair(all, found);
+    };
+    EXPECT_TRUE(gains().second.empty()) << "half the bar away from it";
+    press_at(1);
+    const auto [all, found] = gains();
+    ASSERT_EQ(found.size(), 1U);
+    EXPECT_NEAR(all.precisions[found[0]], 1 / std::pow(NuisanceOptions{}.gain_at_support, 2), 1e-9);
+    const Eigen::VectorXd column = all.columns.col(found[0]), felt = problem_.pick(forward_.markers);
+    for (Eigen::Index n = 0; n < problem_.rows(); ++n) {
+        const bool counts = problem_.action[n] == pressed() && !problem_.is_position(n);
+        EXPECT_EQ(column[n], counts ? felt[n] / problem_.sigma[n] : 0);
+    }
 }
 
 TEST_F(UnderABall, MakesMarkersNextToItCountForLess) {
