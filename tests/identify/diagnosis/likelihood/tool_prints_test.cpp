@@ -2,6 +2,7 @@
 
 #include "identify/diagnosis/likelihood/nuisances.h"
 #include "identify/diagnosis/likelihood/tool_nuisances.h"
+#include "identify/effects/catalogue.h"
 #include "tests/identify/diagnosed.h"
 
 namespace palpate::identify {
@@ -75,6 +76,15 @@ TEST_F(UnderABall, PlayIsAShareOfHowFarItPresses) {
     const Vec3 felt = forward_.stand[static_cast<std::size_t>(pressed())].row(problem_.markers);
     EXPECT_GT(stroke, 0);
     EXPECT_LT(near.reactions.col(0).head<3>().dot(felt), 0);
+}
+
+TEST_F(UnderABall, DoesNotSlipByAShareOfItsWayOverTheBody) {
+    const auto slip = find_effect("slip");
+    EXPECT_EQ(slip->numbers(*model_, problem_).size(), 1U);
+    Problem roaming = problem_;
+    for (Stage& stage : roaming.stages)
+        for (mesh::ToolMotion& motion : stage.action.motions) motion.translation.x() += 5;  // the ball's radius is 4
+    EXPECT_TRUE(slip->numbers(*model_, roaming).empty());
 }
 
 TEST_F(UnderABall, ItsForceHasAGainOfItsOwnNextToASupport) {
