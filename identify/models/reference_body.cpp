@@ -1,115 +1,17 @@
 #include "identify/models/reference_body.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
-#include <iterator>
-#include <map>
-#include <mutex>
-#include <tuple>
 
 #include "fem/elements/patch_load.h"
-#include "fem/interpolation/interpolation.h"
-#include "fem/interpolation/refine.h"
-#include "fem/large_deformation/lazy.h"
-#include "fem/large_deformation/refined_equilibrium.h"
 #include "identify/models/free_tools.h"
-#include "identify/models/marker_frames.h"
-#include "identify/models/tendon_friction.h"
-#include "mesh/errors.h"
-#include "mesh/regions/element_regions.h"
+#include "identify/models/reference_body_impl.h"
 #include "skeleton/model/state.h"
 
 namespace palpate::identify {
 namespace {
 
-constexpr int ln_young = 0, ln_compressibility = 1, first_region = 2;  // places in theta
-constexpr const char* of_region = "young:";                            // begins the name of a region's parameter
-
-/// ln(1 - 2 nu) may be tried where no material is.
-void require_material(const fem::Material& material) {
-    constexpr double least = -0.9, most = 0.49999;
-    if (material.poisson > least && material.poisson < most && std::isfinite(material.young)) return;
-    throw SolverFailure(
-        fmt::format("the fit asks for a Poisson's ratio of {:.3g} and a Young's modulus of {:.3g} MPa; "
-                    "allowed are ratios from {} to {}",
-                    material.poisson, material.young, least, most));
-}
-
-fem::Material material_of(const ModelSetting& setting, double density) {
-    // theta = (ln E, ln(1 - 2 nu))
-    return {.young = std::exp(setting.theta[ln_young]),
-            .poisson = 0.5 * (1 - std::exp(setting.theta[ln_compressibility])),
-            .density = density};
-}
-
-/// What a region is made of.
-fem::Material material_of(const mesh::MaterialRegion& region, double log_young, const fem::Material& body) {
-    fem::Material material = body;
-    material.young = std::exp(log_young);
-    if (region.poisson) material.poisson = *region.poisson;
-    if (region.density) material.density = *region.density;
-    return material;
-}
-
-/// How the internal forces of a material grow with ln E and with ln(1 - 2 nu); `unit`: those at unit moduli (3n x 2).
-/// f = mu a + K b with mu = E / (2 (1 + nu)), K = E / (3 (1 - 2 nu)); t = ln(1 - 2 nu): d nu/dt = -(1 - 2 nu)/2,
-/// so d mu/dt = mu (1 - 2 nu) / (2 (1 + nu)) and dK/dt = -K.
-Eigen::Matrix<double, Eigen::Dynamic, 2> slopes_of(const fem::Material& m, const Eigen::MatrixXd& unit) {
-    const double mu = m.shear_modulus(), K = m.bulk_modulus();
-    Eigen::Matrix<double, Eigen::Dynamic, 2> slopes(unit.rows(), 2);
-    slopes.col(0) = mu * unit.col(0) + K * unit.col(1);
-    slopes.col(1) = mu * (1 - 2 * m.poisson) / (2 * (1 + m.poisson)) * unit.col(0) - K * unit.col(1);
-    return slopes;
-}
-
-/// The elements of each region. @throws InvalidInput where there are next to none.
-fem::ElementRegions element_regions(const mesh::VolumeMesh& mesh, const ReferenceBodyOptions& options) {
-    constexpr int least = 4;  // fewer do not show how a part bends
-    fem::ElementRegions result;
-    if (options.regions.empty()) return result;
-    std::vector<mesh::Surface> surfaces;
-    for (const mesh::MaterialRegion& region : options.regions) surfaces.push_back(region.surface);
-    result.of_element = mesh::regions_of_elements(mesh, surfaces);
-    for (std::size_t r = 0; r < surfaces.size(); ++r) {
-        const mesh::MaterialRegion& region = options.regions[r];
-        result.density.push_back(region.density && options.density > 0 ? *region.density / options.density : 1);
-        const auto own = std::ranges::count(result.of_element, static_cast<int>(r));
-        if (own < least)
-            throw InvalidInput(fmt::format(
-                "region '{}' has {} of the mesh's elements; at least {} are needed. Take the region out, or "
-                "give a mesh that is finer there, or the surface alone, which is meshed along the region.",
-                region.name, own, least));
-    }
-    return result;
-}
-
-class FemTangent : public Tangent {
-public:
-    explicit FemTangent(std::shared_ptr<const fem::BodyTangent> factor) : factor_(std::move(factor)) {}
-    Eigen::MatrixXd solve(const Eigen::MatrixXd& B) const override { return factor_->solve(B); }
-    double gigabytes() const override { return factor_->gigabytes(); }
-    const fem::BodyTangent& factor() const { return *factor_; }
-
-private:
-    std::shared_ptr<const fem::BodyTangent> factor_;
-};
-
-bool in_small_strain(const ModelSetting& setting) {
-    return static_cast<fem::MaterialLaw>(setting.law) == fem::MaterialLaw::linear;
-}
-
-class FemMemory : public Memory {
-public:
-    explicit FemMemory(std::shared_ptr<const fem::MaterialState> the_state) : state(std::move(the_state)) {}
-    std::shared_ptr<const fem::MaterialState> state;
-};
-
-const fem::MaterialState* memory_of(const Action& action) {
-    const auto* own = dynamic_cast<const FemMemory*>(action.memory.get());
-    return own ? own->state.get() : nullptr;
-}
+constexpr const char* of_region = "young:";  // begins the name of a region's parameter
 
 Points centres_of(const mesh::VolumeMesh& mesh) {
     Points centres(mesh.tetrahedra.rows(), 3);
@@ -144,128 +46,6 @@ std::vector<char> cut_by_support(const mesh::VolumeMesh& mesh, const std::vector
 }
 
 }  // namespace
-
-struct ReferenceBody::Impl {
-    Impl(const mesh::VolumeMesh& mesh, const std::vector<mesh::Region>& the_supports,
-         const std::vector<Marker>& the_markers, const ReferenceBodyOptions& the_options)
-        : supports(the_supports),
-          markers(the_markers),
-          options(the_options),
-          regions(element_regions(mesh, options)),
-          body(mesh, mesh::contains(supports, mesh.nodes), options.dilatation, regions),
-          frames(mesh, markers),
-          rig(options.rig),
-          density(options.density),
-          size((mesh.nodes.colwise().maxCoeff() - mesh.nodes.colwise().minCoeff()).maxCoeff()) {}
-
-    std::vector<mesh::Region> supports;
-    std::vector<Marker> markers;
-    ReferenceBodyOptions options;
-
-    fem::ElementRegions regions;
-    fem::HyperelasticBody body;
-    MarkerFrames frames;
-    PreparedRig rig;
-    double density, size;
-    std::vector<std::string> laws{"linear", "svk", "neo-hooke"};
-    std::vector<StiffnessParameter> parameters;
-    mesh::Surface surface;  // by the faces' corners
-    Points centres, support_points;
-    std::vector<char> cut;
-    Eigen::VectorXd support_shares;
-    std::vector<int> skin_nodes;
-    Points skin;
-    Eigen::VectorXd skin_areas;
-    std::vector<int> material_nodes;
-    Points material_points;
-    Eigen::VectorXd material_shares;
-
-    /// The body on a finer mesh.
-    struct Finer;
-    fem::Lazy<Finer> finer;
-    /// The same on meshes that are finer under tools, each with its last equilibrium of each action, by motions.
-    struct FinerUnderTools;
-    mutable std::map<const mesh::VolumeMesh*, std::shared_ptr<FinerUnderTools>> finer_under_tools;
-    std::shared_ptr<FinerUnderTools> finer_for(const Action& action) const;
-
-    // A contact's nodal forces per newton do not depend on the configuration: each is made once.
-    using Place = std::tuple<double, double, double, double>;
-    mutable std::mutex mutex;
-    mutable std::map<Place, Eigen::VectorXd> shares;  // (n)
-
-    std::vector<fem::Material> region_materials(const ModelSetting& s, const fem::Material& material) const {
-        std::vector<fem::Material> result;
-        for (std::size_t r = 0; r < options.regions.size(); ++r)
-            result.push_back(
-                material_of(options.regions[r], s.theta[first_region + static_cast<Eigen::Index>(r)], material));
-        return result;
-    }
-    fem::BodySetting setting(const ModelSetting& s, const fem::Material& material, const Action& action) const {
-        fem::BodySetting result{static_cast<fem::MaterialLaw>(s.law), material, s.effects,
-                                region_materials(s, material)};
-        result.effects.pressure += action.pressure;
-        rig.add(action, material.young, result.effects);
-        return result;
-    }
-    fem::BodySetting setting(const ModelSetting& s, const Action& action) const {
-        return setting(s, material_of(s, density), action);
-    }
-    /// Of the tendons that rub.
-    fem::TendonSliding sliding(const Eigen::VectorXd& q, const fem::BodySetting& own) const {
-        std::vector<fem::TendonSliding> each;
-        for (const fem::TendonPull& pull : own.effects.tendons)
-            if (pull.coefficient != 0)
-                each.push_back(body.tendon_sliding(q, pull, own.law == fem::MaterialLaw::linear));
-        return together(each, q.size());
-    }
-    /// Nodal shares of a contact (n), which add up to 1.
-    Eigen::VectorXd shares_of(const mesh::Contact& contact) const;
-    Eigen::VectorXd load(const Action& action) const;
-};
-
-struct ReferenceBody::Impl::Finer {
-    Finer(const Impl& coarse, const fem::RefinedMesh& refined) : interpolation(refined.interpolation) {
-        ReferenceBodyOptions own_options = coarse.options;
-        own_options.finer.reset();
-        own_options.finer_under_tools = {};
-        own = std::make_unique<Impl>(refined.mesh, coarse.supports, coarse.markers, own_options);
-    }
-
-    std::unique_ptr<const Impl> own;
-    Eigen::SparseMatrix<double, Eigen::RowMajor> interpolation;
-};
-
-struct ReferenceBody::Impl::FinerUnderTools {
-    std::shared_ptr<const mesh::VolumeMesh> mesh;
-    Finer body;
-    std::mutex mutex;
-    std::map<std::vector<double>, Eigen::VectorXd> last;  // equilibria, by the action's motions
-
-    FinerUnderTools(const Impl& coarse, std::shared_ptr<const mesh::VolumeMesh> its_mesh)
-        : mesh(std::move(its_mesh)), body(coarse, {*mesh, fem::interpolation(coarse.body.mesh(), mesh->nodes)}) {}
-
-    /// Where a known equilibrium of the same motions stands, else what the coarse one comes to.
-    Eigen::VectorXd start(const std::vector<double>& motions, const Eigen::VectorXd& coarse) {
-        const std::scoped_lock lock(mutex);
-        if (const auto found = last.find(motions); found != last.end()) return found->second;
-        const Points u = body.interpolation * Eigen::Map<const Points>(coarse.data(), coarse.size() / 3, 3);
-        return Eigen::Map<const Eigen::VectorXd>(u.data(), u.size());
-    }
-    void keep(const std::vector<double>& motions, const Eigen::VectorXd& u) {
-        const std::scoped_lock lock(mutex);
-        last[motions] = u;
-    }
-};
-
-std::shared_ptr<ReferenceBody::Impl::FinerUnderTools> ReferenceBody::Impl::finer_for(const Action& action) const {
-    if (!options.finer_under_tools) return nullptr;
-    const std::shared_ptr<const mesh::VolumeMesh> mesh = options.finer_under_tools(action.motions).mesh;
-    if (!mesh) return nullptr;
-    const std::scoped_lock lock(mutex);
-    std::shared_ptr<FinerUnderTools>& own = finer_under_tools[mesh.get()];
-    if (!own) own = std::make_shared<FinerUnderTools>(*this, mesh);
-    return own;
-}
 
 ReferenceBody::ReferenceBody(const mesh::VolumeMesh& mesh, const std::vector<mesh::Region>& supports,
                              const std::vector<Marker>& markers, const ReferenceBodyOptions& options) {
@@ -365,7 +145,7 @@ bool ReferenceBody::is_nonlinear(const ModelSetting& setting) const {
 const fem::HyperelasticBody& ReferenceBody::body() const { return impl_->body; }
 
 fem::Material ReferenceBody::material(const ModelSetting& setting) const {
-    return material_of(setting, impl_->density);
+    return body_material(setting, impl_->density);
 }
 
 std::vector<fem::Material> ReferenceBody::region_materials(const ModelSetting& setting) const {
@@ -440,78 +220,6 @@ Points ReferenceBody::observe(const Eigen::VectorXd& q, const ModelSetting& sett
 
 Eigen::SparseMatrix<double> ReferenceBody::observation(const Eigen::VectorXd& q, const ModelSetting& setting) const {
     return impl_->frames.derivative(q, in_small_strain(setting));
-}
-
-std::optional<MeshError> ReferenceBody::discretisation_error(const Eigen::VectorXd& q, const ModelSetting& setting,
-                                                             const Action& action, const Tangent& J) const {
-    if (impl_->options.measured_on_mesh || action.memory || has_free_coordinates(action)) return std::nullopt;
-    // A finer mesh meets a tool that may part elsewhere, which few steps from here do not follow.
-    const bool holds = std::ranges::all_of(action.motions, [&](const mesh::ToolMotion& motion) {
-        return impl_->rig.tool(motion, young(setting))->is_grip();
-    });
-    if (!holds) return error_under_tools(q, setting, action);
-    const Impl::Finer& finer = impl_->finer.get([&] {
-        const mesh::VolumeMesh& coarse = impl_->body.mesh();
-        const std::optional<mesh::VolumeMesh>& given = impl_->options.finer;
-        if (!given) return Impl::Finer(*impl_, fem::refine(coarse));
-        return Impl::Finer(*impl_, {*given, fem::interpolation(coarse, given->nodes)});
-    });
-    const bool small_strain = in_small_strain(setting);
-    // A cable that holds its length pulls by what each step stretches it, and where it is fixed gives way ever more in
-    // finer meshes: it is let go, under the tension that it has.
-    fem::BodySetting own = impl_->setting(setting, action);
-    bool lets_go = false;
-    for (fem::TendonPull& pull : own.effects.tendons) {
-        if (!pull.actuator->by_length) continue;
-        lets_go = true;
-        pull.friction = impl_->body.tendon_friction(q, pull, small_strain);
-        pull.value = impl_->body.tendon_state(q, pull, small_strain).tension;
-        pull.actuator = impl_->rig.by_tension(pull);
-    }
-    std::shared_ptr<const fem::BodyTangent> let_go;
-    if (lets_go) let_go = impl_->body.factor(q, own, memory_of(action));
-    const auto& factor = lets_go ? *let_go : dynamic_cast<const FemTangent&>(with_friction_held(J)).factor();
-    const std::optional<Eigen::VectorXd> u =
-        fem::refined_equilibrium({finer.own->body, finer.interpolation}, q, factor, own, finer.own->load(action));
-    if (!u) return std::nullopt;
-    return difference(q, finer.own->frames.positions(*u, small_strain), finer.own->body, *u, setting, action);
-}
-
-std::optional<MeshError> ReferenceBody::error_under_tools(const Eigen::VectorXd& q, const ModelSetting& setting,
-                                                          const Action& action) const {
-    const std::shared_ptr<Impl::FinerUnderTools> finer = impl_->finer_for(action);
-    if (!finer) return std::nullopt;
-    const Impl& own = *finer->body.own;
-    std::vector<double> motions;
-    for (const mesh::ToolMotion& motion : action.motions) {
-        motions.push_back(motion.tool);
-        std::ranges::copy(motion.translation, std::back_inserter(motions));
-        std::ranges::copy(motion.rotation, std::back_inserter(motions));
-    }
-    const Eigen::VectorXd start = finer->start(motions, q);
-    const Eigen::VectorXd u =
-        own.body.equilibrium(own.setting(setting, action), own.load(action), {.tolerance = 1e-6}, &start).u;
-    finer->keep(motions, u);
-    return difference(q, own.frames.positions(u, in_small_strain(setting)), own.body, u, setting, action);
-}
-
-std::optional<double> ReferenceBody::left_of_mesh_error(const Action& action) const {
-    if (action.motions.empty() || !impl_->options.finer_under_tools) return std::nullopt;
-    const FinerMesh finer = impl_->options.finer_under_tools(action.motions);
-    if (!finer.mesh) return std::nullopt;
-    // Contact limits what quadratic elements gain: their error falls with the edges to the power 3/2 [Hild, Laborde,
-    // Quadratic finite element methods for unilateral contact problems, Appl. Numer. Math. 41, 2002]. What is taken off
-    // is the difference between a fit's e and the finer mesh's e / times^(3/2), which is left.
-    return 1 / (std::pow(finer.times, 1.5) - 1);
-}
-
-MeshError ReferenceBody::difference(const Eigen::VectorXd& q, const Points& markers, const fem::HyperelasticBody& finer,
-                                    const Eigen::VectorXd& u, const ModelSetting& setting, const Action& action) const {
-    MeshError error{markers - observe(q, setting), -reactions(q, setting, action)};
-    for (std::size_t t = 0; t < action.motions.size(); ++t)
-        error.reactions.segment<6>(static_cast<Eigen::Index>(6 * t)) +=
-            finer.wrench(u, impl_->rig.tool(action.motions[t], young(setting)));
-    return error;
 }
 
 Eigen::VectorXd ReferenceBody::advance(const Eigen::VectorXd& q, const Eigen::VectorXd& step,
