@@ -5,6 +5,7 @@
 #include <Eigen/Geometry>
 #include <cmath>
 
+#include "mesh/core/scaled_motion.h"
 #include "mesh/errors.h"
 
 namespace palpate::fem {
@@ -39,10 +40,7 @@ ToolPotential::ToolPotential(std::shared_ptr<const RigidTool> tool, const mesh::
       origin_(tool_->tool.origin + motion.translation) {}
 
 std::shared_ptr<const ToolPotential> ToolPotential::part_way(double share) const {
-    mesh::ToolMotion part = motion_;
-    part.translation *= share;
-    part.rotation *= share;
-    return std::make_shared<ToolPotential>(tool_, part, young_);
+    return std::make_shared<ToolPotential>(tool_, mesh::scaled(motion_, share), young_);
 }
 
 double ToolPotential::reach() const { return !parts() ? INFINITY : at_once * tool_->shape->radius(); }

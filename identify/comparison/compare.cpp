@@ -105,6 +105,9 @@ std::optional<ReactionError> error_of_reactions(const MeasurementSet& set, const
     for (std::size_t s = 0; s < set.states.size(); ++s) {
         for (std::size_t r = 0; r < set.states[s].reactions.size(); ++r) {
             const Vec3& force = set.states[s].reactions[r].force;
+            if (force.array().isNaN().all()) continue;
+            result.forces.push_back({set.states[s].probe, set.states[s].time, set.states[s].reactions[r].tool, force,
+                                     predicted[s].row(2 * static_cast<Eigen::Index>(r)).transpose()});
             for (int axis = 0; axis < 3; ++axis) {
                 if (std::isnan(force[axis])) continue;
                 const double off = force[axis] - predicted[s](2 * static_cast<Eigen::Index>(r), axis);

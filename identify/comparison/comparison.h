@@ -23,10 +23,20 @@ struct WorstReading {
     Vec3 towards = Vec3::Zero();  // unit vector from model to measurement
 };
 
+/// The force of a tool on the body in a state [N].
+struct ToolForce {
+    int probe = 0;
+    double time = 0;
+    int tool = 0;                                       // index among the set's tools
+    Vec3 measured = Vec3::Zero(), modelled = measured;  // measured: NaN where that axis is not
+    double error() const { return measured.array().isNaN().select(0, measured - modelled).norm(); }
+};
+
 /// Forces of tools on the body, measured and modelled.
 struct ReactionError {
     double rms = 0, max = 0;  // over all measured components [N]
     double relative = 0;      // rms over rms of what was measured; NaN where that is 0
+    std::vector<ToolForce> forces = {};
 };
 
 /// A model against measurements. Of a set in which forces alone are read there are no positions: `relative` is that of

@@ -74,13 +74,13 @@ public:
         result_.false_claims = options_.false_claims;
         decide_verdict(model_, options_, result_);
         if (options_.screen && result_.verdict != Verdict::adequate) {
-            tell("where it is", 0.95);
+            tell("locating what is missing", 0.95);
             result_.missing = where_missing(model_, set_, result_, options_);
         }
         note_mesh_error();
         if (options_.refit.magnitude == MagnitudeUse::alternative && result_.best().has_known_magnitude)
             result_.notes.emplace_back(
-                "Gravity has the earth's magnitude, 9.81 m/s^2, as the evidence prefers that to a free one; '--gravity "
+                "Gravity has the earth's magnitude, 9.81 m/s², as the evidence prefers that to a free one; '--gravity "
                 "unknown' leaves it free.");
         if (std::string note = note_of_correction(result_.problem); !note.empty())
             result_.notes.push_back(std::move(note));

@@ -4,19 +4,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 
 #include "identify/comparison/compare.h"
 #include "identify/diagnosis/diagnose.h"
-#include "identify/diagnosis/rigged_skeleton.h"
+#include "identify/diagnosis/ladder_forecast.h"
+#include "identify/diagnosis/ladder_skeleton.h"
 #include "identify/diagnosis/statistics/folds.h"
 #include "identify/effects/catalogue.h"
-#include "identify/identify.h"
-#include "identify/inference/maximum/calibrate.h"
-#include "identify/loading/readings.h"
 #include "identify/models/skeleton_body.h"
 #include "mesh/errors.h"
-#include "skeleton/statics/statics.h"
 
 namespace palpate::identify {
 namespace {
@@ -43,18 +39,6 @@ MeasurementSet understood(const MeasurementSet& set, const std::vector<skeleton:
     return result;
 }
 
-/// A rig's identification fits all effects of a model anew, and a set that is corrected has no faults left: these are
-/// added afterwards, as they were found.
-skeleton::Model without_faults(skeleton::Model model) {
-    std::erase_if(model.effects, [](const auto& effect) { return !find_effect(effect.name)->is_of_body(); });
-    return model;
-}
-
-void add_faults(const std::vector<skeleton::EffectRecord>& effects, skeleton::Model& model) {
-    std::ranges::copy_if(effects, std::back_inserter(model.effects),
-                         [](const auto& effect) { return !find_effect(effect.name)->is_of_body(); });
-}
-
 /// Is one among these effects that sets readings aside?
 bool set_readings_aside(const std::vector<std::string>& effects) {
     return std::ranges::any_of(effects,
@@ -75,55 +59,18 @@ void refuse_what_cannot_show(const EffectHypothesis& effect, const BodyModel& bo
                           effect.name(), effect.description().reveals));
 }
 
-/// How many times as far off on held-out probes a step is as another one: rms of the ratios of positions and of forces,
-/// as far as these are measured. 0 where nothing is held out.
-double forecast_ratio(const StepError& then, const StepError& since) {
-    double squares = 0;
-    int kinds = 0;
-    const auto add = [&](double before, double now) {
-        if (!(before > 0)) return;
-        squares += (now / before) * (now / before);
-        ++kinds;
-    };
-    add(then.held_out_rms_mm, since.held_out_rms_mm);
-    add(then.held_out_rms_n, since.held_out_rms_n);
-    return kinds > 0 ? std::sqrt(squares / kinds) : 0;
-}
-
-std::string forecast_in_words(const StepError& step) {
-    const bool positions = step.held_out_rms_mm > 0, forces = !std::isnan(step.held_out_rms_n);
-    const std::string text = positions || !forces ? fmt::format("{:.3g} mm", step.held_out_rms_mm) : "";
-    if (!forces) return text;
-    return text + (text.empty() ? "" : " and ") + fmt::format("{:.3g} N", step.held_out_rms_n);
-}
-
 double newtons(const Comparison& comparison) { return comparison.reactions ? comparison.reactions->rms : missing; }
-
-/// Mean squares of several folds together, each by the rows of its kind.
-class PooledError {
-public:
-    void add(double rms, Eigen::Index rows) {
-        if (rows == 0) return;
-        squares_ += static_cast<double>(rows) * rms * rms;
-        rows_ += rows;
-    }
-    double rms() const { return rows_ > 0 ? std::sqrt(squares_ / static_cast<double>(rows_)) : missing; }
-
-private:
-    double squares_ = 0;
-    Eigen::Index rows_ = 0;
-};
 
 class LadderBuilder {
 public:
     LadderBuilder(const skeleton::Model& model, const BodyModel& body, const MeasurementSet& set,
                   const LadderOptions& options, const Progress& progress)
-        : model_(model),
-          body_(body),
+        : body_(body),
           body_is_skeleton_(dynamic_cast<const SkeletonBody*>(&body) != nullptr),
           set_(set),
           options_(options),
-          progress_(progress) {
+          progress_(progress),
+          skeleton_(model, options.identify) {
         for (const std::vector<int>& fold : folds_of(set)) {
             folds_.push_back({part_of(set, fold, false), part_of(set, fold, true)});
             result_.held_out_probes.insert(result_.held_out_probes.end(), fold.begin(), fold.end());
@@ -138,7 +85,7 @@ public:
         for (std::size_t number = 1; number <= effects.size(); ++number) {
             report(progress_, fmt::format("ladder, step {}", number),
                    static_cast<double>(number) / static_cast<double>(effects.size() + 1));
-            climb({effects[number - 1]});
+            try_steps({effects[number - 1]});
         }
         add_those_that_need_each_other(effects);
         // What was named is missing, however little is left without it.
@@ -153,11 +100,11 @@ private:
         return diagnosis_ && std::ranges::find(diagnosis_->explanation, effect) != diagnosis_->explanation.end();
     }
 
-    /// Adds these effects, a rung each. Where only better ones are added and the last rung is worse than the one before
+    /// Adds these effects, a step each. Where only better ones are added and the last step is worse than the one before
     /// the first, or has no equilibria, none of them is: why not is told of each. True where they are added.
-    bool climb(const std::vector<std::string>& effects) {
-        const std::size_t height = result_.steps.size(), number = added_.size();
-        const UniformFit near = near_;
+    bool try_steps(const std::vector<std::string>& effects) {
+        const std::size_t steps = result_.steps.size(), number = added_.size();
+        const LadderSkeleton skeleton = skeleton_;
         const Verdict verdict = result_.verdict;
         std::optional<std::string> why_not;
         try {
@@ -165,7 +112,7 @@ private:
                 added_.push_back(name);
                 add_step(added_);
             }
-            if (options_.only_better) why_not = what_is_worse(result_.steps[height - 1], effects);
+            if (options_.only_better) why_not = why_not_added(result_.steps[steps - 1], effects);
         } catch (const SolverFailure& failure) {
             if (!options_.only_better) throw;
             why_not = fmt::format("with it a state of the set has no equilibrium: {}", failure.what());
@@ -173,8 +120,8 @@ private:
         if (!why_not) return true;
         for (const std::string& name : effects) result_.not_added.push_back({name, *why_not});
         added_.resize(number);
-        result_.steps.resize(height);
-        near_ = near;
+        result_.steps.resize(steps);
+        skeleton_ = skeleton;
         result_.verdict = verdict;
         return false;
     }
@@ -192,17 +139,15 @@ private:
         }
         if (failed.empty() || (failed.size() == 1 && !others_came_since)) return;
         const std::vector<EffectNotAdded> alone = result_.not_added;
-        const bool together = climb(failed);
+        const bool together = try_steps(failed);
         result_.not_added = alone;
         if (!together) return;
         std::erase_if(result_.not_added,
                       [&](const EffectNotAdded& one) { return std::ranges::find(failed, one.effect) != failed.end(); });
     }
 
-    /// In words, where the last rung, to which these effects have led, predicts held-out probes worse than `before`, on
-    /// the body or on the skeleton.
-    std::optional<std::string> what_is_worse(const LadderStep& before, const std::vector<std::string>& effects) const {
-        const LadderStep& now = result_.steps.back();
+    /// In words, where the last step, to which these effects have led, is worse than `before`.
+    std::optional<std::string> why_not_added(const LadderStep& before, const std::vector<std::string>& effects) const {
         // What a diagnosis names needs no better forecast, by as much as chance may make one worse; what was located in
         // what is left has nothing else to speak for it.
         constexpr double chance = 1.1;
@@ -211,23 +156,7 @@ private:
             return "there are too few probes to see whether others are forecast better; load the body in three probes "
                    "or more";
         }
-        const double most = is_residual ? 1 : chance;
-        const auto is_worse = [&](const StepError& then, const StepError& since) {
-            return forecast_ratio(then, since) >= most;
-        };
-        const auto in_words = [](const char* what, const StepError& then, const StepError& since) {
-            return fmt::format("with it the {} is off by {} on held-out probes, {} without it", what,
-                               forecast_in_words(since), forecast_in_words(then));
-        };
-        const bool has_body = now.reference && before.reference;
-        if (has_body && is_worse(*before.reference, *now.reference))
-            return in_words("finite-element model", *before.reference, *now.reference);
-        if (!is_worse(before.skeleton, now.skeleton)) return {};
-        std::string text = in_words("skeleton", before.skeleton, now.skeleton);
-        if (has_body)
-            text += fmt::format(" (finite elements: {} with it, {} without)", forecast_in_words(*now.reference),
-                                forecast_in_words(*before.reference));
-        return text;
+        return what_is_worse(before, result_.steps.back(), is_residual ? 1 : chance);
     }
 
     /// The body explained with these effects and no others.
@@ -276,23 +205,33 @@ private:
                 std::ranges::find_if(ranking, [&](const Candidate& c) { return c.effect->name() == effects.back(); });
             if (own != ranking.end()) step.predicted_rms_mm = own->predicted_rms_mm;
         }
-        StepError body{.rms_mm = fit.rms_mm,
-                       .rms_n = fit.rms_n,
-                       .relative = found.problem.relative(fit.error.cwiseProduct(found.problem.sigma)),
-                       .whitened_rms = fit.whitened_rms};
+        StepError body;
+        take_fitted(body, found);
         result_.verdict = found.verdict;
 
         // The skeleton with the same physics, fitted to what is left of the measurements.
         const MeasurementSet part = understood(fitted_, step.effects, found.outliers.readings);
-        const skeleton::Model model = with_effects(step.effects);
-        step.model = step.validation_model = fitted_skeleton(model, part);
+        step.model = step.validation_model = skeleton_.fitted(step.effects, part);
         const Comparison on_fitted = compare(step.model, part, options_.identify.threads);
-        step.skeleton = {.rms_mm = on_fitted.rms, .rms_n = newtons(on_fitted), .relative = on_fitted.relative};
+        take_fitted(step.skeleton, on_fitted);
         hold_out(effects, found, step, body);
         if (!body_is_skeleton_) step.reference = body;
         step.set = understood(set_, step.effects, {});
         step.comparison = compare(step.model, step.set, options_.identify.threads);
         result_.steps.push_back(std::move(step));
+    }
+
+    static void take_fitted(StepError& error, const Diagnosis& found) {
+        const Refit& fit = found.best();
+        error.rms_mm = fit.rms_mm;
+        error.rms_n = fit.rms_n;
+        error.relative = found.problem.relative(fit.error.cwiseProduct(found.problem.sigma));
+        error.whitened_rms = fit.whitened_rms;
+    }
+    static void take_fitted(StepError& error, const Comparison& on_fitted) {
+        error.rms_mm = on_fitted.rms;
+        error.rms_n = newtons(on_fitted);
+        error.relative = on_fitted.relative;
     }
 
     /// Errors on what is held out, pooled over the folds. `found`, `step`: as fitted to `fitted_`.
@@ -311,11 +250,7 @@ private:
 
             const std::vector<skeleton::EffectRecord> said = estimate(own);
             const MeasurementSet part = understood(fold.fitted, said, own.outliers.readings);
-            skeleton::Model model = step.model;
-            if (!is_fitted) {
-                model = with_effects(said);
-                model = refitted_skeleton(model, part);
-            }
+            const skeleton::Model model = is_fitted ? step.model : skeleton_.refitted(said, part);
             const Comparison compared = compare(model, understood(unseen, said, {}), options_.identify.threads);
             positions_of_skeleton.add(compared.rms, positions_read);
             forces_of_skeleton.add(newtons(compared), forces_read);
@@ -359,33 +294,6 @@ private:
         return result;
     }
 
-    skeleton::Model with_effects(const std::vector<skeleton::EffectRecord>& effects) const {
-        skeleton::Model model = model_;
-        model.effects = effects;
-        return model;
-    }
-
-    /// The skeleton with the most probable stiffnesses, without particles; keeps its uniform fit for the next.
-    skeleton::Model fitted_skeleton(const skeleton::Model& model, const MeasurementSet& set) {
-        if (is_rigged(set)) return refitted_skeleton(model, set);
-        const Calibration calibration = calibrate(model, collect_readings(model, set), options_.identify, {});
-        near_ = calibration.coarse;
-        return calibrated(model, calibration);
-    }
-
-    /// The same from the last rung's, to other readings.
-    skeleton::Model refitted_skeleton(const skeleton::Model& model, const MeasurementSet& set) const {
-        const IdentifyOptions& how = options_.identify;
-        if (is_rigged(set)) {
-            IdentifyOptions of_one = how;
-            of_one.particles = 1;  // the fit alone
-            skeleton::Model fitted = identify_rigged(without_faults(model), set, of_one).model;
-            add_faults(model.effects, fitted);
-            return fitted;
-        }
-        return calibrated(model, calibrate(model, collect_readings(model, set), how, {}, &near_));
-    }
-
     /// The last step once more, on all states and with particles: the model that is delivered.
     void finish() {
         report(progress_, "the model on all states", 0.9);
@@ -395,16 +303,15 @@ private:
         last.effects = estimate(whole);
         last.material = material_of(body_, whole.best());
         last.set = understood(set_, last.effects, whole.outliers.readings);
-        const bool rigged = is_rigged(last.set);
-        const skeleton::Model model = with_effects(last.effects);
-        result_.identified =
-            identify(rigged ? without_faults(model) : model, last.set, options_.identify, progress_, &near_);
-        if (rigged) add_faults(last.effects, result_.identified.model);
+        result_.identified = skeleton_.identified(last.effects, last.set, progress_);
         last.model = result_.identified.model;
         last.comparison = compare(last.model, last.set, options_.identify.threads);
+        // Where the step was fitted to all states, too, its errors are those of the model that is delivered.
+        if (fitted_.states.size() != set_.states.size()) return;
+        take_fitted(last.skeleton, last.comparison);
+        if (last.reference) take_fitted(*last.reference, whole);
     }
 
-    const skeleton::Model& model_;
     const BodyModel& body_;
     bool body_is_skeleton_;
     const MeasurementSet& set_;
@@ -414,10 +321,10 @@ private:
         MeasurementSet fitted, held_out;
     };
     std::vector<Fold> folds_;
-    MeasurementSet fitted_;                 // what the rungs are fitted to
+    MeasurementSet fitted_;                 // what the steps are fitted to
     const Diagnosis* diagnosis_ = nullptr;  // of the whole set, where there is one
-    std::vector<std::string> added_;        // in the order of the rungs
-    UniformFit near_;                       // the skeleton's, on the last rung
+    std::vector<std::string> added_;        // in the order of the steps
+    LadderSkeleton skeleton_;
     Ladder result_;
 };
 

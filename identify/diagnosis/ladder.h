@@ -20,7 +20,7 @@ struct StepError {
     double whitened_rms = missing, held_out_whitened_rms = missing;  // reference body only
 };
 
-/// A rung: the effects that are in, and what is left then.
+/// A step: the effects that are in, and what is left then.
 struct LadderStep {
     std::vector<skeleton::EffectRecord> effects;
     StepError skeleton;
@@ -62,7 +62,7 @@ struct LadderOptions {
 
 /// Adds effects to a model, fits anew, and tells the error before and after, on fitted and on held-out probes.
 ///
-/// `effects`: in the order of the rungs. What they come to is found on `body`, the reference or the skeleton itself;
+/// `effects`: in the order of the steps. What they come to is found on `body`, the reference or the skeleton itself;
 /// body effects then go into the skeleton and its stiffnesses are fitted again, faults of the measurement into how the
 /// set is understood. A quarter of the loaded probes is held out, spread evenly; where there are eight or fewer, every
 /// third probe in turn. The model of the last step is fitted to all. `diagnosis`: of the whole set by that body, where

@@ -3,9 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <numeric>
 
 #include "mesh/errors.h"
+#include "mesh/text/words.h"
 
 namespace palpate::identify {
 
@@ -38,22 +38,6 @@ std::shared_ptr<const EffectHypothesis> local_swelling_effect();
 
 namespace {
 
-/// Number of letters to insert, drop or change between two words. [Levenshtein 1966]
-std::size_t edits_between(const std::string& a, const std::string& b) {
-    std::vector<std::size_t> row(b.size() + 1);
-    std::iota(row.begin(), row.end(), 0);
-    for (std::size_t i = 0; i < a.size(); ++i) {
-        std::size_t diagonal = row[0];
-        row[0] = i + 1;
-        for (std::size_t j = 0; j < b.size(); ++j) {
-            const std::size_t changed = diagonal + (a[i] == b[j] ? 0 : 1);
-            diagonal = row[j + 1];
-            row[j + 1] = std::min({changed, row[j] + 1, row[j + 1] + 1});
-        }
-    }
-    return row.back();
-}
-
 std::vector<std::shared_ptr<const EffectHypothesis>>& registry() {
     static std::vector<std::shared_ptr<const EffectHypothesis>> all{
         gravity_effect(),      stiffening_effect(), anisotropy_effect(), inclusion_effect(),
@@ -75,7 +59,7 @@ bool register_effect(skeleton::KnownEffect physics, std::shared_ptr<const Effect
         throw InvalidInput(fmt::format("there is an effect '{}' already; give yours another name", text.name));
     if (physics.name != text.name || physics.kind != text.kind)
         throw InvalidInput(
-            fmt::format("effect '{}' of the {} is given the physics of '{}' of the {}; let both be told alike",
+            fmt::format("effect '{}' of the {} is given the physics of '{}' of the {}; name and kind must agree",
                         text.name, fem::kind_name(text.kind), physics.name, fem::kind_name(physics.kind)));
     skeleton::register_effect(std::move(physics));
     registry().push_back(std::move(effect));
@@ -106,13 +90,10 @@ std::shared_ptr<const EffectHypothesis> effect_of_single_readings() {
 
 std::shared_ptr<const EffectHypothesis> find_effect(const std::string& name) {
     if (auto effect = effect_named(name)) return effect;
-    std::string names;
-    const auto effects = all_effects();
-    for (const auto& effect : effects) names += (names.empty() ? "" : ", ") + effect->name();
-    const auto nearest =
-        std::ranges::min_element(effects, {}, [&](const auto& effect) { return edits_between(name, effect->name()); });
-    throw InvalidInput(
-        fmt::format("there is no effect '{}'; did you mean '{}'? Known are: {}", name, (*nearest)->name(), names));
+    std::vector<std::string> names;
+    for (const auto& effect : all_effects()) names.push_back(effect->name());
+    throw InvalidInput(fmt::format("effect '{}' is not known{}; known are {}", name, mesh::suggestion(name, names),
+                                   mesh::listed(names)));
 }
 
 }  // namespace palpate::identify

@@ -10,7 +10,7 @@ bool EffectHypothesis::enforce(const Eigen::VectorXd&, ModelSetting&) const { re
 
 Action EffectHypothesis::act(const Problem&, int, Action action, const Eigen::VectorXd&) const { return action; }
 
-Eigen::VectorXd EffectHypothesis::in(const ProbeConditions&, const Eigen::VectorXd& values) const { return values; }
+Eigen::VectorXd EffectHypothesis::under(const ProbeConditions&, const Eigen::VectorXd& values) const { return values; }
 
 Points EffectHypothesis::see(const Problem&, const Points& markers, const Eigen::VectorXd&) const { return markers; }
 

@@ -34,7 +34,7 @@ struct Signatures {
 
 using skeleton::EffectKind;
 
-/// What `palpate effects` tells.
+/// What `palpate effects` lists.
 struct EffectDescription {
     std::string name;
     EffectKind kind;
@@ -44,6 +44,7 @@ struct EffectDescription {
     std::vector<std::string> confused_with;  // effects
     std::string separating_probe;            // what tells it from those, in words
     std::string next_probe;                  // its kind: load, orientation, pressure, dwell, unload, repeat, fiducials
+    std::string why_unshown = {};            // why a set may not show it whatever the noise; empty: see `reveals`
 };
 
 /// A number of an effect as the fit sees it: of a size near 1 where its physics leaves the choice.
@@ -70,6 +71,13 @@ struct ScreenColumns {
     Eigen::VectorXd prior_sd;  // (p)
     bool one_sided = false;    // numbers below 0 have no meaning
     Eigen::Index alternatives() const { return prior_sd.size() > 0 ? columns.cols() / prior_sd.size() : 0; }
+};
+
+/// What a number of the screen says in a unit of its own, where the screen asks for another one than the fit.
+struct ScreenedNumber {
+    std::string name, unit;  // without a name it is how much there is of something that has several numbers
+    std::function<double(double screened)> value = {};
+    bool at_most = false;  // the weaker the effect, the larger the number, as the stiffness of a soft support
 };
 
 /// How an effect is screened: what it asks in every action, what follows from the answers, and where a refit begins.
@@ -119,8 +127,8 @@ public:
     /// Marker positions as they are read; an affine map of each.
     virtual Points see(const Problem& problem, const Points& markers, const Eigen::VectorXd& values) const;
 
-    /// Its numbers in other circumstances than those of the set.
-    virtual Eigen::VectorXd in(const ProbeConditions& circumstances, const Eigen::VectorXd& values) const;
+    /// Its numbers under other conditions than those of the set.
+    virtual Eigen::VectorXd under(const ProbeConditions& conditions, const Eigen::VectorXd& values) const;
 
     /// Does it matter what happened before? Then problems are told stage by stage.
     virtual bool has_memory() const { return false; }
@@ -136,8 +144,8 @@ public:
     /// effect.
     virtual double idealisation_share() const { return 5e-4; }
 
-    /// Is it of single readings, which are found and set aside one by one (diagnose/outliers), not fitted? It has no
-    /// numbers of the fit then.
+    /// Is it of single readings, which are found and set aside one by one (diagnosis/statistics/outliers), not fitted?
+    /// It has no numbers of the fit then.
     virtual bool sets_readings_aside() const { return false; }
 
     /// None: the signatures of all numbers at their start, which must be neutral, and the start itself as the beginning
@@ -145,7 +153,10 @@ public:
     virtual std::optional<ScreenPlan> screen_plan(const BodyModel& model, const Problem& problem,
                                                   const Explanation& explanation, const ForwardSolution& forward) const;
 
-    /// Why a fit with it is no claim, in words; empty: nothing speaks against it.
+    /// How strong it is by the first number of its screen; none: by its own numbers.
+    virtual std::optional<ScreenedNumber> screened_number() const { return std::nullopt; }
+
+    /// Why a fit with it is implausible, in words; empty: no objection.
     virtual std::string objection(const Problem& problem, const Eigen::VectorXd& values) const;
 
     /// As an effect record: names, values and units as in model files.
@@ -169,6 +180,9 @@ public:
     virtual bool is_of_readings() const { return false; }
     /// What has to be done for it to show.
     virtual SynthesisNeeds needs() const { return {}; }
+    /// Why it does not show where a rig drives the body in place of forces, and what to do; empty: it does.
+    /// `tool_places`: at how many a tool presses.
+    virtual std::string why_not_driven(int /*tool_places*/) const { return {}; }
     /// Its numbers as they are told for that; by default those of its physics.
     virtual std::vector<skeleton::KnownParameter> numbers_to_hide() const;
     /// The stream of random numbers that its own are drawn from, part of what a seed means: 0 to 21 are taken. None:

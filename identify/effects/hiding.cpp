@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "mesh/core/scaled_motion.h"
 #include "mesh/errors.h"
 #include "mesh/text/words.h"
 #include "skeleton/model/state.h"
@@ -28,10 +29,7 @@ Points TrueConditions::see(const std::vector<Marker>& rest, const Points& marker
 }
 
 Action TrueConditions::act(Action action) const {
-    for (mesh::ToolMotion& motion : action.motions) {
-        motion.translation *= share;
-        motion.rotation *= share;
-    }
+    for (mesh::ToolMotion& motion : action.motions) motion = mesh::scaled(motion, share);
     for (mesh::ActuatorSetting& setting : action.settings)
         if (setting.actuator == 0) setting.scale(actuator_gain);
     return action;

@@ -40,8 +40,8 @@ struct SynthesisNeeds {
     bool reloads = false;            // one body goes through all probes, and each probe back to less than it bore
     bool changing_loads = false;     // a probe presses more and less hard, one state after the other
     bool dwells = false;             // loads are read at several times after they were put on
-    bool noise = false;              // its numbers are told in sigmas
-    bool specified_poisson = false;  // the set tells a Poisson's ratio, which it belies
+    bool noise = false;              // its numbers are given in sigmas
+    bool specified_poisson = false;  // the set declares a Poisson's ratio, which it contradicts
 };
 
 /// A number of an effect that is told. @pre it is.

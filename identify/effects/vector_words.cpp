@@ -14,11 +14,17 @@ namespace {
 
 constexpr double near_axis = 0.985;  // cosine of ten degrees
 
-/// "x" for either sense of a line along it.
-std::string line_in_words(const Vec3& axis) {
+/// A line's direction in its positive sense; an axis of the frame where it lies as near to it as words tell.
+Vec3 line_along(const Vec3& axis) {
     Eigen::Index largest = 0;
     axis.cwiseAbs().maxCoeff(&largest);
-    const std::string words = direction_in_words(axis[largest] < 0 ? Vec3(-axis) : axis);
+    if (std::abs(axis[largest]) > near_axis) return Vec3::Unit(largest);
+    return axis[largest] < 0 ? Vec3(-axis) : axis;
+}
+
+/// "x" for a line along it.
+std::string line_in_words(const Vec3& line) {
+    const std::string words = direction_in_words(line);
     return words.starts_with('+') ? words.substr(1) : words;
 }
 
@@ -32,20 +38,26 @@ std::string direction_in_words(const Vec3& direction) {
     return fmt::format("({:.2f}, {:.2f}, {:.2f})", unit.x(), unit.y(), unit.z());
 }
 
+std::string number_in_words(const skeleton::EffectRecord& record, std::size_t number, const Eigen::MatrixXd& covariance,
+                            double factor) {
+    const auto n = static_cast<Eigen::Index>(number);
+    const double sd = covariance.size() > 0 ? std::sqrt(std::max(covariance(n, n), 0.0)) : 0;
+    return mesh::with_sd(factor * record.parameters[number].value, std::abs(factor) * sd);
+}
+
 std::string vector_in_words(const Vec3& v, const Mat3& covariance, double unit, const std::string& unit_name,
                             const std::string& preposition) {
     const Eigen::SelfAdjointEigenSolver<Mat3> axes(covariance);  // the best known first
     const Vec3 sd = axes.eigenvalues().cwiseMax(0).cwiseSqrt();
 
-    // An axis along which much of what is known otherwise could be hidden is not determined.
-    constexpr double much = 0.25, several = 3;
     Vec3 known = v;
     std::vector<std::string> open;
     for (int a = 2; a > 0; --a) {
-        const Vec3 axis = axes.eigenvectors().col(a), others = known - axis * axis.dot(known);
-        if (sd[a] < much * others.norm() || sd[a] < several * sd[0] || others.isZero(0)) break;
+        const Vec3 axis = line_along(axes.eigenvectors().col(a)), others = known - axis * axis.dot(known);
+        if (sd[a] < undetermined_share * others.norm() || sd[a] < undetermined_ratio * sd[0] || others.isZero(0)) break;
         known = others;
-        open.push_back(line_in_words(axis));
+        open.push_back(fmt::format("{} {} it is not determined ({})", preposition, line_in_words(axis),
+                                   mesh::with_sd(axis.dot(v) / unit, sd[a] / unit)));
     }
     if (known.isZero(0)) return "0 " + unit_name;
 
@@ -53,7 +65,7 @@ std::string vector_in_words(const Vec3& v, const Mat3& covariance, double unit, 
     const double sd_of_size = std::sqrt(std::max(towards.dot(covariance * towards), 0.0));
     std::string text = fmt::format("{} {} {} {}", mesh::with_sd(known.norm() / unit, sd_of_size / unit), unit_name,
                                    preposition, direction_in_words(towards));
-    if (!open.empty()) text += fmt::format("; {} {} it is not determined", preposition, fmt::join(open, " and "));
+    for (const std::string& one : open) text += "; " + one;
     return text;
 }
 

@@ -1,16 +1,30 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <string>
 
 #include "mesh/types.h"
+#include "skeleton/effects/effect.h"
 
 namespace palpate::identify {
 
 /// A direction in words: "-z" where it lies within ten degrees of an axis, else "(0.46, -0.01, -0.89)".
 std::string direction_in_words(const Vec3& direction);
 
-/// A vector that was fitted, by size and direction: "9.2 ± 0.5 m/s^2 along -z; along x it is not determined". Its part
-/// along an axis that the readings do not determine enters neither. @param unit the size of one `unit_name`
+/// A number of a record, `factor` times as large: "9.2 ± 0.5". @param covariance of the record's numbers (n x n);
+/// empty: it is not known
+std::string number_in_words(const skeleton::EffectRecord& record, std::size_t number, const Eigen::MatrixXd& covariance,
+                            double factor = 1);
+
+/// An axis of a fitted vector is undetermined where its standard deviation exceeds both this share of the length of the
+/// rest of the vector (so much of what is known otherwise could be hidden along it) ...
+inline constexpr double undetermined_share = 0.25;
+/// ... and this multiple of the standard deviation along the best-known axis: a vector that is known poorly, but
+/// equally well in all directions, keeps its direction.
+inline constexpr double undetermined_ratio = 3;
+
+/// A vector that was fitted, by size and direction: "9.2 ± 0.5 m/s² along -z; along x it is not determined (3 ± 4)".
+/// Its part along an axis that the readings do not determine enters neither. @param unit the size of one `unit_name`
 std::string vector_in_words(const Vec3& v, const Mat3& covariance, double unit, const std::string& unit_name,
                             const std::string& preposition = "along");
 

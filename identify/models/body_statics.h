@@ -132,7 +132,7 @@ public:
         return std::nullopt;
     }
     /// The share of it, 1 sd, that is left where the finer mesh is one of the action's own; nothing: it is none.
-    virtual std::optional<double> left_of_mesh_error(const Action& /*action*/) const { return std::nullopt; }
+    virtual std::optional<double> remaining_mesh_error(const Action& /*action*/) const { return std::nullopt; }
 
     // Tools and actuators, in the order of an action's motions (t) and settings (a).
 

@@ -72,7 +72,7 @@ public:
     Eigen::SparseMatrix<double> observation(const Eigen::VectorXd& q, const ModelSetting& setting) const override;
     std::optional<MeshError> discretisation_error(const Eigen::VectorXd& q, const ModelSetting& setting,
                                                   const Action& action, const Tangent& J) const override;
-    std::optional<double> left_of_mesh_error(const Action& action) const override;
+    std::optional<double> remaining_mesh_error(const Action& action) const override;
     Eigen::VectorXd advance(const Eigen::VectorXd& q, const Eigen::VectorXd& step,
                             const ModelSetting& setting) const override;
     std::shared_ptr<const Memory> remember(const Eigen::VectorXd& q, const ModelSetting& setting,

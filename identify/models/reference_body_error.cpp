@@ -71,7 +71,7 @@ std::optional<MeshError> ReferenceBody::error_under_tools(const Eigen::VectorXd&
     return difference(q, own.frames.positions(u, in_small_strain(setting)), own.body, u, setting, action);
 }
 
-std::optional<double> ReferenceBody::left_of_mesh_error(const Action& action) const {
+std::optional<double> ReferenceBody::remaining_mesh_error(const Action& action) const {
     if (action.motions.empty() || !impl_->options.finer_under_tools) return std::nullopt;
     const FinerMesh finer = impl_->options.finer_under_tools(action.motions);
     if (!finer.mesh) return std::nullopt;

@@ -14,8 +14,6 @@
 
 namespace palpate::identify {
 
-/// What ReferenceBody is made of, for its own sources alone.
-
 class FemTangent : public Tangent {
 public:
     explicit FemTangent(std::shared_ptr<const fem::BodyTangent> factor) : factor_(std::move(factor)) {}
@@ -42,6 +40,7 @@ inline const fem::MaterialState* memory_of(const Action& action) {
     return own ? own->state.get() : nullptr;
 }
 
+/// What ReferenceBody is made of, for its own sources alone.
 struct ReferenceBody::Impl {
     Impl(const mesh::VolumeMesh& mesh, const std::vector<mesh::Region>& the_supports,
          const std::vector<Marker>& the_markers, const ReferenceBodyOptions& the_options)

@@ -47,6 +47,7 @@ std::size_t name_width(std::size_t longest) {
 }
 
 std::string points_in_words(const Recording& recording) {
+    const char* unit = recording.in_pixels ? "pixel" : "mm";
     Eigen::Vector3d low = Eigen::Vector3d::Constant(std::numeric_limits<double>::infinity()), high = -low;
     Eigen::Index seen = 0, all = 0;
     std::size_t longest = 0;
@@ -64,11 +65,11 @@ std::string points_in_words(const Recording& recording) {
     if (all > 0)
         text += fmt::format(", {:.3g} % missing", 100 * static_cast<double>(all - seen) / static_cast<double>(all));
     if (seen > 0)
-        text += fmt::format(", in a box of {:.4g} x {:.4g} x {:.4g} mm", high[0] - low[0], high[1] - low[1],
-                            high[2] - low[2]);
+        text += fmt::format(", in a box of {:.4g} x {:.4g} x {:.4g} {}", high[0] - low[0], high[1] - low[1],
+                            high[2] - low[2], unit);
     if (recording.points[0].displacement.cols() > 0) text += ", with displacements";
     const std::size_t width = name_width(longest);
-    text += fmt::format("\n    {}{:>9}  first seen at x, y, z [mm]\n", padded("name", width), "missing");
+    text += fmt::format("\n    {}{:>9}  first seen at x, y, z [{}]\n", padded("name", width), "missing", unit);
     for (std::size_t p = 0; p < std::min(recording.points.size(), most_listed); ++p) {
         const RecordedPoint& point = recording.points[p];
         const Eigen::Index frames = point.at.cols(), found = seen_in(point);

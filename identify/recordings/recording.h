@@ -39,6 +39,7 @@ struct Recording {
     Eigen::VectorXd times;   ///< (frames) [s], ascending; frame numbers where the file has no clock
     bool has_clock = false;  ///< whether times are seconds
     std::vector<RecordedPoint> points;
+    bool in_pixels = false;  ///< positions are in pixels of a size that is not known, each taken as 1 mm
     std::vector<RecordedChannel> channels;
     std::vector<RecordedEvent> events;
     std::vector<std::string> notes;  ///< what was found out by itself: delimiter, decimal comma, unit row, encoding

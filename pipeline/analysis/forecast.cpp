@@ -234,18 +234,26 @@ std::vector<std::string> extrapolations(const identify::MeasuredRange& measured,
                                         const std::vector<Forecast>& forecasts, double size) {
     constexpr double more = 1.2;  // times what was measured
     constexpr double far = 0.15;  // from the nearest place that was touched, of the size
-    std::vector<int> strong, far_off, wide;
+    std::vector<int> strong, far_off, wide, unlike;
     for (std::size_t s = 0; s < states.size(); ++s) {
         for (const mesh::Contact& contact : states[s].contacts) {
             if (contact.force.isZero(0)) continue;
+            if (measured.places.empty()) {
+                unlike.push_back(states[s].probe);
+                continue;
+            }
             if (contact.force.norm() > more * measured.force) strong.push_back(states[s].probe);
             const bool is_near = std::ranges::any_of(
                 measured.places, [&](const Vec3& place) { return (place - contact.point).norm() <= far * size; });
             if (!is_near) far_off.push_back(states[s].probe);
         }
-        if (forecasts[s].largest > more * measured.displacement) wide.push_back(states[s].probe);
+        // Where no marker was read nobody knows how far it moved.
+        if (measured.displacement > 0 && forecasts[s].largest > more * measured.displacement)
+            wide.push_back(states[s].probe);
     }
     std::vector<std::string> words;
+    if (!unlike.empty())
+        words.push_back(fmt::format("{}: pressed by a force; the measurements contain none.", probes_in_words(unlike)));
     if (!strong.empty())
         words.push_back(fmt::format("{}: pressed harder than anything that was measured, {:.3g} N at most.",
                                     probes_in_words(strong), measured.force));

@@ -111,6 +111,7 @@ std::unique_ptr<identify::ReferenceBody> fill(const identify::MeasurementSet& se
             return meshes->at(motions);
         };
     }
+    options.dilatation = dilatation_for(set.rest_surface, edge);
     options.rig = {set.tools, set.actuators};
     options.priors = priors;
     options.regions = with_surfaces(set.regions, body.interfaces);
@@ -118,7 +119,6 @@ std::unique_ptr<identify::ReferenceBody> fill(const identify::MeasurementSet& se
     if (set.material && set.material->young > 0) options.young = set.material->young;
     if (set.material && !std::isnan(set.material->poisson)) {
         options.poisson = set.material->poisson;
-        options.dilatation = dilatation_for(set.rest_surface, edge, *options.poisson);
     }
     if (is_fitted) {
         notes.push_back("The body of the diagnosis is the set's own: " + body.notes.front() + ".");
@@ -143,9 +143,8 @@ double reference_edge_length(const mesh::Surface& surface) {
     return edge_for_thickness(surface, edge, nodes);
 }
 
-fem::Dilatation dilatation_for(const mesh::Surface& surface, double edge_length, double poisson) {
-    constexpr double unlocked = 0.4;
-    return poisson <= unlocked && edge_length > thickness_of(surface) ? fem::Dilatation::full : fem::Dilatation::mean;
+fem::Dilatation dilatation_for(const mesh::Surface& surface, double edge_length) {
+    return edge_length > thickness_of(surface) ? fem::Dilatation::thin : fem::Dilatation::mean;
 }
 
 Reference make_reference(const identify::MeasurementSet& set, double edge_length, const Progress& progress,

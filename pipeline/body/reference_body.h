@@ -14,11 +14,10 @@ namespace palpate::pipeline {
 /// makes some 2,500 nodes; finer ones change its answers by less than contacts are known.
 double reference_edge_length(const mesh::Surface& surface);
 
-/// How quadratic elements of such an edge length [mm] are to keep their volume in a body of Poisson's ratio nu: with
-/// the mean dilatation, which does not lock, a sheet of one element in thickness bends too easily, by 11 % at nu = 0.33
-/// (tests/identify/models/body_model_test.cpp); where nu is up to 0.4 and elements are longer than the body is thick on
-/// average, 2 V / A, in full.
-fem::Dilatation dilatation_for(const mesh::Surface& surface, double edge_length, double poisson);
+/// How quadratic elements of such an edge length [mm] are to keep their volume in a body: by the mean dilatation, with
+/// which a sheet of one element in thickness would bend too easily (ElementModel::local_bulk); as thin ones where they
+/// are longer than the body is thick on average, 2 V / A.
+fem::Dilatation dilatation_for(const mesh::Surface& surface, double edge_length);
 
 /// The body of a measurement set in finite elements, or why there is none.
 struct Reference {

@@ -72,7 +72,7 @@ Case read_case_file(const YamlFields& yaml) {
 }
 
 Case case_of_input(const fs::path& input) {
-    if (!fs::exists(input)) throw IoError(fmt::format("{}: there is no such file or folder", input.string()));
+    if (!fs::exists(input)) throw IoError(fmt::format("{}: no such file or folder.", input.string()));
     Case c;
     if (fs::is_directory(input)) {
         const fs::path set = input / "set.yaml", own = input / "case.yaml";

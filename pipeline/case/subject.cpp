@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <iterator>
+#include <numeric>
 
 #include "identify/measurements/field.h"
 #include "identify/measurements/files/rig/regions_yaml.h"
@@ -22,6 +23,42 @@
 namespace palpate::pipeline {
 namespace {
 
+/// Up to three vertices that lie more than a hundred times as far off as all others, in words; empty: there are none.
+/// The others then span less than 2 % of the length, which is less than one element of a mesh that is sized by it: a
+/// body would be of one element there, so the few are a slip.
+std::string stray_vertices(const mesh::Surface& surface) {
+    constexpr double far = 100;
+    constexpr Eigen::Index most = 3, least_others = 4;  // others: fewer enclose nothing
+    const Points& vertices = surface.vertices;
+    const Eigen::Index count = vertices.rows();
+    if (count <= least_others) return {};
+    // Medians: few strays do not move them.
+    Vec3 middle;
+    for (int c = 0; c < 3; ++c) {
+        std::vector<double> values(vertices.col(c).begin(), vertices.col(c).end());
+        std::ranges::nth_element(values, values.begin() + count / 2);
+        middle[c] = values[static_cast<std::size_t>(count / 2)];
+    }
+    const Eigen::VectorXd distance = (vertices.rowwise() - middle.transpose()).rowwise().norm();
+    std::vector<Eigen::Index> order(static_cast<std::size_t>(count));
+    std::iota(order.begin(), order.end(), 0);
+    std::ranges::sort(order, {}, [&](Eigen::Index v) { return distance[v]; });
+    for (Eigen::Index strays = 1; strays <= std::min(most, count - least_others); ++strays) {
+        const auto first = order.end() - strays;
+        if (distance[*first] <= far * distance[*(first - 1)]) continue;
+        const std::vector<Eigen::Index> others(order.begin(), first);
+        const Vec3 size = mesh::bounding_box(vertices(others, Eigen::all)).extent();
+        const Vec3 at = vertices.row(*first);
+        const bool is_one = strays == 1;
+        return fmt::format(
+            "{} at ({:.4g}, {:.4g}, {:.4g}) mm{} far from the other {}, which span {:.4g} x {:.4g} x {:.4g} mm: remove "
+            "or correct {}",
+            is_one ? "One vertex" : fmt::format("{} vertices, the nearest", strays), at.x(), at.y(), at.z(),
+            is_one ? " lies" : ", lie", others.size(), size.x(), size.y(), size.z(), is_one ? "it" : "them");
+    }
+    return {};
+}
+
 /// Leaves out what is not the body, and notes what it cannot be.
 void judge_body(Subject& subject, const std::string& name) {
     if (!subject.volume) {
@@ -29,6 +66,12 @@ void judge_body(Subject& subject, const std::string& name) {
         subject.surface = std::move(kept.surface);
         std::ranges::move(kept.notes, std::back_inserter(subject.notes));
         subject.refusal = refusal_of_flat(subject.surface);
+        if (std::string strays = stray_vertices(subject.surface); !strays.empty()) {
+            if (subject.refusal.empty())
+                subject.notes.push_back(strays + ".");
+            else
+                subject.refusal = std::move(strays);
+        }
         if (subject.refusal.empty()) subject.refusal = std::move(kept.refusal);
         if (!subject.refusal.empty()) subject.refusal = name + ": " + subject.refusal;
     }
@@ -48,7 +91,7 @@ void read_mesh(Subject& subject) {
     }
     if (read.is_in_mm && c.unit != 1) {
         throw InvalidInput(fmt::format(
-            "{}: tells its unit itself, and has been converted to mm; leave --unit out ('--longest' scales it)",
+            "{}: states its unit itself, and has been converted to mm; leave --unit out ('--longest' scales it)",
             c.mesh->string()));
     }
     const double scale = c.longest > 0 ? c.longest / longest : c.unit;
@@ -107,9 +150,8 @@ void choose_supports(Subject& subject) {
         const mesh::BoxRegion clamp = default_clamp(mesh::bounding_box(subject.surface.vertices));
         subject.supports = {clamp};
         subject.assumptions.push_back(
-            fmt::format("Held over the 5 % of its length at the low end of its longest axis, in the box {:.4g}, "
-                        "{:.4g}, {:.4g} to {:.4g}, "
-                        "{:.4g}, {:.4g} mm ('supports' in a case say otherwise).",
+            fmt::format("Held over the 5 % of its length at the low end of its longest axis, in the box ({:.4g}, "
+                        "{:.4g}, {:.4g}) to ({:.4g}, {:.4g}, {:.4g}) mm ('supports' in a case say otherwise).",
                         clamp.min.x(), clamp.min.y(), clamp.min.z(), clamp.max.x(), clamp.max.y(), clamp.max.z()));
     }
     if (subject.set) subject.set->supports = subject.supports;

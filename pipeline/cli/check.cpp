@@ -32,7 +32,7 @@ std::string describe_set(const identify::MeasurementSet& set) {
     std::string text = fmt::format("{} states ({} loaded), {} markers, {} readings", set.states.size(),
                                    loaded_states(set), set.markers.size(), readings);
     if (!set.recordings.empty()) text += fmt::format(", {} recordings of motion", set.recordings.size());
-    if (!set.position_noise && readings > 0) text += "; no noise is stated";
+    if (!set.position_noise && readings > 0) text += "; no noise is declared";
     text += ".\n";
     for (std::string line : rig_in_words(set)) {
         line.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(line.front())));
@@ -204,6 +204,26 @@ void add_grips(const Subject& subject, Outcome& outcome) {
     }
 }
 
+/// How large a body is and what is wrong with its surface; of one that is refused why, as its faults may come of that.
+std::string surface_verdict(const std::string& name, const Subject& subject, const mesh::SurfaceReport& surface,
+                            const std::vector<std::string>& faults, const std::vector<mesh::FaultPlace>& places) {
+    const mesh::Box& box = surface.box;
+    if (!subject.refusal.empty())
+        return fmt::format(
+            "{}: {} vertices, {} triangles, box ({:.4g}, {:.4g}, {:.4g}) to ({:.4g}, {:.4g}, {:.4g}) mm.\n"
+            "It cannot be run: {}.\n",
+            name, subject.surface.vertices.rows(), subject.surface.triangles.rows(), box.min.x(), box.min.y(),
+            box.min.z(), box.max.x(), box.max.y(), box.max.z(), subject.refusal);
+    std::string text =
+        fmt::format("{}: {} vertices, {} triangles, {} part{}, {:.4g} x {:.4g} x {:.4g} mm, volume {:.4g} mm^3.\n",
+                    name, surface.vertices, surface.triangles, surface.components, surface.components == 1 ? "" : "s",
+                    box.extent().x(), box.extent().y(), box.extent().z(), surface.volume);
+    if (subject.set) text += describe_set(*subject.set);
+    for (const std::string& fault : faults) text += "  - " + fault + "\n";
+    if (!places.empty()) text += "  Where:\n" + describe_places(places);
+    return text + (faults.empty() ? "The surface is sound.\n" : "");
+}
+
 bool is_page(const std::filesystem::path& output) { return output.extension() == ".html"; }
 
 }  // namespace
@@ -221,19 +241,10 @@ Outcome check(const CheckOptions& options, const Common& common) {
     const std::vector<std::string> faults = mesh::describe_faults(surface);
 
     Outcome outcome;
-    outcome.text =
-        fmt::format("{}: {} vertices, {} triangles, {} part{}, {:.4g} x {:.4g} x {:.4g} mm, volume {:.4g} mm^3.\n",
-                    options.input.string(), surface.vertices, surface.triangles, surface.components,
-                    surface.components == 1 ? "" : "s", surface.box.extent().x(), surface.box.extent().y(),
-                    surface.box.extent().z(), surface.volume);
-    if (subject.set) outcome.text += describe_set(*subject.set);
-    for (const std::string& fault : faults) outcome.text += "  - " + fault + "\n";
-    if (!places.empty()) outcome.text += "  Where:\n" + describe_places(places);
-    outcome.text += faults.empty() && subject.refusal.empty() ? "The surface is sound.\n" : "";
-    if (!subject.refusal.empty()) {
-        outcome.text += "It cannot be run: " + subject.refusal + ".\n";
-        outcome.code = bad_input;
-    }
+    const bool is_refused = !subject.refusal.empty();
+    const std::string verdict = surface_verdict(options.input.string(), subject, surface, faults, places);
+    outcome.text = verdict;
+    if (is_refused) outcome.code = bad_input;
     for (const std::string& note : subject.notes) outcome.text += "  - " + note + "\n";
     for (const std::string& assumption : subject.assumptions) outcome.text += "  - assumed: " + assumption + "\n";
     outcome.json = {{"format", "palpate-check/1"},
@@ -242,7 +253,7 @@ Outcome check(const CheckOptions& options, const Common& common) {
                     {"places", places_json(places)},
                     {"notes", subject.notes},
                     {"assumptions", subject.assumptions},
-                    {"refusal", subject.refusal.empty() ? nlohmann::json(nullptr) : nlohmann::json(subject.refusal)}};
+                    {"refusal", is_refused ? nlohmann::json(subject.refusal) : nlohmann::json(nullptr)}};
     if (subject.volume) {
         outcome.json["tetrahedra"] = subject.volume->tetrahedra.rows();
         outcome.text += fmt::format("A ready-made mesh of {} tetrahedra with {} nodes each, used as it is.\n",
@@ -258,11 +269,12 @@ Outcome check(const CheckOptions& options, const Common& common) {
     if (subject.set && is_fittable) add_information(*subject.set, outcome);
     // It takes as long as a first fit: only where somebody wants to read it.
     const bool is_asked = !options.output.empty() || !options.expected.empty();
-    if (subject.set && subject.refusal.empty() && is_asked) add_preflight(subject, common, outcome);
-    if (subject.set && subject.refusal.empty() && !is_asked)
+    if (subject.set && !is_refused && is_asked) add_preflight(subject, common, outcome);
+    if (subject.set && !is_refused && !is_asked)
         outcome.text += fmt::format("What it could show, and what to measure next: palpate check {} -o check.html\n",
                                     options.input.string());
     judge_expectations(options, outcome);
+    if (is_refused) outcome.text = verdict;  // all else is of a body that there is not
     if (is_page(options.output)) {
         write_check_page(options.output, subject, outcome.json);
         outcome.text += fmt::format("Written: {}\n", options.output.string());
@@ -275,7 +287,7 @@ Outcome check(const CheckOptions& options, const Common& common) {
             "(ParaView).\n",
             options.output.string());
     }
-    if (is_fittable && subject.refusal.empty())
+    if (is_fittable && !is_refused)
         outcome.text +=
             "Next: palpate run " + options.input.string() + (faults.empty() ? "" : "    # repairs what it can") + "\n";
     return outcome;

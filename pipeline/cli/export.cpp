@@ -108,9 +108,9 @@ void Subcommands::add_export(CLI::App& app) {
         ->required()
         ->check(CLI::IsMember({"gltf", "sofa", "chai3d", "stl", "vtp"}));
     sub->add_option("-o,--output", exports.output, "The file")->required();
-    auto* probes =
-        sub->add_option("--probes", exports.probes,
-                        "probes.csv, whose states are played: gltf moves through them, stl and vtp show one");
+    auto* probes = sub->add_option("--probes", exports.probes,
+                                   "probes.csv, whose states are played: gltf moves through them, stl and vtp show one")
+                       ->type_name("PATH");
     sub->add_option("--state", exports.state, "Which of them stl and vtp show, from 0; the last by default")
         ->check(CLI::NonNegativeNumber)
         ->needs(probes);

@@ -32,8 +32,8 @@ constexpr const char* map_head =
 constexpr const char* map_tail =
     "    # probe: 1            # files of one probe show the same body at the same time\n"
     "    # order: unknown      # which point is which is found by their distances\n"
-    "    # values: {name: pressure, value: 10 kPa}    # what no file tells; acts where points have moved, or 'while: "
-    "always'\n"
+    "    # values: {name: pressure, value: 10 kPa}    # what no file contains; acts where points have moved, or "
+    "'while: always'\n"
     "\n"
     "# Points whose place on the mesh is known register the frames; markers without 'at' rest where the first state "
     "shows "
@@ -177,7 +177,7 @@ void check_readable(const fs::path& folder, const fs::path& map) {
 Outcome import(const ImportCommandOptions& options, const Common& common) {
     if (options.describe) return describe_files(options, common);
     if (options.output.empty())
-        throw InvalidInput("The set wants a name: -o SET. Or say --describe, for what is in the files.");
+        throw InvalidInput("name the set with -o SET, or give --describe to list what is in the files");
     refuse_to_overwrite(options.output, common.force);
     const identify::ImportOptions how{.map = options.map.empty() ? map_beside(options.files.front()) : options.map,
                                       .files = options.files,
@@ -221,9 +221,10 @@ void Subcommands::add_import(CLI::App& app) {
         ->required();
     sub->add_option("-o,--output", importing.output, "The set (a folder); with --describe a map to edit");
     sub->add_option("--map", importing.map,
-                    "What the files cannot say: mesh, supports, what each channel is; map.yaml beside them by default");
+                    "What the files cannot say: mesh, supports, what each channel is; map.yaml beside them by default")
+        ->type_name("PATH");
     sub->add_flag("--describe", importing.describe, "What is in the files, and a map to edit");
-    sub->add_option("--mesh", importing.mesh, "The body at rest, in place of the map's");
+    sub->add_option("--mesh", importing.mesh, "The body at rest, in place of the map's")->type_name("PATH");
     sub->add_option("--states", importing.states, "plateaus, every=0.1s or all, in place of the map's");
     sub->add_option(
         "--register", importing.registration,

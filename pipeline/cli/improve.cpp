@@ -144,7 +144,8 @@ Outcome improve(const ImproveCommandOptions& options, const Common& common) {
         refuse_to_overwrite(options.draft, common.force);
         check_draft_name(options.draft.stem().string());
     }
-    const auto [ladder, body] = improve(read_model_and_set(options.model, options.set), options, common);
+    const ModelAndSet given = read_model_and_set(options.model, options.set);
+    const auto [ladder, body] = improve(given, options, common);
     write_ladder(output, ladder, *body);
 
     const std::optional<skeleton::EffectRecord> drafted = unnamed_among(ladder.steps.back().effects);
@@ -166,7 +167,7 @@ Outcome improve(const ImproveCommandOptions& options, const Common& common) {
     }
     outcome.text +=
         outcome.json["verdict"] == "adequate"
-            ? fmt::format("Next: palpate simulate {} --probes probes.csv -o played\n", (output / "model.json").string())
+            ? fmt::format("Next: {}\n", command_to_play(output / "model.json", given.set))
             : fmt::format("Next: palpate diagnose {} {}\n", (output / "model.json").string(), options.set.string());
     return outcome;
 }
@@ -201,6 +202,7 @@ void Subcommands::add_improve(CLI::App& app) {
            "--draft", improve.draft,
            "Write what --residual adds as a C++ file, to develop an effect of your own from; the name of the file\n"
            "is that of the effect")
+        ->type_name("PATH")
         ->needs("--residual");
     add_body(sub, improve.body, "by default, but for what links alone have");
     add_flags_of(sub, improve.overrides, "Identification");

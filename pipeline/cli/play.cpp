@@ -13,7 +13,7 @@
 #include "pipeline/play/play_page.h"
 #include "pipeline/play/serve.h"
 
-// A model in the hand, or a body that is set up by mouse.
+// An interactive page of a model, or of a body that is set up by mouse.
 
 namespace palpate::pipeline::commands {
 namespace {
@@ -95,8 +95,9 @@ void Subcommands::add_play(CLI::App& app) {
                     "a measurement set")
         ->required();
     auto* page = sub->add_option("-o,--output", play.output, "The page; without it, it is served at 127.0.0.1");
-    auto* set = sub->add_option(
-        "--set", play.set, "Measurement set that is drawn and that the error is told of; by default that of the run");
+    auto* set = sub->add_option("--set", play.set,
+                                "Measurement set that is drawn and that errors refer to; by default that of the run")
+                    ->type_name("PATH");
     auto* pick = sub->add_flag(
         "--pick", play.pick,
         "Choose on the body where it is held, pressed and read; the page hands out case.yaml and a measurement set to "

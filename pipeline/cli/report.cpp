@@ -63,7 +63,7 @@ void Subcommands::add_report(CLI::App& app) {
                            [this] { return commands::report(report, common); });
     sub->add_option("RUN", report.runs, "The run folder; several are compared")->required();
     sub->add_option("-o,--output", report.output,
-                    "The page; report.html in the run folder by default, to be told for several");
+                    "The page; report.html in the run folder by default, required for several runs");
 }
 
 }  // namespace palpate::pipeline

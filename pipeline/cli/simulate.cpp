@@ -15,6 +15,7 @@
 #include "pipeline/command_line/subcommands.h"
 #include "pipeline/command_line/terminal/console.h"
 #include "pipeline/output/csv/played_positions.h"
+#include "pipeline/run/model_and_set.h"
 #include "pipeline/synthesis/effects/effect_spec.h"
 #include "skeleton/effects/effect.h"
 #include "skeleton/model/io/model_io.h"
@@ -158,6 +159,15 @@ Outcome simulate_motion(const SimulateOptions& options, const skeleton::Model& m
     return outcome;
 }
 
+/// How an effect is given with its numbers; of gravity a direction alone is enough.
+std::string spec_to_write(const skeleton::KnownEffect& effect) {
+    if (effect.name == "gravity") return "gravity:gz=-9810";
+    std::string spec = effect.name;
+    for (std::size_t p = 0; p < effect.parameters.size(); ++p)
+        spec += fmt::format("{}{}=VALUE", p == 0 ? ":" : ",", effect.parameters[p].name);
+    return spec;
+}
+
 /// A model with effects added; one that it has already is replaced. What a direction leaves out is 0.
 skeleton::Model with_effects(skeleton::Model model, const std::vector<std::string>& specs) {
     for (const EffectSpec& spec : read_specs(specs)) {
@@ -166,12 +176,15 @@ skeleton::Model with_effects(skeleton::Model model, const std::vector<std::strin
             identify::find_effect(spec.effect);  // which names those that there are
             throw InvalidInput(fmt::format("effect '{}' is a fault of measurements: no model plays it", spec.effect));
         }
+        if (spec.given.empty() && !known->parameters.empty())
+            throw InvalidInput(
+                fmt::format("effect '{}' has no numbers: give them, e.g. {}", spec.effect, spec_to_write(*known)));
         skeleton::EffectRecord effect{spec.effect, spec.given};
         for (const skeleton::KnownParameter& parameter : known->parameters) {
-            const auto told = std::ranges::find(effect.parameters, parameter.name, &skeleton::EffectParameter::name);
+            const auto given = std::ranges::find(effect.parameters, parameter.name, &skeleton::EffectParameter::name);
             const bool is_of_gravity = spec.effect == "gravity" && !effect.parameters.empty();
-            if (told != effect.parameters.end())
-                told->unit = parameter.unit;
+            if (given != effect.parameters.end())
+                given->unit = parameter.unit;
             else if (is_of_gravity)
                 effect.parameters.push_back({parameter.name, 0, parameter.unit});
         }
@@ -182,17 +195,31 @@ skeleton::Model with_effects(skeleton::Model model, const std::vector<std::strin
     return model;
 }
 
+bool moves(const Forecast& forecast) {
+    constexpr double rounding = 1e-9;  // [mm]
+    return forecast.largest >= rounding;
+}
+
+/// Why nothing moves, where none of the states has a force.
+std::string why_still(const SimulateOptions& options, const std::vector<identify::LoadState>& states,
+                      const std::vector<Forecast>& forecasts) {
+    if (have_forces(states) || std::ranges::any_of(forecasts, moves)) return {};
+    return fmt::format(
+        "{} states no force, so nothing moves: tools and actuators are not played here. 'palpate compare' plays those "
+        "of a measurement set, and 'palpate play' lets you press the model by hand.",
+        options.probes.string());
+}
+
 /// The largest displacement of each state and its interval; of many states the first ones.
 std::string in_words(const std::vector<identify::LoadState>& states, const std::vector<Forecast>& forecasts) {
     constexpr std::size_t most = 12;
-    constexpr double rounding = 1e-9;  // [mm]
     std::string text;
     for (std::size_t s = 0; s < std::min(most, states.size()); ++s) {
         const Forecast& here = forecasts[s];
         text += fmt::format("  probe {:<4} ", states[s].probe);
-        text += here.largest < rounding ? "does not move\n"
-                                        : fmt::format("moves by {:.3g} mm at most, {:.3g} to {:.3g} mm with 95 %\n",
-                                                      here.largest, here.low, here.high);
+        text += !moves(here) ? "does not move\n"
+                             : fmt::format("moves by {:.3g} mm at most (95 % interval {:.3g} to {:.3g} mm)\n",
+                                           here.largest, here.low, here.high);
     }
     if (states.size() > most) text += fmt::format("  and {} more\n", states.size() - most);
     return text;
@@ -230,6 +257,7 @@ Outcome simulate(const SimulateOptions& options, const Common& common) {
         if (found.sd.size() > 0) results.back()["max_displacement_95_mm"] = {found.low, found.high};
     }
     mesh::write_pvd(output / "simulation.pvd", steps);
+    if (const std::string why = why_still(options, states, forecasts); !why.empty()) Console::warning(why);
     Outcome outcome;
     outcome.text = fmt::format("{}: {}.\n", (output / "simulation.pvd").string(),
                                mesh::count_of(std::ssize(states), "equilibrium", "equilibria"));
@@ -243,7 +271,7 @@ Outcome simulate(const SimulateOptions& options, const Common& common) {
         const std::vector<std::string> beyond =
             extrapolations(uncertainty->measured, states, forecasts, sizes.maxCoeff());
         Console::notices(beyond);
-        if (uncertainty->forecast_error.relative == 0)
+        if (uncertainty->forecast_error.relative == 0 && std::ranges::any_of(forecasts, moves))
             Console::notice("Intervals are of stiffness alone: how far the model itself is off was not estimated.");
         outcome.json["draws"] = uncertainty->draws.size();
         outcome.json["forecast_error"] = uncertainty->forecast_error.relative;
@@ -268,11 +296,14 @@ void Subcommands::add_simulate(CLI::App& app) {
         "  palpate simulate model.json --probes set/probes.csv --dt 0.002 --duration 0.5 -o moved\n",
         [this] { return commands::simulate(simulate, common); });
     sub->add_option("MODEL", simulate.model, "model.json")->required();
-    sub->add_option("--probes", simulate.probes, "probes.csv: probe,time,x,y,z,fx,fy,fz,radius [mm, N]")->required();
+    sub->add_option("--probes", simulate.probes, "probes.csv: probe,time,x,y,z,fx,fy,fz,radius [mm, N]")
+        ->type_name("PATH")
+        ->required();
     sub->add_option("-o,--output", simulate.output,
                     "Folder for simulation.pvd and positions.csv; simulation by default");
     sub->add_option("--markers", simulate.markers,
-                    "markers.csv: marker,x,y,z [mm], whose positions are written; the skin's vertices by default");
+                    "markers.csv: marker,x,y,z [mm], whose positions are written; the skin's vertices by default")
+        ->type_name("PATH");
     sub->add_option(
            "--add", simulate.add,
            "An effect to play besides the model's own, EFFECT:name=value,... ('palpate effects NAME' lists the\n"
@@ -281,8 +312,9 @@ void Subcommands::add_simulate(CLI::App& app) {
         ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
         ->check(CLI::Validator([](std::string& spec) { return objection_to_spec(spec); }, "EFFECT:name=value,..."));
     sub->add_option("--posterior", simulate.posterior,
-                    "Folder with particles.csv and identify.json, which tell how far equilibria can be relied on; by\n"
-                    "default that of the model, where they are");
+                    "Folder with particles.csv and identify.json, for the intervals of equilibria; by default that of\n"
+                    "the model, where they are")
+        ->type_name("PATH");
     sub->add_option("--draws", simulate.draws, "Draws from the posterior, for intervals; 0: none")
         ->check(CLI::NonNegativeNumber)
         ->capture_default_str();

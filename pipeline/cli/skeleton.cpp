@@ -24,12 +24,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Where quality is told, beside a model: arm.json has arm_quality.json, .csv and .svg.
+/// Where quality is written, beside a model: arm.json has arm_quality.json, .csv and .svg.
 fs::path quality_file(const fs::path& model, const char* extension) {
     return model.parent_path() / (model.stem().string() + "_quality" + extension);
 }
 
-/// Measures a model, writes what comes of it beside the model, and tells it in the outcome.
+/// Measures a model, writes what comes of it beside the model, and puts it into the outcome.
 void add_quality(const Subject& subject, const MeshedBody& body, const skeleton::Model& model, const fs::path& output,
                  QualityOptions options, int threads, Outcome& outcome) {
     options.threads = threads;

@@ -3,10 +3,12 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <sstream>
 #include <thread>
 
 #include "pipeline/command_line/subcommands.h"
 #include "pipeline/command_line/terminal/usage_error.h"
+#include "pipeline/command_line/tree.h"
 #include "pipeline/command_line/version_text.h"
 
 namespace palpate::pipeline {
@@ -28,14 +30,50 @@ constexpr const char* description =
     "Units: mm, N, MPa, s. Exit codes: 0 done, 1 internal error, 2 wrong usage, 3 bad input, 4 numerical failure,\n"
     "5 tolerance not met.";
 
-/// In the list of commands, a line each: examples stand in a command's own help.
-class OneLinePerCommand : public CLI::Formatter {
+/// Help in our words in place of CLI11's types and notes on which options need and exclude each other.
+class HelpFormatter : public CLI::Formatter {
 public:
+    /// In the list of commands, a line each: examples stand in a command's own help.
     std::string make_subcommand(const CLI::App* sub) const override {
         const std::string text = sub->get_description();
         std::stringstream out;
         CLI::detail::format_help(out, sub->get_display_name(), text.substr(0, text.find('\n')), 16);
         return out.str();
+    }
+
+    /// Options of which one is needed.
+    std::string make_expanded(const CLI::App* sub) const override {
+        if (!sub->get_name().empty()) return CLI::Formatter::make_expanded(sub);
+        return make_group(sub->get_group() + ", " + sub->get_description(), false,
+                          sub->get_options([&](const CLI::Option* one) { return one != sub->get_help_ptr(); }));
+    }
+
+    std::string make_option_opts(const CLI::Option* option) const override {
+        if (option->get_positional() || option->get_expected_max() == 0) return {};
+        std::string value = " " + option_value(*option).word;
+        if (option->get_delimiter() != '\0') {
+            value += fmt::format("{}...", option->get_delimiter());
+        } else if (option->get_expected_max() == CLI::detail::expected_max_vector_size) {
+            value += " ...";
+        }
+        return value + (option->get_required() ? " (required)" : "");
+    }
+
+    std::string make_option_desc(const CLI::Option* option) const override {
+        constexpr double large = 1e5;  // bounds beyond are of memory and patience
+        std::string text = option->get_description();
+        const OptionValue value = option_value(*option);
+        if (value.least && value.most && *value.most <= large)
+            text += fmt::format(" ({:g} to {:g})", *value.least, *value.most);
+        if (!option->get_default_str().empty()) text += fmt::format("; {} by default", option->get_default_str());
+        for (const CLI::Option* needed : option->get_needs()) text += fmt::format(" (with {})", needed->get_name());
+        return text;
+    }
+
+    std::string make_help(const CLI::App* app, std::string name, CLI::AppFormatMode mode) const override {
+        std::string text = CLI::Formatter::make_help(app, std::move(name), mode);
+        for (std::size_t at; (at = text.find("\n\n\n")) != std::string::npos;) text.erase(at, 1);
+        return text;
     }
 };
 
@@ -48,8 +86,8 @@ CLI::App* Subcommands::subcommand(CLI::App& app, const std::string& name, const 
     sub->footer(
         "Everywhere:\n"
         "  --json                      The result as one JSON object on standard output\n"
-        "  --threads INT               Threads; all cores by default. They change no number\n"
-        "  --seed UINT                 Seed of everything random\n"
+        "  --threads N                 Threads; all cores by default. They change no number\n"
+        "  --seed N                    Seed of everything random\n"
         "  --force                     Replace files that palpate did not make\n"
         "  -q,--quiet  -v,--verbose    Result and errors only; more detail\n");
     return sub;
@@ -74,7 +112,7 @@ CommandLine::~CommandLine() = default;
 std::optional<commands::ExitCode> CommandLine::parse(int argc, char** argv) {
     CLI::App app(description, "palpate");
     app.require_subcommand(1);
-    app.formatter(std::make_shared<OneLinePerCommand>());
+    app.formatter(std::make_shared<HelpFormatter>());
     app.fallthrough();
     impl_->add_common(app);
     Subcommands& subcommands = impl_->subcommands;

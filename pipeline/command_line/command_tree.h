@@ -12,7 +12,8 @@ struct FlagHelp {
     std::string what;                // in a sentence
     bool takes_value = false;
     std::vector<std::string> choices;  // the values that there are; none: any
-    bool repeatable = false;           // it may be said more than once
+    bool repeatable = false;           // it may be given more than once
+    std::string value = {};            // what its value is called: "N", "NUMBER", "PATH"; empty: it takes none
 };
 
 struct CommandHelp {
@@ -33,8 +34,8 @@ struct CommandTree {
 std::string bash_completion(const CommandTree& tree);
 std::string zsh_completion(const CommandTree& tree);
 
-/// Spelling errors in a command, with the nearest known word: "'rnu' is no command (did you mean
-/// 'run'?); ...". "" where all subcommands and flags are known.
+/// Spelling errors in a command, with the nearest known word, or the only one that begins so: "'rnu' is not a command
+/// (did you mean 'run'?); ...". "" where all subcommands and flags are known.
 std::string spelling_error(const CommandTree& tree, const std::vector<std::string>& arguments);
 
 /// The page that `man palpate` shows, in roff.

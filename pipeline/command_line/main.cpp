@@ -9,6 +9,7 @@
 #include "pipeline/cli/shell/system_limits.h"
 #include "pipeline/command_line/command_line.h"
 #include "pipeline/command_line/commands.h"
+#include "pipeline/output/text/printed_units.h"
 
 namespace {
 
@@ -57,7 +58,7 @@ int main(int argc, char** argv) {
         // a command that serves has told its result when it began
         if (!outcome.json.is_null()) fmt::print("{}\n", outcome.json.dump(2));
     } else {
-        fmt::print("{}", outcome.text);
+        fmt::print("{}", with_printed_units(outcome.text));
     }
     return outcome.code;
 }

@@ -1,5 +1,10 @@
 #include "pipeline/command_line/tree.h"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <cmath>
+#include <regex>
 #include <sstream>
 
 #include "identify/effects/catalogue.h"
@@ -13,7 +18,7 @@ std::vector<std::string> effect_names() {
     return names;
 }
 
-/// The values in "TEXT:{a,b,c}", as CLI11 tells a choice.
+/// The values in "TEXT:{a,b,c}", as CLI11 states a choice.
 std::vector<std::string> choices_in(const std::string& type) {
     const std::size_t open = type.find('{'), close = type.find('}');
     if (open == std::string::npos || close == std::string::npos) return {};
@@ -21,6 +26,24 @@ std::vector<std::string> choices_in(const std::string& type) {
     std::vector<std::string> choices;
     for (std::string word; std::getline(words, word, ',');) choices.push_back(word);
     return choices;
+}
+
+/// Bounds as checks state them, "in [1 - 1024]", ours "in [0, 0.5]", "POSITIVE" and "NONNEGATIVE".
+void read_bounds(const std::string& type, OptionValue& value) {
+    static const std::regex range(R"(in \[(\S+)(?:,| -) (\S+)\])");
+    constexpr double any = 1e9, tiny = 1e-9;  // bounds that stand for none: so far numbers are numbers at all
+    std::smatch found;
+    if (type.find("NONNEGATIVE") != std::string::npos) {
+        value.least = 0;
+    } else if (type.find("POSITIVE") != std::string::npos) {
+        value.least = 0;
+        value.excludes_least = true;
+    } else if (std::regex_search(type, found, range)) {
+        const double least = std::stod(found[1]), most = std::stod(found[2]);
+        value.excludes_least = least == tiny;
+        if (least > -any) value.least = value.excludes_least ? 0 : least;
+        if (most < any) value.most = most;
+    }
 }
 
 FlagHelp flag_of(const CLI::Option& option) {
@@ -31,7 +54,9 @@ FlagHelp flag_of(const CLI::Option& option) {
                   .repeatable = option.get_multi_option_policy() == CLI::MultiOptionPolicy::TakeAll};
     for (const std::string& name : option.get_snames()) flag.names.push_back("-" + name);
     for (const std::string& name : option.get_lnames()) flag.names.push_back("--" + name);
-    flag.choices = choices_in(option.get_type_name());
+    const OptionValue value = option_value(option);
+    flag.choices = value.choices;
+    if (flag.takes_value) flag.value = value.word;
     const bool of_effects = option.check_lname("hide") || option.check_lname("add") || option.check_lname("without");
     if (of_effects) flag.choices = effect_names();
     return flag;
@@ -70,6 +95,40 @@ CommandHelp command_help(const CLI::App& app) {
 }
 
 }  // namespace
+
+OptionValue option_value(const CLI::Option& option) {
+    const std::string type = option.get_type_name();
+    OptionValue value{.word = {}, .choices = choices_in(type), .least = {}, .most = {}};
+    if (!value.choices.empty()) {
+        value.word = fmt::format("{{{}}}", fmt::join(value.choices, ","));
+    } else if (type.starts_with("INT") || type.starts_with("UINT")) {
+        value.word = "N";
+        read_bounds(type, value);
+    } else if (type.starts_with("FLOAT")) {
+        value.word = "NUMBER";
+        read_bounds(type, value);
+    } else if (const std::size_t form = type.find(":"); form != std::string::npos) {
+        value.word = type.substr(form + 1);  // EFFECT[:name=value,...]
+    } else {
+        value.word = type == "PATH" || option.check_lname("output") ? "PATH" : "VALUE";
+    }
+    return value;
+}
+
+std::string value_in_words(const OptionValue& value) {
+    if (!value.choices.empty()) {
+        const std::vector<std::string> but_last(value.choices.begin(), value.choices.end() - 1);
+        return but_last.empty() ? value.choices.back()
+                                : fmt::format("{} or {}", fmt::join(but_last, ", "), value.choices.back());
+    }
+    if (value.word == "VALUE") return "a value";
+    if (value.word == "PATH") return "a path";
+    if (value.word != "N" && value.word != "NUMBER") return value.word;
+    if (value.least && value.most) return fmt::format("a number from {:g} to {:g}", *value.least, *value.most);
+    if (value.least && value.excludes_least) return "a number above 0";
+    if (value.least) return fmt::format("a number of {:g} or more", *value.least);
+    return "a number";
+}
 
 CommandTree tree_of(const CLI::App& app) {
     CommandTree tree;

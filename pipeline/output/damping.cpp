@@ -78,7 +78,7 @@ std::string damping_in_words(const json& damping) {
         text += fmt::format("  {:>10.3g} {:>26} {:>28} {:>8.3g} {:>6.1f} %{}\n", mode["frequency_hz"].get<double>(),
                             interval(mode["measured_hz"]), interval(mode["ratio"]), mode["played_ratio"].get<double>(),
                             100 * mode["share"].get<double>(),
-                            mode["ratio"]["informed"].get<bool>() ? "" : "  not told by the data");
+                            mode["ratio"]["informed"].get<bool>() ? "" : "  not determined by the data");
     }
     for (const json& note : damping["notes"]) text += "  " + note.get<std::string>() + "\n";
     return text;

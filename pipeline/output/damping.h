@@ -8,7 +8,7 @@
 
 namespace palpate::pipeline {
 
-/// What identify.json tells of damping.
+/// What identify.json states about damping.
 nlohmann::json to_json(const identify::DampingResult& found);
 
 /// Where each recording moves most, measured and played, as damping.csv.
@@ -17,7 +17,7 @@ std::string damping_csv(const identify::DampingResult& found);
 /// How damping goes with frequency, in words.
 std::string how_it_goes(const nlohmann::json& damping);
 
-/// What identify.json tells of damping, for the terminal: a sentence, and a line a mode.
+/// What identify.json states about damping, for the terminal: a sentence, and a line a mode.
 std::string damping_in_words(const nlohmann::json& damping);
 
 }  // namespace palpate::pipeline

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "identify/effects/catalogue.h"
+#include "identify/effects/vector_words.h"
 
 namespace palpate::pipeline {
 namespace {
@@ -32,8 +33,7 @@ const json* candidate_of(const json& diagnosis, const std::string& effect) {
     return found == diagnosis["ranking"].end() ? nullptr : &*found;
 }
 
-/// Without the components that the readings do not determine: their standard deviation is a large part of the rest, and
-/// several times that of the best known one.
+/// Without the components that the readings do not determine, by the bounds of vector_words.h.
 void leave_undetermined_out(json& vector, const std::array<const char*, 3>& names, const json* candidate) {
     if (!candidate) return;
     const json& parameters = (*candidate)["parameters"];
@@ -42,13 +42,13 @@ void leave_undetermined_out(json& vector, const std::array<const char*, 3>& name
         if (!parameters.contains(names[a]) || !parameters[names[a]]["sd"].is_number()) return;
         sd[a] = parameters[names[a]]["sd"].get<double>();
     }
-    constexpr double much = 0.25, several = 3;
     const double least = *std::ranges::min_element(sd);
     for (std::size_t a = 0; a < 3; ++a) {
         double rest = 0;
         for (std::size_t b = 0; b < 3; ++b)
             if (b != a) rest = std::hypot(rest, vector[b].get<double>());
-        if (rest > 0 && sd[a] > much * rest && sd[a] > several * least) vector[a] = 0.0;
+        if (rest > 0 && sd[a] > identify::undetermined_share * rest && sd[a] > identify::undetermined_ratio * least)
+            vector[a] = 0.0;
     }
 }
 

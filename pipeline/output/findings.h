@@ -12,7 +12,7 @@ namespace palpate::pipeline {
 /// inclusion, a force on a part) `center`, `radius` and, of a force, its `vector`; "plane" (contact) `vector`, its
 /// normal, and `offset`; "springs" (a compliant support) and "words" nothing. `effect` is empty for what no effect is
 /// named for.
-/// `diagnosis`: as in diagnosis.json, or null; tells what of a vector is determined.
+/// `diagnosis`: as in diagnosis.json, or null; states which components of a vector are determined.
 nlohmann::json findings_json(const std::vector<skeleton::EffectRecord>& effects, const nlohmann::json& diagnosis);
 
 }  // namespace palpate::pipeline

@@ -65,11 +65,25 @@ std::string step_in_words(const json& step) {
     return text + ".";
 }
 
+/// How much farther off than the finite elements the skeleton is, of which a user is warned.
+std::string coarseness_in_words(const json& step) {
+    constexpr double much = 2;  // times the finite elements' error: most of the skeleton's is its own
+    const char* rms = keys_of(step).fitted;
+    if (step[rms].get<double>() < much * step["reference"][rms].get<double>()) return {};
+    std::string share;
+    if (step["relative"].is_number())
+        share = fmt::format(" ({:.2g} % of the {})", 100 * step["relative"].get<double>(),
+                            keys_of(step).unit == std::string_view("mm") ? "displacement" : "force");
+    return fmt::format(" The real-time model is off by {} rms{}: more spheres (--spheres) bring it closer.",
+                       rms_in_words(step), share);
+}
+
 /// What a model leaves in which nothing more is found. The verdict allows for what is unknown about contacts, clamps
 /// and tools; the model's own error does not.
 std::string adequate_in_words(const json& ladder) {
     const json& last = ladder["steps"].back();
-    if (last["reference"].is_object()) return "The residual of the finite-element model is noise.";
+    if (last["reference"].is_object())
+        return "The residual of the finite-element model is noise." + coarseness_in_words(last);
     const json noise = ladder.value("noise_mm", json());
     constexpr double as_noise = 1.1;  // as a diagnosis takes it
     if (!noise.is_number() || last["rms_mm"].get<double>() <= as_noise * noise.get<double>())

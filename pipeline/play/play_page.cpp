@@ -5,8 +5,7 @@
 #include <stdexcept>
 
 #include "pipeline/output/base64.h"
-#include "pipeline/output/html/escape.h"
-#include "pipeline/output/html/page/page_parts.h"
+#include "pipeline/output/html/page_frame.h"
 #include "pipeline/play/page/page_parts.h"
 
 namespace palpate::pipeline {
@@ -38,13 +37,9 @@ std::string data_block(const std::string& id, const std::string_view base64) {
 }  // namespace
 
 std::string play_page(const PlayData& data) {
-    const std::string name = escape(data.name);
-    return "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">"
-           "<meta name=\"viewport\" content=\"width=device-width,initial-scale=1\">"
-           "<meta name=\"generator\" content=\"palpate\"><link rel=\"icon\" href=\"data:,\"><title>" +
-           name + " in the hand</title>\n<style>" + std::string(play_style) + "</style></head><body>\n" +
-           std::string(play_view) + data_block("play-data", base64(packed(data.content.dump()))) +
-           data_block("play-module", play_module) + "<script>" + std::string(play_script) + "</script></body></html>\n";
+    return page_head(data.name + ", interactive", play_style) + "<body>\n" + std::string(play_view) +
+           data_block("play-data", base64(packed(data.content.dump()))) + data_block("play-module", play_module) +
+           "<script>" + std::string(play_script) + "</script></body></html>\n";
 }
 
 }  // namespace palpate::pipeline

@@ -56,6 +56,19 @@ identify::MeasurementSet without_measurement_faults(const identify::MeasurementS
     return result;
 }
 
+bool have_forces(const std::vector<identify::LoadState>& states) {
+    return std::ranges::any_of(states, [](const identify::LoadState& state) {
+        return std::ranges::any_of(state.contacts,
+                                   [](const mesh::Contact& contact) { return !contact.force.isZero(0); });
+    });
+}
+
+std::string command_to_play(const std::filesystem::path& model, const identify::MeasurementSet& set) {
+    if (!have_forces(set.states)) return "palpate play " + model.string();
+    return fmt::format("palpate simulate {} --probes {} -o played", model.string(),
+                       (set.folder / "probes.csv").lexically_normal().string());
+}
+
 std::unique_ptr<identify::ReferenceBody> reference_of(const identify::MeasurementSet& set, const Case& settings) {
     Reference reference = make_reference(set, settings.edge_length, Console::progress(), settings.identify.priors);
     Console::notices(reference.notes);

@@ -33,6 +33,12 @@ identify::MeasurementSet without_measurement_faults(const identify::MeasurementS
 /// aloud. @throws InvalidInput telling why there is none.
 std::unique_ptr<identify::ReferenceBody> reference_of(const identify::MeasurementSet& set, const Case& settings);
 
+/// Does a force press the body in any state? Others are of weight, tools and actuators, which `simulate` does not play.
+bool have_forces(const std::vector<identify::LoadState>& states);
+
+/// What to type next with a model that lacks nothing: to play the set's forces, or where it has none the model by hand.
+std::string command_to_play(const std::filesystem::path& model, const identify::MeasurementSet& set);
+
 /// What errors are judged on: "reference", or "skeleton", which starts from the set's Young's modulus where it has one.
 /// @throws InvalidInput telling why there is no reference.
 std::unique_ptr<identify::BodyModel> body_to_diagnose(const std::string& kind, const ModelAndSet& given,

@@ -31,7 +31,7 @@
 #include "pipeline/output/vtk/series.h"
 #include "pipeline/output/vtk/view_script.h"
 #include "pipeline/run/folder/run_folder.h"
-#include "pipeline/run/inquiry.h"
+#include "pipeline/run/run_diagnosis.h"
 #include "pipeline/run/sphere_curve.h"
 #include "pipeline/run/summary.h"
 #include "pipeline/synthesis/probing/held_out.h"
@@ -266,7 +266,7 @@ private:
     std::string accuracy_in_words() const {
         const json& figures = folder_.record()["stages"]["measurements"]["figures"];
         if (!figures.contains("relative_error")) return "";
-        return fmt::format("; off by about {}, as a coarser mesh tells",
+        return fmt::format("; off by about {}, by comparison with a coarser mesh",
                            mesh::share_of(figures["relative_error"].get<double>(), "the displacement"));
     }
 

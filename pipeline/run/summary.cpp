@@ -8,6 +8,7 @@
 #include "pipeline/output/text/diagnosis.h"
 #include "pipeline/output/text/words.h"
 #include "pipeline/output/text/worst.h"
+#include "pipeline/run/model_and_set.h"
 
 namespace palpate::pipeline::commands {
 namespace {
@@ -18,7 +19,7 @@ namespace fs = std::filesystem;
 std::string next_command(const Subject& subject, const RunResults& results, const fs::path& run) {
     if (!subject.set)
         return fmt::format("palpate run {} -o {} --probes 200", subject.settings.mesh->string(), run.string());
-    const std::string set = subject.set->folder.string();
+    const std::string set = subject.set->folder.lexically_normal().string();
     if (results.diagnosis.is_null()) {
         return fmt::format("palpate compare {} {}", (run / "identify/model.json").string(), set);
     }
@@ -29,10 +30,10 @@ std::string next_command(const Subject& subject, const RunResults& results, cons
     const std::string model = (run / "improve/model.json").string();
     if (verdict == "unexplained") return "palpate effects    # what the catalogue holds";
     if (left != "adequate") return fmt::format("palpate diagnose {} {}", model, set);
-    return fmt::format("palpate simulate {} --probes {} -o played", model, (fs::path(set) / "probes.csv").string());
+    return command_to_play(model, *subject.set);
 }
 
-/// What was found: of a model that something was added to, the one that came of it is what is told of.
+/// What was found: of a model that something was added to, the one that came of it is what is described.
 std::string findings(const RunResults& results) {
     std::string text;
     if (results.improved.is_null()) text = compare_in_words(results.compare) + "\n" + worst_table(results.compare);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "identify/effects/catalogue.h"
 #include "mesh/errors.h"
 #include "pipeline/synthesis/loading/load_sequence.h"
 #include "pipeline/synthesis/loading/reading_faults.h"
@@ -27,6 +28,24 @@ double rounded_down(double noise) {
     if (noise <= 0) return 0;
     const double unit = std::pow(10, std::floor(std::log10(noise)) - 2);
     return std::stod(fmt::format("{:.3g}", std::floor(noise / unit) * unit));
+}
+
+/// How much what is hidden changes forces of tools [N]: rows that are NaN do not count.
+Strength strength_in_forces(const std::vector<Points>& bare, const std::vector<Points>& hidden) {
+    std::vector<Points> before, changes;
+    double overlap = 0, squares = 0;
+    for (std::size_t row = 0; row < bare.size(); ++row) {
+        if (!hidden[row].allFinite()) continue;
+        before.push_back(bare[row]);
+        changes.emplace_back(hidden[row] - bare[row]);
+        overlap += bare[row].cwiseProduct(changes.back()).sum();
+        squares += bare[row].squaredNorm();
+    }
+    Strength strength{.displacement = rms(before), .change = rms(changes)};
+    const double scaling = squares > 0 ? overlap / squares : 0;
+    for (std::size_t row = 0; row < before.size(); ++row) changes[row] -= scaling * before[row];
+    strength.beyond = rms(changes);
+    return strength;
 }
 
 class BlindSetMaker {
@@ -75,8 +94,8 @@ private:
     void hide_all() {
         const EffectSpec* in_sigmas = first_with(&identify::SynthesisNeeds::noise, specs_);
         if (in_sigmas && blind_set_.noise == 0) {
-            throw InvalidInput(fmt::format("effect '{}' is told in sigmas of the noise, and there is none; say --noise",
-                                           in_sigmas->effect));
+            throw InvalidInput(fmt::format(
+                "effect '{}' is given in sigmas of the noise, and there is none; give --noise", in_sigmas->effect));
         }
         refuse_what_rigs_do_not_show();
         for (std::size_t w = 0; w < specs_.size(); ++w) {
@@ -86,50 +105,40 @@ private:
                 samplers_of(specimen_, plan_, specs_[w], sequence_.timing, seed_);
             blind_set_.hidden.push_back(hide(specimen_, plan_, samplers, {.noise = blind_set_.noise}, play_));
             report(progress_, "hiding " + specs_[w].effect, 1);
-            see_to_visibility(blind_set_.hidden.back());
+            if (!reads_forces_alone()) blind_set_.noise = see_to_visibility(blind_set_.hidden.back(), blind_set_.noise);
         }
     }
 
-    /// Creep is played by forces, a gain is of forces, and a tool that goes from place to place does not slip on the
-    /// way between them.
     void refuse_what_rigs_do_not_show() const {
         if (specimen_.driven.empty()) return;
         const auto places =
-            std::ranges::count_if(specimen_.driven, [](const LoadCourse& course) { return course.drive.tool >= 0; });
+            std::ranges::count_if(specimen_.driven, [](const auto& course) { return course.drive.tool >= 0; });
         for (const EffectSpec& spec : specs_) {
-            if (spec.effect == "slip" && places > 1) {
-                throw InvalidInput(
-                    fmt::format("effect 'slip' cannot be hidden where a tool presses at {} places, as "
-                                "it is a share of the motion from rest; press at one (--probes 1)",
-                                places));
-            }
-            const bool of_forces = spec.effect == "force-gain";
-            const bool creeps = spec.effect == "viscosity" && !options_.rig.tool.empty();
-            if (!of_forces && !creeps) continue;
-            throw InvalidInput(fmt::format("effect '{}' cannot be hidden where {}; press with forces (leave {} out)",
-                                           spec.effect,
-                                           creeps ? "a tool is moved: its force would relax" : "no force is told",
-                                           options_.rig.tool.empty() ? "--pressure and --tendon" : "--tool"));
+            const std::string why = identify::find_effect(spec.effect)->why_not_driven(static_cast<int>(places));
+            if (!why.empty())
+                throw InvalidInput(fmt::format("effect '{}' cannot be hidden here: {}", spec.effect, why));
         }
     }
 
-    /// What is weaker than asked for, though it is as strong as is sensible, is seen at less noise.
-    void see_to_visibility(const HiddenEffect& hidden) {
-        if (hidden.is_specified || hidden.strength.change >= visible * blind_set_.noise) return;
-        const double sigmas = hidden.strength.change / blind_set_.noise;
-        if (noise_is_specified_) {
-            blind_set_.notes.push_back(
-                fmt::format("Effect '{}' changes the readings by {:.2g} sigma only, though it is as strong as is "
-                            "sensible here; say less --noise, another --seed, or its numbers.",
-                            hidden.effect.name, sigmas));
-            return;
+    /// The noise at which an effect is seen that is weaker than asked for, though it is as strong as is plausible.
+    double see_to_visibility(const HiddenEffect& hidden, double noise) {
+        if (hidden.is_specified || hidden.strength.change >= visible * noise) return noise;
+        const bool is_of_forces = reads_forces_alone();
+        if (is_of_forces ? options_.rig.reaction_noise.has_value() : noise_is_specified_) {
+            blind_set_.notes.push_back(fmt::format(
+                "'{}' changes the readings by only {:.2g} sigma, the strongest plausible here; give a smaller {}, "
+                "another --seed, or its numbers.",
+                hidden.effect.name, hidden.strength.change / noise, is_of_forces ? "--reaction-noise" : "--noise"));
+            return noise;
         }
-        blind_set_.noise = rounded_down(hidden.strength.change / visible);
         blind_set_.notes.push_back(
-            fmt::format("Effect '{}' changes the readings by {:.2g} mm only, as strong as is sensible here: the noise "
-                        "is made as much smaller.",
-                        hidden.effect.name, hidden.strength.change));
+            fmt::format("'{}' changes the readings by only {:.2g} {}, the strongest plausible here; the noise was "
+                        "reduced to match.",
+                        hidden.effect.name, hidden.strength.change, is_of_forces ? "N" : "mm"));
+        return rounded_down(hidden.strength.change / visible);
     }
+
+    bool reads_forces_alone() const { return !options_.rig.markers; }
 
     std::vector<skeleton::EffectRecord> effects() const {
         std::vector<skeleton::EffectRecord> all;
@@ -196,15 +205,50 @@ private:
             for (std::size_t row = 0; row < plan_.histories[c].rows.size(); ++row, ++s) {
                 identify::LoadState state = plan_.histories[c].state(row);
                 state.readings = read_markers(state, hidden[s], faults(), seed_);
-                state.reactions = reactions_of(plan_.histories[c], row, paths_[c][row]);
+                state.reactions = reactions_of(conditions_, plan_.histories[c], row, paths_[c][row]);
                 set.states.push_back(std::move(state));
                 blind_set_.configurations.push_back(paths_[c][row]);
             }
         }
+        if (reads_forces_alone()) {
+            compare_forces();
+        } else {
+            blind_set_.strength = strength_of(specimen_, baseline, hidden);
+            blind_set_.strength.add(conditions_.scatter(blind_set_.noise));
+        }
         read_reactions(set);
-        blind_set_.strength = strength_of(specimen_, baseline, hidden);
-        blind_set_.strength.add(conditions_.scatter(blind_set_.noise));
-        if (!options_.rig.markers) leave_markers_out(set);
+        if (reads_forces_alone()) leave_markers_out(set);
+    }
+
+    /// How much each effect, and all together, change the forces of tools.
+    void compare_forces() {
+        const std::vector<Points> bare = felt({.setting = specimen_.setting}, plan_.baseline);
+        for (HiddenEffect& hidden : blind_set_.hidden) {
+            const TrueConditions alone = true_conditions(specimen_, {hidden.effect});
+            hidden.strength = strength_in_forces(
+                bare, felt(alone, changes_equilibrium(hidden.effect)
+                                      ? simulate(specimen_, alone, plan_.histories, play_, &plan_.baseline)
+                                      : plan_.baseline));
+        }
+        blind_set_.strength = strength_in_forces(bare, felt(conditions_, paths_));
+    }
+
+    /// Forces of the tools, a row of the histories after the other (tools x 3) [N]; NaN where there is no path.
+    std::vector<Points> felt(const TrueConditions& conditions, const std::vector<EquilibriumPath>& paths) const {
+        std::vector<Points> result;
+        for (std::size_t c = 0; c < plan_.histories.size(); ++c) {
+            for (std::size_t row = 0; row < plan_.histories[c].rows.size(); ++row) {
+                if (paths[c].empty()) {
+                    result.emplace_back(Points::Constant(1, 3, identify::missing));
+                    continue;
+                }
+                const auto readings = reactions_of(conditions, plan_.histories[c], row, paths[c][row]);
+                Points& forces = result.emplace_back(std::ssize(readings), 3);
+                for (std::size_t r = 0; r < readings.size(); ++r)
+                    forces.row(static_cast<Eigen::Index>(r)) = readings[r].force.transpose();
+            }
+        }
+        return result;
     }
 
     /// As nothing but the tool's load cell reads.
@@ -215,12 +259,13 @@ private:
     }
 
     /// Without noise.
-    std::vector<identify::ReactionReading> reactions_of(const LoadCourse& history, std::size_t row,
+    std::vector<identify::ReactionReading> reactions_of(const TrueConditions& conditions,
+                                                        const ProbeLoadHistory& history, std::size_t row,
                                                         const Eigen::VectorXd& q) const {
         identify::Action action;
-        action.motions = history.motions(history.lagged_force(row, conditions_.lag, {}));
+        action.motions = history.motions(history.lagged_force(row, conditions.lag, {}));
         if (action.motions.empty()) return {};
-        const Eigen::VectorXd all = specimen_.model->reactions(q, conditions_.setting, conditions_.act(action));
+        const Eigen::VectorXd all = specimen_.model->reactions(q, conditions.setting, conditions.act(action));
         std::vector<identify::ReactionReading> readings;
         readings.reserve(action.motions.size());
         for (std::size_t m = 0; m < action.motions.size(); ++m) {
@@ -231,7 +276,7 @@ private:
     }
 
     /// Adds the load cell's noise.
-    void read_reactions(identify::MeasurementSet& set) const {
+    void read_reactions(identify::MeasurementSet& set) {
         double squares = 0;
         int count = 0;
         for (const identify::LoadState& state : set.states) {
@@ -242,7 +287,17 @@ private:
         }
         if (count == 0) return;
         const double by_default = blind_set_.noise > 0 ? rounded_down(default_noise * std::sqrt(squares / count)) : 0;
-        const double noise = options_.rig.reaction_noise.value_or(by_default);
+        double noise = options_.rig.reaction_noise.value_or(by_default);
+        if (reads_forces_alone()) {
+            for (const HiddenEffect& hidden : blind_set_.hidden) {
+                if (hidden.strength.change > 0)
+                    noise = see_to_visibility(hidden, noise);
+                else
+                    blind_set_.notes.push_back(fmt::format(
+                        "'{}' does not change the forces of the tools, which alone are read.", hidden.effect.name));
+            }
+            blind_set_.noise = noise;
+        }
         if (noise <= 0) return;
         set.reaction_noise = noise;
         for (identify::LoadState& state : set.states) {

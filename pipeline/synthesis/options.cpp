@@ -11,7 +11,7 @@ namespace palpate::pipeline {
 
 void RigOptions::validate() const {
     const auto belongs = [](bool one, const char* name, bool other, const char* needed) {
-        if (one && !other) throw InvalidInput(fmt::format("{} is told without {}; say both", name, needed));
+        if (one && !other) throw InvalidInput(fmt::format("{} is given without {}; give both", name, needed));
     };
     belongs(!tool.empty(), "--tool", !depth.empty(), "--depth");
     belongs(!depth.empty(), "--depth", !tool.empty(), "--tool");
@@ -21,7 +21,7 @@ void RigOptions::validate() const {
     belongs(reaction_noise.has_value(), "--reaction-noise", !tool.empty(), "--tool");
     belongs(!markers, "--no-markers", !tool.empty(), "--tool");
     if (!tension.empty() && !pull.empty())
-        throw InvalidInput("--tension and --pull are told; a tendon is pulled by one of them");
+        throw InvalidInput("--tension and --pull are both given; a tendon is pulled by one of them");
     const auto rising = [](const std::vector<double>& values, const char* name, const char* unit) {
         for (const double value : values) {
             if (!(value > 0))

@@ -42,8 +42,8 @@ std::vector<FineZone> zones_of(const RigProbes& driven, const mesh::Surface& sur
     identify::MeasurementSet set;
     set.rest_surface = surface;
     set.tools = driven.rig.tools;
-    for (const LoadCourse& course : driven.courses) {
-        for (std::size_t row = 0; row < course.rows.size(); ++row) set.states.push_back(course.state(row));
+    for (const ProbeLoadHistory& history : driven.histories) {
+        for (std::size_t row = 0; row < history.rows.size(); ++row) set.states.push_back(history.state(row));
     }
     return contact_zones(set);
 }
@@ -80,7 +80,7 @@ Specimen finite_element_specimen(const Subject& subject, const BlindSetOptions& 
     const ProbeOptions& probing = subject.settings.probing;
     set.markers = spread_markers(body.surface, subject.supports, probing.markers);
     specimen.contacts = probing_contacts(body.surface, subject.supports, probing, subject.settings.identify.seed);
-    specimen.driven = driven.courses;
+    specimen.driven = driven.histories;
     specimen.notes.insert(specimen.notes.end(), driven.notes.begin(), driven.notes.end());
     set.tools = driven.rig.tools;
     set.actuators = driven.rig.actuators;
@@ -93,12 +93,11 @@ Specimen finite_element_specimen(const Subject& subject, const BlindSetOptions& 
     specimen.most_force = largest_pressure * material.young * std::numbers::pi * radius * radius;
     specimen.model = std::make_unique<identify::ReferenceBody>(
         specimen.volume, set.supports, set.markers,
-        identify::ReferenceBodyOptions{
-            .density = material.density,
-            .young = material.young,
-            .dilatation = dilatation_for(body.surface, edge > 0 ? edge : default_edge, material.poisson),
-            .rig = driven.rig,
-            .regions = with_surfaces(subject.regions, body.interfaces)});
+        identify::ReferenceBodyOptions{.density = material.density,
+                                       .young = material.young,
+                                       .dilatation = dilatation_for(body.surface, edge > 0 ? edge : default_edge),
+                                       .rig = driven.rig,
+                                       .regions = with_surfaces(subject.regions, body.interfaces)});
     specimen.setting = {static_cast<int>(options.law.value_or(fem::MaterialLaw::neo_hookean)),
                         Eigen::VectorXd(std::ssize(specimen.model->parameters())),
                         {}};

@@ -11,7 +11,7 @@
 #include "mesh/core/volume_mesh.h"
 #include "mesh/progress.h"
 #include "pipeline/case/subject.h"
-#include "pipeline/synthesis/loading/load_course.h"
+#include "pipeline/synthesis/loading/probe_load_history.h"
 #include "pipeline/synthesis/options.h"
 #include "pipeline/synthesis/probing/probe_options.h"
 #include "skeleton/model/model.h"
@@ -22,15 +22,15 @@ namespace palpate::pipeline {
 /// readings.
 struct Specimen {
     std::unique_ptr<const identify::BodyModel> model;
-    identify::ModelSetting setting;         // its law and stiffness, and the effects that it has anyway
-    identify::MeasurementSet set;           // all of the set but its states
-    std::vector<mesh::Contact> contacts;    // where it is touched, one a probe, with forces of 1 N
-    std::vector<LoadCourse> driven = {};    // probes of a rig, in place of those contacts
-    double most_force = 0;                  // that any of them may bear [N]
-    double stiffness = 0;                   // about its Young's modulus [MPa]
-    std::optional<fem::Material> material;  // of finite elements
-    mesh::VolumeMesh volume;                // of finite elements
-    std::vector<std::string> notes;         // what a user should know, in words
+    identify::ModelSetting setting;             // its law and stiffness, and the effects that it has anyway
+    identify::MeasurementSet set;               // all of the set but its states
+    std::vector<mesh::Contact> contacts;        // where it is touched, one a probe, with forces of 1 N
+    std::vector<ProbeLoadHistory> driven = {};  // probes of a rig, in place of those contacts
+    double most_force = 0;                      // that any of them may bear [N]
+    double stiffness = 0;                       // about its Young's modulus [MPa]
+    std::optional<fem::Material> material;      // of finite elements
+    mesh::VolumeMesh volume;                    // of finite elements
+    std::vector<std::string> notes;             // what a user should know, in words
 
     bool is_skeleton() const { return !material; }
     bool in_small_strain() const { return !model->is_nonlinear(setting); }

@@ -28,29 +28,31 @@ json regions_of(const Specimen& specimen) {
 }  // namespace
 
 json truth_of(const BlindSet& blind_set, const Specimen& specimen, const BlindSetOptions& options, std::uint64_t seed) {
+    const std::string unit = options.rig.markers ? "mm" : "n";
+    const std::string change = "change_rms_" + unit, beyond = "beyond_stiffness_rms_" + unit;
     json effects = json::array(), hide = json::array();
     for (const HiddenEffect& hidden : blind_set.hidden) {
         const bool of_body = skeleton::is_body_effect(hidden.effect.name);
         effects.push_back({{"effect", hidden.effect.name},
                            {"kind", of_body ? "body" : "measurement"},
                            {"parameters", parameters_of(hidden.effect)},
-                           {"change_rms_mm", hidden.strength.change},
-                           {"beyond_stiffness_rms_mm", hidden.strength.beyond}});
+                           {change, hidden.strength.change},
+                           {beyond, hidden.strength.beyond}});
         hide.push_back(to_spec(hidden.effect));
     }
     json truth = {{"format", "palpate-truth/1"},
                   {"body", specimen.is_skeleton() ? "skeleton" : "finite elements"},
                   {"law", specimen.law()},
                   {"material", nullptr},
-                  {"noise_mm", blind_set.noise},
+                  {"noise_" + unit, blind_set.noise},
                   {"missing", options.missing},
                   {"unlabelled", options.unlabelled},
                   {"seed", seed},
                   {"effects", effects},
                   {"hide", hide},
-                  {"displacement_rms_mm", blind_set.strength.displacement},
-                  {"change_rms_mm", blind_set.strength.change},
-                  {"beyond_stiffness_rms_mm", blind_set.strength.beyond}};
+                  {options.rig.markers ? "displacement_rms_mm" : "force_rms_n", blind_set.strength.displacement},
+                  {change, blind_set.strength.change},
+                  {beyond, blind_set.strength.beyond}};
     if (!specimen.set.regions.empty()) truth["regions"] = regions_of(specimen);
     if (specimen.material) {
         const fem::Material& m = *specimen.material;

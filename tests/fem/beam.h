@@ -8,7 +8,7 @@
 namespace palpate::fem {
 
 inline constexpr std::array laws{MaterialLaw::linear, MaterialLaw::svk, MaterialLaw::neo_hookean};
-inline constexpr std::array dilatations{Dilatation::mean, Dilatation::full};
+inline constexpr std::array dilatations{Dilatation::mean, Dilatation::full, Dilatation::thin};
 
 /// A straight bar [0, size] of quadratic elements, held at x = 0.
 struct Beam {

@@ -88,6 +88,17 @@ TEST(HyperelasticBody, FactorSolvesWithTheTangentOfTheFreeNodes) {
     EXPECT_LT((body.tangent(u, released) * body.factor(u, released)->solve(B) - B).norm(), 1e-11 * B.norm());
 }
 
+TEST(HyperelasticBody, NoLoadsAreSolvedInSilence) {
+    const Bar bar(Kind::curved, {3, 1, 1});
+    const HyperelasticBody body = bar.body();
+    const auto factor = body.factor(Eigen::VectorXd::Zero(bar.dofs()), bare(MaterialLaw::neo_hookean));
+    testing::internal::CaptureStdout();  // where BLAS complains
+    const Eigen::MatrixXd X = factor->solve(Eigen::MatrixXd(bar.dofs(), 0));
+    std::fflush(stdout);
+    EXPECT_EQ(testing::internal::GetCapturedStdout(), "");
+    EXPECT_EQ(X.cols(), 0);
+}
+
 TEST(HyperelasticBody, HomogeneousDeformationPullsAtNoInnerNode) {
     // The patch test. Curved elements pass it in the limit only: four points do not sum their gradients exactly.
     const Mat3 G = (Mat3() << 0.2, 0.1, -0.05, 0.03, -0.15, 0.08, -0.1, 0.04, 0.12).finished();

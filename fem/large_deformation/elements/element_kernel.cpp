@@ -119,7 +119,7 @@ void tangent_of(const ElementShape& shape, const ElementModel& model, const Effe
             K.blocks[ElementTangent::block_of(c, d)].noalias() = shape.dN.transpose().lazyProduct(A_dN);
         }
     }
-    if (model.dilatation == Dilatation::full) return;
+    if (model.K == local) return;
 
     // The mean's own derivative g = sum w dv/du over V: V lambda g g^T.
     NodeVectors g = NodeVectors::Zero();
@@ -154,12 +154,14 @@ auto dispatch(MaterialLaw law, const ElementEffects* effects, Work&& work) {
 
 }  // namespace
 
-ElementModel::ElementModel(const BodySetting& setting, Dilatation kept)
-    : law(setting.law), mu(setting.material.shear_modulus()), K(setting.material.bulk_modulus()), dilatation(kept) {}
+ElementModel::ElementModel(const BodySetting& setting, Dilatation kept) : law(setting.law), dilatation(kept) {
+    take(setting.material);
+}
 
 void ElementModel::take(const Material& material) {
     mu = material.shear_modulus();
     K = material.bulk_modulus();
+    K_over_mu = K / mu;
 }
 
 double element_force(const ElementShape& shape, const ElementModel& model, const ElementEffects* effects,

@@ -92,6 +92,7 @@ void Cholesky::solve(MultiVector& X) const {
 }
 
 void Cholesky::solve_lower(MultiVector& X) const {
+    if (X.cols() == 0) return;  // of which BLAS complains on standard output
     openblas_set_num_threads(1);
     const auto p = static_cast<int>(X.cols());
     if (p == 1) return solve_lower_one(*structure_, values_.get(), tallest_, X.data());
@@ -125,6 +126,7 @@ void Cholesky::solve_lower(Eigen::Ref<MultiVector> X, MultiVector& gathered) con
 }
 
 void Cholesky::solve_upper(MultiVector& X) const {
+    if (X.cols() == 0) return;
     openblas_set_num_threads(1);
     const auto p = static_cast<int>(X.cols());
     if (p == 1) return solve_upper_one(*structure_, values_.get(), tallest_, X.data());

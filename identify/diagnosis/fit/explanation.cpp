@@ -108,8 +108,8 @@ ForwardSolution solve_forward(const BodyModel& model, const Problem& problem, co
                 model.equilibrium(setting, action, start ? &(*start)[k] : nullptr, guides ? guides->kept(k) : nullptr);
         }
         if (remembers) after[k] = model.remember(result.q[k], setting, action);
-        result.stand[k] = channels_of(model, problem, setting, action, result.q[k]);
-        result.markers[k] = explanation.read(problem, result.stand[k]);
+        result.channels[k] = channels_of(model, problem, setting, action, result.q[k]);
+        result.markers[k] = explanation.read(problem, result.channels[k]);
     });
     return result;
 }

@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "identify/diagnosis/fit/kept_tangents.h"
+#include "identify/diagnosis/fit/tangent_cache.h"
 #include "identify/diagnosis/problem.h"
 #include "identify/effects/effect.h"
 
@@ -34,7 +34,7 @@ struct Explanation {
 struct ForwardSolution {
     std::vector<Action> actions;                       // as the effects make them, with what the body remembers (K)
     std::vector<Eigen::VectorXd> q;                    // configurations (K)
-    std::vector<Points> stand;                         // the channels: markers as they stand (K of m + 2t x 3)
+    std::vector<Points> channels;                      // where markers stand, what tools feel (K of m + 2t x 3)
     std::vector<Points> markers;                       // the same as they are read
     std::shared_ptr<TangentCache> tangents = nullptr;  // there; none: they are made anew each time
 };

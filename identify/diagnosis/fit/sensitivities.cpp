@@ -24,19 +24,6 @@ Sides about(const Explanation& explanation, std::size_t effect, Eigen::Index num
     return sides;
 }
 
-/// Do actions press, move and pull alike?
-bool act_alike(const Action& a, const Action& b) {
-    const auto by_bits = [](const Vec3& x, const Vec3& y) {
-        return ((x.array() == y.array()) || (x.array().isNaN() && y.array().isNaN())).all();
-    };
-    return std::ranges::equal(a.contacts, b.contacts, {}, &mesh::Contact::force, &mesh::Contact::force) &&
-           std::ranges::equal(a.motions, b.motions,
-                              [&](const mesh::ToolMotion& x, const mesh::ToolMotion& y) {
-                                  return by_bits(x.translation, y.translation) && by_bits(x.rotation, y.rotation);
-                              }) &&
-           std::ranges::equal(a.settings, b.settings, {}, &mesh::ActuatorSetting::value, &mesh::ActuatorSetting::value);
-}
-
 /// What numbers do at fixed configuration.
 struct AtOnce {
     Eigen::MatrixXd forces;     // d net force (dofs x numbers)
@@ -54,7 +41,7 @@ AtOnce effect_at_once(const BodyModel& model, const Problem& problem, const Expl
     for (Eigen::Index j = 0; j < values.size(); ++j) {
         const Sides sides = about(explanation, effect, j);
         Action ahead = sides.ahead.act(problem, k), behind = sides.behind.act(problem, k);
-        if (!enforced && act_alike(ahead, behind)) continue;
+        if (!enforced && is_same(ahead, behind)) continue;
         ahead.memory = behind.memory = forward.actions[k].memory;
         const ModelSetting more = sides.ahead.setting(), less = sides.behind.setting();
         result.forces.col(j) = (model.residual(q, more, ahead) - model.residual(q, less, behind)) / (2 * sides.h);
@@ -229,7 +216,7 @@ std::vector<Eigen::MatrixXd> sensitivities(const BodyModel& model, const Problem
                 (*steps_of_first)[k] = Eigen::MatrixXd::Zero(model.dofs(), signatures.front().width);
                 (*steps_of_first)[k](Eigen::all, parts[p].columns) = steps;
             }
-            const Eigen::MatrixXd Y = seen_difference(problem, explanation, forward.stand[k],
+            const Eigen::MatrixXd Y = seen_difference(problem, explanation, forward.channels[k],
                                                       channels_of_steps(model, problem, setting, forward.actions[k],
                                                                         forward.q[k], steps, parts[p].reactions));
             for (std::size_t c = 0; c < parts[p].columns.size(); ++c) {
@@ -293,9 +280,9 @@ Eigen::MatrixXd seen_directly(const BodyModel& model, const Problem& problem, co
                               const ForwardSolution& forward) {
     const auto seen = [&](const Explanation& by, std::size_t k) {
         const ModelSetting setting = by.setting();
-        if (setting.effects.growth.none()) return by.read(problem, forward.stand[k]);
+        if (setting.effects.growth.none()) return by.read(problem, forward.channels[k]);
         // What has grown carries its markers farther out, wherever it is.
-        Points stand = forward.stand[k];
+        Points stand = forward.channels[k];
         stand.topRows(problem.markers) = model.observe(forward.q[k], setting);
         return by.read(problem, stand);
     };
@@ -309,7 +296,7 @@ Eigen::MatrixXd seen_directly(const BodyModel& model, const Problem& problem, co
             ahead.values[e][j] += h;
             behind.values[e][j] -= h;
             std::vector<Points> difference;
-            for (std::size_t k = 0; k < forward.stand.size(); ++k)
+            for (std::size_t k = 0; k < forward.channels.size(); ++k)
                 difference.emplace_back((seen(ahead, k) - seen(behind, k)) / (2 * h));
             result.col(column) = problem.pick(difference).cwiseQuotient(problem.sigma);
         }

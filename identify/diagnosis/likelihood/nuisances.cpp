@@ -209,7 +209,7 @@ void add_gains_at_support(const BodyModel& model, const Problem& problem, const 
             for (Eigen::Index n = 0; n < problem.rows(); ++n) {
                 const int channel = problem.channel(n);
                 if (problem.action[n] == k && (channel == force || channel == force + 1))
-                    column[n] = forward.stand[k](channel, problem.coordinate[n] % 3) / problem.sigma[n];
+                    column[n] = forward.channels[k](channel, problem.coordinate[n] % 3) / problem.sigma[n];
             }
             add({fmt::format("gain next to the support, of the tool '{}' in probe {}", problem.rig->tools[tool].name,
                              problem.probe[k])},
@@ -223,7 +223,7 @@ void add_gains_at_support(const BodyModel& model, const Problem& problem, const 
 void add_errors_of_mesh(const BodyModel& model, const Problem& problem, double share, Nuisances& result) {
     if (problem.discretisation.size() == 0) return;
     std::vector<std::optional<double>> left;  // of each action's own
-    for (const Action& action : problem.actions) left.push_back(model.left_of_mesh_error(action));
+    for (const Action& action : problem.actions) left.push_back(model.remaining_mesh_error(action));
     std::map<int, Eigen::VectorXd> columns;  // of actions that have their own; -1: of all others
     for (Eigen::Index n = 0; n < problem.rows(); ++n) {
         if (problem.discretisation[n] == 0) continue;
@@ -309,7 +309,7 @@ Eigen::VectorXd reading_weights(const BodyModel& model, const Problem& problem, 
     for (Eigen::Index n = 0; n < problem.rows(); ++n) {
         if (!problem.is_position(n)) continue;
         const int marker = problem.channel(n);
-        const Vec3 moved = forward.stand[problem.action[n]].row(marker) - problem.rest.row(marker);
+        const Vec3 moved = forward.channels[problem.action[n]].row(marker) - problem.rest.row(marker);
         const Vec3 base = skin[problem.action[n]].row(border.skin_point(marker));
         variance[n] += std::pow(flow * moved.norm() / problem.sigma[n], 2);
         variance[n] +=

@@ -18,7 +18,7 @@ Vec3 imposed(const mesh::ToolMotion& motion) {
 }
 
 Vec3 force_on_body(const Problem& problem, const ForwardSolution& forward, std::size_t k, int tool) {
-    return forward.stand[k].row(problem.markers + 2 * Eigen::Index{tool});
+    return forward.channels[k].row(problem.markers + 2 * Eigen::Index{tool});
 }
 
 /// How a tool moves the body in an action: from where it rests, or, where it comes in touch on its way, from there.

@@ -29,7 +29,7 @@ std::vector<ToolPrint> tool_prints(const BodyModel& model, const Problem& proble
         const mesh::ToolMotion& motion = motions[i];
         const auto tool = std::make_shared<const fem::RigidTool>(problem.rig->tools[motion.tool]);
         if (!tool->shape) continue;
-        const Vec3 felt = forward.stand[k].row(problem.markers + 2 * Eigen::Index{motion.tool});
+        const Vec3 felt = forward.channels[k].row(problem.markers + 2 * Eigen::Index{motion.tool});
         if (felt.isZero(0)) continue;
         // Tools touch faces between these points, which stand off by little then; the nearest always counts.
         constexpr double barely_off = 0.01;  // of the tool's radius

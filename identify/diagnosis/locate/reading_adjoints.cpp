@@ -20,9 +20,9 @@ public:
         if (!action_.motions.empty()) reactions_ = model.reaction_slopes(forward.q[k], setting, action_).by_step;
         if (explanation.effects.empty()) return;
         // Faults of the measurement that are known: an affine map of each marker.
-        const Points base = explanation.read(problem, forward.stand[k]);
+        const Points base = explanation.read(problem, forward.channels[k]);
         for (int axis = 0; axis < 3; ++axis) {
-            Points moved = forward.stand[k];
+            Points moved = forward.channels[k];
             moved.col(axis).array() += 1;
             seen_[axis] = explanation.read(problem, moved) - base;
         }

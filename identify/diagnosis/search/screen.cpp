@@ -168,13 +168,13 @@ Refit expand_to_stages(const BodyModel& model, const Refit& fit, const Problem& 
         const int own = stages.action_in(merged, static_cast<int>(k));
         if (own < 0) {  // it was not read
             result.forward.q[k] = model.rest(setting);
-            result.forward.stand[k] = result.forward.markers[k] =
+            result.forward.channels[k] = result.forward.markers[k] =
                 channels_of(model, stages, setting, {}, result.forward.q[k]);
             continue;
         }
         result.forward.actions[k] = fit.forward.actions[own];
         result.forward.q[k] = fit.forward.q[own];
-        result.forward.stand[k] = fit.forward.stand[own];
+        result.forward.channels[k] = fit.forward.channels[own];
         result.forward.markers[k] = fit.forward.markers[own];
     }
     return result;

@@ -82,7 +82,7 @@ public:
 
     /// What an error alters in the channels as they are read.
     Points seen_with(int k, const MeshError& error) const {
-        Points channels = forward_.stand[k];
+        Points channels = forward_.channels[k];
         channels.topRows(problem_.markers) += error.markers;
         const std::vector<mesh::ToolMotion>& motions = forward_.actions[k].motions;
         for (std::size_t t = 0; t < motions.size(); ++t) {
@@ -97,7 +97,7 @@ public:
     void scale(int k, int from) {
         if (!seen_[from]) return;
         const auto moved = [&](int of) -> Points {
-            return (forward_.stand[of] - problem_.rest).topRows(problem_.markers);
+            return (forward_.channels[of] - problem_.rest).topRows(problem_.markers);
         };
         const Points own = moved(k), other = moved(from);
         seen_[k] = own.cwiseProduct(other).sum() / other.squaredNorm() * *seen_[from];

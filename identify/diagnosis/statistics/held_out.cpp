@@ -5,6 +5,7 @@
 
 #include "identify/diagnosis/search/crushing.h"
 #include "identify/diagnosis/statistics/discretisation.h"
+#include "mesh/core/scaled_motion.h"
 #include "mesh/errors.h"
 
 namespace palpate::identify {
@@ -87,10 +88,7 @@ Problem with_reduced_loads(const BodyModel& model, const Problem& problem, const
         constexpr double less = 0.8;
         for (int attempt = 0; attempt < 10 && !has_equilibrium(model, setting, explanation.act(eased, k)); ++attempt) {
             for (mesh::Contact& contact : eased.actions[k].contacts) contact.force *= less;
-            for (mesh::ToolMotion& motion : eased.actions[k].motions) {
-                motion.translation *= less;
-                motion.rotation *= less;
-            }
+            for (mesh::ToolMotion& motion : eased.actions[k].motions) motion = mesh::scaled(motion, less);
             for (mesh::ActuatorSetting& setting_of_one : eased.actions[k].settings) setting_of_one.scale(less);
         }
     }

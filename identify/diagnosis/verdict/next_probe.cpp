@@ -121,7 +121,7 @@ private:
         Refit result = fit;
         Explanation& all = result.explanation;
         for (std::size_t e = 0; e < all.effects.size(); ++e) {
-            all.values[e] = all.effects[e]->in(trial.circumstances, all.values[e]);
+            all.values[e] = all.effects[e]->under(trial.conditions, all.values[e]);
         }
         return result;
     }

@@ -8,6 +8,7 @@
 #include <numbers>
 #include <optional>
 
+#include "mesh/core/scaled_motion.h"
 #include "mesh/geometry/sampling.h"
 
 namespace palpate::identify {
@@ -51,7 +52,7 @@ public:
         }
         add_turns();
         if (model_.has_cavities()) {
-            all_.push_back({.probe = {.kind = "pressure"}, .states = {unloaded(0)}, .circumstances = {.vented = true}});
+            all_.push_back({.probe = {.kind = "pressure"}, .states = {unloaded(0)}, .conditions = {.vented = true}});
         }
         all_.push_back({.probe = {.kind = "fiducials"}, .states = {}});
         return std::move(all_);
@@ -66,8 +67,7 @@ private:
     LoadState under(const Action& action, double time, double share = 1) const {
         LoadState state = under(action.contacts, time);
         for (mesh::Contact& contact : state.contacts) contact.force *= share;
-        for (const mesh::ToolMotion& motion : action.motions)
-            state.motions.push_back({motion.tool, share * motion.translation, share * motion.rotation});
+        for (const mesh::ToolMotion& motion : action.motions) state.motions.push_back(mesh::scaled(motion, share));
         for (const mesh::ActuatorSetting& setting : action.settings)
             state.actuations.push_back({setting.actuator, share * setting.value});
         return state;
@@ -135,7 +135,7 @@ private:
                 if (!known.isZero(0)) state.gravity = turn * known;
                 all_.push_back({.probe = {.kind = "orientation", .turn = BodyTurn{about, degrees}},
                                 .states = {state},
-                                .circumstances = {.turn = turn}});
+                                .conditions = {.turn = turn}});
             }
         }
     }

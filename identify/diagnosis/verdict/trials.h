@@ -8,7 +8,7 @@ namespace palpate::identify {
 struct CandidateProbe {
     NextProbe probe;                // what it is, without what it would tell
     std::vector<LoadState> states;  // what would be read, without readings; none: only what stands still
-    ProbeConditions circumstances = {};
+    ProbeConditions conditions = {};
 };
 
 /// Probes that a rig can make which made the set's own: pushes and pulls over the markers, own probes once more, held

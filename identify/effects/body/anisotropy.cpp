@@ -7,7 +7,9 @@
 
 #include "identify/diagnosis/fit/explanation.h"
 #include "identify/effects/effect.h"
+#include "identify/effects/vector_words.h"
 #include "mesh/geometry/sampling.h"
+#include "mesh/text/words.h"
 
 namespace palpate::identify {
 namespace {
@@ -72,6 +74,10 @@ public:
         return true;
     }
 
+    std::optional<ScreenedNumber> screened_number() const override {
+        return ScreenedNumber{.name = "k", .unit = "1", .value = [](double k) { return std::abs(k); }};
+    }
+
     std::optional<ScreenPlan> screen_plan(const BodyModel& model, const Problem&, const Explanation& explanation,
                                           const ForwardSolution& forward) const override {
         // The fibres' force is linear in the products of four components of their direction, 15 in all: as many
@@ -112,11 +118,15 @@ public:
         return EffectHypothesis::record(numbers, of_unit);
     }
 
-    std::string sentence(const skeleton::EffectRecord& record) const override {
+    std::string sentence(const skeleton::EffectRecord& record) const override { return sentence_with(record, {}); }
+
+    std::string sentence_with(const skeleton::EffectRecord& record, const Eigen::MatrixXd& covariance) const override {
         const auto& p = record.parameters;
         constexpr double young_over_shear = 2.9;  // at nu = .45
-        return fmt::format("The material is {:.2g} times as stiff along ({:.2f}, {:.2f}, {:.2f}) as across.",
-                           1 + p[0].value / young_over_shear, p[1].value, p[2].value, p[3].value);
+        const double sd = covariance.size() > 0 ? std::sqrt(std::max(covariance(0, 0), 0.0)) : 0;
+        return fmt::format("The material is ({}) times as stiff along ({:.2f}, {:.2f}, {:.2f}) as across.",
+                           mesh::with_sd(1 + p[0].value / young_over_shear, sd / young_over_shear), p[1].value,
+                           p[2].value, p[3].value);
     }
 
     std::optional<std::uint64_t> stream() const override { return 8; }

@@ -8,6 +8,7 @@
 
 #include "identify/diagnosis/fit/explanation.h"
 #include "identify/effects/effect.h"
+#include "identify/effects/vector_words.h"
 #include "skeleton/model/state.h"
 
 namespace palpate::identify {
@@ -28,7 +29,8 @@ public:
             .reveals = "the body moves and turns at its base in proportion to the force there",
             .confused_with = {"inclusion", "force-gain", "anisotropy"},
             .separating_probe = "put markers on the base and load it there",
-            .next_probe = "load"};
+            .next_probe = "load",
+            .why_unshown = "no loaded marker tells how stiff the body is as a whole"};
         return text;
     }
 
@@ -50,6 +52,13 @@ public:
         setting.effects.points.push_back(
             std::make_shared<fem::CompliantSupport>(std::exp(values[0]), std::exp(values[1])));
         return true;
+    }
+
+    std::optional<ScreenedNumber> screened_number() const override {
+        return ScreenedNumber{.name = "stiffness",
+                              .unit = "N/mm",
+                              .value = [](double compliance) { return 1 / compliance; },
+                              .at_most = true};
     }
 
     std::optional<ScreenPlan> screen_plan(const BodyModel& model, const Problem& problem,
@@ -88,9 +97,11 @@ public:
         return plan;
     }
 
-    std::string sentence(const skeleton::EffectRecord& record) const override {
-        return fmt::format("The support gives way: it is as stiff as springs of {:.3g} N/mm in all.",
-                           record.parameters[0].value);
+    std::string sentence(const skeleton::EffectRecord& record) const override { return sentence_with(record, {}); }
+
+    std::string sentence_with(const skeleton::EffectRecord& record, const Eigen::MatrixXd& covariance) const override {
+        return fmt::format("The support gives way: it is as stiff as springs of {} N/mm in all.",
+                           number_in_words(record, 0, covariance));
     }
 
     std::optional<std::uint64_t> stream() const override { return 1; }

@@ -10,6 +10,7 @@
 #include "identify/diagnosis/fit/explanation.h"
 #include "identify/effects/effect.h"
 #include "identify/effects/plane_scan.h"
+#include "identify/effects/vector_words.h"
 #include "mesh/errors.h"
 
 namespace palpate::identify {
@@ -98,6 +99,8 @@ public:
         return true;
     }
 
+    std::optional<ScreenedNumber> screened_number() const override { return ScreenedNumber{}; }
+
     std::optional<ScreenPlan> screen_plan(const BodyModel& model, const Problem& problem,
                                           const Explanation& explanation,
                                           const ForwardSolution& forward) const override {
@@ -136,10 +139,12 @@ public:
         return EffectHypothesis::record(numbers, of_unit);
     }
 
-    std::string sentence(const skeleton::EffectRecord& record) const override {
+    std::string sentence(const skeleton::EffectRecord& record) const override { return sentence_with(record, {}); }
+
+    std::string sentence_with(const skeleton::EffectRecord& record, const Eigen::MatrixXd& covariance) const override {
         const auto& p = record.parameters;
-        return fmt::format("The body meets a plane with normal ({:.2f}, {:.2f}, {:.2f}) at {:.2f} mm along it.",
-                           p[0].value, p[1].value, p[2].value, p[3].value);
+        return fmt::format("The body meets a plane with normal ({:.2f}, {:.2f}, {:.2f}) at {} mm along it.", p[0].value,
+                           p[1].value, p[2].value, number_in_words(record, 3, covariance));
     }
 
     std::optional<std::uint64_t> stream() const override { return 12; }

@@ -7,6 +7,7 @@
 #include "identify/diagnosis/fit/explanation.h"
 #include "identify/effects/body/reloading.h"
 #include "identify/effects/effect.h"
+#include "identify/effects/vector_words.h"
 
 namespace palpate::identify {
 namespace {
@@ -31,7 +32,9 @@ public:
             .separating_probe =
                 "press as hard as ever, go back to half of that, and read both: what is softer moved further at half "
                 "than on the way up, what creeps comes back, what yielded stays without load",
-            .next_probe = "unload"};
+            .next_probe = "unload",
+            .why_unshown =
+                "no body bears less, or something else, after more: under first loads it is as stiff as any"};
         return text;
     }
 
@@ -67,6 +70,10 @@ public:
         Eigen::VectorXd result = EffectHypothesis::values(numbers, record);
         if (!record.parameters.empty()) result[0] = -std::log1p(-std::min(result[0], most_share));
         return result;
+    }
+
+    std::optional<ScreenedNumber> screened_number() const override {
+        return ScreenedNumber{.name = "share", .unit = "1", .value = [](double value) { return -std::expm1(-value); }};
     }
 
     std::optional<ScreenPlan> screen_plan(const BodyModel& model, const Problem& problem,
@@ -110,12 +117,15 @@ public:
         return plan;
     }
 
-    std::string sentence(const skeleton::EffectRecord& record) const override {
+    std::string sentence(const skeleton::EffectRecord& record) const override { return sentence_with(record, {}); }
+
+    std::string sentence_with(const skeleton::EffectRecord& record, const Eigen::MatrixXd& covariance) const override {
+        const double percent = 100 * std::erf(1.0);
         return fmt::format(
-            "The material is softer below the greatest strain that it bore: by {:.0f} % after one of {:.2g} %, and at "
-            "most by {:.0f} %.",
-            100 * std::erf(1.0) * record.parameters[0].value, 100 * record.parameters[1].value,
-            100 * record.parameters[0].value);
+            "The material is softer below the greatest strain that it bore: by {} % after one of {} %, and at most by "
+            "{} %.",
+            number_in_words(record, 0, covariance, percent), number_in_words(record, 1, covariance, 100),
+            number_in_words(record, 0, covariance, 100));
     }
 
     SynthesisNeeds needs() const override { return {.reloads = true}; }

@@ -29,7 +29,8 @@ public:
             .separating_probe =
                 "draw the tendon in as far as ever, let it back to half of that, and read both: with friction the body "
                 "is bent more at half than on the way there",
-            .next_probe = "unload"};
+            .next_probe = "unload",
+            .why_unshown = "no tendon that is drawn in passes a point between its ends, where it could turn and rub"};
         return text;
     }
 

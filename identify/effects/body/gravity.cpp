@@ -47,8 +47,8 @@ public:
         return true;
     }
 
-    Eigen::VectorXd in(const ProbeConditions& circumstances, const Eigen::VectorXd& values) const override {
-        return circumstances.turn * values;
+    Eigen::VectorXd under(const ProbeConditions& conditions, const Eigen::VectorXd& values) const override {
+        return conditions.turn * values;
     }
 
     skeleton::EffectRecord record(const std::vector<EffectNumber>& numbers,
@@ -68,7 +68,7 @@ public:
     std::string sentence_with(const skeleton::EffectRecord& record, const Eigen::MatrixXd& covariance) const override {
         const Vec3 g(record.parameters[0].value, record.parameters[1].value, record.parameters[2].value);
         constexpr double metre = 1000;  // [mm]
-        return fmt::format("Gravity is missing: {}.", vector_in_words(g, covariance, metre, "m/s^2"));
+        return fmt::format("Gravity is missing: {}.", vector_in_words(g, covariance, metre, "m/s²"));
     }
 
     std::optional<std::uint64_t> stream() const override { return 0; }

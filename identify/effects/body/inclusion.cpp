@@ -8,6 +8,7 @@
 #include "identify/diagnosis/fit/explanation.h"
 #include "identify/effects/centre_numbers.h"
 #include "identify/effects/effect.h"
+#include "identify/effects/vector_words.h"
 #include "mesh/geometry/sampling.h"
 
 namespace palpate::identify {
@@ -73,6 +74,10 @@ public:
         return true;
     }
 
+    std::optional<ScreenedNumber> screened_number() const override {
+        return ScreenedNumber{.name = "ratio", .unit = "1", .value = [](double ln) { return std::exp(std::abs(ln)); }};
+    }
+
     std::optional<ScreenPlan> screen_plan(const BodyModel& model, const Problem&, const Explanation& explanation,
                                           const ForwardSolution& forward) const override {
         const Places places(model);
@@ -96,13 +101,22 @@ public:
         return plan;
     }
 
-    std::string sentence(const skeleton::EffectRecord& record) const override {
+    std::string sentence(const skeleton::EffectRecord& record) const override { return sentence_with(record, {}); }
+
+    std::string sentence_with(const skeleton::EffectRecord& record, const Eigen::MatrixXd& covariance) const override {
+        constexpr double together = 0.8;  // correlation: either would be known to 0.6 of its sd, were the other given
+        constexpr std::size_t radius = 3, ratio = 4;
         const auto& p = record.parameters;
-        return fmt::format(
-            "Something {} lies in the body: round ({:.1f}, {:.1f}, {:.1f}) mm, with a radius of {:.2g} mm, it is "
-            "{:.2g} "
-            "times as stiff as elsewhere.",
-            p[4].value > 1 ? "hard" : "soft", p[0].value, p[1].value, p[2].value, p[3].value, p[4].value);
+        std::string text = fmt::format(
+            "Something {} lies in the body around ({}, {}, {}) mm, with a radius of {} mm, ({}) times as stiff as "
+            "elsewhere",
+            p[ratio].value > 1 ? "hard" : "soft", number_in_words(record, 0, covariance),
+            number_in_words(record, 1, covariance), number_in_words(record, 2, covariance),
+            number_in_words(record, radius, covariance), number_in_words(record, ratio, covariance));
+        if (covariance.size() > 0 && std::abs(covariance(radius, ratio)) >
+                                         together * std::sqrt(covariance(radius, radius) * covariance(ratio, ratio)))
+            text += "; the smaller it is, the more its stiffness differs: the readings determine both together";
+        return text + ".";
     }
 
     std::optional<std::uint64_t> stream() const override { return 11; }

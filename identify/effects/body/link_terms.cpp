@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "identify/effects/effect.h"
+#include "identify/effects/vector_words.h"
 #include "mesh/errors.h"
 #include "skeleton/effects/link_effects.h"
 
@@ -60,9 +61,11 @@ public:
         return true;
     }
 
-    std::string sentence(const skeleton::EffectRecord& record) const override {
-        return fmt::format("The links resist twist: by {:.3g} times their flexion more than the model has it.",
-                           record.parameters[0].value);
+    std::string sentence(const skeleton::EffectRecord& record) const override { return sentence_with(record, {}); }
+
+    std::string sentence_with(const skeleton::EffectRecord& record, const Eigen::MatrixXd& covariance) const override {
+        return fmt::format("The links resist twist: by {} times their flexion more than the model has it.",
+                           number_in_words(record, 0, covariance));
     }
 };
 
@@ -89,9 +92,11 @@ public:
         return true;
     }
 
-    std::string sentence(const skeleton::EffectRecord& record) const override {
-        return fmt::format("The links resist shear: by {:.3g} times their elongation more than the model has it.",
-                           record.parameters[0].value);
+    std::string sentence(const skeleton::EffectRecord& record) const override { return sentence_with(record, {}); }
+
+    std::string sentence_with(const skeleton::EffectRecord& record, const Eigen::MatrixXd& covariance) const override {
+        return fmt::format("The links resist shear: by {} times their elongation more than the model has it.",
+                           number_in_words(record, 0, covariance));
     }
 };
 

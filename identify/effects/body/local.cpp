@@ -134,9 +134,11 @@ public:
         return true;
     }
 
-    std::string sentence(const skeleton::EffectRecord& record) const override {
-        return fmt::format("Something holds the skin {}, as springs of {:.3g} N/mm in all.", place_in_words(record),
-                           record.parameters[place_numbers].value);
+    std::string sentence(const skeleton::EffectRecord& record) const override { return sentence_with(record, {}); }
+
+    std::string sentence_with(const skeleton::EffectRecord& record, const Eigen::MatrixXd& covariance) const override {
+        return fmt::format("Something holds the skin {}, as springs of {} N/mm in all.", place_in_words(record),
+                           number_in_words(record, place_numbers, covariance));
     }
 };
 
@@ -171,10 +173,13 @@ public:
         return true;
     }
 
-    std::string sentence(const skeleton::EffectRecord& record) const override {
+    std::string sentence(const skeleton::EffectRecord& record) const override { return sentence_with(record, {}); }
+
+    std::string sentence_with(const skeleton::EffectRecord& record, const Eigen::MatrixXd& covariance) const override {
         const double growth = record.parameters[place_numbers].value;
-        return fmt::format("The material has {} by up to {:.2g} % in every free length {}.",
-                           growth < 0 ? "shrunk" : "grown", 100 * std::abs(growth), place_in_words(record));
+        return fmt::format(
+            "The material has {} by up to {} % in every free length {}.", growth < 0 ? "shrunk" : "grown",
+            number_in_words(record, place_numbers, covariance, growth < 0 ? -100 : 100), place_in_words(record));
     }
 };
 

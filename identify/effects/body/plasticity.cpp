@@ -5,6 +5,7 @@
 
 #include "identify/diagnosis/fit/explanation.h"
 #include "identify/effects/effect.h"
+#include "identify/effects/vector_words.h"
 
 namespace palpate::identify {
 namespace {
@@ -22,7 +23,8 @@ public:
             .reveals = "unloaded states that differ, each after what was done before",
             .confused_with = {"viscosity", "misalignment"},
             .separating_probe = "go back to no load and wait: what creeps comes back, what yielded does not",
-            .next_probe = "unload"};
+            .next_probe = "unload",
+            .why_unshown = "no state without load follows a load on the same body"};
         return text;
     }
 
@@ -48,6 +50,8 @@ public:
         setting.effects.plasticity = fem::Plasticity{std::exp(values[0]), std::exp(values[1])};
         return true;
     }
+
+    std::optional<ScreenedNumber> screened_number() const override { return ScreenedNumber{}; }
 
     std::optional<ScreenPlan> screen_plan(const BodyModel& model, const Problem& problem,
                                           const Explanation& explanation,
@@ -91,9 +95,11 @@ public:
         return plan;
     }
 
-    std::string sentence(const skeleton::EffectRecord& record) const override {
-        return fmt::format("The material yields at a strain of {:.2g} % and keeps what it flowed beyond.",
-                           100 * record.parameters[0].value);
+    std::string sentence(const skeleton::EffectRecord& record) const override { return sentence_with(record, {}); }
+
+    std::string sentence_with(const skeleton::EffectRecord& record, const Eigen::MatrixXd& covariance) const override {
+        return fmt::format("The material yields at a strain of {} % and keeps what it flowed beyond.",
+                           number_in_words(record, 0, covariance, 100));
     }
 
     SynthesisNeeds needs() const override { return {.release = true}; }

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "identify/effects/effect.h"
+#include "identify/effects/vector_words.h"
 #include "mesh/errors.h"
 
 namespace palpate::identify {
@@ -20,7 +21,8 @@ public:
             .reveals = "walls round a cavity that bulge without any load",
             .confused_with = {"prestress", "gravity"},
             .separating_probe = "change the pressure, and read the unloaded pose again",
-            .next_probe = "pressure"};
+            .next_probe = "pressure",
+            .why_unshown = "the body has no closed cavity"};
         return text;
     }
 
@@ -39,12 +41,15 @@ public:
         return true;
     }
 
-    Eigen::VectorXd in(const ProbeConditions& circumstances, const Eigen::VectorXd& values) const override {
-        return circumstances.vented ? Eigen::VectorXd(0 * values) : values;
+    Eigen::VectorXd under(const ProbeConditions& conditions, const Eigen::VectorXd& values) const override {
+        return conditions.vented ? Eigen::VectorXd(0 * values) : values;
     }
 
-    std::string sentence(const skeleton::EffectRecord& record) const override {
-        return fmt::format("The cavities are under a pressure of {:.3g} kPa.", 1000 * record.parameters[0].value);
+    std::string sentence(const skeleton::EffectRecord& record) const override { return sentence_with(record, {}); }
+
+    std::string sentence_with(const skeleton::EffectRecord& record, const Eigen::MatrixXd& covariance) const override {
+        return fmt::format("The cavities are under a pressure of {} kPa.",
+                           number_in_words(record, 0, covariance, 1000));
     }
 
     std::optional<std::uint64_t> stream() const override { return 2; }

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "identify/effects/effect.h"
+#include "identify/effects/vector_words.h"
 
 namespace palpate::identify {
 namespace {
@@ -39,12 +40,15 @@ public:
         return true;
     }
 
-    std::string sentence(const skeleton::EffectRecord& record) const override {
+    std::string sentence(const skeleton::EffectRecord& record) const override { return sentence_with(record, {}); }
+
+    std::string sentence_with(const skeleton::EffectRecord& record, const Eigen::MatrixXd& covariance) const override {
         const auto largest = std::ranges::max_element(
             record.parameters, {}, [](const skeleton::EffectParameter& s) { return std::abs(s.value); });
+        const auto number = static_cast<std::size_t>(largest - record.parameters.begin());
         return fmt::format(
-            "The body is prestressed: its largest component of stress is {} = {:.2g} times the shear modulus.",
-            largest->name, largest->value);
+            "The body is prestressed: its largest component of stress is {} = ({}) times the shear modulus.",
+            largest->name, number_in_words(record, number, covariance));
     }
 
     std::optional<std::uint64_t> stream() const override { return 3; }

@@ -7,6 +7,7 @@
 
 #include "identify/diagnosis/search/screen_plan.h"
 #include "identify/effects/effect.h"
+#include "identify/effects/vector_words.h"
 #include "mesh/errors.h"
 
 namespace palpate::identify {
@@ -45,9 +46,11 @@ public:
         return true;
     }
 
-    std::string sentence(const skeleton::EffectRecord& record) const override {
-        return fmt::format("The material stiffens as it is strained: Yeoh coefficients of {:.3g} and {:.3g} over mu.",
-                           record.parameters[0].value, record.parameters[1].value);
+    std::string sentence(const skeleton::EffectRecord& record) const override { return sentence_with(record, {}); }
+
+    std::string sentence_with(const skeleton::EffectRecord& record, const Eigen::MatrixXd& covariance) const override {
+        return fmt::format("The material stiffens as it is strained: Yeoh coefficients of {} and {} over mu.",
+                           number_in_words(record, 0, covariance), number_in_words(record, 1, covariance));
     }
 };
 
@@ -92,6 +95,8 @@ public:
 
     // A coarse mesh is off by more where it is strained more.
     bool is_like_mesh_error() const override { return true; }
+
+    std::optional<ScreenedNumber> screened_number() const override { return ScreenedNumber{}; }
 
     std::optional<ScreenPlan> screen_plan(const BodyModel& model, const Problem& problem,
                                           const Explanation& explanation,

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "identify/effects/effect.h"
+#include "identify/effects/vector_words.h"
 
 namespace palpate::identify {
 namespace {
@@ -40,10 +41,13 @@ public:
         return true;
     }
 
-    std::string sentence(const skeleton::EffectRecord& record) const override {
+    std::string sentence(const skeleton::EffectRecord& record) const override { return sentence_with(record, {}); }
+
+    std::string sentence_with(const skeleton::EffectRecord& record, const Eigen::MatrixXd& covariance) const override {
         const double growth = record.parameters[0].value;
-        return fmt::format("The body has {} by {:.2g} % in every free length since its rest shape was taken.",
-                           growth < 0 ? "shrunk" : "grown", 100 * std::abs(growth));
+        return fmt::format("The body has {} by {} % in every free length since its rest shape was taken.",
+                           growth < 0 ? "shrunk" : "grown",
+                           number_in_words(record, 0, covariance, growth < 0 ? -100 : 100));
     }
 
     std::optional<std::uint64_t> stream() const override { return 17; }

@@ -6,6 +6,7 @@
 
 #include "identify/diagnosis/fit/explanation.h"
 #include "identify/effects/effect.h"
+#include "identify/effects/vector_words.h"
 #include "identify/loading/creep.h"
 
 namespace palpate::identify {
@@ -35,7 +36,8 @@ public:
             .reveals = "an error that grows with the time that a load is held, or fades after it is taken off",
             .confused_with = {"force-gain", "plasticity", "clock"},
             .separating_probe = "hold the same load for two different times",
-            .next_probe = "dwell"};
+            .next_probe = "dwell",
+            .why_unshown = "no load is read at two times after it was put on"};
         return text;
     }
 
@@ -58,6 +60,10 @@ public:
     bool enforce(const Eigen::VectorXd& values, ModelSetting& setting) const override {
         setting.effects.creep = fem::CreepLaw{values[0], std::exp(values[1])};
         return false;
+    }
+
+    std::optional<ScreenedNumber> screened_number() const override {
+        return ScreenedNumber{.name = "creep", .unit = "1", .value = [](double creep) { return creep; }};
     }
 
     std::optional<ScreenPlan> screen_plan(const BodyModel& model, const Problem& problem,
@@ -98,13 +104,18 @@ public:
         return plan;
     }
 
-    std::string sentence(const skeleton::EffectRecord& record) const override {
-        return fmt::format("The material creeps: under a held load its compliance grows by {:.0f} % in about {:.2g} s.",
-                           100 * record.parameters[0].value, record.parameters[1].value);
+    std::string sentence(const skeleton::EffectRecord& record) const override { return sentence_with(record, {}); }
+
+    std::string sentence_with(const skeleton::EffectRecord& record, const Eigen::MatrixXd& covariance) const override {
+        return fmt::format("The material creeps: under a held load its compliance grows by {} % in about {} s.",
+                           number_in_words(record, 0, covariance, 100), number_in_words(record, 1, covariance));
     }
 
     SynthesisNeeds needs() const override { return {.dwells = true}; }
 
+    std::string why_not_driven(int tool_places) const override {
+        return tool_places > 0 ? "the force of a tool that is moved would relax; press with forces" : "";
+    }
     std::optional<std::uint64_t> stream() const override { return 9; }
 
     std::vector<EffectSampler> samplers(SamplingContext& context, const SpecifiedNumbers& specified) const override {

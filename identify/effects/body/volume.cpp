@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "identify/effects/effect.h"
+#include "identify/effects/vector_words.h"
 #include "mesh/errors.h"
 
 namespace palpate::identify {
@@ -12,14 +13,16 @@ namespace {
 class VolumeEffect : public EffectHypothesis {
 public:
     const EffectDescription& description() const override {
-        static const EffectDescription text{.name = "volume",
-                                            .kind = EffectKind::body,
-                                            .meaning = "Poisson's ratio differs from the one that the set declares.",
-                                            .parameters = {"poisson [-]: Poisson's ratio"},
-                                            .reveals = "sides that bulge more or less than they should under a squeeze",
-                                            .confused_with = {"stiffening", "anisotropy"},
-                                            .separating_probe = "squeeze the body and read the bulge at its sides",
-                                            .next_probe = "load"};
+        static const EffectDescription text{
+            .name = "volume",
+            .kind = EffectKind::body,
+            .meaning = "Poisson's ratio differs from the one that the set declares.",
+            .parameters = {"poisson [-]: Poisson's ratio"},
+            .reveals = "sides that bulge more or less than they should under a squeeze",
+            .confused_with = {"stiffening", "anisotropy"},
+            .separating_probe = "squeeze the body and read the bulge at its sides",
+            .next_probe = "load",
+            .why_unshown = "the set declares no Poisson's ratio that readings could contradict; the fit finds one"};
         return text;
     }
 
@@ -48,9 +51,11 @@ public:
         return result;
     }
 
-    std::string sentence(const skeleton::EffectRecord& record) const override {
-        return fmt::format("The body keeps its volume otherwise than declared: Poisson's ratio is {:.3f}.",
-                           record.parameters[0].value);
+    std::string sentence(const skeleton::EffectRecord& record) const override { return sentence_with(record, {}); }
+
+    std::string sentence_with(const skeleton::EffectRecord& record, const Eigen::MatrixXd& covariance) const override {
+        return fmt::format("The body keeps its volume otherwise than declared: Poisson's ratio is {}.",
+                           number_in_words(record, 0, covariance));
     }
 
     SynthesisNeeds needs() const override { return {.specified_poisson = true}; }

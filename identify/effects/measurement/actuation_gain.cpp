@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "identify/effects/effect.h"
+#include "identify/effects/vector_words.h"
 #include "mesh/errors.h"
 
 namespace palpate::identify {
@@ -22,7 +23,8 @@ public:
             .reveals = "states that are off in proportion to what one actuator is set to",
             .confused_with = {"stiffening", "pressure"},
             .separating_probe = "press on the body with a known force: its stiffness is apart from the gains then",
-            .next_probe = "load"};
+            .next_probe = "load",
+            .why_unshown = "no actuator acts, or its gain is the body's stiffness"};
         return text;
     }
 
@@ -48,14 +50,19 @@ public:
         return action;
     }
 
-    std::string sentence(const skeleton::EffectRecord& record) const override {
+    std::string sentence(const skeleton::EffectRecord& record) const override { return sentence_with(record, {}); }
+
+    std::string sentence_with(const skeleton::EffectRecord& record, const Eigen::MatrixXd& covariance) const override {
         const auto [least, most] =
             std::ranges::minmax_element(record.parameters, {}, &skeleton::EffectParameter::value);
+        const auto in_words = [&](auto gain) {
+            return number_in_words(record, static_cast<std::size_t>(gain - record.parameters.begin()), covariance);
+        };
         if (record.parameters.size() == 1)
-            return fmt::format("An actuator does not do what it is set to: the {} is {:.2f}.", least->name,
-                               least->value);
-        return fmt::format("Actuators do not do what they are set to: the {} is {:.2f}, the {} {:.2f}.", least->name,
-                           least->value, most->name, most->value);
+            return fmt::format("An actuator does not do what it is set to: the {} is {}.", least->name,
+                               in_words(least));
+        return fmt::format("Actuators do not do what they are set to: the {} is {}, the {} {}.", least->name,
+                           in_words(least), most->name, in_words(most));
     }
 
     MeasurementSet corrected(const MeasurementSet& set, const skeleton::EffectRecord& record) const override {

@@ -24,7 +24,8 @@ public:
             .reveals = "an error in proportion to how fast the load changes, of opposite sign as it rises and falls",
             .confused_with = {"viscosity", "plasticity", "stiffening"},
             .separating_probe = "hold each load until nothing moves any more before it is read",
-            .next_probe = "dwell"};
+            .next_probe = "dwell",
+            .why_unshown = "no load changes from state to state of a probe"};
         return text;
     }
 

@@ -5,6 +5,7 @@
 #include <map>
 
 #include "identify/effects/effect.h"
+#include "identify/effects/vector_words.h"
 #include "mesh/errors.h"
 
 namespace palpate::identify {
@@ -27,7 +28,8 @@ public:
             .reveals = "whole probes that are off in proportion to their load, in no order of place or direction",
             .confused_with = {"stiffening", "anisotropy"},
             .separating_probe = "repeat a probe, with the sensor taken off and put back",
-            .next_probe = "repeat"};
+            .next_probe = "repeat",
+            .why_unshown = "fewer than two probes have forces of their own, and one gain is a stiffness"};
         return text;
     }
 
@@ -58,13 +60,18 @@ public:
         return {};
     }
 
-    std::string sentence(const skeleton::EffectRecord& record) const override {
+    std::string sentence(const skeleton::EffectRecord& record) const override { return sentence_with(record, {}); }
+
+    std::string sentence_with(const skeleton::EffectRecord& record, const Eigen::MatrixXd& covariance) const override {
         const auto [least, most] =
             std::ranges::minmax_element(record.parameters, {}, &skeleton::EffectParameter::value);
+        const auto in_words = [&](auto gain) {
+            return number_in_words(record, static_cast<std::size_t>(gain - record.parameters.begin()), covariance);
+        };
         return fmt::format(
-            "The force sensor's gain differs between probes: the true force is {:.2f} ({}) to {:.2f} ({}) times the "
-            "reported one.",
-            least->value, least->name, most->value, most->name);
+            "The force sensor's gain differs between probes: the true force is {} ({}) to {} ({}) times the reported "
+            "one.",
+            in_words(least), least->name, in_words(most), most->name);
     }
 
     MeasurementSet corrected(const MeasurementSet& set, const skeleton::EffectRecord& record) const override {
@@ -90,6 +97,7 @@ public:
     }
 
     std::vector<skeleton::KnownParameter> numbers_to_hide() const override { return {{"gain", "1"}}; }
+    std::string why_not_driven(int) const override { return "no force is applied; press with forces"; }
     std::optional<std::uint64_t> stream() const override { return 14; }
 
     std::vector<EffectSampler> samplers(SamplingContext& context, const SpecifiedNumbers& specified) const override {

@@ -6,7 +6,7 @@ namespace palpate::identify {
 namespace {
 
 /// Some readings are wrong by far more than the noise, each for itself. It has no force signature and no number of the
-/// fit: diagnose/outliers weighs it.
+/// fit: diagnosis/statistics/outliers weighs it.
 class OutliersEffect : public EffectHypothesis {
 public:
     const EffectDescription& description() const override {

@@ -4,8 +4,10 @@
 #include <cmath>
 
 #include "identify/effects/effect.h"
+#include "identify/effects/vector_words.h"
 #include "identify/loading/loads.h"
 #include "identify/loading/tool_motions.h"
+#include "mesh/core/scaled_motion.h"
 #include "mesh/errors.h"
 
 namespace palpate::identify {
@@ -25,7 +27,8 @@ public:
             .reveals = "markers near a tool that move less than it does, and reactions that are too small alike",
             .confused_with = {"compliant-support", "stiffening"},
             .separating_probe = "put a marker on the tool, or on the body right beside it",
-            .next_probe = "fiducials"};
+            .next_probe = "fiducials",
+            .why_unshown = "no tool is moved"};
         return text;
     }
 
@@ -43,15 +46,18 @@ public:
         const std::vector<int> tools = moved_tools(problem);
         for (mesh::ToolMotion& motion : action.motions) {
             const auto own = std::ranges::find(tools, motion.tool);
-            if (own != tools.end()) scale(motion, std::exp(values[own - tools.begin()]));
+            if (own != tools.end()) motion = mesh::scaled(motion, std::exp(values[own - tools.begin()]));
         }
         return action;
     }
 
-    std::string sentence(const skeleton::EffectRecord& record) const override {
+    std::string sentence(const skeleton::EffectRecord& record) const override { return sentence_with(record, {}); }
+
+    std::string sentence_with(const skeleton::EffectRecord& record, const Eigen::MatrixXd& covariance) const override {
         const auto least = std::ranges::min_element(record.parameters, {}, &skeleton::EffectParameter::value);
-        return fmt::format("A tool does not move as reported: the {} is {:.2f} of the motion.", least->name,
-                           least->value);
+        const auto number = static_cast<std::size_t>(least - record.parameters.begin());
+        return fmt::format("A tool does not move as reported: the {} is {} of the motion.", least->name,
+                           number_in_words(record, number, covariance));
     }
 
     MeasurementSet corrected(const MeasurementSet& set, const skeleton::EffectRecord& record) const override {
@@ -60,7 +66,7 @@ public:
             for (mesh::ToolMotion& motion : state.motions) {
                 const auto own = std::ranges::find(record.parameters, "share of " + set.tools[motion.tool].name,
                                                    &skeleton::EffectParameter::name);
-                if (own != record.parameters.end()) scale(motion, own->value);
+                if (own != record.parameters.end()) motion = mesh::scaled(motion, own->value);
             }
         }
         return result;
@@ -71,6 +77,11 @@ public:
     }
 
     std::vector<skeleton::KnownParameter> numbers_to_hide() const override { return {{"share", "1"}}; }
+    std::string why_not_driven(int tool_places) const override {
+        if (tool_places < 2) return {};
+        return fmt::format("it is a share of the motion from rest, and the tool presses at {} places; press at one",
+                           tool_places);
+    }
     std::optional<std::uint64_t> stream() const override { return 20; }
 
     std::vector<EffectSampler> samplers(SamplingContext& context, const SpecifiedNumbers& specified) const override {
@@ -82,11 +93,6 @@ public:
     }
 
 private:
-    static void scale(mesh::ToolMotion& motion, double share) {
-        motion.translation *= share;
-        motion.rotation *= share;
-    }
-
     /// In their order; at rest in all states a tool cannot slip, and the way of one that roams is not a share of how
     /// far it presses.
     static std::vector<int> moved_tools(const Problem& problem) {

@@ -104,10 +104,12 @@ public:
         return {model, law, group_stiffness(model, Scope::uniform, options_.fixed), readings, options_.threads};
     }
 
-    LogNormalPrior uniform_prior(const PositionDomain& domain) const {
+    /// `informed`: gets the names of the parameters on which specimens inform it.
+    LogNormalPrior uniform_prior(const PositionDomain& domain, std::vector<std::string>* informed = nullptr) const {
         const Eigen::VectorXd zero = Eigen::VectorXd::Zero(domain.parameters().size());
         LogNormalPrior prior = prior_round(zero.array() + domain.common_factor(zero), wide_sd);
-        inform(prior, domain.parameters(), options_.priors);
+        std::vector<std::string> names = inform(prior, domain.parameters(), options_.priors);
+        if (informed) *informed = std::move(names);
         return prior;
     }
 
@@ -188,8 +190,8 @@ Calibration calibrate(const skeleton::Model& model, const std::vector<StateReadi
     PositionDomain domain = calibrator.uniform_domain(dented, coarse.law, readings);
     if (!near) coarse.model_error = calibrator.model_error_of(coarse, domain);
     domain.set_model_error(coarse.model_error);
-    LogNormalPrior prior = calibrator.uniform_prior(domain);
-    std::vector<std::string> informed = inform(prior, domain.parameters(), options.priors);
+    std::vector<std::string> informed;
+    LogNormalPrior prior = calibrator.uniform_prior(domain, &informed);
     FitResult fit = calibrator.fit(domain, prior, coarse.theta, settled);
     Calibrator::fit_dents(domain, fit);
     coarse = {coarse.law, fit.theta, domain.dent(), coarse.model_error, fit.chi_squared};
@@ -242,8 +244,8 @@ Calibration calibrate(const skeleton::Model& model, const std::vector<StateReadi
     }
     if (!options.priors.empty())
         calibrator.note(informed.empty()
-                            ? "prior: the population tells no more of these stiffnesses than the model does"
-                            : fmt::format("prior: as the population tells of {}", mesh::listed(informed)));
+                            ? "prior: the population's is narrower than the model's for none of these stiffnesses"
+                            : fmt::format("prior: the population's for {}", mesh::listed(informed)));
     calibrator.note(fmt::format("error of the model beyond the noise: {}",
                                 model_error < hardly_any ? "less than 0.1 % of the displacement"
                                                          : mesh::share_of(model_error, "the displacement")));

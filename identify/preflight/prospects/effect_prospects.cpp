@@ -6,7 +6,6 @@
 
 #include "identify/diagnosis/statistics/outliers.h"
 #include "identify/diagnosis/verdict/verdict.h"
-#include "identify/preflight/prospects/unshown.h"
 
 namespace palpate::identify {
 namespace {
@@ -38,6 +37,13 @@ void tell_trace(const Problem& problem, const Eigen::VectorXd& weights, const Ei
     prospect.rms_mm = factor * problem.rms_mm(mm);
     prospect.max_mm = factor * largest_mm(problem, mm);
     prospect.prior_rms_mm = problem.rms_mm(mm);
+}
+
+/// Why an effect that has no numbers in a problem cannot show there, as a clause: "the body has no closed cavity".
+std::string why_unshown(const EffectHypothesis& effect) {
+    if (effect.is_of_links()) return "it is of a skeleton's links alone, and no solid body has it";
+    const EffectDescription& text = effect.description();
+    return text.why_unshown.empty() ? "nothing in the set shows it; what would: " + text.reveals : text.why_unshown;
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include <numbers>
 #include <set>
 
+#include "mesh/core/scaled_motion.h"
 #include "mesh/errors.h"
 
 namespace palpate::identify {
@@ -41,10 +42,7 @@ LoadState scaled(const LoadState& state, double share, int probe, double time) {
     result.reactions.clear();
     result.field.clear();
     for (mesh::Contact& contact : result.contacts) contact.force *= share;
-    for (mesh::ToolMotion& motion : result.motions) {
-        motion.translation *= share;
-        motion.rotation *= share;
-    }
+    for (mesh::ToolMotion& motion : result.motions) motion = mesh::scaled(motion, share);
     for (Actuation& one : result.actuations) one.value *= share;
     return result;
 }
@@ -80,7 +78,7 @@ public:
         }
         if (model_.has_cavities()) {
             add("pressure", "Read the unloaded pose once more with its cavities open to the air", {LoadState{}});
-            all_.back().circumstances.front().vented = true;
+            all_.back().conditions.front().vented = true;
         }
         return std::move(all_);
     }
@@ -106,19 +104,19 @@ private:
     void add_turns() {
         const Vec3 known = set_.gravity.value_or(Vec3::Zero());
         std::vector<LoadState> states;
-        std::vector<ProbeConditions> circumstances;
+        std::vector<ProbeConditions> conditions;
         for (const int axis : {0, 1, 2}) {
             // The room's directions turn the other way in the body's frame.
             const Mat3 turn = Eigen::AngleAxisd(-std::numbers::pi / 2, Vec3::Unit(axis)).toRotationMatrix();
             LoadState state;
             if (!known.isZero(0)) state.gravity = turn * known;
             states.push_back(state);
-            circumstances.push_back({.turn = turn});
+            conditions.push_back({.turn = turn});
         }
         add("orientation",
             "Turn the body with its supports by 90 degrees about x, about y, about z, and read it unloaded each time",
             states);
-        all_.back().circumstances = circumstances;
+        all_.back().conditions = conditions;
     }
 
     void add_levels() {
@@ -153,7 +151,11 @@ private:
         if (count == 0 || problem_.markers == 0) return;
         constexpr int places = 6;
         std::vector<int> far;  // in turn the marker that lies furthest from what is touched
-        const Points rest = problem_.rest.topRows(problem_.markers);
+        Points rest = problem_.rest.topRows(problem_.markers);
+        for (Eigen::Index m = 0; m < rest.rows(); ++m) {
+            const std::optional<Vec3>& anchor = set_.markers[static_cast<std::size_t>(m)].anchor;
+            if (anchor) rest.row(m) = anchor->transpose();  // on the body, where a finger can press
+        }
         for (int i = 0; i < std::min(places, problem_.markers); ++i) {
             Eigen::Index furthest = 0;
             double most = -1;
@@ -179,7 +181,7 @@ private:
             states.push_back(state);
             at += fmt::format("{}({:.3g}, {:.3g}, {:.3g})", at.empty() ? "" : ", ", point.x(), point.y(), point.z());
         }
-        add("load", fmt::format("Press with {:.2g} N at {} mm", force / count, at), states);
+        add("load", fmt::format("Press inwards with {:.2g} N at {} mm", force / count, at), states);
     }
 
     /// The strongest held, read at once and ten times as late as any so far.
@@ -246,12 +248,12 @@ void turn_numbers(const BodyModel& model, const Problem& problem, const Experime
     for (Eigen::Index n = 0; n < problem.rows(); ++n) {
         const int added = problem.state[n] - first_state;
         if (added < 0) continue;
-        const ProbeConditions& circumstances = experiment.circumstances[static_cast<std::size_t>(added)];
-        if (circumstances.turn.isIdentity(0) && !circumstances.vented) continue;
+        const ProbeConditions& conditions = experiment.conditions[static_cast<std::size_t>(added)];
+        if (conditions.turn.isIdentity(0) && !conditions.vented) continue;
         Eigen::MatrixXd map(p, p);
-        const Eigen::VectorXd none = signature.effect->in(circumstances, Eigen::VectorXd::Zero(p));
+        const Eigen::VectorXd none = signature.effect->under(conditions, Eigen::VectorXd::Zero(p));
         for (Eigen::Index j = 0; j < p; ++j)
-            map.col(j) = signature.effect->in(circumstances, Eigen::VectorXd::Unit(p, j)) - none;
+            map.col(j) = signature.effect->under(conditions, Eigen::VectorXd::Unit(p, j)) - none;
         signature.columns.columns.row(n) = signature.columns.columns.row(n).eval() * map;
     }
 }

@@ -13,7 +13,7 @@ struct Experiment {
     std::string kind;                    // unload, levels, repeat, orientation, load, dwell, release, pressure
     std::string words;                   // what to do, as an order
     std::vector<LoadState> states = {};  // without readings
-    std::vector<ProbeConditions> circumstances = {};  // of each state
+    std::vector<ProbeConditions> conditions = {};  // of each state
 };
 
 /// Those that the set lacks: the unloaded pose, the body turned, every probe at one and two thirds of its load and once

@@ -1,42 +1,13 @@
 #include "identify/preflight/prospects/own_number.h"
 
-#include <algorithm>
 #include <cmath>
-#include <map>
 
 namespace palpate::identify {
-namespace {
-
-/// What a screen of its own calls its number, for effects whose screen asks for another one than the fit.
-struct ScreenedNumber {
-    const char *name, *unit;
-    double (*value)(double screened);
-    bool at_most = false;
-};
-
-const std::map<std::string, ScreenedNumber>& screened_numbers() {
-    static const std::map<std::string, ScreenedNumber> known{
-        {"anisotropy", {"k", "1", [](double k) { return std::abs(k); }}},
-        {"inclusion", {"ratio", "1", [](double logarithm) { return std::exp(std::abs(logarithm)); }}},
-        {"viscosity", {"creep", "1", [](double creep) { return creep; }}},
-        {"damage", {"share", "1", [](double value) { return -std::expm1(-value); }}},
-        {"compliant-support", {"stiffness", "N/mm", [](double compliance) { return 1 / compliance; }, true}}};
-    return known;
-}
-
-/// Those whose screen says how much there is of something that has several numbers.
-bool is_a_share(const std::string& effect) {
-    return effect == "contact" || effect == "plasticity" || effect == "stiffening";
-}
-
-}  // namespace
-
 std::optional<OwnNumber> own_number(const EffectHypothesis& effect, const std::vector<EffectNumber>& numbers,
                                     const Eigen::VectorXd& values, double factor) {
-    if (is_a_share(effect.name())) return std::nullopt;
-    if (const auto known = screened_numbers().find(effect.name()); known != screened_numbers().end()) {
-        const ScreenedNumber& number = known->second;
-        return OwnNumber{number.name, number.unit, number.value(factor * values[0]), number.at_most};
+    if (const std::optional<ScreenedNumber> number = effect.screened_number()) {
+        if (number->name.empty()) return std::nullopt;
+        return OwnNumber{number->name, number->unit, number->value(factor * values[0]), number->at_most};
     }
     if (values.size() != std::ssize(numbers)) return std::nullopt;
     // Numbers of one unit are a vector, which has a length.

@@ -113,12 +113,13 @@ double position_factor(const FileMap& map, const std::string& told, const std::s
     const std::string lower = lower_case(unit);
     if (lower == "pixel" || lower == "pixels" || lower == "px") {
         if (map.pixel > 0) return map.pixel;
+        recording.in_pixels = true;
         recording.notes.emplace_back(
             "positions are in pixels, taken as 1 mm each: 'unit: pixel' and 'pixel' [mm] in a map tell their size");
         return 1;
     }
     if (unit.empty()) {
-        recording.notes.emplace_back("no unit of positions is told: taken as mm; 'unit' in a map tells another");
+        recording.notes.emplace_back("no unit of positions is given: taken as mm; 'unit' in a map gives another");
         return 1;
     }
     const double factor = length_in_mm(unit, file);

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "identify/recordings/files/conversion.h"
+#include "identify/recordings/files/text/cell.h"
 #include "mesh/errors.h"
 #include "mesh/text/words.h"
 
@@ -79,6 +80,14 @@ std::vector<fs::path> files_between(const fs::path& folder, const NameParts& par
             files.push_back(entry.path());
     }
     return files;
+}
+
+/// Licences and notes, which published folders of data hold beside it.
+bool accompanies_data(const fs::path& file) {
+    const std::string name = lower_case(file.filename().string());
+    constexpr std::array notes{"license", "licence", "copying", "readme", "citation", "changelog"};
+    return name.ends_with(".md") ||
+           std::ranges::any_of(notes, [&](const char* note) { return name.starts_with(note); });
 }
 
 /// Those that differ from this name in one number only: the last of its numbers in which any do.
@@ -200,6 +209,7 @@ std::vector<fs::path> files_of_series(const fs::path& file, bool is_series) {
                                   : has_star
                                       ? files_between(folder, {name.substr(0, star), name.substr(star + 1)}, false)
                                       : numbered_alike(folder, name);
+    if (is_folder) std::erase_if(files, accompanies_data);
     if (files.empty())
         throw IoError(fmt::format("{}: {}.", file.string(),
                                   is_folder ? "there are no files in this folder" : "there is no file of such a name"));

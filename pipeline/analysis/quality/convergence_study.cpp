@@ -55,8 +55,7 @@ QualityStep measure_step(const skeleton::Model& model, const ProbedQuality& prob
 void QualityOptions::validate() const {
     for (const int count : spheres) {
         if (count < 1 || count > 20000) {
-            throw InvalidInput(
-                fmt::format("a rung of the quality's ladder is {} spheres, allowed is 1 to 20000", count));
+            throw InvalidInput(fmt::format("spheres of a quality step: {}; allowed are 1 to 20000", count));
         }
     }
     QualityProbing{.fit = fit, .held_out = held_out}.validate();

@@ -25,7 +25,7 @@ std::string in_full(const identify::EffectHypothesis& effect) {
     const identify::EffectDescription& text = effect.description();
     std::string parameters;
     for (const std::string& parameter : text.parameters) parameters += "  " + parameter + "\n";
-    return fmt::format("{}: {}\n{}\n{}\nRevealed by {}.\nConfused with {}.\nTo tell them apart: {}.\n", text.name,
+    return fmt::format("{}: {}\n{}\n{}\nRevealed by {}.\nConfused with {}.\nTo distinguish them: {}.\n", text.name,
                        effect.is_of_body() ? "a property of the body" : "a fault of the measurement", text.meaning,
                        parameters, text.reveals, fmt::join(text.confused_with, ", "), text.separating_probe);
 }
@@ -44,7 +44,7 @@ Outcome effects(const EffectsOptions& options, const Common&) {
                                     effect->description().meaning);
         outcome.json["effects"].push_back(effect_json(*effect));
     }
-    outcome.text += "\npalpate effects NAME tells one in full.\n";
+    outcome.text += "\npalpate effects NAME describes one in full.\n";
     return outcome;
 }
 

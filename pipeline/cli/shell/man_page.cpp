@@ -30,10 +30,12 @@ std::string flags_in_roff(const std::vector<FlagHelp>& flags) {
     for (const FlagHelp& flag : flags) {
         text += ".TP\n.B " + roff(fmt::format("{}", fmt::join(flag.names, ", ")));
         if (flag.takes_value) {
-            // More than fit on a line are told by a command of their own, as effects are.
+            // More than fit on a line are listed by a command of their own, as effects are.
             constexpr std::size_t most_choices = 10;
             const bool listed = !flag.choices.empty() && flag.choices.size() <= most_choices;
-            text += " " + roff(listed ? fmt::format("{}", fmt::join(flag.choices, "|")) : "VALUE");
+            text += " " + roff(listed               ? fmt::format("{}", fmt::join(flag.choices, "|"))
+                               : flag.value.empty() ? "VALUE"
+                                                    : flag.value);
         }
         text += "\n" + roff(flag.what) + "\n";
     }

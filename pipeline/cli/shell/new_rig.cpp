@@ -73,9 +73,11 @@ Outcome new_measurements(const NewOptions& options) {
     mesh::write_surface(options.folder / "body.stl", example_bar());
     const std::string folder = options.folder.string();
     return {
-        .text = fmt::format("{0}: an empty measurement set, its files explained, and body.stl, a bar in the place of "
-                            "your body: fill in probes.csv, markers.csv and positions.csv.\nNext: palpate check {0}\n",
-                            folder),
+        .text =
+            fmt::format("{0}: an empty measurement set, its files explained, and body.stl, a bar in the place of "
+                        "your body; probes.csv, markers.csv and positions.csv are its tables.\nNext: fill in the three "
+                        "tables, then palpate check {0}\n",
+                        folder),
         .json = {{"set", (options.folder / "set.yaml").string()}, {"mesh", (options.folder / "body.stl").string()}}};
 }
 

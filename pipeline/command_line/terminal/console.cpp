@@ -15,6 +15,7 @@
 #include <thread>
 
 #include "pipeline/command_line/terminal/listener.h"
+#include "pipeline/output/text/printed_units.h"
 
 namespace palpate::pipeline {
 namespace {
@@ -88,22 +89,18 @@ private:
     }
 
     void draw() {
-        constexpr int width = 24;
-        const auto filled = static_cast<int>(done_ * width);
         const double elapsed = seconds_since(start_);
-        const std::string text =
-            fmt::format("{} [{:<{}}] {:.0f} %, {:.0f} s{}", what_, std::string(static_cast<std::size_t>(filled), '='),
-                        width, 100 * done_, elapsed, time_left(elapsed, done_, seconds_since(last_)));
-        fmt::print(stderr, "\r\033[K{}", fitted(text));
+        fmt::print(stderr, "\r\033[K{}",
+                   progress_line(what_, done_, elapsed, time_left(elapsed, done_, seconds_since(last_)), columns()));
         std::fflush(stderr);
         is_shown_ = true;
     }
 
     /// As much as one line of the terminal takes: a longer one would not be erased.
-    static std::string fitted(const std::string& text) {
+    static std::size_t columns() {
         winsize size{};
         const bool is_known = ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 1;
-        return text.substr(0, is_known ? size.ws_col - 1U : 79U);
+        return is_known ? size.ws_col - 1U : 79U;
     }
 
     void erase() {
@@ -127,24 +124,58 @@ ProgressBar& bar() {
     return the_bar;
 }
 
-/// A line now and then, where there is no terminal.
+/// Where there is no terminal: a line every ten seconds of the step that goes on, whether it says anything or not.
 class ProgressLines {
 public:
+    ~ProgressLines() { stop(); }
+
     void tell(std::string_view what, double fraction) {
+        const std::lock_guard guard(mutex_);
         if (what != what_) {
             what_ = what;
-            last_ = Clock::now();
+            start_ = Clock::now();
         }
-        constexpr double often = 10;  // [s]
-        if (fraction >= 1 || seconds_since(last_) <= often) return;
-        last_ = Clock::now();
-        spdlog::info("{}: {:.0f} %", what_, 100 * std::clamp(fraction, 0.0, 1.0));
+        done_ = std::clamp(fraction, 0.0, 1.0);
+        if (!ticker_.joinable()) ticker_ = std::jthread([this](const std::stop_token& stop) { tick(stop); });
+    }
+
+    /// The step is over, or was left.
+    void rest() {
+        const std::lock_guard guard(mutex_);
+        what_.clear();
+    }
+
+    void stop() {
+        if (!ticker_.joinable()) return;
+        ticker_.request_stop();
+        woken_.notify_all();
+        ticker_.join();
+        ticker_ = {};
     }
 
 private:
+    void tick(const std::stop_token& stop) {
+        constexpr auto often = std::chrono::seconds(10);
+        std::unique_lock lock(mutex_);
+        while (!stop.stop_requested()) {
+            woken_.wait_for(lock, stop, often, [] { return false; });
+            if (stop.stop_requested() || what_.empty() || done_ >= 1) continue;
+            spdlog::info("{}: {:.0f} %, {:.0f} s", what_, 100 * done_, seconds_since(start_));
+        }
+    }
+
+    std::mutex mutex_;
+    std::condition_variable_any woken_;
     std::string what_;
-    Clock::time_point last_ = Clock::now();
+    double done_ = 1;
+    Clock::time_point start_ = Clock::now();
+    std::jthread ticker_;
 };
+
+ProgressLines& progress_lines() {
+    static ProgressLines the_lines;
+    return the_lines;
+}
 
 /// Of this thread; null: standard error.
 const Listener*& listener() {
@@ -181,16 +212,16 @@ void Console::set_up(Verbosity verbosity) {
 }
 
 void Console::notice(const std::string& text) {
-    aloud(Importance::notice, text, [&] { spdlog::info("{}", text); });
+    aloud(Importance::notice, text, [&] { spdlog::info("{}", with_printed_units(text)); });
 }
 void Console::notices(const std::vector<std::string>& texts) {
     for (const std::string& text : texts) notice(text);
 }
 void Console::warning(const std::string& text) {
-    aloud(Importance::warning, text, [&] { spdlog::warn("warning: {}", text); });
+    aloud(Importance::warning, text, [&] { spdlog::warn("warning: {}", with_printed_units(text)); });
 }
 void Console::error(const std::string& text) {
-    aloud(Importance::error, text, [&] { spdlog::error("error: {}", text); });
+    aloud(Importance::error, text, [&] { spdlog::error("error: {}", with_printed_units(text)); });
 }
 void Console::detail(const std::string& text) {
     aloud(Importance::detail, text, [&] { spdlog::debug("{}", text); });
@@ -200,12 +231,29 @@ Progress Console::progress() {
     if (listener()) return listener()->progress;
     if (!spdlog::should_log(spdlog::level::info)) return {};
     if (on_terminal()) return [](std::string_view what, double fraction) { bar().tell(what, fraction); };
-    auto lines = std::make_shared<ProgressLines>();
-    return [lines](std::string_view what, double fraction) { lines->tell(what, fraction); };
+    // When nobody holds it any more, the step that it told of is over.
+    const std::shared_ptr<ProgressLines> told(&progress_lines(), [](ProgressLines* all) { all->rest(); });
+    return [told](std::string_view what, double fraction) { told->tell(what, fraction); };
 }
 
 void Console::end_progress() {
-    if (on_terminal()) bar().stop();
+    if (on_terminal())
+        bar().stop();
+    else
+        progress_lines().stop();
+}
+
+std::string progress_line(const std::string& what, double done, double elapsed, const std::string& left,
+                          std::size_t columns) {
+    constexpr std::size_t widest = 24, narrowest = 4, frame = 3;  // of the bar; its brackets and a space
+    std::string tail = fmt::format(" {:.0f} %, {:.0f} s", 100 * done, elapsed);
+    if (what.size() + tail.size() + left.size() <= columns) tail += left;
+    const std::string name = what.substr(0, columns - std::min(columns, tail.size()));
+    const std::size_t room = columns - std::min(columns, name.size() + tail.size());
+    if (room < narrowest + frame) return (name + tail).substr(0, columns);
+    const std::size_t width = std::min(widest, room - frame);
+    const std::string filled(static_cast<std::size_t>(done * static_cast<double>(width)), '=');
+    return fmt::format("{} [{:<{}}]{}", name, filled, width, tail);
 }
 
 }  // namespace palpate::pipeline

@@ -22,11 +22,16 @@ public:
     static void error(const std::string& text);
     static void detail(const std::string& text);  // with -v only
 
-    /// Progress of a step: a bar with the time that it takes on a terminal, plain lines now and then elsewhere.
+    /// Progress of a step: a bar with the time that it takes on a terminal, elsewhere a plain line every ten seconds.
     /// Messages take its line; it comes back below them.
     static Progress progress();
     /// Takes a bar that is left away, for what is printed next.
     static void end_progress();
 };
+
+/// "identify [=====     ] 50 %, 12 s, about 12 s left" in one line of so many columns: where these are few the bar
+/// shrinks and goes, then the time left, then the end of the name; the percentage stays.
+std::string progress_line(const std::string& what, double done, double elapsed, const std::string& left,
+                          std::size_t columns);
 
 }  // namespace palpate::pipeline

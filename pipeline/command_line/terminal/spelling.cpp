@@ -23,6 +23,16 @@ const std::string* first_word(const CommandTree& tree, const std::vector<std::st
     return nullptr;
 }
 
+/// " (did you mean '--tolerance'?)" where a known word is spelled nearly like it, or is the only one that begins so.
+std::string likely(const std::string& word, const std::vector<std::string>& known) {
+    if (std::string near = mesh::suggestion(word, known); !near.empty()) return near;
+    constexpr std::size_t least = 3;  // letters that say something: "--" stand before those of a flag
+    const auto begins_so = [&](const std::string& one) { return one.starts_with(word); };
+    if (word.size() < (word.starts_with("--") ? least + 2 : least) || std::ranges::count_if(known, begins_so) != 1)
+        return {};
+    return fmt::format(" (did you mean '{}'?)", *std::ranges::find_if(known, begins_so));
+}
+
 }  // namespace
 
 std::string spelling_error(const CommandTree& tree, const std::vector<std::string>& arguments) {
@@ -32,8 +42,8 @@ std::string spelling_error(const CommandTree& tree, const std::vector<std::strin
     if (found == tree.subcommands.end()) {
         std::vector<std::string> subcommands;
         for (const CommandHelp& command : tree.subcommands) subcommands.push_back(command.name);
-        return fmt::format("{} is no command{}; there are {}. 'palpate --help' tells what they do", mesh::cited(*word),
-                           mesh::suggestion(*word, subcommands), fmt::join(subcommands, ", "));
+        return fmt::format("{} is not a command{}; there are {}. 'palpate --help' lists what they do",
+                           mesh::cited(*word), likely(*word, subcommands), fmt::join(subcommands, ", "));
     }
 
     const CommandHelp& command = *found;
@@ -46,7 +56,7 @@ std::string spelling_error(const CommandTree& tree, const std::vector<std::strin
         const bool is_letter = name.size() == 2 && name[0] == '-' && std::isalpha(static_cast<unsigned char>(name[1]));
         if (!(name.starts_with("--") || is_letter) || std::ranges::find(known, name) != known.end()) continue;
         return fmt::format("palpate {} has no flag {}{}; 'palpate {} --help' lists them", command.name,
-                           mesh::cited(name), mesh::suggestion(name, known), command.name);
+                           mesh::cited(name), likely(name, known), command.name);
     }
     return {};
 }

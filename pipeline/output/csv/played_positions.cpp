@@ -38,7 +38,8 @@ std::string played_positions_csv(const skeleton::Model& model, const std::vector
     constexpr double sigmas_of_95 = 1.96;
     const std::vector<OnSkin> points = points_of(model.surface, markers);
     std::string text =
-        "# palpate: positions of markers in the played model [mm]; a coordinate lies within within_95 with 95 %\n"
+        "# palpate: positions of markers in the played model [mm]; within_95: half-width of the 95 % interval of a "
+        "coordinate\n"
         "probe,time,marker,x,y,z,ux,uy,uz,sd,within_95\n";
     for (std::size_t s = 0; s < states.size(); ++s) {
         for (const OnSkin& point : points) {

@@ -3,12 +3,14 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "pipeline/output/text/printed_units.h"
+
 namespace palpate::pipeline {
 
-/// A text as it may stand in HTML and SVG, attributes included.
+/// A text as it may stand in HTML and SVG, attributes included, with its units as they are printed.
 inline std::string escape(const std::string& text) {
     std::string safe;
-    for (const char c : text) {
+    for (const char c : with_printed_units(text)) {
         switch (c) {
             case '&':
                 safe += "&amp;";

@@ -8,11 +8,12 @@
 #include "mesh/text/atomic_file.h"
 #include "pipeline/output/html/escape.h"
 #include "pipeline/output/html/page/page_parts.h"
+#include "pipeline/output/html/page_frame.h"
 #include "pipeline/output/html/run_files.h"
 #include "pipeline/output/html/sections/damping_section.h"
+#include "pipeline/output/html/sections/diagnosis_sections.h"
 #include "pipeline/output/html/sections/error_section.h"
 #include "pipeline/output/html/sections/fit_sections.h"
-#include "pipeline/output/html/sections/inquiry_sections.h"
 #include "pipeline/output/html/sections/stiffness_section.h"
 #include "pipeline/output/html/view_data.h"
 #include "pipeline/output/text/comparison.h"
@@ -96,8 +97,11 @@ std::string tiles(const RunFiles& files) {
     return html + error_tiles(files) + material_tiles(files) +
            tile(fmt::format("{} + {}", files.model.spheres.size() - held, held), "spheres, free + held") +
            tile(std::to_string(files.model.links.size()), "links") +
-           tile(fmt::format("{} of {}", informed, files.posterior.size()), "stiffnesses that the data inform") +
-           "</div><p class=\"soft\">Rms errors are per coordinate; largest errors are distances.</p>";
+           tile(fmt::format("{} of {}", informed, files.posterior.size()), "stiffnesses constrained by the data") +
+           "</div>" +
+           (reads_positions(files.compare)
+                ? "<p class=\"soft\">Rms errors are per coordinate; largest errors are distances.</p>"
+                : "");
 }
 
 /// What a print-out of one page leaves out.
@@ -151,17 +155,24 @@ std::string view_section(const RunFiles& files, const fs::path& run) {
             "<p class=\"soft\">{} of {} states are here, those with the largest errors; all are in the run folder.</p>",
             data["states"].size(), data["states"].size() + left_out);
     }
-    return html + "<script id=\"run-data\" type=\"application/json\">" + as_script_data(data) + "</script><script>" +
-           std::string(page_script) + "</script>";
+    return html + "<script id=\"run-data\" type=\"application/json\">" + with_printed_units(as_script_data(data)) +
+           "</script><script>" + std::string(page_script) + "</script>";
 }
 
 /// What to open next, and what to type.
 std::string file_section(const RunFiles& files) {
     const bool improved = files.best == "improve";
+    // What forces move can be asked of it; a rig's poses stand in no table of forces.
+    const bool has_forces = std::ranges::any_of(files.compare["probes"], [](const json& probe) {
+        return probe.value(json::json_pointer("/load/by"), "") == "forces";
+    });
+    const std::string command = has_forces
+                                    ? "palpate simulate " + files.best + "/model.json --probes probes.csv -o played"
+                                    : "palpate play " + files.best + "/model.json";
     std::string html =
         "<h2 id=\"files\">Files</h2><ul><li><code>" + files.best + "/model.json</code> is the model to use" +
-        (improved ? ", with what was missing added" : "") + ": <code>palpate simulate " + files.best +
-        "/model.json --probes probes.csv -o played</code></li><li><code>paraview --script=view.py</code> opens the run "
+        (improved ? ", with what was missing added" : "") + ": <code>" + command +
+        "</code></li><li><code>paraview --script=view.py</code> opens the run "
         "in "
         "ParaView</li><li><code>" +
         files.best + "/posterior.csv</code> holds every stiffness with its interval, <code>" +
@@ -176,41 +187,29 @@ std::string file_section(const RunFiles& files) {
     return html + "<li><code>palpate info .</code> in the run folder lists its files</li></ul>";
 }
 
-std::string contents(const std::string& page) {
-    std::string html = "<nav aria-label=\"Sections\">";
-    for (std::size_t at = page.find("<h2 id=\""); at != std::string::npos; at = page.find("<h2 id=\"", at + 1)) {
-        const std::size_t id = at + 8, id_end = page.find('"', id), end = page.find("</h2>", id_end);
-        html +=
-            "<a href=\"#" + page.substr(id, id_end - id) + "\">" + page.substr(id_end + 2, end - id_end - 2) + "</a>";
-    }
-    return html + "</nav>";
-}
-
 }  // namespace
 
 void write_report(const fs::path& run, const fs::path& page) {
     const RunFiles files = read_run(run);
-    const std::string name = escape(files.model.name.empty() ? run.filename().string() : files.model.name);
+    const std::string name = files.model.name.empty() ? run.filename().string() : files.model.name;
     std::string sections = aside(missing_section(files.diagnosis)) + ladder_section(files.ladder, files.compare) +
                            aside(budget_section(files.compare, files.improved)) + error_section(files);
     std::string more = stiffness_section(files.posterior, files.particles, files.prior, files.best + "/posterior.csv") +
                        damping_section(run / files.best) + convergence_section(run / "identify/convergence.csv") +
                        spheres_section(files.quality) + assumption_list(files) + file_section(files);
-    more += "<h2 id=\"times\">Times</h2><p class=\"soft\">identify and compare are of the baseline.</p>" +
-            stage_table(files);
+    more +=
+        "<h2 id=\"times\">Times</h2><p class=\"soft\">The stages identify and compare used the model without added "
+        "effects.</p>" +
+        stage_table(files);
     more +=
         "<h2 id=\"settings\">Settings</h2><details open><summary>case.yaml: every setting, defaults included"
         "</summary><pre tabindex=\"0\">" +
         escape(files.settings) + "</pre></details>";
     sections += aside(more) + "<p class=\"soft\">palpate " + escape(files.record.value("version", "")) +
                 fmt::format(", seed {}", files.record.value("seed", json()).dump()) + "</p>";
-    mesh::write_text(page,
-                     "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">"
-                     "<meta name=\"viewport\" content=\"width=device-width,initial-scale=1\">"
-                     "<meta name=\"generator\" content=\"palpate\"><link rel=\"icon\" href=\"data:,\"><title>" +
-                         name + "</title><style>" + std::string(page_style) + "</style></head><body><main><h1>" + name +
-                         "</h1><p class=\"lead\">" + escape(lead(files)) + "</p>" + tiles(files) +
-                         view_section(files, run) + contents(sections) + sections + "</main></body></html>\n");
+    mesh::write_text(page, page_head(name, page_style) + "<body><main><h1>" + escape(name) + "</h1><p class=\"lead\">" +
+                               escape(lead(files)) + "</p>" + tiles(files) + view_section(files, run) +
+                               section_links(sections) + sections + "</main></body></html>\n");
 }
 
 }  // namespace palpate::pipeline

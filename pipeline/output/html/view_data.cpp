@@ -2,15 +2,24 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Geometry>
+
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <numeric>
+#include <optional>
 
+#include "identify/measurements/measurement_set.h"
 #include "mesh/errors.h"
 #include "mesh/formats/vtk/poly_data.h"
+#include "mesh/formats/yaml/yaml_fields.h"
 #include "pipeline/analysis/link_uncertainty.h"
 #include "pipeline/output/findings.h"
+#include "pipeline/output/html/charts/svg.h"
 #include "pipeline/output/html/packed_rows.h"
+#include "pipeline/output/html/run_files.h"
+#include "pipeline/output/json/json_values.h"
 #include "pipeline/output/text/words.h"
 #include "skeleton/model/io/model_io.h"
 
@@ -47,60 +56,141 @@ const Eigen::MatrixXd& array_of(const mesh::PolyData& part, const std::string& n
 struct Series {
     fs::path folder;
     std::string name;
-    fs::path model = {};  // its file, where there is one
-    std::vector<mesh::SeriesStep> skin, spheres, markers, loads;
+    fs::path model = {};   // its file, where there is one
+    json comparison = {};  // of it with the set, as compare.json has it; null where none was kept
+    json forces_rms = {};  // of the errors of tools' forces over all states [N]; null where none was measured
+    std::vector<mesh::SeriesStep> skin = {}, spheres = {}, markers = {}, loads = {};
 };
 
 Series series_in(const fs::path& folder, const std::string& name) {
-    return {folder,
-            name,
-            folder / "model.json",
-            mesh::read_pvd(folder / "skin.pvd"),
-            mesh::read_pvd(folder / "skeleton.pvd"),
-            mesh::read_pvd(folder / "markers.pvd"),
-            mesh::read_pvd(folder / "loads.pvd")};
+    Series series{.folder = folder, .name = name, .model = folder / "model.json"};
+    series.skin = mesh::read_pvd(folder / "skin.pvd");
+    series.spheres = mesh::read_pvd(folder / "skeleton.pvd");
+    series.markers = mesh::read_pvd(folder / "markers.pvd");
+    series.loads = mesh::read_pvd(folder / "loads.pvd");
+    return series;
 }
 
-std::vector<Series> all_series(const fs::path& run, const json& ladder) {
+std::vector<Series> all_series(const fs::path& run, const json& compare, const json& ladder) {
     std::vector<Series> all;
     for (std::size_t i = 0; !ladder.is_null() && i < ladder["steps"].size(); ++i) {
         const fs::path folder = run / "improve" / fmt::format("step_{}", i);
         if (!fs::exists(folder / "skeleton.pvd")) break;
         const auto effects = ladder["steps"][i]["effects"].get<std::vector<std::string>>();
         all.push_back(series_in(folder, effects.empty() ? "nothing added" : "with " + listed(effects)));
+        all.back().forces_rms = ladder["steps"][i].value("reactions_rms_n", json());
     }
-    if (!all.empty()) all.back().model = run / "improve/model.json";  // which the last one plays
-    if (all.empty() && fs::exists(run / "compare/skeleton.pvd")) {
+    if (!all.empty()) {  // the last one plays the model to use
+        all.back().model = run / "improve/model.json";
+        if (fs::exists(run / "improve/compare.json")) all.back().comparison = read_json(run / "improve/compare.json");
+    } else if (fs::exists(run / "compare/skeleton.pvd")) {
         all.push_back(series_in(run / "compare", "as fitted"));
         all.back().model = run / "identify/model.json";
+        all.back().forces_rms = compare["error"].value(json::json_pointer("/reactions/rms_n"), json());
     }
+    if (!all.empty() && (all.size() == 1 || all.front().comparison.is_null())) all.front().comparison = compare;
     return all;
+}
+
+/// The set that was run on, for its tools; none where it is not there any more.
+std::optional<identify::MeasurementSet> set_of(const fs::path& run) {
+    try {
+        const mesh::YamlFields settings = mesh::YamlFields::from_file(run / "case.yaml");
+        const char* named = "measurements";  // simulated ones lie in the folder of this name
+        return identify::read_measurement_set(run / (settings.has(named) ? settings.text(named) : named));
+    } catch (const InvalidInput&) {
+        return std::nullopt;
+    } catch (const IoError&) {
+        return std::nullopt;
+    }
+}
+
+bool is_of(const json& row, const identify::StateName& state) {
+    return row["probe"] == state.probe && row["time"] == state.time;
+}
+
+/// The tools of a state: where each is, null where a coordinate is left free; its radius and, of a flat one, where it
+/// presses to; and the force on the body, null along an axis that was not read.
+json tools_json(const identify::MeasurementSet& set, const identify::StateName& name) {
+    json tools = json::array();
+    const identify::LoadState* state = identify::find_state(set, name);
+    if (!state) return tools;
+    for (const mesh::ToolMotion& motion : state->motions) {
+        const mesh::Tool& tool = set.tools[static_cast<std::size_t>(motion.tool)];
+        json one{{"name", tool.name}, {"at", nullptr}, {"radius", nullptr}, {"axis", nullptr}, {"measured", nullptr}};
+        if (!motion.translation.hasNaN()) one["at"] = numbers(tool.origin + motion.translation);
+        if (const auto* ball = std::get_if<mesh::SphereShape>(&tool.shape)) one["radius"] = ball->radius;
+        if (const auto* flat = std::get_if<mesh::FlatShape>(&tool.shape); flat && !motion.rotation.hasNaN()) {
+            const double angle = motion.rotation.norm();
+            const Vec3 axis = angle > 0 ? Eigen::AngleAxisd(angle, motion.rotation / angle) * flat->axis : flat->axis;
+            one["radius"] = flat->radius;
+            one["axis"] = numbers(axis);
+        }
+        const auto reading = std::ranges::find(state->reactions, motion.tool, &identify::ReactionReading::tool);
+        if (reading != state->reactions.end() && !reading->force.array().isNaN().all()) {
+            one["measured"] = json::array();
+            for (const double component : reading->force) one["measured"].push_back(known(component));
+        }
+        tools.push_back(one);
+    }
+    return tools;
+}
+
+/// What a model makes of the tools' forces in a state.
+json modelled_forces(const json& comparison, const identify::StateName& state) {
+    json forces = json::array();
+    if (comparison.is_null()) return forces;
+    for (const json& row : comparison.value("tool_forces", json::array())) {
+        if (is_of(row, state)) forces.push_back({{"name", row["tool"]}, {"modelled", row["modelled_n"]}});
+    }
+    return forces;
+}
+
+identify::StateName played_state(const mesh::PolyData& spheres, const fs::path& file) {
+    return {static_cast<int>(array_of(spheres, "probe", file)(0, 0)), array_of(spheres, "time [s]", file)(0, 0)};
+}
+
+/// How wrong a model is in each state: rms over its markers [mm], or where forces alone were read the largest of them
+/// [N].
+std::vector<double> errors_of(const Series& series, const json& compare) {
+    const json forces = compare.value("tool_forces", json::array());
+    std::vector<double> errors;
+    for (const mesh::SeriesStep& spheres : series.spheres) {
+        const identify::StateName name = played_state(mesh::read_poly_data(spheres.file), spheres.file);
+        double error = 0;
+        for (const json& probe : compare["probes"])
+            if (is_of(probe, name)) error = probe["rms_mm"].get<double>();
+        for (const json& force : forces)
+            if (compare["probes"].empty() && is_of(force, name))
+                error = std::max(error, force["error_n"].get<double>());
+        errors.push_back(error);
+    }
+    return errors;
 }
 
 /// The states to keep, in order: all, or those with the largest errors.
 std::vector<std::size_t> kept_states(const Series& series, std::size_t most, const json& compare) {
     std::vector<std::size_t> states(series.skin.size());
     std::iota(states.begin(), states.end(), 0U);
-    const json& probes = compare["probes"];
-    if (states.size() <= most || probes.size() != states.size()) {
-        states.resize(std::min(states.size(), most));
-        return states;
-    }
-    std::ranges::stable_sort(states, std::greater{}, [&](std::size_t s) { return probes[s]["rms_mm"].get<double>(); });
+    if (states.size() <= most) return states;
+    const std::vector<double> errors = errors_of(series, compare);
+    std::ranges::stable_sort(states, std::greater{}, [&](std::size_t s) { return errors[s]; });
     states.resize(most);
     std::ranges::sort(states);
     return states;
 }
 
-json state_json(const Series& series, std::size_t s, const json& held_out) {
+json state_json(const Series& series, std::size_t s, const json& held_out,
+                const std::optional<identify::MeasurementSet>& set) {
     const mesh::PolyData spheres = mesh::read_poly_data(series.spheres[s].file);
     const mesh::PolyData skin = mesh::read_poly_data(series.skin[s].file);
     const mesh::PolyData loads = mesh::read_poly_data(series.loads[s].file);
-    const int probe = static_cast<int>(array_of(spheres, "probe", series.spheres[s].file)(0, 0));
-    json result = {{"probe", probe},
-                   {"time", array_of(spheres, "time [s]", series.spheres[s].file)(0, 0)},
-                   {"held_out", std::ranges::find(held_out, json(probe)) != held_out.end()},
+    const identify::StateName name = played_state(spheres, series.spheres[s].file);
+    json result = {{"probe", name.probe},
+                   {"time", name.time},
+                   {"held_out", std::ranges::find(held_out, json(name.probe)) != held_out.end()},
                    {"loads", json::array()},
+                   {"tools", set ? tools_json(*set, name) : json::array()},
                    {"measured", nullptr}};
     if (const auto* measured = find(skin.data.points, "measured [mm]")) result["measured"] = levels(*measured);
     for (Eigen::Index c = 0; c < loads.points.rows(); ++c) {
@@ -120,6 +210,7 @@ json answer_json(const Series& series, std::size_t s) {
     const Eigen::MatrixXd& measured = array_of(markers, "measured [mm]", file);
     return {{"skin", levels(array_of(skin, "displacement [mm]", series.skin[s].file))},
             {"spheres", levels(array_of(spheres, "displacement [mm]", series.spheres[s].file))},
+            {"tool_forces", modelled_forces(series.comparison, played_state(spheres, series.spheres[s].file))},
             {"markers",
              {{"id", flat<int>(array_of(markers, "marker", file))},
               {"coordinates", flat<int>(array_of(markers, "coordinates", file))},
@@ -128,18 +219,29 @@ json answer_json(const Series& series, std::size_t s) {
               {"error", floats(array_of(markers, "error [mm]", file))}}}};
 }
 
-/// Stiffnesses of the links, and how uncertain they are where a posterior tells.
+/// An array "flexion_2 [N*mm/rad]" or "flexion_2 sd/mean [-]" of the links, in words.
+json quantity_json(const mesh::DataArray& array) {
+    const std::size_t open = array.name.find(" ["), end = array.name.rfind(']');
+    const std::string kind = array.name.substr(0, array.name.find(' '));
+    const bool is_relative = array.name.find("sd/mean") != std::string::npos;
+    const std::string unit =
+        is_relative || open == std::string::npos ? "" : array.name.substr(open + 2, end - open - 2);
+    return {{"name", printed_stiffness(kind) + (is_relative ? ", relative sd" : "")},
+            {"unit", printed_unit(unit)},
+            {"relative", is_relative},
+            {"values", floats(array.values)}};
+}
+
+/// Stiffnesses of the links, and how uncertain they are where there is a posterior.
 json quantities_json(const mesh::PolyData& spheres, const std::vector<identify::PosteriorRow>& posterior) {
     json result = json::array();
     for (const mesh::DataArray& array : spheres.data.cells) {
-        if (array.name != "zone" && !array.name.starts_with("vtk")) {
-            result.push_back({{"name", array.name}, {"values", floats(array.values)}});
-        }
+        if (array.name != "zone" && !array.name.starts_with("vtk")) result.push_back(quantity_json(array));
     }
     const Eigen::MatrixXd* zones = find(spheres.data.cells, "zone");
     for (const mesh::DataArray& array :
          link_uncertainty(posterior, zones ? Eigen::VectorXd(zones->col(0)) : Eigen::VectorXd())) {
-        result.push_back({{"name", array.name}, {"values", floats(array.values)}});
+        result.push_back(quantity_json(array));
     }
     return result;
 }
@@ -148,7 +250,7 @@ json quantities_json(const mesh::PolyData& spheres, const std::vector<identify::
 
 json view_data(const fs::path& run, const json& record, const json& compare, const json& ladder, const json& diagnosis,
                const std::vector<identify::PosteriorRow>& posterior, std::size_t budget) {
-    const std::vector<Series> all = all_series(run, ladder);
+    const std::vector<Series> all = all_series(run, compare, ladder);
     if (all.empty() || all.front().skin.empty()) return nullptr;
 
     // the body at rest
@@ -171,7 +273,8 @@ json view_data(const fs::path& run, const json& record, const json& compare, con
     const std::vector<std::size_t> states =
         kept_states(all.front(), std::max<std::size_t>(1, budget / std::max<std::size_t>(size, 1)), compare);
     json held_out = ladder.is_null() ? record.value("held_out_probes", json::array()) : ladder["held_out_probes"];
-    for (const std::size_t s : states) result["states"].push_back(state_json(all.front(), s, held_out));
+    const std::optional<identify::MeasurementSet> set = set_of(run);
+    for (const std::size_t s : states) result["states"].push_back(state_json(all.front(), s, held_out, set));
     // Where every probe was held out in turn, none is different from the others.
     if (std::ranges::all_of(result["states"], [](const json& state) { return state["held_out"].get<bool>(); })) {
         for (json& state : result["states"]) state["held_out"] = false;
@@ -180,7 +283,7 @@ json view_data(const fs::path& run, const json& record, const json& compare, con
     result["outliers"] = diagnosis.is_null() ? json::array() : diagnosis.value("outlier_readings", json::array());
     result["left_out"] = all.front().skin.size() - states.size();
     for (const Series& series : all) {
-        json step = {{"name", series.name}, {"states", json::array()}};
+        json step = {{"name", series.name}, {"states", json::array()}, {"forces_rms", series.forces_rms}};
         for (const std::size_t s : states) step["states"].push_back(answer_json(series, s));
         step["findings"] = fs::exists(series.model)
                                ? findings_json(skeleton::read_model(series.model).effects, diagnosis)

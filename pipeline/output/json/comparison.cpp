@@ -91,6 +91,30 @@ json marker_errors(const identify::Comparison& c, const identify::MeasurementSet
     return markers;
 }
 
+/// The force of each tool in each state, as it was measured and as it is modelled, and where the tool's origin was.
+json tool_forces(const identify::ReactionError& reactions, const identify::MeasurementSet& set) {
+    json result = json::array();
+    for (const identify::ToolForce& force : reactions.forces) {
+        const mesh::Tool& tool = set.tools[static_cast<std::size_t>(force.tool)];
+        Vec3 at = tool.origin;
+        if (const identify::LoadState* state = identify::find_state(set, {force.probe, force.time})) {
+            for (const mesh::ToolMotion& motion : state->motions)
+                if (motion.tool == force.tool)
+                    at += motion.translation.array().isNaN().select(0, motion.translation).matrix();
+        }
+        json measured = json::array();
+        for (const double component : force.measured) measured.push_back(known(component));
+        result.push_back({{"probe", force.probe},
+                          {"time", force.time},
+                          {"tool", tool.name},
+                          {"measured_n", measured},
+                          {"modelled_n", numbers(force.modelled)},
+                          {"error_n", force.error()},
+                          {"at", numbers(at)}});
+    }
+    return result;
+}
+
 }  // namespace
 
 json to_json(const identify::Comparison& c, const identify::MeasurementSet& set) {
@@ -103,6 +127,7 @@ json to_json(const identify::Comparison& c, const identify::MeasurementSet& set)
     if (c.reactions) {
         result["error"]["reactions"] = {
             {"rms_n", c.reactions->rms}, {"max_n", c.reactions->max}, {"relative", known(c.reactions->relative)}};
+        result["tool_forces"] = tool_forces(*c.reactions, set);
     }
     if (c.load_exponent) {
         result["load_exponent"] = {

@@ -23,9 +23,9 @@ json parameters_json(const identify::Candidate& candidate) {
 }
 
 std::string sentence_of(const identify::Candidate& candidate) {
-    const identify::EffectEstimate& told = candidate.estimate;
-    return told.covariance.size() > 0 ? candidate.effect->sentence_with(told.effect, told.covariance)
-                                      : candidate.effect->sentence(told.effect);
+    const identify::EffectEstimate& estimate = candidate.estimate;
+    return estimate.covariance.size() > 0 ? candidate.effect->sentence_with(estimate.effect, estimate.covariance)
+                                          : candidate.effect->sentence(estimate.effect);
 }
 
 /// Errors of the forces of tools, where any was measured; of what was held out, too, where it was.

@@ -26,13 +26,13 @@ std::string state_words(const identify::MeasurementSet& set, int state) {
     return fmt::format("probe {} at {:g} s", one.probe, one.time);
 }
 
-/// 95 % of a number of the fit, as it is told.
+/// 95 % of a number of the fit, as it is reported.
 json parameter_json(const identify::ParameterProspect& one, const std::string& name, const std::string& unit,
-                    double (*told)(double)) {
-    const double a = told(one.value - 1.96 * one.sd), b = told(one.value + 1.96 * one.sd);
+                    double (*reported)(double)) {
+    const double a = reported(one.value - 1.96 * one.sd), b = reported(one.value + 1.96 * one.sd);
     return {{"name", name},
             {"unit", unit},
-            {"value", told(one.value)},
+            {"value", reported(one.value)},
             {"q025", std::min(a, b)},
             {"q975", std::max(a, b)},
             {"narrows_prior_to", one.sd / one.prior_sd},
@@ -60,23 +60,22 @@ json own_json(const std::optional<identify::OwnNumber>& own) {
 }
 
 const char* whether(const identify::EffectProspect& one) {
-    constexpr double nearly_all = 0.9, half = 0.5;  // of the cases that the prior expects
+    constexpr double nearly_all = 0.9;  // of the cases that the prior expects
     if (!one.why_not.empty()) return "no";
-    return one.share >= nearly_all ? "yes" : one.share >= half ? "mostly" : one.share > 0 ? "partly" : "no";
+    return one.share >= nearly_all ? "yes" : one.share >= sufficient_share ? "mostly" : one.share > 0 ? "partly" : "no";
 }
 
 /// Why an effect cannot be named that could show.
 std::string held_up(const identify::EffectProspect& one) {
     if (!one.why_not.empty()) return one.why_not;
-    constexpr double half = 0.5;
-    if (one.share >= half) return {};
+    if (one.share >= sufficient_share) return {};
     if (std::isfinite(one.seen) && one.seen <= 1 && !one.confused_with.empty())
-        return fmt::format("as strong as its prior expects it is seen, but not told from {}",
+        return fmt::format("as strong as its prior expects, it is detectable, but indistinguishable from {}",
                            listed(one.confused_with));
     if (std::isfinite(one.least))
         return fmt::format("it would have to be {:.2g} times as strong as its prior expects", one.least);
-    return one.confused_with.empty() ? "no strength of it is enough"
-                                     : "no strength of it is told from " + listed(one.confused_with);
+    return one.confused_with.empty() ? "not identifiable at any strength"
+                                     : "indistinguishable from " + listed(one.confused_with) + " at any strength";
 }
 
 json effect_json(const identify::EffectProspect& one) {
@@ -148,7 +147,7 @@ json repeat_json(const identify::Repeat& one, const identify::MeasurementSet& se
     constexpr double more = 1.5;  // of the noise
     const bool is_more = one.sd_mm > more * one.sigma_mm;
     const std::string beside =
-        fmt::format(" the noise is {} {:.2g} mm", noise_known ? "stated as" : "assumed to be", one.sigma_mm);
+        fmt::format(" the noise is {} {:.2g} mm", noise_known ? "declared as" : "assumed to be", one.sigma_mm);
     const std::string what = one.held ? "One load, held or taken again" : one.loaded ? "The same load" : "Without load";
     const std::string hint = !is_more   ? ""
                              : one.held ? " Creep, or a noise that is larger than that."

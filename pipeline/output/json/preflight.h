@@ -7,7 +7,11 @@
 
 namespace palpate::pipeline {
 
-/// What `palpate check` tells of a set before a fit, as check.json holds it under "preflight".
+/// An effect counts as one that a set can show where it could be named in at least this share of the cases that its
+/// prior expects (locations, directions) [-]: the set is then more likely to show it than not.
+inline constexpr double sufficient_share = 0.5;
+
+/// What `palpate check` finds out about a set before a fit, as check.json holds it under "preflight".
 nlohmann::json to_json(const identify::Preflight& preflight, const identify::ReferenceBody& body,
                        const identify::MeasurementSet& set);
 

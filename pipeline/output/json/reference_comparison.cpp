@@ -16,7 +16,7 @@ json to_json(const identify::ErrorBudget& budget) {
     return {{"noise", budget.noise}, {"reduction", budget.reduction}, {"missing_physics", budget.missing_physics}};
 }
 
-/// Adds how strange the reference body finds each marker to what is told of it already.
+/// Adds how strange the reference body finds each marker to what is reported of it already.
 void add_strangeness(json& markers, const identify::MeasurementSet& set, const identify::ErrorLocations& where) {
     for (json& entry : markers) {
         for (std::size_t m = 0; m < set.markers.size(); ++m) {

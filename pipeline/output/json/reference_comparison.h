@@ -22,7 +22,7 @@ void add_no_reference(nlohmann::json& compare, const std::string& why_none);
 /// Where finite elements made the measurements themselves, they explain all but the noise.
 void add_own_reference(nlohmann::json& compare, double noise);
 
-/// "law", "young_mpa", "poisson", with their standard deviations; "poisson_declared": the set tells the ratio.
+/// "law", "young_mpa", "poisson", with their standard deviations; "poisson_declared": the set states the ratio.
 nlohmann::json to_json(const identify::MaterialEstimate& material);
 
 /// Law and numbers of a fit without further effects. `poisson` is null for a model that has none.

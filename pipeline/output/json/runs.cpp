@@ -3,6 +3,7 @@
 #include <yaml-cpp/yaml.h>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 
 #include "pipeline/output/text/words.h"
@@ -57,17 +58,52 @@ json states_of(const json& compare) {
     return {states, compare.value("box", json())};
 }
 
+/// The rms of what was measured, out of an error and its share of that; null where the share is not known.
+json measured_rms(const json& rms, const json& share) {
+    if (!rms.is_number() || !share.is_number() || share.get<double>() <= 0) return nullptr;
+    return rms.get<double>() / share.get<double>();
+}
+
+/// What the readings of each state come to, whatever the model: other readings are told by it.
+json readings_of(const json& compare) {
+    json readings = json::array();
+    for (const json& p : compare["probes"]) readings.push_back(measured_rms(p["rms_mm"], p["relative"]));
+    if (const json forces = compare["error"].value("reactions", json()); forces.is_object())
+        readings.push_back(measured_rms(forces["rms_n"], forces["relative"]));
+    return readings;
+}
+
+bool are_the_same_readings(const json& some, const json& others) {
+    constexpr double rounding = 1e-9;  // of a quotient of numbers written in full; other readings differ by far more
+    return std::ranges::equal(some, others, [](const json& a, const json& b) {
+        if (!a.is_number() || !b.is_number()) return a == b;
+        return std::abs(a.get<double>() - b.get<double>()) <= rounding * std::abs(a.get<double>());
+    });
+}
+
+/// Were forces of tools measured, and no positions?
+bool reads_forces_only(const json& compare) {
+    return compare["probes"].empty() && compare["error"].contains("reactions");
+}
+
 json run_json(const NamedRun& run) {
     const RunFiles& files = run.files;
     const json& now = final_comparison(files);
     double seconds = 0;
     for (const json& stage : files.record["stages"]) seconds += stage["seconds"].get<double>();
     const json material = now.value("baseline", json());
+    const json last_step = files.ladder.is_object() ? files.ladder["steps"].back() : json::object();
+    json rms_n;
+    if (reads_forces_only(files.compare))
+        rms_n = {{"nothing_added", files.compare["error"]["reactions"]["rms_n"]},
+                 {"now", now["error"]["reactions"]["rms_n"]},
+                 {"held_out", last_step.value("held_out_reactions_rms_n", json())}};
     return {{"run", run.name},
             {"verdict", files.diagnosis.is_object() ? files.diagnosis["verdict"] : json()},
             {"effects", added_effects(files)},
             {"rms_mm", {{"nothing_added", files.compare["error"]["rms_mm"]}, {"now", now["error"]["rms_mm"]}}},
-            {"held_out_rms_mm", files.ladder.is_object() ? files.ladder["steps"].back()["held_out_rms_mm"] : json()},
+            {"rms_n", rms_n},
+            {"held_out_rms_mm", last_step.value("held_out_rms_mm", json())},
             {"held_out_probes", files.ladder.is_object() ? files.ladder["held_out_probes"] : json::array()},
             {"relative", now["error"]["relative"]},
             {"noise_mm", now["error"]["noise_mm"]},
@@ -95,14 +131,16 @@ json errors_by_state(const std::vector<NamedRun>& runs) {
 
 json runs_json(const std::vector<NamedRun>& runs) {
     json all = {{"format", "palpate-runs/1"}, {"runs", json::array()}, {"settings", differing_settings(runs)}};
-    bool same_states = true;
-    const json states = states_of(runs.front().files.compare);
+    bool same_states = true, same_readings = true;
+    const json &first = runs.front().files.compare, states = states_of(first), readings = readings_of(first);
     for (const NamedRun& run : runs) {
         all["runs"].push_back(run_json(run));
         same_states =
             same_states && states_of(run.files.compare) == states && states_of(final_comparison(run.files)) == states;
+        same_readings = same_readings && are_the_same_readings(readings, readings_of(run.files.compare));
     }
     all["same_states"] = same_states;
+    all["same_readings"] = same_readings;
     all["states"] = same_states ? errors_by_state(runs) : json::array();
     return all;
 }

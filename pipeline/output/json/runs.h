@@ -13,8 +13,8 @@ struct NamedRun {
     RunFiles files;
 };
 
-/// Runs side by side, as runs.schema.json tells: their errors, their settings where these differ, and the error of
-/// each state where all have the same states.
+/// Runs side by side, as runs.schema.json specifies: their errors, their settings where these differ, whether they are
+/// of the same readings, and the error of each state where all have the same states.
 nlohmann::json runs_json(const std::vector<NamedRun>& runs);
 
 }  // namespace palpate::pipeline

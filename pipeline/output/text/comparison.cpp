@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "mesh/text/words.h"
+#include "pipeline/output/text/errors.h"
 #include "pipeline/output/text/words.h"
 
 namespace palpate::pipeline {
@@ -39,7 +40,7 @@ std::string noise_words(const json& compare) {
     } else if (!budget.is_object()) {
         left =
             "the rest is missing physics or discretisation error of the skeleton, which these data cannot "
-            "tell apart";
+            "distinguish";
     } else if (budget.is_object() && budget["missing_physics"].get<double>() < budget["reduction"].get<double>()) {
         left = "what is left beyond it is mostly the coarseness of the skeleton";
     }
@@ -65,8 +66,9 @@ std::string held_out_words(const json& compare) {
 std::string reference_words(const json& compare) {
     const json baseline = compare.value("baseline", json()), reference = compare.value("reference", json());
     if (!baseline.is_object() || !reference.is_object()) return {};
-    const std::string error =
-        reads_positions(compare) ? fmt::format("{:.3g} mm rms: ", reference["rms_mm"].get<double>()) : "";
+    const std::string rms =
+        reads_positions(compare) || reference.contains("reactions_rms_n") ? rms_in_words(reference) : "";
+    const std::string error = rms.empty() ? "" : rms + " rms: ";
     return fmt::format(" The finite-element model ({}, {}) is off by {}{}.",
                        law_in_words(baseline["law"].get<std::string>()), material_in_words(baseline), error,
                        in_sigmas(reference["whitened_rms"]));
@@ -85,8 +87,11 @@ std::string load_words(const json& compare) {
 std::string budget_words(const json& compare) {
     const json budget = compare.value("budget", json());
     if (!budget.is_object() || !reads_positions(compare)) return {};
+    constexpr double all = 0.9995;  // shown as 100.0 %
+    const double noise = budget["noise"].get<double>();
+    if (noise >= all) return " The noise accounts for all of the mean square error.";
     return fmt::format(" Of the mean square error {} is noise, {} the coarseness of the skeleton, {} unexplained.",
-                       percent(budget["noise"].get<double>()), percent(budget["reduction"].get<double>()),
+                       percent(noise), percent(budget["reduction"].get<double>()),
                        percent(budget["missing_physics"].get<double>()));
 }
 
@@ -104,7 +109,7 @@ std::string region_words(const json& compare) {
         places += fmt::format("{}{} ({:.3g} sigma)", i > 0 ? ", " : "", place(strange[i]["at"]),
                               strange[i]["whitened_rms"].get<double>());
     }
-    return fmt::format(" It fails in {} of {} regions, worst round {}.", strange.size(), compare["regions"].size(),
+    return fmt::format(" It fails in {} of {} regions, worst around {}.", strange.size(), compare["regions"].size(),
                        places);
 }
 
@@ -139,7 +144,7 @@ std::string compare_in_words(const json& compare, const std::string& model) {
     if (reads_positions(compare)) {
         text += if_it_explains_nothing(error["relative"]);
     } else if (error["reactions"]["relative"].is_number() && error["reactions"]["relative"].get<double>() >= 1) {
-        text += " That is more than was measured: this model does not tell what a tool feels.";
+        text += " That is more than was measured: this model does not predict forces of tools.";
     }
     if (compare.contains("held_out")) {
         text += fmt::format(" On the probes that were fitted it is off by {}, on those held out by {}.",

@@ -53,6 +53,16 @@ std::string without_it(const json& diagnosis) {
     return text + ".";
 }
 
+/// How each probe is forecast by a fit to the others, without the effect and with it.
+std::string forecast_words(const json& before, const json& after) {
+    const std::string then = held_out_rms_in_words(before), now = held_out_rms_in_words(after);
+    if (then.empty() || now.empty()) return {};
+    const char* held_out = keys_of(before).held_out;
+    const bool improves = after[held_out].get<double>() < before[held_out].get<double>();
+    return fmt::format(" Probes that a fit does not see are forecast to within {}, before to within {}{}.", now, then,
+                       improves ? "" : ": with so few probes the forecast does not improve");
+}
+
 /// What the stiffness comes to with the explanation, and was taken for without it.
 std::string material_words(const json& diagnosis) {
     const json explained = diagnosis.value("explained", json());
@@ -63,11 +73,9 @@ std::string material_words(const json& diagnosis) {
 
 std::string drop_words(const json& diagnosis, const json& candidate) {
     if (!candidate["rms_mm"].is_number()) return {};
-    std::string text = fmt::format(" {} it lowers the error to {}",
-                                   candidate["kind"] == "body" ? "Adding" : "Correcting for", rms_in_words(candidate));
-    if (const std::string held_out = held_out_rms_in_words(candidate); !held_out.empty())
-        text += fmt::format(" ({} on probes held out one by one)", held_out);
-    return text + ", " + in_sigmas(candidate["whitened_rms"]) + "." + material_words(diagnosis);
+    return fmt::format(" {} it lowers the error to {}, {}.", candidate["kind"] == "body" ? "Adding" : "Correcting for",
+                       rms_in_words(candidate), in_sigmas(candidate["whitened_rms"])) +
+           forecast_words(diagnosis["baseline"], candidate) + material_words(diagnosis);
 }
 
 std::string runner_up(const json& diagnosis) {

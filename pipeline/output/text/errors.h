@@ -5,7 +5,7 @@
 
 namespace palpate::pipeline {
 
-/// The numbers of an error as JSON tells it (`rms_mm` and, where forces of tools were read, `reactions_rms_n`) that
+/// The numbers of an error as JSON states it (`rms_mm` and, where forces of tools were read, `reactions_rms_n`) that
 /// stand for it where there is room for one kind: those of the positions; of forces where no position was read.
 struct ErrorKeys {
     const char *unit, *fitted, *held_out;

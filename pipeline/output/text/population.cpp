@@ -51,7 +51,8 @@ std::string population_in_words(const json& number) {
         if (one["outlying"]) outlying.push_back(one["run"]);
     if (!outlying.empty()) words += fmt::format(" Unlike the others: {}.", fmt::join(outlying, ", "));
     if (!number["without"].empty())
-        words += fmt::format(" Not told by: {}.", fmt::join(number["without"].get<std::vector<std::string>>(), ", "));
+        words +=
+            fmt::format(" Not determined by: {}.", fmt::join(number["without"].get<std::vector<std::string>>(), ", "));
     return words;
 }
 

@@ -4,7 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <utility>
 
+#include "pipeline/output/json/preflight.h"
 #include "pipeline/output/text/words.h"
 
 namespace palpate::pipeline {
@@ -21,7 +24,7 @@ std::vector<std::string> effects_that(const json& preflight, const char* can_be_
 
 std::string cell(const json& value) {
     constexpr double large = 100;  // two digits suffice, without a power of ten
-    if (!value.is_number()) return "-";
+    if (!value.is_number()) return "–";
     return fmt::format(fmt::runtime(value.get<double>() < large ? "{:.2g}" : "{:.0f}"), value.get<double>());
 }
 
@@ -39,6 +42,14 @@ std::string in_digits(double value) {
     return fmt::format("{:.0f}", std::round(value / step) * step);
 }
 
+/// Three, or as many as it takes to tell two numbers apart.
+int digits_apart(double low, double high) {
+    constexpr int most = 6;
+    int digits = 3;
+    while (digits < most && fmt::format("{:.{}g}", low, digits) == fmt::format("{:.{}g}", high, digits)) ++digits;
+    return digits;
+}
+
 /// Effects that an experiment makes easier to name.
 std::vector<std::string> eased_by(const json& experiment) {
     std::vector<std::string> names;
@@ -48,19 +59,35 @@ std::vector<std::string> eased_by(const json& experiment) {
 
 }  // namespace
 
-std::string own_strength(const json& own) {
+std::string own_strength(const json& own, const std::string& effect) {
     if (own.is_null()) return "–";
     const double value = own["value"].get<double>();
-    const std::string unit = own["unit"] == "1" ? "" : " " + own["unit"].get<std::string>();
-    // A vector's length needs no name where it has a unit.
-    const std::string name = unit.empty() ? own["name"].get<std::string>() + " " : "";
-    return fmt::format("{}{}{}{}", own["at_most"].get<bool>() ? "up to " : "", name, in_digits(value), unit);
+    const std::string bound = own["at_most"].get<bool>() ? "up to " : "";
+    if (own["unit"] != "1") return bound + in_digits(value) + " " + own["unit"].get<std::string>();
+    // A bare number says what it is of: a share in per cent, else a ratio.
+    static const std::map<std::string, std::pair<const char*, double>> meanings{
+        {"force-gain", {"gain error {} %", 100}}, {"actuation-gain", {"gain error {} %", 100}},
+        {"slip", {"motion error {} %", 100}},     {"swelling", {"{} % growth", 100}},
+        {"viscosity", {"{} % creep", 100}},       {"damage", {"{} % softer", 100}},
+        {"prestress", {"{} x shear modulus", 1}}, {"anisotropy", {"{} x shear modulus", 1}},
+        {"volume", {"ratio off by {}", 1}},       {"friction", {"coefficient {}", 1}}};
+    const auto found = meanings.find(effect);
+    if (found == meanings.end()) return bound + own["name"].get<std::string>() + " " + in_digits(value);
+    const auto& [words, scale] = found->second;
+    return bound + fmt::format(fmt::runtime(words), cell(scale * value));
 }
 
 bool is_within_reach(const json& effect) {
-    constexpr double most = 5;  // times the prior's strength: beyond it first order tells nothing
+    constexpr double most = 5;  // times the prior's strength: beyond it the linearisation is not valid
     const json& least = effect["least"]["of_prior"];
     return least.is_number() && least.get<double>() <= most;
+}
+
+std::string threshold_in_words(const json& effect) {
+    const json& least = effect["least"];
+    if (!is_within_reach(effect)) return "–";
+    return least["own"].is_null() ? fmt::format("{:.2g} of its prior", least["of_prior"].get<double>())
+                                  : own_strength(least["own"], effect["effect"]);
 }
 
 std::string preflight_lead(const json& preflight) {
@@ -91,16 +118,18 @@ std::vector<std::string> parameter_sentences(const json& preflight) {
         const double low = one["q025"], high = one["q975"];
         if (name == "young" && !tells_a_force) {
             result.push_back(
-                "Without a measured force Young's modulus stays as it is assumed; ratios of stiffness can be told.");
+                "Without a measured force Young's modulus stays as it is assumed; ratios of stiffness can be "
+                "identified.");
         } else if (one["informed"].get<bool>()) {
-            result.push_back(
-                fmt::format("{} would be known to within {:.4g} to {:.4g}{} (95 %).", what, low, high, unit));
+            const int digits = digits_apart(low, high);
+            result.push_back(fmt::format("{} would lie between {:.{}g} and {:.{}g}{} (95 %).", what, low, digits, high,
+                                         digits, unit));
         } else if (one["narrows_prior_to"].get<double>() > 0.99 &&
                    high - low < 0.02 * std::abs(one["value"].get<double>())) {
             result.push_back(fmt::format("{} is the set's own, {:.3g}{}.", what, one["value"].get<double>(), unit));
         } else {
-            result.push_back(
-                fmt::format("{} is hardly told by these readings: {:.3g} to {:.3g}{} (95 %).", what, low, high, unit));
+            result.push_back(fmt::format("{} is poorly determined by these readings: {:.3g} to {:.3g}{} (95 %).", what,
+                                         low, high, unit));
         }
     }
     if (preflight["guess"]["law"] == "linear")
@@ -109,8 +138,10 @@ std::vector<std::string> parameter_sentences(const json& preflight) {
             "magnitude where the body moves far.");
     const json& parts = preflight["parts"];
     const auto informed = std::ranges::count_if(parts, [](const json& part) { return part["informed"].get<bool>(); });
-    result.push_back(
-        fmt::format("Of {} parts of the body, the stiffness of {} by itself would be told.", parts.size(), informed));
+    result.push_back(informed == 0 ? "No single part's stiffness could be determined separately."
+                                   : fmt::format("Of {} parts of the body, the stiffness of {} could be determined "
+                                                 "separately.",
+                                                 parts.size(), informed));
     return result;
 }
 
@@ -124,11 +155,8 @@ std::string preflight_in_words(const json& preflight) {
         const json& least = one["least"];
         const bool is_reached = is_within_reach(one);
         text += fmt::format("  {:<18} {:>7} {:>22} {:>9} {:>8}  {}\n", one["effect"].get<std::string>(),
-                            one["can_be_named"].get<std::string>(),
-                            is_reached && !least["own"].is_null() ? own_strength(least["own"])
-                            : is_reached ? fmt::format("{:.2g} of its prior", least["of_prior"].get<double>())
-                                         : "-",
-                            is_reached ? cell(least["rms_mm"]) : "-", is_reached ? cell(least["rms_sigma"]) : "-",
+                            one["can_be_named"].get<std::string>(), threshold_in_words(one),
+                            is_reached ? cell(least["rms_mm"]) : "–", is_reached ? cell(least["rms_sigma"]) : "–",
                             one["why_not"].get<std::string>());
     }
     std::size_t listed_ones = 0;
@@ -148,7 +176,7 @@ std::string preflight_in_words(const json& preflight) {
         if (++listed_ones > most_next) break;
         const auto opens = one["opens"].get<std::vector<std::string>>();
         text += "  Next in the lab: " + one["words"].get<std::string>() +
-                (opens.empty() ? fmt::format(": it would ease {}.\n", listed(eased_by(one)))
+                (opens.empty() ? fmt::format(": it would make {} easier to identify.\n", listed(eased_by(one)))
                                : fmt::format(": it would show {}.\n", listed(opens)));
     }
     return text;
@@ -159,12 +187,11 @@ std::string why_not_shown(const json& preflight, const std::string& effect) {
         std::ranges::find_if(preflight["effects"], [&](const json& one) { return one["effect"] == effect; });
     if (found == preflight["effects"].end()) return fmt::format("The set was not asked for {}.", effect);
     const json& one = *found;
-    constexpr double half = 0.5;
-    if (one["why_not"] == "" && one["share"].get<double>() >= half) return {};
+    if (one["why_not"] == "" && one["share"].get<double>() >= sufficient_share) return {};
     const json& prior = one["prior"]["own"];
     return fmt::format("The set cannot show {}{}: {}.", effect,
                        prior.is_null() ? " at the strength of its prior"
-                                       : fmt::format(" at the strength of its prior, {}", own_strength(prior)),
+                                       : fmt::format(" at the strength of its prior, {}", own_strength(prior, effect)),
                        one["why_not"].get<std::string>());
 }
 

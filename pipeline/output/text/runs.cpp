@@ -13,24 +13,32 @@ namespace {
 
 using nlohmann::json;
 
-std::string in_mm(const json& value) { return value.is_number() ? fmt::format("{:.3g} mm", value.get<double>()) : "–"; }
+std::string in_unit(const json& value, const char* unit) {
+    return value.is_number() ? fmt::format("{:.3g} {}", value.get<double>(), unit) : "–";
+}
 
-/// The run of the least value; none where one has no value, two share it as far as it is told, or their states differ.
+// An error of a run, and in words: in N where forces alone were measured.
+json nothing_added(const json& run) { return (run["rms_n"].is_null() ? run["rms_mm"] : run["rms_n"])["nothing_added"]; }
+json fitted(const json& run) { return (run["rms_n"].is_null() ? run["rms_mm"] : run["rms_n"])["now"]; }
+json held_out(const json& run) { return run["rms_n"].is_null() ? run["held_out_rms_mm"] : run["rms_n"]["held_out"]; }
+std::string error_of_run(const json& run, const json& error) {
+    return in_unit(error, run["rms_n"].is_null() ? "mm" : "N");
+}
+
+/// The run of the least value; none where one has no value, or two share it to the digits reported.
 std::optional<std::size_t> least(const json& runs, const std::function<json(const json&)>& value_of) {
-    if (!runs["same_states"].get<bool>()) return std::nullopt;
+    if (!can_be_ranked(runs)) return std::nullopt;
     std::vector<double> values;
     for (const json& run : runs["runs"]) {
         const json value = value_of(run);
         if (!value.is_number()) return std::nullopt;
         values.push_back(value.get<double>());
     }
+    const auto to_three_digits = [](double value) { return fmt::format("{:.3g}", value); };
     const auto best = std::ranges::min_element(values);
-    if (std::ranges::count(values, in_mm(*best), in_mm) > 1) return std::nullopt;
+    if (std::ranges::count(values, to_three_digits(*best), to_three_digits) > 1) return std::nullopt;
     return static_cast<std::size_t>(best - values.begin());
 }
-
-json held_out(const json& run) { return run["held_out_rms_mm"]; }
-json fitted(const json& run) { return run["rms_mm"]["now"]; }
 
 /// Has every run an error on the same held-out probes?
 bool share_held_out(const json& runs) {
@@ -42,6 +50,8 @@ bool share_held_out(const json& runs) {
 std::string or_none(const json& value) { return value.is_string() ? value.get<std::string>() : "–"; }
 
 }  // namespace
+
+bool can_be_ranked(const json& runs) { return runs["same_states"].get<bool>() && runs["same_readings"].get<bool>(); }
 
 std::vector<RunNumber> run_numbers(const json& runs) {
     std::vector<RunNumber> numbers;
@@ -55,13 +65,13 @@ std::vector<RunNumber> run_numbers(const json& runs) {
         const auto effects = run["effects"].get<std::vector<std::string>>();
         return effects.empty() ? "nothing" : listed(effects);
     });
-    add("rms error, nothing added", [](const json& run) { return in_mm(run["rms_mm"]["nothing_added"]); });
-    add("rms error", [](const json& run) { return in_mm(fitted(run)); }).best = least(runs, fitted);
-    add("rms error, held out", [](const json& run) { return in_mm(held_out(run)); }).best =
+    add("rms error, nothing added", [](const json& run) { return error_of_run(run, nothing_added(run)); });
+    add("rms error", [](const json& run) { return error_of_run(run, fitted(run)); }).best = least(runs, fitted);
+    add("rms error, held out", [](const json& run) { return error_of_run(run, held_out(run)); }).best =
         share_held_out(runs) ? least(runs, held_out) : std::nullopt;
     add("error over displacement",
         [](const json& run) { return run["relative"].is_number() ? percent(run["relative"].get<double>()) : "–"; });
-    add("noise", [](const json& run) { return in_mm(run["noise_mm"]); });
+    add("noise", [](const json& run) { return in_unit(run["noise_mm"], "mm"); });
     add("finite elements", [](const json& run) { return or_none(run["material"]); });
     add("spheres, links",
         [](const json& run) { return fmt::format("{}, {}", run["spheres"].get<int>(), run["links"].get<int>()); });
@@ -74,7 +84,9 @@ std::vector<RunNumber> run_numbers(const json& runs) {
 
 std::string best_run_in_words(const json& runs) {
     if (!runs["same_states"].get<bool>())
-        return "These runs differ in body, loads or states: their errors are listed, not ranked.";
+        return "These runs differ in body, loads or states; their errors are listed, not ranked.";
+    if (!runs["same_readings"].get<bool>())
+        return "These runs use different measurements; their errors are listed, not ranked.";
     const bool is_foretold = share_held_out(runs);
     const auto best = least(runs, is_foretold ? held_out : fitted);
     if (!best)
@@ -83,11 +95,12 @@ std::string best_run_in_words(const json& runs) {
     const json& run = runs["runs"][*best];
     const auto name = run["run"].get<std::string>();
     if (is_foretold)
-        return fmt::format("{} has the least error on held-out probes, {} rms.", name, in_mm(held_out(run)));
+        return fmt::format("{} has the least error on held-out probes, {} rms.", name,
+                           error_of_run(run, held_out(run)));
     return fmt::format(
         "{} has the least error on the probes it was fitted to, {} rms. The runs share no held-out probes, so a model "
         "with more parameters may merely fit more of the noise.",
-        name, in_mm(fitted(run)));
+        name, error_of_run(run, fitted(run)));
 }
 
 std::string runs_table(const json& runs) {

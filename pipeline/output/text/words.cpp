@@ -66,7 +66,8 @@ std::string material_in_words(const json& material) {
 
 std::string and_under_load(const json& load_exponent) {
     const std::string words = load_exponent["words"];
-    return words == "the error is there without any load" ? ", already without load" : ", and " + words;
+    return words == "the error is there without any load" ? " over all states, and there is one without any load, too"
+                                                          : ", and " + words;
 }
 
 std::string law_in_words(const std::string& law) {
@@ -76,9 +77,9 @@ std::string law_in_words(const std::string& law) {
 }
 
 std::string probability_in_words(double probability) {
-    constexpr double told = 0.01;
-    if (probability < told) return "below 0.01";
-    if (probability > 1 - told) return "above 0.99";
+    constexpr double reported = 0.01;
+    if (probability < reported) return "below 0.01";
+    if (probability > 1 - reported) return "above 0.99";
     return fmt::format("{:.2f}", probability);
 }
 

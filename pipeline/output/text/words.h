@@ -24,17 +24,17 @@ std::string in_sigmas(const nlohmann::json& whitened_rms);
 /// The modulus of a region of a material of its own: "E = 1.2 ± 0.1 MPa".
 std::string region_in_words(const nlohmann::json& region);
 
-/// The modulus and ratio of a body in finite elements, as its JSON tells them: "E = 0.242 ± 0.012 MPa, ν = 0.499
+/// The modulus and ratio of a body in finite elements, as its JSON states them: "E = 0.242 ± 0.012 MPa, ν = 0.499
 /// (declared)", then "; tumour: E = 1.2 ± 0.1 MPa" for each region.
 std::string material_in_words(const nlohmann::json& material);
 
-/// How an error depends on the load, after "the rms error is 2 mm": ", already without load".
+/// How an error depends on the load, after "the rms error is 2 mm": ", and it grows in proportion to the load".
 std::string and_under_load(const nlohmann::json& load_exponent);
 
 /// A law of the material or of the equilibrium in prose: "neo-Hookean law".
 std::string law_in_words(const std::string& law);
 
-/// A probability that is nearly 0 or 1 is told as such: "below 0.01".
+/// A probability that is nearly 0 or 1 is reported as such: "below 0.01".
 std::string probability_in_words(double probability);
 
 /// "gravity, misalignment and outliers"

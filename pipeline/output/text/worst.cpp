@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <vector>
 
 #include "pipeline/output/text/words.h"
@@ -15,12 +16,12 @@ using nlohmann::json;
 
 constexpr std::size_t most_listed_rows = 4;  // of probes, and of markers
 
-/// The entries with the largest rms errors, largest first.
-std::vector<json> worst_of(const json& entries) {
+/// The entries with the largest errors, largest first; `error`: their key.
+std::vector<json> worst_of(const json& entries, const char* error) {
     std::vector<json> worst;
     for (const json& entry : entries)
-        if (entry["rms_mm"].is_number()) worst.push_back(entry);
-    std::ranges::stable_sort(worst, std::greater{}, [](const json& e) { return e["rms_mm"].get<double>(); });
+        if (entry[error].is_number()) worst.push_back(entry);
+    std::ranges::stable_sort(worst, std::greater{}, [&](const json& e) { return e[error].get<double>(); });
     worst.resize(std::min(worst.size(), most_listed_rows));
     return worst;
 }
@@ -39,6 +40,49 @@ std::string what_acts(const json& probe, const json& compare) {
 }
 
 std::string marker_name(const json& marker) { return marker.value("name", marker["marker"].dump()); }
+
+std::string worst_positions(const json& compare) {
+    const std::vector<json> probes = worst_of(compare["probes"], "rms_mm");
+    const std::vector<json> markers = worst_of(compare["markers"], "rms_mm");
+    if (probes.empty() || markers.empty()) return {};
+    std::string text = fmt::format("  {:<24} {:>10} {:>10} {:>9}  {}\n", "Largest errors", "rms mm", "max mm",
+                                   "% moved", "load applied at");
+    for (const json& p : probes) {
+        text +=
+            fmt::format("  {:<24} {:>10.3g} {:>10.3g} {:>9}  {}\n",
+                        fmt::format("probe {}, {:g} s", p["probe"].get<int>(), p["time"].get<double>()),
+                        p["rms_mm"].get<double>(), p["max_mm"].get<double>(),
+                        p["relative"].is_number() ? percent(p["relative"].get<double>()) : "-", what_acts(p, compare));
+    }
+    text += fmt::format("  {:<24} {:>10} {:>20}  {}\n", "Markers", "rms mm", "", "rest position");
+    for (const json& m : markers) {
+        text += fmt::format("  {:<24} {:>10.3g} {:>20}  {}\n", "marker " + marker_name(m), m["rms_mm"].get<double>(),
+                            "", where(m["at"], compare));
+    }
+    return text;
+}
+
+double length_of(const json& vector) {
+    double squares = 0;
+    for (const json& component : vector)
+        if (component.is_number()) squares += std::pow(component.get<double>(), 2);
+    return std::sqrt(squares);
+}
+
+std::string worst_forces(const json& compare) {
+    const std::vector<json> forces = worst_of(compare.value("tool_forces", json::array()), "error_n");
+    if (forces.empty()) return {};
+    std::string text = fmt::format("  {:<24} {:>10} {:>10} {:>9}  {}\n", "Largest force errors", "error N", "read N",
+                                   "% of it", "tool at");
+    for (const json& force : forces) {
+        const double error = force["error_n"].get<double>(), read = length_of(force["measured_n"]);
+        text += fmt::format("  {:<24} {:>10.3g} {:>10.3g} {:>9}  {}, {}\n",
+                            fmt::format("probe {}, {:g} s", force["probe"].get<int>(), force["time"].get<double>()),
+                            error, read, read > 0 ? percent(error / read) : "-", force["tool"].get<std::string>(),
+                            where(force["at"], compare));
+    }
+    return text;
+}
 
 }  // namespace
 
@@ -67,24 +111,6 @@ std::string part_of_body(const json& at, const json& box) {
     return words.empty() ? "middle" : words;
 }
 
-std::string worst_table(const json& compare) {
-    const std::vector<json> probes = worst_of(compare["probes"]), markers = worst_of(compare["markers"]);
-    if (probes.empty() || markers.empty()) return {};
-    std::string text = fmt::format("  {:<24} {:>10} {:>10} {:>9}  {}\n", "Largest errors", "rms mm", "max mm",
-                                   "% moved", "load applied at");
-    for (const json& p : probes) {
-        text +=
-            fmt::format("  {:<24} {:>10.3g} {:>10.3g} {:>9}  {}\n",
-                        fmt::format("probe {}, {:g} s", p["probe"].get<int>(), p["time"].get<double>()),
-                        p["rms_mm"].get<double>(), p["max_mm"].get<double>(),
-                        p["relative"].is_number() ? percent(p["relative"].get<double>()) : "-", what_acts(p, compare));
-    }
-    text += fmt::format("  {:<24} {:>10} {:>20}  {}\n", "Markers", "rms mm", "", "rest position");
-    for (const json& m : markers) {
-        text += fmt::format("  {:<24} {:>10.3g} {:>20}  {}\n", "marker " + marker_name(m), m["rms_mm"].get<double>(),
-                            "", where(m["at"], compare));
-    }
-    return text;
-}
+std::string worst_table(const json& compare) { return worst_positions(compare) + worst_forces(compare); }
 
 }  // namespace palpate::pipeline

@@ -23,7 +23,7 @@ double area_of(const mesh::Surface& surface) {
     return area;
 }
 
-/// An array's name, and what densities are told over.
+/// An array's name, and what densities are relative to.
 struct SourceDensity {
     std::string name;
     double per = 1;

@@ -8,6 +8,7 @@
 #include "pipeline/case/settings/settings.h"
 #include "pipeline/output/html/escape.h"
 #include "pipeline/output/html/packed_rows.h"
+#include "pipeline/output/html/page_frame.h"
 #include "pipeline/output/text/words.h"
 #include "pipeline/play/pick/page_parts.h"
 
@@ -90,12 +91,9 @@ json pick_json(const Subject& subject) {
 
 std::string pick_page(const Subject& subject) {
     const json data = pick_json(subject);
-    return "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">"
-           "<meta name=\"viewport\" content=\"width=device-width,initial-scale=1\">"
-           "<meta name=\"generator\" content=\"palpate\"><link rel=\"icon\" href=\"data:,\"><title>" +
-           escape("Set up " + data["name"].get<std::string>()) + "</title>\n<style>" + std::string(pick_style) +
-           "</style></head><body>\n" + std::string(pick_view) + "<script id=\"pick-data\" type=\"application/json\">" +
-           as_script_data(data) + "</script><script>" + std::string(pick_script) + "</script></body></html>\n";
+    return page_head("Set up " + data["name"].get<std::string>(), pick_style) + "<body>\n" + std::string(pick_view) +
+           "<script id=\"pick-data\" type=\"application/json\">" + as_script_data(data) + "</script><script>" +
+           std::string(pick_script) + "</script></body></html>\n";
 }
 
 }  // namespace palpate::pipeline

@@ -5,14 +5,14 @@
 #include "pipeline/python/extension/bind.h"
 #include "pipeline/python/extension/conversions/arrays.h"
 
-// An effect that a function of Python's tells: for trying out, as each of its points takes the interpreter's lock.
+// An effect defined by a Python function: for trying out, as each of its points takes the interpreter's lock.
 
 namespace palpate::python {
 namespace {
 
-/// What is told of an effect. Registered effects live as long as the program, longer than the interpreter: what is
-/// Python's in them is never given back.
-struct Told {
+/// Definition of an effect in Python. Registered effects live as long as the program, longer than the interpreter: what
+/// is Python's in them is never given back.
+struct EffectDefinition {
     identify::EffectDescription description;
     std::vector<std::string> names, units;
     std::vector<double> prior_sd;
@@ -22,47 +22,48 @@ struct Told {
 
 class PythonPotential : public fem::PointPotential {
 public:
-    PythonPotential(std::shared_ptr<const Told> told, std::vector<double> values)
-        : told_(std::move(told)), values_(std::move(values)) {}
+    PythonPotential(std::shared_ptr<const EffectDefinition> definition, std::vector<double> values)
+        : definition_(std::move(definition)), values_(std::move(values)) {}
 
-    fem::ActsOn acts_on() const override { return told_->acts_on; }
+    fem::ActsOn acts_on() const override { return definition_->acts_on; }
 
     fem::PointTerms terms(const Vec3& X, const Vec3& x) const override {
         const py::gil_scoped_acquire held;
         py::dict numbers;
-        for (std::size_t i = 0; i < values_.size(); ++i) numbers[py::str(told_->names[i])] = values_[i];
-        const auto told = py::reinterpret_borrow<py::object>(told_->terms)(py::array_t<double>(3, X.data()),
-                                                                           py::array_t<double>(3, x.data()), **numbers);
-        if (!py::isinstance<py::tuple>(told) || py::len(told) != 3)
+        for (std::size_t i = 0; i < values_.size(); ++i) numbers[py::str(definition_->names[i])] = values_[i];
+        const auto returned = py::reinterpret_borrow<py::object>(definition_->terms)(
+            py::array_t<double>(3, X.data()), py::array_t<double>(3, x.data()), **numbers);
+        if (!py::isinstance<py::tuple>(returned) || py::len(returned) != 3)
             throw InvalidInput(
                 fmt::format("effect '{}': its function must return (energy, gradient (3,), hessian (3, 3))",
-                            told_->description.name));
-        const auto parts = told.cast<py::tuple>();
+                            definition_->description.name));
+        const auto parts = returned.cast<py::tuple>();
         return {.energy = parts[0].cast<double>(),
                 .gradient = vector_of(parts[1], "the effect's gradient"),
                 .hessian = matrix_of(parts[2], "the effect's hessian", 3, 3)};
     }
 
 private:
-    std::shared_ptr<const Told> told_;
+    std::shared_ptr<const EffectDefinition> definition_;
     std::vector<double> values_;
 };
 
 class PythonEffect : public identify::EffectHypothesis {
 public:
-    explicit PythonEffect(std::shared_ptr<const Told> told) : told_(std::move(told)) {}
-    const identify::EffectDescription& description() const override { return told_->description; }
+    explicit PythonEffect(std::shared_ptr<const EffectDefinition> definition) : definition_(std::move(definition)) {}
+    const identify::EffectDescription& description() const override { return definition_->description; }
 
     std::vector<identify::EffectNumber> numbers(const identify::BodyModel&, const identify::Problem&) const override {
         std::vector<identify::EffectNumber> numbers;
-        for (std::size_t i = 0; i < told_->names.size(); ++i)
-            numbers.push_back({.name = told_->names[i], .unit = told_->units[i], .prior_sd = told_->prior_sd[i]});
+        for (std::size_t i = 0; i < definition_->names.size(); ++i)
+            numbers.push_back(
+                {.name = definition_->names[i], .unit = definition_->units[i], .prior_sd = definition_->prior_sd[i]});
         return numbers;
     }
 
     bool enforce(const Eigen::VectorXd& values, identify::ModelSetting& setting) const override {
         setting.effects.points.push_back(
-            std::make_shared<PythonPotential>(told_, std::vector<double>(values.begin(), values.end())));
+            std::make_shared<PythonPotential>(definition_, std::vector<double>(values.begin(), values.end())));
         return true;
     }
 
@@ -74,7 +75,7 @@ public:
     }
 
 private:
-    std::shared_ptr<const Told> told_;
+    std::shared_ptr<const EffectDefinition> definition_;
 };
 
 fem::ActsOn acts_on(const std::string& word) {
@@ -88,34 +89,34 @@ void register_python_effect(const std::string& name, const py::function& terms,
                             const std::string& where, const std::string& meaning) {
     if (skeleton::find_known_effect(name) || identify::effect_named(name))
         throw InvalidInput(fmt::format("effect '{}' is known already; give yours another name", name));
-    auto told = std::make_shared<Told>();
-    told->acts_on = acts_on(where);
-    told->description = {.name = name,
-                         .kind = identify::EffectKind::body,
-                         .meaning = meaning,
-                         .parameters = {},
-                         .reveals = "what its function in Python says",
-                         .confused_with = {},
-                         .separating_probe = "loads at other places and in other directions",
-                         .next_probe = "load"};
+    auto definition = std::make_shared<EffectDefinition>();
+    definition->acts_on = acts_on(where);
+    definition->description = {.name = name,
+                               .kind = identify::EffectKind::body,
+                               .meaning = meaning,
+                               .parameters = {},
+                               .reveals = "what its function in Python says",
+                               .confused_with = {},
+                               .separating_probe = "loads at other places and in other directions",
+                               .next_probe = "load"};
     skeleton::KnownEffect known{name, {}, {}};
     for (const auto& [number, unit, prior_sd] : parameters) {
         if (!(prior_sd > 0))
             throw InvalidInput(
                 fmt::format("effect '{}': the prior_sd of {} is {}, must be above 0", name, number, prior_sd));
-        told->names.push_back(number);
-        told->units.push_back(unit);
-        told->prior_sd.push_back(prior_sd);
-        told->description.parameters.push_back(fmt::format("{} [{}]", number, unit));
+        definition->names.push_back(number);
+        definition->units.push_back(unit);
+        definition->prior_sd.push_back(prior_sd);
+        definition->description.parameters.push_back(fmt::format("{} [{}]", number, unit));
         known.parameters.push_back({number, unit});
     }
-    told->terms = terms.inc_ref().ptr();
-    known.make = [told](const skeleton::EffectNumbers& numbers) -> fem::Effects {
+    definition->terms = terms.inc_ref().ptr();
+    known.make = [definition](const skeleton::EffectNumbers& numbers) -> fem::Effects {
         std::vector<double> values;
-        for (const std::string& number : told->names) values.push_back(numbers[number]);
-        return {.points = {std::make_shared<PythonPotential>(told, std::move(values))}};
+        for (const std::string& number : definition->names) values.push_back(numbers[number]);
+        return {.points = {std::make_shared<PythonPotential>(definition, std::move(values))}};
     };
-    identify::register_effect(std::move(known), std::make_shared<PythonEffect>(told));
+    identify::register_effect(std::move(known), std::make_shared<PythonEffect>(definition));
 }
 
 }  // namespace

@@ -37,7 +37,7 @@ std::vector<std::string> drawn_effects() {
                                    mesh::suggestion(name, names), mesh::listed(names)));
 }
 
-/// An effect that a user made known: if it lacks one number, that is how strong it is; else it is all told.
+/// A user-defined effect: a single number that is not specified is its strength; otherwise all must be specified.
 EffectSampler sampler_of_own(const EffectSpec& spec) {
     skeleton::EffectRecord effect{spec.effect, spec.given};
     std::vector<skeleton::KnownParameter> unspecified;
@@ -47,7 +47,7 @@ EffectSampler sampler_of_own(const EffectSpec& spec) {
         if (!is_specified && !known.optional) unspecified.push_back(known);
     }
     if (unspecified.size() != 1) {
-        skeleton::make_physics(effect);  // refuses what is not complete
+        skeleton::make_physics(effect);  // refuses an incomplete specification
         return {.at = [effect](double) { return effect; }, .is_specified = true};
     }
     effect.parameters.push_back({unspecified[0].name, 1, unspecified[0].unit});

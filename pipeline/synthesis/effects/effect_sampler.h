@@ -11,8 +11,9 @@ namespace palpate::pipeline {
 
 using identify::EffectSampler;
 
-/// Drafts of an effect: what is told is taken, the rest drawn. Several: other places for it, for where it can hardly be
-/// felt in the first one. Of an effect that a user made known one number may be left out, which is then its strength.
+/// Samplers of an effect: specified values are kept, the others drawn. Several: alternative locations, for an effect
+/// whose first location hardly changes the readings. Of an effect that a user made known one number may be left out,
+/// which is then its strength.
 /// @throws InvalidInput for an effect or a number that is not known, with its likely spelling,
 /// or an effect that cannot be on this specimen.
 std::vector<EffectSampler> samplers_of(const Specimen& specimen, const Plan& plan, const EffectSpec& spec,

@@ -17,14 +17,14 @@ struct EffectSpec {
 /// What is wrong with the form EFFECT[:name=value,...], in words; empty: nothing. Names and values are not looked at.
 std::string objection_to_spec(const std::string& spec);
 
-/// Reads them. @pre no slip in any. @throws InvalidInput for a value that is no number, a name given twice, an effect
-/// wished for twice, "none" beside others.
+/// Reads them. @pre objection_to_spec finds nothing in any. @throws InvalidInput for a value that is no number, a name
+/// given twice, an effect specified twice, "none" beside others.
 std::vector<EffectSpec> read_specs(const std::vector<std::string>& specs);
 
-/// The first wish for an effect that needs this to show; null: there is none.
+/// The first spec whose effect has this need; null: none has.
 const EffectSpec* first_with(bool identify::SynthesisNeeds::*need, const std::vector<EffectSpec>& specs);
 
-/// An effect as it would be wished for: "gravity:gx=0,gy=-4387.2,gz=0". Read back, it is the same.
+/// An effect as its specification: "gravity:gx=0,gy=-4387.2,gz=0". Read back, it is the same.
 std::string to_spec(const skeleton::EffectRecord& effect);
 
 }  // namespace palpate::pipeline

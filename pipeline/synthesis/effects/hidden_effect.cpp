@@ -12,10 +12,10 @@
 namespace palpate::pipeline {
 namespace {
 
-struct Found {
-    double x = 0;  // of a draft
-    Strength strength;
-    double change() const { return strength.change; }
+struct SoughtStrength {
+    double strength = 0;  // argument of the sampler
+    Strength effect;      // on the readings
+    double change() const { return effect.change; }
 };
 
 /// The strength that would move the untouched body by `aim` (rms over the markers) [mm], by its tangent.
@@ -35,14 +35,14 @@ double strength_at_rest(const Specimen& specimen, const Plan& plan, const Effect
 
 /// A strength whose change lies within [least, most]; else the nearest to that. Secants in logarithms, bracketed: more
 /// strength is taken to change more, and to be too much where there is no equilibrium.
-Found seek(StrengthTrial& trial, const EffectSampler& sampler, double start, double least, double most) {
+SoughtStrength seek(StrengthTrial& trial, const EffectSampler& sampler, double start, double least, double most) {
     constexpr int plays = 12;
-    constexpr double close = 1.06;  // strengths that need not be told apart
+    constexpr double close = 1.06;  // strengths that need not be distinguished
     const double aim = std::sqrt(least * most);
-    const auto distance = [&](const Found& found) {
+    const auto distance = [&](const SoughtStrength& found) {
         return found.change() > 0 ? std::abs(std::log(found.change() / aim)) : std::numeric_limits<double>::infinity();
     };
-    Found best, last;
+    SoughtStrength best, last;
     double weak = 0, strong = std::numeric_limits<double>::infinity();  // strengths that are too little, too much
     double x = std::min(start, sampler.most);
     for (int i = 0; i < plays && strong > close * weak; ++i) {
@@ -52,7 +52,7 @@ Found seek(StrengthTrial& trial, const EffectSampler& sampler, double start, dou
             x = weak > 0 ? std::sqrt(weak * strong) : x / 8;
             continue;
         }
-        const Found now{x, *strength};
+        const SoughtStrength now{x, *strength};
         if (distance(now) < distance(best)) best = now;
         const bool is_weak = now.change() < least;
         if ((!is_weak && now.change() <= most) || (is_weak && x == sampler.most)) return best;
@@ -60,7 +60,8 @@ Found seek(StrengthTrial& trial, const EffectSampler& sampler, double start, dou
 
         double slope = sampler.slope, factor = sampler.growth;
         if (last.change() > 0 && now.change() > 0) {
-            slope = std::clamp(std::log(now.change() / last.change()) / std::log(now.x / last.x), 0.2, 5.0);
+            slope =
+                std::clamp(std::log(now.change() / last.change()) / std::log(now.strength / last.strength), 0.2, 5.0);
         }
         if (now.change() > 0) factor = std::clamp(std::pow(aim / now.change(), 1 / slope), 1 / 8.0, sampler.growth);
         last = now;
@@ -97,13 +98,13 @@ HiddenEffect hide(const Specimen& specimen, const Plan& plan, const std::vector<
         if (!sampler.is_local && !some.is_whole(plan)) {
             // what is asked for of all, where it is tried
             const double ratio = some.baseline_strength().displacement / displacement;
-            start = seek(some, sampler, start, least * ratio, most * ratio).x;
+            start = seek(some, sampler, start, least * ratio, most * ratio).strength;
             if (start == 0) continue;
         }
         StrengthTrial all(baseline);
-        const Found found = seek(all, sampler, start, least, most);
-        if (found.x > 0 && visibility(found.strength) > visibility(best.strength)) {
-            best = {sampler.at(found.x), false, found.strength};
+        const SoughtStrength found = seek(all, sampler, start, least, most);
+        if (found.strength > 0 && visibility(found.effect) > visibility(best.strength)) {
+            best = {sampler.at(found.strength), false, found.effect};
         }
         if (visibility(best.strength) >= 1) break;
     }

@@ -19,9 +19,9 @@ struct HiddenEffect {
     Strength strength;          // alone, over all histories
 };
 
-/// Gives an effect its strength: told, or sought until it changes the readings by the target. It is played alone, on
-/// the first few probes, then on all. Samplers are tried in turn until 3 sigma of the change cannot be explained by a
-/// common stiffness factor. Where it cannot be made that strong it is as strong as is sensible.
+/// Gives an effect its strength: as specified, or sought until it changes the readings by the target. It is simulated
+/// alone, on the first few probes, then on all. Samplers are tried in turn until 3 sigma of the change cannot be
+/// explained by a common stiffness factor. Where it cannot be made that strong it is as strong as is sensible.
 /// @throws InvalidInput for impossible numbers, SolverFailure when the body bears it at no strength.
 HiddenEffect hide(const Specimen& specimen, const Plan& plan, const std::vector<EffectSampler>& samplers,
                   const Target& target, const SimulationOptions& options);

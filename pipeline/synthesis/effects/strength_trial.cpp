@@ -53,7 +53,7 @@ bool StrengthTrial::played(const skeleton::EffectRecord& effect, const std::vect
                            const SimulationOptions& options) {
     paths_ = near_;
     if (!changes_equilibrium(effect)) return true;
-    std::vector<LoadCourse> histories;
+    std::vector<ProbeLoadHistory> histories;
     std::vector<EquilibriumPath> near;
     for (const int c : which) {
         histories.push_back(histories_[c]);

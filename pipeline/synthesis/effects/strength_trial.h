@@ -22,7 +22,7 @@ public:
     /// do not. Probes without equilibrium at a lower strength are skipped at a higher one; finally their forces may be
     /// reduced.
     std::optional<Strength> strength(const skeleton::EffectRecord& effect, double x);
-    /// The same of one whose strength was told, over all that find an equilibrium.
+    /// The same of one whose strength is specified, over all that find an equilibrium.
     Strength specified_strength(const skeleton::EffectRecord& effect);
 
 private:
@@ -32,7 +32,7 @@ private:
     const Specimen& specimen_;
     SimulationOptions options_;
     double noise_;
-    std::vector<LoadCourse> histories_;
+    std::vector<ProbeLoadHistory> histories_;
     std::vector<EquilibriumPath> near_;   // where to begin
     std::vector<EquilibriumPath> paths_;  // of the last effect
     std::vector<Points> baseline_;

@@ -10,7 +10,7 @@ namespace palpate::pipeline {
 
 int write_deck(const std::filesystem::path& folder, const Specimen& specimen, const Plan& plan) {
     std::vector<identify::LoadState> states;
-    for (const LoadCourse& history : plan.histories)
+    for (const ProbeLoadHistory& history : plan.histories)
         for (std::size_t row = 0; row < history.rows.size(); ++row) states.push_back(history.state(row));
 
     const fem::Material& material = *specimen.material;

@@ -101,8 +101,8 @@ private:
     const TrueConditions conditions_;
 };
 
-/// The configurations of a course's rows, out of those at its forces and the unloaded one.
-EquilibriumPath path_of(const LoadCourse& history, const std::vector<Pressed>& pressed,
+/// The configurations of the rows of a history, out of those at its forces and the unloaded one.
+EquilibriumPath path_of(const ProbeLoadHistory& history, const std::vector<Pressed>& pressed,
                         const Eigen::VectorXd& unloaded) {
     EquilibriumPath path;
     for (const Row& row : history.rows) {
@@ -132,12 +132,12 @@ Plan make_plan(const Specimen& specimen, const Sequence& sequence, double larges
             "for its own effects?");
     }
     if (!specimen.driven.empty()) {
-        for (LoadCourse course : specimen.driven) {
+        for (ProbeLoadHistory history : specimen.driven) {
             std::vector<double> amounts;
-            amounts.reserve(course.rows.size());
-            for (const Row& row : course.rows) amounts.push_back(row.force);
-            course.rows = rows_of(amounts, sequence.timing);
-            plan.histories.push_back(std::move(course));
+            amounts.reserve(history.rows.size());
+            for (const Row& row : history.rows) amounts.push_back(row.force);
+            history.rows = rows_of(amounts, sequence.timing);
+            plan.histories.push_back(std::move(history));
         }
         plan.baseline = simulate(specimen, {.setting = specimen.setting}, plan.histories, {.threads = threads});
         leave_out_failed(plan);

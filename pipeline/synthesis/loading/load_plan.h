@@ -8,9 +8,9 @@ namespace palpate::pipeline {
 
 /// What is done to a specimen, and how it stands then without anything hidden in it.
 struct Plan {
-    std::vector<LoadCourse> histories;      // first the untouched body
-    std::vector<EquilibriumPath> baseline;  // of each
-    std::vector<std::string> notes;         // what a user should know, in words
+    std::vector<ProbeLoadHistory> histories;  // first the untouched body
+    std::vector<EquilibriumPath> baseline;    // of each
+    std::vector<std::string> notes;           // what a user should know, in words
 };
 
 /// Courses whose loads move the specimen as far as is asked: at each level the force is scaled until the largest

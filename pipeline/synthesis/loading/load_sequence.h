@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "pipeline/synthesis/effects/effect_spec.h"
-#include "pipeline/synthesis/loading/load_course.h"
+#include "pipeline/synthesis/loading/probe_load_history.h"
 
 namespace palpate::pipeline {
 

@@ -35,7 +35,7 @@ public:
             linear_ = model_.tangent(rest_, conditions.setting, {});
     }
 
-    Action action(const LoadCourse& history, std::size_t row) const {
+    Action action(const ProbeLoadHistory& history, std::size_t row) const {
         const double gain = history.probe > 0 && history.probe % 2 == 0 ? conditions_.gain : 1;
         const double force = gain * history.lagged_force(row, conditions_.lag, conditions_.setting.effects.creep);
         Action action;
@@ -69,7 +69,8 @@ public:
     }
 
     /// `body_history`: what the body went through before, and then what it has been through.
-    EquilibriumPath path(const LoadCourse& history, BodyHistory& body_history, const EquilibriumPath* near) const {
+    EquilibriumPath path(const ProbeLoadHistory& history, BodyHistory& body_history,
+                         const EquilibriumPath* near) const {
         EquilibriumPath path;
         BodyHistory now = body_history;
         try {
@@ -126,7 +127,7 @@ bool changes_equilibrium(const skeleton::EffectRecord& effect) {
 }
 
 std::vector<EquilibriumPath> simulate(const Specimen& specimen, const TrueConditions& conditions,
-                                      const std::vector<LoadCourse>& histories, const SimulationOptions& options,
+                                      const std::vector<ProbeLoadHistory>& histories, const SimulationOptions& options,
                                       const std::vector<EquilibriumPath>* near) {
     const Statics statics(specimen, conditions, options.is_patient);
     std::vector<EquilibriumPath> paths(histories.size());
@@ -143,7 +144,7 @@ std::vector<EquilibriumPath> simulate(const Specimen& specimen, const TrueCondit
 }
 
 std::vector<Points> seen(const Specimen& specimen, const TrueConditions& conditions,
-                         const std::vector<LoadCourse>& histories, const std::vector<EquilibriumPath>& paths) {
+                         const std::vector<ProbeLoadHistory>& histories, const std::vector<EquilibriumPath>& paths) {
     const auto markers = static_cast<Eigen::Index>(specimen.set.markers.size());
     std::vector<Points> result;
     for (std::size_t c = 0; c < histories.size(); ++c) {

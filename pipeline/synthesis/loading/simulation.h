@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "identify/effects/hiding.h"
-#include "pipeline/synthesis/loading/load_course.h"
+#include "pipeline/synthesis/loading/probe_load_history.h"
 #include "pipeline/synthesis/specimen.h"
 #include "skeleton/effects/effect.h"
 
@@ -19,7 +19,7 @@ TrueConditions true_conditions(const Specimen& specimen, const std::vector<skele
 /// Does the body stand otherwise with this effect, or do only its readings differ?
 bool changes_equilibrium(const skeleton::EffectRecord& effect);
 
-/// How a course went: a configuration a row. None: the body found no equilibrium in some row.
+/// How a history went: a configuration a row. None: the body found no equilibrium in some row.
 using EquilibriumPath = std::vector<Eigen::VectorXd>;
 
 struct SimulationOptions {
@@ -34,12 +34,12 @@ struct SimulationOptions {
 /// begins; empty ones do not matter. After a history without equilibrium a history-dependent body continues from the
 /// state before it.
 std::vector<EquilibriumPath> simulate(const Specimen& specimen, const TrueConditions& conditions,
-                                      const std::vector<LoadCourse>& histories, const SimulationOptions& options,
+                                      const std::vector<ProbeLoadHistory>& histories, const SimulationOptions& options,
                                       const std::vector<EquilibriumPath>* near = nullptr);
 
 /// Where the markers are read, a row of the histories after the other; NaN where there is no path.
 std::vector<Points> seen(const Specimen& specimen, const TrueConditions& conditions,
-                         const std::vector<LoadCourse>& histories, const std::vector<EquilibriumPath>& paths);
+                         const std::vector<ProbeLoadHistory>& histories, const std::vector<EquilibriumPath>& paths);
 
 /// How far the markers and the skin stand apart in two configurations, at most [mm].
 double largest_distance(const Specimen& specimen, const Eigen::VectorXd& a, const Eigen::VectorXd& b);

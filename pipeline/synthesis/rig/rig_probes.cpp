@@ -117,11 +117,11 @@ void add_tool(const mesh::Surface& surface, const std::vector<mesh::Region>& sup
     const Vec3 axis = -places.front().normal;
     if (spec.is_flat) tool.shape = mesh::FlatShape{spec.radius, axis};
     for (std::size_t p = 0; p < places.size(); ++p) {
-        LoadCourse course{.probe = static_cast<int>(p) + 1, .contact = {}, .rows = rows_of(options.depth, {})};
-        course.drive = {.tool = static_cast<int>(result.rig.tools.size()),
-                        .from = touching(places[p]) - tool.origin,
-                        .along = spec.is_flat ? axis : Vec3(-places[p].normal)};
-        result.courses.push_back(std::move(course));
+        ProbeLoadHistory history{.probe = static_cast<int>(p) + 1, .contact = {}, .rows = rows_of(options.depth, {})};
+        history.drive = {.tool = static_cast<int>(result.rig.tools.size()),
+                         .from = touching(places[p]) - tool.origin,
+                         .along = spec.is_flat ? axis : Vec3(-places[p].normal)};
+        result.histories.push_back(std::move(history));
     }
     result.rig.tools.push_back(std::move(tool));
 }
@@ -131,10 +131,10 @@ void add_actuator(const std::string& name, decltype(mesh::Actuator::kind) kind, 
     const auto number = static_cast<int>(result.rig.actuators.size());
     result.rig.actuators.push_back({name, std::move(kind)});
     for (const double value : values) {
-        LoadCourse course{
-            .probe = static_cast<int>(result.courses.size()) + 1, .contact = {}, .rows = rows_of({value}, {})};
-        course.drive.actuator = number;
-        result.courses.push_back(std::move(course));
+        ProbeLoadHistory history{
+            .probe = static_cast<int>(result.histories.size()) + 1, .contact = {}, .rows = rows_of({value}, {})};
+        history.drive.actuator = number;
+        result.histories.push_back(std::move(history));
     }
 }
 

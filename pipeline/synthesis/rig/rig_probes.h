@@ -4,7 +4,7 @@
 
 #include "identify/models/rig.h"
 #include "mesh/core/surface.h"
-#include "pipeline/synthesis/loading/load_course.h"
+#include "pipeline/synthesis/loading/probe_load_history.h"
 #include "pipeline/synthesis/probing/probe_options.h"
 
 namespace palpate::pipeline {
@@ -12,8 +12,8 @@ namespace palpate::pipeline {
 /// A rig, and what it does to a body.
 struct RigProbes {
     identify::Rig rig;
-    std::vector<LoadCourse> courses;  // a row for each amount
-    std::vector<std::string> notes;   // what a user should know, in words
+    std::vector<ProbeLoadHistory> histories;  // a row for each amount
+    std::vector<std::string> notes;           // what a user should know, in words
 };
 
 /// A tool is pressed in to each depth at places spread over the free surface, a probe each, along the normal there; a

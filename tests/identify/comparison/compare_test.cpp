@@ -197,7 +197,13 @@ TEST(Compare, ASetThatReadsMomentsAloneIsToldToTheUser) {
     }
     // With one component of the force it is compared.
     set.states[0].reactions[0].force.x() = 0;
-    EXPECT_TRUE(compare(body.chain(), set).reactions.has_value());
+    const Comparison comparison = compare(body.chain(), set);
+    ASSERT_TRUE(comparison.reactions.has_value());
+    ASSERT_EQ(comparison.reactions->forces.size(), 1U);
+    const ToolForce& force = comparison.reactions->forces.front();
+    EXPECT_EQ(force.probe, 1);
+    EXPECT_EQ(force.error(), std::abs(force.modelled.x())) << "nothing was read along y and z";
+    EXPECT_EQ(force.error(), comparison.reactions->max);
 }
 
 /// States whose error is a + b load^p, with a little noise taken off.

@@ -298,7 +298,7 @@ TEST_F(Diagnosed, MessagesNameOptionValueAndBound) {
     EXPECT_THAT(message([](DiagnoseOptions& o) { o.noise_accuracy = missing; }), HasSubstr("noise_accuracy is nan"));
     EXPECT_EQ(message([](DiagnoseOptions& o) { o.mesh_error = -1; }), "mesh_error is -1; it must be 0 or more");
     EXPECT_THAT(message([](DiagnoseOptions& o) { o.without = {"gravty"}; }),
-                HasSubstr("there is no effect 'gravty'; did you mean 'gravity'?"));
+                HasSubstr("effect 'gravty' is not known (did you mean 'gravity'?)"));
     EXPECT_THAT(message([](DiagnoseOptions& o) { o.refit.steps = 0; }), HasSubstr("steps is 0"));
     EXPECT_EQ(message([](DiagnoseOptions&) {}), "");
 }

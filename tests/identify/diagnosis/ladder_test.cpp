@@ -21,9 +21,9 @@ namespace {
 using testing::ElementsAre;
 using testing::IsEmpty;
 
-class Climbed : public testing::Test {
+class LadderTest : public testing::Test {
 protected:
-    Climbed() {
+    LadderTest() {
         options_.identify.scope = Scope::uniform;
         options_.identify.particles = 50;
         options_.diagnose.law = neo_hookean;
@@ -50,7 +50,7 @@ protected:
     LadderOptions options_;
 };
 
-TEST_F(Climbed, GravityLowersTheErrorOnFittedAndOnHeldOutProbes) {
+TEST_F(LadderTest, GravityLowersTheErrorOnFittedAndOnHeldOutProbes) {
     const Ladder ladder = build_ladder(twin({{"gravity", half_g_}}), {"gravity"});
     ASSERT_EQ(ladder.steps.size(), 2u);
     const LadderStep &bare = ladder.steps[0], &with_gravity = ladder.steps[1];
@@ -77,7 +77,7 @@ TEST_F(Climbed, GravityLowersTheErrorOnFittedAndOnHeldOutProbes) {
     EXPECT_NE(bare.material.young, told.young) << "without gravity it is another";
 }
 
-TEST_F(Climbed, TheModelHoldsTheEffect) {
+TEST_F(LadderTest, TheModelHoldsTheEffect) {
     const MeasurementSet set = twin({{"gravity", half_g_}});
     const Ladder ladder = build_ladder(set, {"gravity"});
     EXPECT_THAT(ladder.steps[0].model.effects, IsEmpty());
@@ -91,7 +91,7 @@ TEST_F(Climbed, TheModelHoldsTheEffect) {
     EXPECT_DOUBLE_EQ(compare(model, set).rms, ladder.steps[1].comparison.rms);
 }
 
-TEST_F(Climbed, AMisalignmentIsTakenOutOfTheMeasurements) {
+TEST_F(LadderTest, AMisalignmentIsTakenOutOfTheMeasurements) {
     const MeasurementSet set = twin({{"misalignment", moved_}}), straight = twin({});
     const Ladder ladder = build_ladder(set, {"misalignment"});
     // Readings stand where an aligned camera sees them, up to how well six numbers are known: under 0.01 mm.
@@ -112,7 +112,7 @@ TEST_F(Climbed, AMisalignmentIsTakenOutOfTheMeasurements) {
     EXPECT_LT(ladder.steps[1].skeleton.held_out_rms_mm, 0.5 * ladder.steps[0].skeleton.held_out_rms_mm);
 }
 
-TEST_F(Climbed, EffectsComeOneByOne) {
+TEST_F(LadderTest, EffectsComeOneByOne) {
     const Ladder ladder =
         build_ladder(twin({{"gravity", half_g_}, {"misalignment", moved_}}), {"misalignment", "gravity"});
     ASSERT_EQ(ladder.steps.size(), 3u);
@@ -126,7 +126,7 @@ TEST_F(Climbed, EffectsComeOneByOne) {
     EXPECT_EQ(ladder.verdict, Verdict::adequate);
 }
 
-TEST_F(Climbed, OutliersAreLeftOutOfTheMeasurements) {
+TEST_F(LadderTest, OutliersAreLeftOutOfTheMeasurements) {
     MeasurementSet set = twin({{"gravity", half_g_}});
     const std::vector<int> off{10, 47, 100, 155, 180};
     for (const int i : off) set.states[i / 24].readings[i % 24].position += 20 * sigma * Vec3(1, -1, 1);
@@ -140,7 +140,7 @@ TEST_F(Climbed, OutliersAreLeftOutOfTheMeasurements) {
     EXPECT_LT(ladder.steps[2].reference->held_out_whitened_rms, 1 + 4 / std::sqrt(2 * 633.0));  // 4 sigma
 }
 
-TEST_F(Climbed, TheDiagnosisTellsWhatTheScreenExpected) {
+TEST_F(LadderTest, TheDiagnosisTellsWhatTheScreenExpected) {
     const MeasurementSet set = twin({{"gravity", half_g_}});
     const Diagnosis diagnosis = diagnose(*reference_, set, options_.diagnose);
     const Ladder ladder = identify::build_ladder(body_.chain(), *reference_, set, {"gravity"}, options_, &diagnosis);
@@ -148,7 +148,7 @@ TEST_F(Climbed, TheDiagnosisTellsWhatTheScreenExpected) {
     EXPECT_TRUE(std::isnan(ladder.steps[0].predicted_rms_mm));
 }
 
-TEST_F(Climbed, JudgedOnTheSkeletonItFindsTheEffectItself) {
+TEST_F(LadderTest, JudgedOnTheSkeletonItFindsTheEffectItself) {
     options_.diagnose.law.reset();
     const Ladder ladder =
         identify::build_ladder(body_.chain(), *body_.skeleton(), twin({{"gravity", half_g_}}), {"gravity"}, options_);
@@ -159,7 +159,7 @@ TEST_F(Climbed, JudgedOnTheSkeletonItFindsTheEffectItself) {
     EXPECT_NEAR(ladder.steps[1].model.effects[0].parameters[2].value, 9810 * half_g_[2], 0.1 * 4905);
 }
 
-TEST_F(Climbed, HeldOutProbesAreAQuarterAndSpreadOrAllInTurn) {
+TEST_F(LadderTest, HeldOutProbesAreAQuarterAndSpreadOrAllInTurn) {
     options_.diagnose.law = 0;
     const auto held_out = [&](int probes) {
         const Ladder ladder = build_ladder(
@@ -174,7 +174,7 @@ TEST_F(Climbed, HeldOutProbesAreAQuarterAndSpreadOrAllInTurn) {
     EXPECT_THAT(held_out(12), ElementsAre(3, 7, 11));
 }
 
-TEST_F(Climbed, AQuarterOfManyProbesIsPredictedToTheNoise) {
+TEST_F(LadderTest, AQuarterOfManyProbesIsPredictedToTheNoise) {
     const Ladder ladder = build_ladder(twin({{"gravity", half_g_}}, 12), {"gravity"});
     const LadderStep &bare = ladder.steps[0], &with_gravity = ladder.steps[1];
     EXPECT_LT(with_gravity.reference->held_out_rms_mm, 0.15 * bare.reference->held_out_rms_mm);
@@ -183,7 +183,7 @@ TEST_F(Climbed, AQuarterOfManyProbesIsPredictedToTheNoise) {
     EXPECT_EQ(with_gravity.comparison.probes.size(), 13u);  // the model that is delivered is of all
 }
 
-TEST_F(Climbed, NoRungButTheFirstWithoutEffects) {
+TEST_F(LadderTest, NoStepButTheFirstWithoutEffects) {
     options_.diagnose.law = 0;
     const Ladder ladder = build_ladder(
         make_twin(*reference_, body_.set(SmallBody::probes(0.01, 4)), bare_truth(*reference_, 0), sigma), {});
@@ -192,7 +192,7 @@ TEST_F(Climbed, NoRungButTheFirstWithoutEffects) {
     EXPECT_THAT(ladder.steps[0].model.effects, IsEmpty());
 }
 
-TEST_F(Climbed, WhatWasNamedAndIsNotAddedIsStillMissing) {
+TEST_F(LadderTest, WhatWasNamedAndIsNotAddedIsStillMissing) {
     // Nothing is hidden: anisotropy overfits three probes, which hardly feel stiffening.
     const MeasurementSet set = twin({}, 3);
     Diagnosis diagnosis = diagnose(*reference_, set, options_.diagnose);
@@ -207,30 +207,30 @@ TEST_F(Climbed, WhatWasNamedAndIsNotAddedIsStillMissing) {
     EXPECT_EQ(ladder.verdict, Verdict::missing_effect);
 }
 
-TEST_F(Climbed, AnEffectThatNeedsAnotherIsAddedOnIt) {
+TEST_F(LadderTest, AnEffectThatNeedsAnotherIsAddedOnIt) {
     // Without gravity, a support that gives way bends what it would otherwise hold: held-out probes are worse with it.
     options_.only_better = true;
     const MeasurementSet set = twin({{"compliant-support", numbers({1, 0})}, {"gravity", half_g_}}, 3);
     const std::vector<std::string> both{"compliant-support", "gravity"};
     Diagnosis diagnosis = diagnose(*reference_, set, options_.diagnose);
-    const auto climbed = [&] {
+    const auto built = [&] {
         return identify::build_ladder(body_.chain(), *reference_, set, both, options_, &diagnosis);
     };
     diagnosis.explanation = {};
-    const Ladder of_one = climbed();
+    const Ladder of_one = built();
     EXPECT_THAT(names_of(of_one.steps.back().effects), ElementsAre("gravity"));
     ASSERT_EQ(of_one.not_added.size(), 1u);
     EXPECT_EQ(of_one.not_added[0].effect, "compliant-support");
 
     diagnosis.explanation = both;
-    const Ladder of_both = climbed();
+    const Ladder of_both = built();
     EXPECT_THAT(of_both.not_added, IsEmpty());
     ASSERT_EQ(of_both.steps.size(), 3u);
     EXPECT_THAT(names_of(of_both.steps[2].validation_model.effects), ElementsAre("gravity", "compliant-support"));
     EXPECT_LT(of_both.steps[2].reference->held_out_rms_mm, 0.1 * of_both.steps[1].reference->held_out_rms_mm);
 }
 
-TEST_F(Climbed, AResidualIsAddedWhereItMakesForecastsBetter) {
+TEST_F(LadderTest, AResidualIsAddedWhereItMakesForecastsBetter) {
     const Eigen::VectorXd pull = numbers({32, 5, 5, std::log(4), 0, 0.006, -0.008});
     options_.residual = Residual{.effect = {"local-force", {{"cx", 28, "mm"}, {"fz", -0.01, "N"}}}};
     const Ladder ladder = build_ladder(twin({{"local-force", pull}}), {"local-force"});
@@ -240,7 +240,7 @@ TEST_F(Climbed, AResidualIsAddedWhereItMakesForecastsBetter) {
     EXPECT_EQ(ladder.identified.model.effects.front().name, "local-force");
 }
 
-TEST_F(Climbed, AResidualIsNotAddedWhereItForecastsNothing) {
+TEST_F(LadderTest, AResidualIsNotAddedWhereItForecastsNothing) {
     options_.residual = Residual{.effect = {"local-force", {}}};
     options_.only_better = true;
     const Ladder ladder = build_ladder(twin({}), {"local-force"});
@@ -249,7 +249,7 @@ TEST_F(Climbed, AResidualIsNotAddedWhereItForecastsNothing) {
     EXPECT_TRUE(says(ladder.not_added[0].why, {"held-out probes"}));
 }
 
-TEST_F(Climbed, AResidualIsNotAddedWhereNoProbeCanBeHeldOut) {
+TEST_F(LadderTest, AResidualIsNotAddedWhereNoProbeCanBeHeldOut) {
     options_.residual = Residual{.effect = {"local-force", {}}};
     options_.only_better = true;
     const Ladder ladder = build_ladder(twin({}, 2), {"local-force"});
@@ -258,16 +258,16 @@ TEST_F(Climbed, AResidualIsNotAddedWhereNoProbeCanBeHeldOut) {
     EXPECT_TRUE(says(ladder.not_added[0].why, {"too few probes"}));
 }
 
-TEST_F(Climbed, WhatHasANameIsAddedWhereNoProbeCanBeHeldOut) {
+TEST_F(LadderTest, WhatHasANameIsAddedWhereNoProbeCanBeHeldOut) {
     options_.only_better = true;
     const Ladder ladder = build_ladder(twin({{"gravity", half_g_}}, 2), {"gravity"});
     ASSERT_TRUE(ladder.held_out_probes.empty());
     EXPECT_THAT(names_of(ladder.steps.back().effects), ElementsAre("gravity"));
 }
 
-TEST_F(Climbed, AnUnknownEffectIsRefused) { EXPECT_THROW(build_ladder(twin({}), {"gravty"}), InvalidInput); }
+TEST_F(LadderTest, AnUnknownEffectIsRefused) { EXPECT_THROW(build_ladder(twin({}), {"gravty"}), InvalidInput); }
 
-TEST_F(Climbed, AnEffectThatCannotShowIsRefused) {
+TEST_F(LadderTest, AnEffectThatCannotShowIsRefused) {
     EXPECT_TRUE(says(message_of<InvalidInput>([&] {
                          build_ladder(twin({}), {"gravity", "pressure"});
                      }),
@@ -275,7 +275,7 @@ TEST_F(Climbed, AnEffectThatCannotShowIsRefused) {
     EXPECT_THROW(build_ladder(twin({}), {"shear"}), InvalidInput);  // no solid has it
 }
 
-TEST_F(Climbed, WhatLinksAloneHaveIsAddedOnTheSkeletonItself) {
+TEST_F(LadderTest, WhatLinksAloneHaveIsAddedOnTheSkeletonItself) {
     options_.diagnose.law = 1;
     const auto skeleton = body_.skeleton();
     const Explanation truth = with(bare_truth(*skeleton, 1), find_effect("shear"), Eigen::VectorXd::Constant(1, 0.5));

@@ -144,6 +144,17 @@ TEST_P(EveryEffect, SpeaksASentence) {
     EXPECT_THAT(sentence, testing::Not(HasSubstr("nan")));
 }
 
+TEST_P(EveryEffect, SaysHowWellItsNumbersAreKnown) {
+    const auto numbers = effect().numbers(*model_, problem_);
+    if (numbers.empty()) return;
+    const skeleton::EffectRecord estimate = effect().record(numbers, example(effect(), numbers));
+    Eigen::VectorXd sd(std::ssize(estimate.parameters));
+    for (Eigen::Index j = 0; j < sd.size(); ++j)
+        sd[j] = 0.1 * std::abs(estimate.parameters[static_cast<std::size_t>(j)].value) + 1e-3;
+    const Eigen::MatrixXd covariance = sd.cwiseAbs2().asDiagonal();
+    EXPECT_THAT(effect().sentence_with(estimate, covariance), HasSubstr("±"));
+}
+
 TEST_P(EveryEffect, OfABodyIsWhatAModelFilePlays) {
     // In force by the fit's numbers and by what a model file says, the body feels the same.
     const auto numbers = effect().numbers(*model_, problem_);
@@ -385,11 +396,11 @@ TEST(Catalogue, RefusesARowWhoseHalvesDiffer) {
     EXPECT_EQ(message_of([&] {
                   register_effect({"storm", {}, {}}, wind);
               }),
-              "effect 'wind' of the body is given the physics of 'storm' of the body; let both be told alike");
+              "effect 'wind' of the body is given the physics of 'storm' of the body; name and kind must agree");
     EXPECT_EQ(message_of([&] {
                   register_effect({"wind", {}, {}, EffectKind::measurement}, wind);
               }),
-              "effect 'wind' of the body is given the physics of 'wind' of the measurement; let both be told alike");
+              "effect 'wind' of the body is given the physics of 'wind' of the measurement; name and kind must agree");
     EXPECT_EQ(effect_named("wind"), nullptr);
     EXPECT_EQ(skeleton::find_known_effect("storm"), nullptr);
 }
@@ -423,7 +434,7 @@ TEST(Catalogue, OneEffectStandsForSingleReadings) {
 TEST(Catalogue, AWrongNameGetsASuggestion) {
     EXPECT_EQ(message_of([] {
                   find_effect("gravitiy");
-              }).rfind("there is no effect 'gravitiy'; did you mean 'gravity'? Known are: ", 0),
+              }).rfind("effect 'gravitiy' is not known (did you mean 'gravity'?); known are 'gravity', ", 0),
               0u);
     EXPECT_THAT(message_of([] { find_effect("outlier"); }), HasSubstr("did you mean 'outliers'?"));
     for (const auto& effect : catalogue()) EXPECT_THAT(message_of([] { find_effect("x"); }), HasSubstr(effect->name()));

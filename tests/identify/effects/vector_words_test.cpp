@@ -15,16 +15,30 @@ TEST(VectorInWords, TellsSizeAndDirection) {
 
 TEST(VectorInWords, WhatIsNotDeterminedStandsApart) {
     EXPECT_EQ(vector_in_words({4700, -90, -9200}, variances(4200, 320, 460), 1000, "m/s^2"),
-              "9.2 ± 0.5 m/s^2 along -z; along x it is not determined");
+              "9.2 ± 0.5 m/s^2 along -z; along x it is not determined (5 ± 4)");
+    // An axis that is nearly x is called x, and what is told besides has nothing along x.
+    const Vec3 tilted(0.99, 0, 0.14);
+    EXPECT_EQ(
+        vector_in_words({3550, -90, -9130}, variances(400, 320, 400) + 9e6 * tilted * tilted.transpose(), 1000, "m/s²"),
+        "9.1 ± 0.6 m/s² along -z; along x it is not determined (4 ± 3)");
     const Vec3 open(1, 1, 0);
     const Mat3 covariance = variances(1, 1, 1) + 100 * open * open.transpose();
     EXPECT_EQ(vector_in_words({3, 4, -20}, covariance, 1, "mm"),
-              "20.0 ± 1.0 mm along -z; along (0.71, 0.71, 0.00) it is not determined");
+              "20.0 ± 1.0 mm along -z; along (0.71, 0.71, 0.00) it is not determined (5 ± 14)");
 }
 
 TEST(VectorInWords, PoorlyKnownAllRoundIsNotTakenApart) {
     EXPECT_EQ(vector_in_words({0, 0, 5}, variances(3, 3, 3), 1, "mm"), "5 ± 3 mm along +z");
     EXPECT_EQ(vector_in_words(Vec3::Zero(), Mat3::Zero(), 1, "mm"), "0 mm");
+}
+
+TEST(NumberInWords, HasItsStandardDeviationWhereItIsKnown) {
+    const skeleton::EffectRecord record{"viscosity", {{"creep", 0.24, "1"}, {"tau", 3.1, "s"}}};
+    EXPECT_EQ(number_in_words(record, 0, {}, 100), "24");
+    const Eigen::MatrixXd covariance = Eigen::Vector2d(0.02 * 0.02, 0.5 * 0.5).asDiagonal();
+    EXPECT_EQ(number_in_words(record, 0, covariance, 100), "24.0 ± 2.0");
+    EXPECT_EQ(number_in_words(record, 0, covariance, -100), "-24.0 ± 2.0");
+    EXPECT_EQ(number_in_words(record, 1, covariance), "3.1 ± 0.5");
 }
 
 }  // namespace

@@ -333,7 +333,7 @@ std::vector<BodyCase> all_cases() {
 INSTANTIATE_TEST_SUITE_P(AllModels, BodyModelLaws, testing::ValuesIn(all_cases()),
                          [](const auto& about) { return about.param.name; });
 
-TEST(ReferenceBody, AStripOfOneElementInThicknessBendsAsABeamWithTheFullDilatation) {
+TEST(ReferenceBody, AStripOfOneElementInThicknessBendsAsABeamWithThinElements) {
     const mesh::VolumeMesh strip = mesh::to_quadratic(mesh::make_bar({0, 0, 0}, {60, 6, 1.5}, {20, 2, 1}));
     const auto compliance = [&](double poisson, fem::Dilatation dilatation) {
         const ReferenceBody body(strip, {mesh::BoxRegion{{-1, -1, -1}, {1e-6, 7, 3}}},
@@ -351,7 +351,7 @@ TEST(ReferenceBody, AStripOfOneElementInThicknessBendsAsABeamWithTheFullDilatati
     const double beam = std::pow(60, 3) / (3 * 1000 * 6 * std::pow(1.5, 3) / 12);  // L^3 / 3 E I
     for (const double poisson : {0.0, 0.33}) {
         // the clamp holds the width, which a beam does not
-        EXPECT_NEAR(compliance(poisson, fem::Dilatation::full), beam, 0.03 * beam) << poisson;
+        EXPECT_NEAR(compliance(poisson, fem::Dilatation::thin), beam, 0.03 * beam) << poisson;
     }
     EXPECT_GT(compliance(0.33, fem::Dilatation::mean), 1.08 * beam);
 }

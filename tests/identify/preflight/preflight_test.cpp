@@ -108,7 +108,7 @@ TEST_F(Judged, AnUnloadedPoseIsAskedForWhereThereIsNone) {
 TEST_F(Judged, ProbesOfExperimentsAreNew) {
     const MeasurementSet set = with_noise(twin(bare_truth(*model_, 0)));
     for (const Experiment& one : possible_experiments(*model_, set, make_problem(set, sigma))) {
-        EXPECT_EQ(one.states.size(), one.circumstances.size());
+        EXPECT_EQ(one.states.size(), one.conditions.size());
         for (const LoadState& state : one.states) EXPECT_GT(state.probe, 8) << one.kind;
     }
 }

@@ -1,8 +1,10 @@
 #include <fmt/format.h>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
 
+#include "identify/recordings/describe.h"
 #include "tests/identify/recordings/mat_sample.h"
 #include "tests/identify/recordings/read_sample.h"
 #include "tests/identify/recordings/text_samples.h"
@@ -39,6 +41,8 @@ TEST(Dice, OfVersion1IsInPixelsToo) {
         const Recording frame = read_sample(head + columns + rows);
         EXPECT_EQ(frame.format, "DICe, image correlation");
         EXPECT_TRUE(notes_tell(frame, "'unit: pixel'"));
+        EXPECT_THAT(describe(frame), testing::HasSubstr("x 0 pixel"));
+        EXPECT_THAT(describe(frame), testing::HasSubstr("x, y, z [pixel]"));
         expect_point(frame.points[0], {61, 971, 0}, {-0.15, -2.5, 0});
     }
 }
@@ -181,6 +185,9 @@ TEST(Series, FilesAreFramesInTheOrderOfTheirNumbers) {
         ASSERT_EQ(read[0].times.size(), 3);
         EXPECT_EQ(read[0].points[2].at.row(2), Eigen::RowVector3d(1, 2, 10));
     };
+    expect_series(read_recordings(folder.path()));
+    // A licence and notes beside the data are none of it.
+    for (const char* name : {"LICENSE.txt", "README", "notes.md"}) folder.write(name, "no data\n");
     expect_series(read_recordings(folder.path()));
     expect_series(read_recordings(folder / "scan_*.ply"));
     FileMap map;

@@ -134,7 +134,7 @@ TEST(Tables, WithoutNamesAClockAndThreesAreGuessedAndSaid) {
     ASSERT_EQ(run.points.size(), 2u);
     EXPECT_EQ(run.points[1].at(2, 2), 7);
     EXPECT_TRUE(notes_tell(run, "2 points"));
-    EXPECT_TRUE(notes_tell(run, "no unit of positions is told"));
+    EXPECT_TRUE(notes_tell(run, "no unit of positions is given"));
 }
 
 TEST(Tables, BluehillHasPreambleQuotesAndARowOfUnits) {

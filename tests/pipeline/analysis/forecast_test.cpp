@@ -238,6 +238,18 @@ TEST_F(Forecasts, BeyondTheMeasurementsIsTold) {
                 HasSubstr("moved further than any"));
 }
 
+/// Where no marker was read and nothing was pressed, a model that stands still extrapolates nothing.
+TEST(Extrapolations, OfASetWithoutForcesAndMarkersAreOfForcesAlone) {
+    std::vector<Forecast> forecasts(1);
+    std::vector<identify::LoadState> states(1);
+    states[0].probe = 7;
+    EXPECT_THAT(extrapolations({}, states, forecasts, 100), testing::IsEmpty());
+    states[0].contacts = {{Vec3::Zero(), Vec3(0, 0, 1), 0}};
+    forecasts[0].largest = 1;
+    EXPECT_THAT(extrapolations({}, states, forecasts, 100),
+                testing::ElementsAre(HasSubstr("Probe 7: pressed by a force"), HasSubstr("extrapolates")));
+}
+
 TEST_F(Forecasts, ParticlesComeBackAsTheyWereWritten) {
     const identify::IdentifyResult found = identified(2);
     const ParticleSet read = read_particles(folder / "particles.csv");

@@ -95,6 +95,24 @@ TEST(BodyVerdict, CheckTellsWhatRunRefuses) {
     EXPECT_THAT(commands::check(largest, {}).text, AllOf(HasSubstr("is left out"), HasSubstr("Next: palpate run")));
 }
 
+/// The cause is said, not what follows of it, and nothing is assumed of a body that there is not.
+TEST(BodyVerdict, AStrayVertexIsNamed) {
+    const TemporaryFolder scratch;
+    mesh::Surface strayed = whole_bar;
+    strayed.vertices.row(0) = Vec3(1e9, 1e9, 1e9).transpose();
+    mesh::write_surface(scratch / "strayed.obj", strayed);
+    const commands::Outcome told = commands::check({.input = scratch / "strayed.obj", .overrides = {}}, {});
+    EXPECT_EQ(told.code, commands::bad_input);
+    EXPECT_THAT(told.text, AllOf(HasSubstr("One vertex at (1e+09, 1e+09, 1e+09) mm lies far from the other"),
+                                 HasSubstr("which span 100 x 20 x 10 mm"), Not(HasSubstr("is flat")),
+                                 Not(HasSubstr("assumed")), Not(HasSubstr("Held by"))));
+    // not far enough to make it flat, and still a slip
+    strayed.vertices.row(0) = Vec3(1e5, 0, 0).transpose();
+    mesh::write_surface(scratch / "spike.obj", strayed);
+    EXPECT_THAT(commands::check({.input = scratch / "spike.obj", .overrides = {}}, {}).text,
+                HasSubstr("One vertex at (1e+05, 0, 0) mm lies far"));
+}
+
 TEST(BodyVerdict, ASizeThatIsASlipOfUnitsIsSaid) {
     const TemporaryFolder scratch;
     mesh::write_surface(scratch / "small.stl", box({0, 0, 0}, {0.8, 0.2, 0.1}));

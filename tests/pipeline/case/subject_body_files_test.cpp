@@ -101,7 +101,7 @@ TEST(BodyFiles, ALabelIsChosenInACaseOrByAFlag) {
     EXPECT_THAT(to_yaml(said.settings), HasSubstr("label: 1"));
     EXPECT_TRUE(
         says(message_of<InvalidInput>([&] { read_subject(read_case(scratch / "organs.mha", of_label(2, in_cm()))); }),
-             {"organs.mha", "tells its unit itself", "--longest"}));
+             {"organs.mha", "states its unit itself", "--longest"}));
 }
 
 TEST(BodyFiles, CheckShowsWhereFaultsAre) {

@@ -102,6 +102,26 @@ TEST_F(CheckedSet, RefusesToExpectWhatNobodyKnowsOrMeasured) {
         AllOf(HasSubstr("--expect"), HasSubstr("this is a mesh")));
 }
 
+/// A share in per cent, a ratio with what it is a ratio to.
+TEST(Preflight, BareNumbersSayWhatTheyAreOf) {
+    const auto in_words = [](const char* name, double value, const char* effect) {
+        return own_strength({{"name", name}, {"value", value}, {"unit", "1"}, {"at_most", false}}, effect);
+    };
+    EXPECT_EQ(in_words("force-gain", 0.114, "force-gain"), "gain error 11 %");
+    EXPECT_EQ(in_words("probe3", 0.114, "force-gain"), "gain error 11 %");
+    EXPECT_EQ(in_words("prestress", 0.0323, "prestress"), "0.032 x shear modulus");
+    EXPECT_EQ(in_words("growth", 0.00785, "swelling"), "0.79 % growth");
+    EXPECT_EQ(in_words("ratio", 1.8, "inclusion"), "ratio 1.8");
+}
+
+/// The terminal and the page have the same cell.
+TEST(Preflight, WithoutANumberOfItsOwnAThresholdIsOfThePrior) {
+    nlohmann::json effect{{"effect", "contact"}, {"least", {{"of_prior", 0.59}, {"own", nullptr}}}};
+    EXPECT_EQ(threshold_in_words(effect), "0.59 of its prior");
+    effect["least"]["of_prior"] = nullptr;
+    EXPECT_EQ(threshold_in_words(effect), "–");
+}
+
 TEST(Preflight, SaysHowMuchStrongerAnEffectWouldHaveToBe) {
     const nlohmann::json own{{"name", "gravity"}, {"value", 9810.0}, {"unit", "mm/s^2"}, {"at_most", false}};
     const nlohmann::json effect{{"effect", "gravity"},

@@ -111,7 +111,7 @@ TEST_F(Pool, TheNextSpecimenIsExpectedLikeTheOthers) {
     options.overrides.set("identify.particles", 40);
     options.overrides.set("identify.prior", population.string());
     const commands::Outcome outcome = commands::identify(options, {});
-    EXPECT_THAT(outcome.text, HasSubstr("prior: as the population tells of"));
+    EXPECT_THAT(outcome.text, HasSubstr("prior: the population's for"));
     for (const identify::PosteriorRow& row : read_posterior(*scratch_ / "next/posterior.csv")) {
         if (row.parameter != "flexion") continue;
         const double variance = std::log1p(std::pow(row.prior_sd / row.prior_mean, 2));

@@ -160,7 +160,7 @@ TEST_F(ProbeRegions, OfASetStandInItsOwnFile) {
     EXPECT_TRUE(says(message(how), {"fit.yaml, line 3", "stand in its set.yaml"}));
     how.input = scratch_ / "set";
     how.regions = {ball(",young=1")};
-    EXPECT_TRUE(says(message(how), {"--region", "tells its regions itself"}));
+    EXPECT_TRUE(says(message(how), {"--region", "states its regions itself"}));
 }
 
 TEST_F(ProbeRegions, ARunMeasuresThemAndTellsThemAgain) {

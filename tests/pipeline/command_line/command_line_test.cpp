@@ -11,6 +11,7 @@
 
 #include "mesh/formats/surface/read_surface.h"
 #include "pipeline/case/settings/settings.h"
+#include "pipeline/command_line/terminal/console.h"
 #include "tests/places.h"
 #include "tests/temporary_folder.h"
 
@@ -99,15 +100,22 @@ std::string complaint(const std::string& arguments) {
 }
 
 TEST(CommandLine, WrongUsageIsToldLikeAnyOtherError) {
-    EXPECT_THAT(complaint("rnu x"), StartsWith("error: 'rnu' is no command (did you mean 'run'?)"));
+    EXPECT_THAT(complaint("rnu x"), StartsWith("error: 'rnu' is not a command (did you mean 'run'?)"));
     EXPECT_THAT(complaint("--threads 2 chek mesh"), HasSubstr("did you mean 'check'?"));
     EXPECT_THAT(complaint(""), StartsWith("error: a command is needed, one of run, check"));
     EXPECT_THAT(complaint("run"), StartsWith("error: palpate run: INPUT is needed; 'palpate run --help'"));
-    EXPECT_THAT(complaint("check a b"), StartsWith("error: palpate check: 'b' is too many"));
-    EXPECT_THAT(complaint("check a --threads 0"), HasSubstr("--threads: '0' is no number from 1 to 1024"));
-    EXPECT_THAT(complaint("compare a b --tolerance -1"), HasSubstr("--tolerance: '-1' is no number of 0 or more"));
+    EXPECT_THAT(complaint("check a b"), StartsWith("error: palpate check: unexpected argument 'b'"));
+    EXPECT_THAT(complaint("check a --threads 0"), HasSubstr("--threads: '0' is not a number from 1 to 1024"));
+    EXPECT_THAT(complaint("compare a b --tolerance -1"), HasSubstr("--tolerance: '-1' is not a number of 0 or more"));
     EXPECT_THAT(complaint("improve a b"), HasSubstr("one of --add, --auto or --residual is needed"));
-    EXPECT_THAT(complaint("diagnose a b --body spheres"), HasSubstr("'spheres' is none of"));
+    EXPECT_THAT(complaint("diagnose a b --body spheres"),
+                HasSubstr("'spheres' is not supported; use reference or skeleton"));
+    EXPECT_THAT(complaint("check a --threads"), HasSubstr("--threads needs a number from 1 to 1024"));
+    EXPECT_THAT(complaint("probe a --depth 0"), HasSubstr("--depth: '0' is not a number above 0"));
+    EXPECT_THAT(complaint("completion fish"), HasSubstr("'fish' is not supported; use bash or zsh"));
+    EXPECT_THAT(complaint("improve a b --auto --residual"), HasSubstr("give only one of --add, --auto and --residual"));
+    EXPECT_THAT(complaint("run a --young 1 --young 2"), HasSubstr("--young is given more than once"));
+    EXPECT_THAT(complaint("compare a b --tol 1"), HasSubstr("no flag '--tol' (did you mean '--tolerance'?)"));
     EXPECT_THAT(complaint("check a --jsn"), HasSubstr("did you mean '--json'?"));
     EXPECT_THAT(complaint("simulate m --probes p --add gravity:gz"), HasSubstr("error: palpate simulate: "));
 }
@@ -118,6 +126,30 @@ TEST(CommandLine, EveryHelpTellsWhatEveryCommandTakes) {
         const std::string help = palpate(std::string(command) + " --help").out;
         EXPECT_THAT(help, AllOf(HasSubstr("--json"), HasSubstr("--threads"), HasSubstr("--seed"))) << command;
     }
+}
+
+/// What a value is, in a user's words: no types of the parser, and none of its notes.
+TEST(CommandLine, HelpIsInWords) {
+    for (const char* command : {"", "run", "probe", "improve", "simulate", "skeleton", "play", "completion"}) {
+        const std::string help = palpate(std::string(command) + " --help").out;
+        for (const char* leak : {"FLOAT", "INT", "TEXT", "Excludes", "Needs", "REQUIRED", "Option Group", "Exactly"})
+            EXPECT_THAT(help, Not(HasSubstr(leak))) << command;
+    }
+    EXPECT_THAT(palpate("probe --help").out,
+                AllOf(HasSubstr("--young NUMBER"), HasSubstr("--law {linear,svk,neo-hooke}"), HasSubstr("--levels N"),
+                      HasSubstr("(1 to 100)"), HasSubstr("--depth NUMBER,..."), HasSubstr("--output PATH")));
+    EXPECT_THAT(palpate("improve --help").out,
+                AllOf(HasSubstr("What to add, one of these:"), HasSubstr("--add EFFECT[:name=value,...]")));
+}
+
+/// On a terminal of any width.
+TEST(ProgressLine, KeepsThePercentage) {
+    for (const std::size_t columns : {20U, 44U, 79U, 200U}) {
+        const std::string line = progress_line("locating the missing source", 0.5, 12, ", about 12 s left", columns);
+        EXPECT_LE(line.size(), columns);
+        EXPECT_THAT(line, HasSubstr("50 %"));
+    }
+    EXPECT_EQ(progress_line("fit", 0.5, 12, "", 79), "fit [============            ] 50 %, 12 s");
 }
 
 TEST(CommandLine, HelpBeginsWithExamples) {

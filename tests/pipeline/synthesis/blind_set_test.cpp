@@ -1,4 +1,4 @@
-// The parts that synthetic measurements are made of: what is wished for, what a probe does in time, what readings lack.
+// The parts that synthetic measurements are made of: what is specified, what a probe does in time, what readings lack.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -7,8 +7,8 @@
 
 #include "mesh/errors.h"
 #include "pipeline/synthesis/effects/effect_sampler.h"
-#include "pipeline/synthesis/loading/load_course.h"
 #include "pipeline/synthesis/loading/load_sequence.h"
+#include "pipeline/synthesis/loading/probe_load_history.h"
 #include "pipeline/synthesis/loading/reading_faults.h"
 #include "tests/messages.h"
 
@@ -18,7 +18,7 @@ namespace {
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
-// --- what is wished for ---
+// --- what is specified ---
 
 TEST(EffectSpec, ReadsBackWhatItWrites) {
     const skeleton::EffectRecord effect{"gravity",
@@ -59,7 +59,7 @@ TEST(EffectSpec, RefusesWhatCannotBeMeant) {
 
 // --- what a probe does in time ---
 
-TEST(LoadCourse, HoldsAndLetsGo) {
+TEST(ProbeLoadHistory, HoldsAndLetsGo) {
     const auto rows = rows_of({2.0, 3.0}, {.unload = true, .dwell = {0.5, 4}});
     const std::vector<std::pair<double, double>> expected{{0.5, 2}, {4, 2}, {4.5, 0}, {5, 3}, {8.5, 3}, {9, 0}};
     ASSERT_EQ(rows.size(), expected.size());
@@ -69,7 +69,7 @@ TEST(LoadCourse, HoldsAndLetsGo) {
     }
 }
 
-TEST(LoadCourse, GoesBackAsItCame) {
+TEST(ProbeLoadHistory, GoesBackAsItCame) {
     const auto forces = [](const LoadTiming& timing) {
         std::vector<double> all;
         for (const Row& row : rows_of({1.0, 2.0, 3.0}, timing)) all.push_back(row.force);
@@ -80,14 +80,14 @@ TEST(LoadCourse, GoesBackAsItCame) {
                 ::testing::ElementsAre(1, 0, 2, 0, 3, 0, 2, 0, 1, 0));
 }
 
-TEST(LoadCourse, IsReadOnceAfterASecondUnlessTold) {
+TEST(ProbeLoadHistory, IsReadOnceAfterASecondUnlessTold) {
     const auto rows = rows_of({2.0, 3.0}, {});
     ASSERT_EQ(rows.size(), 2U);
     EXPECT_EQ(rows[0].time, 1);
     EXPECT_EQ(rows[1].time, 2);
 }
 
-TEST(LoadCourse, LevelsComeRoundInTurnUnlessAllAreAskedFor) {
+TEST(ProbeLoadHistory, LevelsComeRoundInTurnUnlessAllAreAskedFor) {
     EXPECT_DOUBLE_EQ(levels_of(0, 0).at(0), 1.0 / 3);
     EXPECT_DOUBLE_EQ(levels_of(4, 0).at(0), 2.0 / 3);
     EXPECT_DOUBLE_EQ(levels_of(11, 0).at(0), 1);
@@ -95,10 +95,10 @@ TEST(LoadCourse, LevelsComeRoundInTurnUnlessAllAreAskedFor) {
 }
 
 /// A load that is held since time 0 creeps as J(t); once it is let go, what it had crept comes back as it came.
-TEST(LoadCourse, CreepSuperposes) {
+TEST(ProbeLoadHistory, CreepSuperposes) {
     const fem::CreepLaw creep{0.7, 4};
     const auto J = [&](double t) { return 1 + creep.creep * (1 - std::exp(-t / creep.tau)); };
-    const LoadCourse history{1, {}, rows_of({2.0, 5.0}, {.unload = true, .dwell = {1, 10}})};
+    const ProbeLoadHistory history{1, {}, rows_of({2.0, 5.0}, {.unload = true, .dwell = {1, 10}})};
     // rows at 1, 10 (2 N), 11 (0), 12, 21 (5 N), 22 (0); a row's force acts since the row before it
     EXPECT_DOUBLE_EQ(history.effective_force(0, creep), 2 * J(1));
     EXPECT_DOUBLE_EQ(history.effective_force(1, creep), 2 * J(10));
@@ -108,8 +108,8 @@ TEST(LoadCourse, CreepSuperposes) {
 }
 
 /// Loads change evenly from row to row, the first from time 0 on; the last one stays.
-TEST(LoadCourse, LagsByInterpolation) {
-    const LoadCourse history{1, {}, rows_of({2.0, 5.0}, {.unload = true, .dwell = {}})};
+TEST(ProbeLoadHistory, LagsByInterpolation) {
+    const ProbeLoadHistory history{1, {}, rows_of({2.0, 5.0}, {.unload = true, .dwell = {}})};
     // rows at 1 (2 N), 2 (0), 3 (5 N), 4 (0)
     EXPECT_DOUBLE_EQ(history.lagged_force(0, 0.25, {}), 1.5);
     EXPECT_DOUBLE_EQ(history.lagged_force(1, 0.25, {}), 0.5);

@@ -14,11 +14,12 @@ struct ChartLine {
     enum class Drawn { both, line, dots } drawn = Drawn::both;
 };
 
-/// Curves over a common axis, as SVG, the y axis from their least to their largest value; "" without two points.
+/// Curves over a common axis, as SVG, the y axis from their least value to a round one above the largest; "" without
+/// two places along the axis.
 std::string line_chart(const std::vector<ChartLine>& curves, const std::string& title, const std::string& across);
 
 struct Bar {
-    std::string label;  // told when pointed at
+    std::string label;  // shown when pointed at; up to its comma below the bar, where there is room
     double value;
     bool highlighted;
 };

@@ -62,8 +62,8 @@ std::string axes(const Frame& frame, const std::string& across) {
     for (const double tick : ticks_of(frame)) {
         const double x = frame.x(std::log(tick));
         svg += stroke(x, bottom, x, bottom + 4, R"(stroke="#55616d")");
-        const std::string number = fmt::format("{:.4g}", tick);
-        const double half = 3.6 * static_cast<double>(number.size());
+        const std::string number = plain_number(tick, 4);
+        const double half = width_of(number) / 2;
         if (x - half < free_from || x + half > width) continue;
         svg += words_at(x, bottom + 17, number, "middle");
         free_from = x + half + 6;
@@ -71,11 +71,12 @@ std::string axes(const Frame& frame, const std::string& across) {
     return svg + words_at(width - right, height - 10, across, "end");
 }
 
-/// Three digits, without an exponent below 100,000.
-std::string three_digits(double x) {
-    if (x < 1000 || x >= 1e5) return fmt::format("{:.3g}", x);
-    const double unit = x < 1e4 ? 10 : 100;
-    return fmt::format("{:.0f}", unit * std::round(x / unit));
+/// "14 N/mm (95 %: 6.2–50)", to as many digits as the interval leaves.
+std::string known_words(const KnownBeforeAndAfter& known, const std::string& unit) {
+    const double ratio = known.high / known.low;
+    const int digits = ratio > 1.3 ? 2 : ratio > 1.03 ? 3 : 4;
+    return fmt::format("{} {} (95 %: {}–{})", plain_number(known.middle, digits), unit, plain_number(known.low, digits),
+                       plain_number(known.high, digits));
 }
 
 std::string points_of(const Density& density, const Frame& frame) {
@@ -89,14 +90,11 @@ std::string points_of(const Density& density, const Frame& frame) {
 std::string density_chart(const KnownBeforeAndAfter& known) {
     const Frame frame = frame_of(known);
     const std::string unit = known.unit.empty() ? "× start value" : printed_unit(known.unit);
-    const std::string description =
-        fmt::format("{}: {:.3g}, 95 % in {:.3g} to {:.3g} {}", known.name, known.middle, known.low, known.high, unit);
+    const std::string words = "median " + known_words(known, unit);
     const std::string filled = fmt::format("{:.1f},{:.1f} ", left, bottom) + points_of(known.posterior, frame) +
                                fmt::format("{:.1f},{:.1f}", width - right, bottom);
-    return open_svg(width, height, description) + words_at(0, 14, known.name) +
-           words_at(0, 32,
-                    fmt::format("density of ln x; x = {} ({} to {})", three_digits(known.middle),
-                                three_digits(known.low), three_digits(known.high))) +
+    return open_svg(width, height, known.name + ": " + words) + words_at(0, 14, known.name) + words_at(0, 32, words) +
+           R"svg(<text transform="translate(11 106) rotate(-90)" text-anchor="middle" class="small">density of ln x</text>)svg" +
            axes(frame, fmt::format("x = {} [{}]", known.name.substr(0, known.name.find_first_of(":,")), unit)) +
            fmt::format(R"(<polygon points="{}" fill="{}" fill-opacity="0.3" stroke="{}" stroke-width="1.5"/>)", filled,
                        posterior_blue, posterior_blue) +

@@ -9,12 +9,14 @@
 #include <cmath>
 #include <numeric>
 
+#include "pipeline/output/html/charts/svg.h"
+
 namespace palpate::pipeline {
 namespace {
 
 constexpr double widest = 640;  // [px]
 
-/// Five points of the colour map viridis (van der Walt & Smith 2015), told apart by colour-blind readers too.
+/// Five points of the colour map viridis (van der Walt & Smith 2015), distinguishable by colour-blind readers too.
 std::string colour(double share) {
     constexpr std::array<std::array<double, 3>, 5> map{
         {{68, 1, 84}, {59, 82, 139}, {33, 145, 140}, {94, 201, 98}, {253, 231, 37}}};
@@ -45,29 +47,45 @@ public:
         const Points seen = points * rows_.transpose();
         low_ = seen.colwise().minCoeff();
         const Eigen::RowVector3d size = seen.colwise().maxCoeff() - seen.colwise().minCoeff();
-        scale_ = (widest - 20) / std::max(size[0], size[1]);
-        height_ = 20 + scale_ * size[1];
+        scale_ = (widest - 2 * margin) / std::max(size[0], size[1]);
         top_ = low_[1] + size[1];
-        width_ = 20 + scale_ * size[0];
+        frame_ = {0, 0, 2 * margin + scale_ * size[0], 2 * margin + scale_ * size[1]};
+    }
+    /// Makes room for a ball besides what the view was made for; nothing moves.
+    void hold(const Vec3& center, double radius = 0) {
+        const Vec3 c = (*this)(center);
+        const double reach = scale_ * radius + margin;
+        frame_.left = std::min(frame_.left, c.x() - reach);
+        frame_.top = std::min(frame_.top, c.y() - reach);
+        frame_.right = std::max(frame_.right, c.x() + reach);
+        frame_.bottom = std::max(frame_.bottom, c.y() + reach);
     }
     /// x, y [px], and depth towards the reader [mm].
     Vec3 operator()(const Vec3& p) const {
         const Vec3 seen = rows_ * p;
-        return {10 + scale_ * (seen[0] - low_[0]), 10 + scale_ * (top_ - seen[1]), seen[2]};
+        return {margin + scale_ * (seen[0] - low_[0]), margin + scale_ * (top_ - seen[1]), seen[2]};
     }
     Vec3 toward() const { return rows_.row(2); }
     double scale() const { return scale_; }
     std::string open(const std::string& title) const {
-        return fmt::format(R"(<svg viewBox="0 0 {:.0f} {:.0f}" role="img" aria-label="{}"><title>{}</title>)", width_,
-                           height_ + 34, title, title);
+        constexpr double bar = 34;  // of colours, below [px]
+        return fmt::format(R"(<svg viewBox="{:.0f} {:.0f} {:.0f} {:.0f}" role="img" aria-label="{}"><title>{}</title>)",
+                           frame_.left, frame_.top, frame_.right - frame_.left, frame_.bottom - frame_.top + bar, title,
+                           title);
     }
-    double height() const { return height_; }
+    double left() const { return frame_.left; }
+    double bottom() const { return frame_.bottom; }
 
 private:
+    static constexpr double margin = 10;  // [px]
+    struct Frame {
+        double left, top, right, bottom;  // [px]
+    };
     mesh::Box box_;
     Mat3 rows_;
     Eigen::RowVector3d low_;
-    double scale_, height_, width_, top_;
+    double scale_, top_;
+    Frame frame_{};
 };
 
 /// The faces that look at the reader, furthest first, shaded.
@@ -102,14 +120,15 @@ std::string surface_svg(const skeleton::Model& model, const View& view) {
 std::string colour_bar(const View& view, double low, double high, const std::string& words) {
     std::string svg;
     constexpr int steps = 40;
+    const double x = view.left() + 10, y = view.bottom();
     for (int i = 0; i < steps; ++i) {
-        svg += fmt::format(R"(<rect x="{:.1f}" y="{:.1f}" width="5.2" height="8" fill="{}"/>)", 10 + 5.0 * i,
-                           view.height() + 4, colour((i + 0.5) / steps));
+        svg += fmt::format(R"(<rect x="{:.1f}" y="{:.1f}" width="5.2" height="8" fill="{}"/>)", x + 5.0 * i, y + 4,
+                           colour((i + 0.5) / steps));
     }
-    return svg + fmt::format(R"(<text x="10" y="{:.1f}" class="small">{:.3g}</text>)"
-                             R"(<text x="210" y="{:.1f}" class="small" text-anchor="end">{:.3g}</text>)"
-                             R"(<text x="220" y="{:.1f}" class="small">{}</text>)",
-                             view.height() + 26, low, view.height() + 26, high, view.height() + 12, words);
+    return svg + fmt::format(R"(<text x="{:.1f}" y="{:.1f}" class="small">{}</text>)"
+                             R"(<text x="{:.1f}" y="{:.1f}" class="small" text-anchor="end">{}</text>)"
+                             R"(<text x="{:.1f}" y="{:.1f}" class="small">{}</text>)",
+                             x, y + 26, plain_number(low), x + 200, y + 26, plain_number(high), x + 210, y + 12, words);
 }
 
 Points all_points(const skeleton::Model& model) {
@@ -123,7 +142,8 @@ Points all_points(const skeleton::Model& model) {
 }  // namespace
 
 std::string skeleton_picture(const skeleton::Model& model) {
-    const View view(all_points(model));
+    View view(all_points(model));
+    for (const auto& sphere : model.spheres) view.hold(sphere.center, sphere.radius);
     std::string svg = view.open("Spheres and links of the model in its surface") + R"(<g opacity=".35">)" +
                       surface_svg(model, view) + "</g>";
     std::vector<double> logs;
@@ -152,7 +172,8 @@ std::string skeleton_picture(const skeleton::Model& model) {
 
 std::string dot_picture(const skeleton::Model& model, const std::vector<Dot>& dots, double highest,
                         const std::string& unit) {
-    const View view(all_points(model));
+    View view(all_points(model));
+    for (const Dot& dot : dots) view.hold(dot.at);
     std::string svg = view.open("Error at each marker") + R"(<g opacity=".9"><use href="#body"/></g>)";
     std::vector<Dot> sorted = dots;
     std::sort(sorted.begin(), sorted.end(),

@@ -18,6 +18,12 @@ std::string open_svg(double width, double height, const std::string& description
 std::string words_at(double x, double y, const std::string& words, const char* anchor = "start");
 /// A unit as it is printed, "N·mm/rad" for "N*mm/rad".
 std::string printed_unit(const std::string& unit);
+/// A stiffness as it is printed, "bending stiffness, link 17" for "flexion:link17"; any other name as it is.
+std::string printed_stiffness(const std::string& name);
+/// So many significant digits, as people write them: "0.13", "1180", "406 000"; none before the point are dropped.
+std::string plain_number(double value, int digits = 3);
+/// About how wide words are in a chart [px].
+double width_of(const std::string& words);
 std::string stroke(double x1, double y1, double x2, double y2, const char* style);
 
 }  // namespace palpate::pipeline

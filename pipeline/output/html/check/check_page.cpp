@@ -6,10 +6,14 @@
 #include <cmath>
 
 #include "identify/effects/catalogue.h"
+#include "mesh/geometry/surface_tree.h"
+#include "mesh/geometry/winding.h"
 #include "mesh/text/atomic_file.h"
+#include "mesh/text/words.h"
 #include "pipeline/output/html/check/check_picture.h"
 #include "pipeline/output/html/escape.h"
 #include "pipeline/output/html/page/page_parts.h"
+#include "pipeline/output/html/page_frame.h"
 #include "pipeline/output/text/preflight.h"
 #include "pipeline/output/text/words.h"
 
@@ -54,14 +58,14 @@ std::string tiles_of(const json& check, const json& preflight) {
                 check_tile(fmt::format("{}", check["set"]["markers"].get<long>()), "markers");
     }
     if (!preflight.is_null()) {
-        html += check_tile(
-                    fmt::format("{} of {}", preflight["independent"].get<long>(), preflight["coordinates"].get<long>()),
-                    "independent among measured coordinates") +
-                check_tile(mm(preflight["noise_mm"]), preflight["noise_known"].get<bool>()
-                                                          ? "noise, as stated"
-                                                          : "noise, assumed: 1 % of the motion") +
-                check_tile(mm(preflight["moved_mm"]), "read from rest, rms") +
-                check_tile(mm(preflight["nuisance_mm"]), "unknown about contacts and clamps, rms");
+        html +=
+            check_tile(
+                fmt::format("{} of {}", preflight["independent"].get<long>(), preflight["coordinates"].get<long>()),
+                "independent among measured coordinates") +
+            check_tile(mm(preflight["noise_mm"]),
+                       preflight["noise_known"].get<bool>() ? "noise, declared" : "noise, assumed: 1 % of the motion") +
+            check_tile(mm(preflight["moved_mm"]), "read from rest, rms") +
+            check_tile(mm(preflight["nuisance_mm"]), "unknown about contacts and clamps, rms");
     }
     return html + "</div>";
 }
@@ -74,12 +78,13 @@ std::string words_of_effect(const json& one) {
     if (!why.empty()) {
         words += "<br><b>Why not:</b> " + escape(why) + ".";
     } else if (!confused.empty()) {
-        words +=
-            "<br><span class=\"soft\">What holds up its name: " + escape(listed(confused)) + " may look alike.</span>";
+        words += "<br><span class=\"soft\">Could be mistaken for " + escape(listed(confused)) + ".</span>";
     }
     const json &easiest = one["easiest"]["own"], &usual = one["least"]["own"];
-    if (is_within_reach(one) && !easiest.is_null() && !usual.is_null() && own_strength(easiest) != own_strength(usual))
-        words += "<br><span class=\"soft\">Where it shows best: " + escape(own_strength(easiest)) + ".</span>";
+    const std::string effect = one["effect"];
+    if (is_within_reach(one) && !easiest.is_null() && !usual.is_null() &&
+        own_strength(easiest, effect) != own_strength(usual, effect))
+        words += "<br><span class=\"soft\">Where it shows best: " + escape(own_strength(easiest, effect)) + ".</span>";
     return words;
 }
 
@@ -101,7 +106,7 @@ std::string effects_table(const json& preflight) {
                         escape(one["effect"].get<std::string>())) +
             data_cell("could be named",
                       named == "partly" ? fmt::format("partly, {:.0f} %", 100 * one["share"].get<double>()) : named) +
-            data_cell("from", is_reached ? own_strength(least["own"]) : "–") +
+            data_cell("from", threshold_in_words(one)) +
             data_cell("of its prior", is_reached ? fmt::format("{:.2g}", least["of_prior"].get<double>()) : "–") +
             data_cell("trace, rms", is_reached ? mm(least["rms_mm"]) : "–") +
             data_cell("in sigmas", is_reached && least["rms_sigma"].is_number()
@@ -117,10 +122,9 @@ std::string effects_table(const json& preflight) {
 
 std::string effects_section(const json& preflight) {
     return "<h2 id=\"effects\">What could be named</h2><p>The strength from which each effect would be named, ahead of "
-           "all "
-           "others and beyond what nobody can know about contacts and clamps, by the rules of the diagnosis; and the "
-           "trace that it leaves in the readings then. Effects with a place or a direction are asked in forty of them; "
-           "told is what is enough in half.</p>" +
+           "all others and beyond what nobody can know about contacts and clamps, by the rules of the diagnosis; and "
+           "the trace that it leaves in the readings then. Effects with a place or a direction are evaluated for forty "
+           "of them; the strength stated is sufficient in half of these.</p>" +
            effects_table(preflight);
 }
 
@@ -135,14 +139,33 @@ std::string parameters_section(const json& preflight) {
            "</p>";
 }
 
-std::string readings_section(const json& preflight) {
+/// Where markers stand, as far as that is in order: nothing where there are none.
+std::string markers_in_words(const identify::MeasurementSet& set) {
+    constexpr double on = 1e-3;  // of the longest side: what rounding and the surface's own facets leave
+    const mesh::SurfaceTree tree(set.rest_surface);
+    const double most = on * mesh::bounding_box(set.rest_surface.vertices).longest_side();
+    long off = 0;
+    double farthest = 0;
+    for (const identify::Marker& marker : set.markers) {
+        constexpr double half = 0.5;  // windings: 1 inside, 0 outside
+        const double distance = tree.closest(marker.rest).distance;
+        if (marker.anchor || distance <= most || mesh::winding_number(set.rest_surface, marker.rest) > half) continue;
+        ++off;
+        farthest = std::max(farthest, distance);
+    }
+    if (set.markers.empty()) return ".";
+    if (off == 0) return ", and every marker is on, in, or attached to the body.";
+    return fmt::format(". {} off the surface by up to {:.2g} mm, attached to nothing.",
+                       mesh::count_of(off, "marker stands", "markers stand"), farthest);
+}
+
+std::string readings_section(const json& preflight, const identify::MeasurementSet& set) {
     const json &odd = preflight["suspicions"], &repeats = preflight["repeats"];
     std::string html = "<h2 id=\"readings\">Which readings look off</h2>";
-    html += odd.empty() ? "<p>None: readings agree with their neighbours, and markers lie on the body or inside.</p>"
-                        : items(odd);
+    html += odd.empty() ? "<p>None: readings agree with their neighbours" + markers_in_words(set) + "</p>" : items(odd);
     html += "<h2 id=\"repeats\">Which states repeat</h2>";
-    return html +
-           (repeats.empty() ? "<p>None. Repeats tell the noise, and whether the body comes back.</p>" : items(repeats));
+    return html + (repeats.empty() ? "<p>None. Repeats determine the noise, and whether the body comes back.</p>"
+                                   : items(repeats));
 }
 
 std::string gain_words(const json& experiment) {
@@ -155,12 +178,12 @@ std::string gain_words(const json& experiment) {
         const json &before = gain["least_before"], &after = gain["least_after"];
         const std::string by =
             before.is_number() && after.is_number()
-                ? fmt::format(" from {:.0f} % of the strength", 100 * after.get<double>() / before.get<double>())
-            : after.is_number() ? fmt::format(" from {:.2g} of its prior", after.get<double>())
-                                : fmt::format(" in {:.0f} % of the cases", 100 * gain["share_after"].get<double>());
+                ? fmt::format(" (at {:.0f} % of today's threshold)", 100 * after.get<double>() / before.get<double>())
+            : after.is_number() ? fmt::format(" (from {:.2g} of its prior)", after.get<double>())
+                                : fmt::format(" (in {:.0f} % of the cases)", 100 * gain["share_after"].get<double>());
         eased += (eased.empty() ? "" : ", ") + escape(effect) + by;
     }
-    return words + (eased.empty() ? "" : "<span class=\"soft\">Eases: " + eased + ".</span>");
+    return words + (eased.empty() ? "" : "<span class=\"soft\">Easier to identify: " + eased + ".</span>");
 }
 
 std::string experiments_section(const json& preflight) {
@@ -175,7 +198,7 @@ std::string experiments_section(const json& preflight) {
                "much more.</p>";
     return "<h2 id=\"next\">What the next hour in the lab should bring</h2><p>Each was added to the set with readings "
            "of all "
-           "markers, as noisy as the set's, and the effects were asked again; the best comes first.</p><div "
+           "markers, as noisy as the set's, and the effects were judged again; the best comes first.</p><div "
            "class=\"wide\">"
            "<table class=\"cards\"><thead><tr><th class=\"words\">do</th><th>states</th><th class=\"words\">it "
            "brings</th></tr></thead><tbody>" +
@@ -193,37 +216,23 @@ std::string files_section(const json& check) {
     return html + items(words);
 }
 
-std::string sections_nav(const std::string& page) {
-    std::string html = "<nav aria-label=\"Sections\">";
-    for (std::size_t at = page.find("<h2 id=\""); at != std::string::npos; at = page.find("<h2 id=\"", at + 1)) {
-        const std::size_t id = at + 8, id_end = page.find('"', id), end = page.find("</h2>", id_end);
-        html +=
-            "<a href=\"#" + page.substr(id, id_end - id) + "\">" + page.substr(id_end + 2, end - id_end - 2) + "</a>";
-    }
-    return html + "</nav>";
-}
-
 }  // namespace
 
 void write_check_page(const std::filesystem::path& page, const Subject& subject, const json& check) {
     const json preflight = check.value("preflight", json());
     const std::string name =
-        escape("Check of " + (subject.set && !subject.set->name.empty() ? subject.set->name : subject.settings.name));
+        "Check of " + (subject.set && !subject.set->name.empty() ? subject.set->name : subject.settings.name);
     std::string sections;
     if (!preflight.is_null())
-        sections = effects_section(preflight) + experiments_section(preflight) + readings_section(preflight) +
-                   parameters_section(preflight);
+        sections = effects_section(preflight) + experiments_section(preflight) +
+                   readings_section(preflight, *subject.set) + parameters_section(preflight);
     sections += files_section(check);
-    mesh::write_text(page,
-                     "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">"
-                     "<meta name=\"viewport\" content=\"width=device-width,initial-scale=1\">"
-                     "<meta name=\"generator\" content=\"palpate\"><link rel=\"icon\" href=\"data:,\"><title>" +
-                         name + "</title><style>" + std::string(page_style) + "</style></head><body><main><h1>" + name +
-                         "</h1>" + std::string(check_view) + "<script id=\"check-data\" type=\"application/json\">" +
-                         as_script_data(check_picture(subject, preflight)) + "</script><script>" +
-                         std::string(check_script) + "</script><p class=\"lead\">" + escape(lead(check, preflight)) +
-                         "</p>" + tiles_of(check, preflight) + sections_nav(sections) + sections +
-                         "</main></body></html>\n");
+    mesh::write_text(page, page_head(name, page_style) + "<body><main><h1>" + escape(name) + "</h1>" +
+                               std::string(check_view) + "<script id=\"check-data\" type=\"application/json\">" +
+                               as_script_data(check_picture(subject, preflight)) + "</script><script>" +
+                               std::string(check_script) + "</script><p class=\"lead\">" +
+                               escape(lead(check, preflight)) + "</p>" + tiles_of(check, preflight) +
+                               section_links(sections) + sections + "</main></body></html>\n");
 }
 
 }  // namespace palpate::pipeline

@@ -84,7 +84,7 @@ std::string words_of(const identify::MeasurementSet& set, const identify::LoadSt
                         without_missing(motion.translation).norm()));
     for (const identify::Actuation& one : state.actuations)
         add(fmt::format("{} at {:.3g}", set.actuators[static_cast<std::size_t>(one.actuator)].name, one.value));
-    if (words.empty()) words = "nothing acts that the set tells of";
+    if (words.empty()) words = "no load is stated";
     const std::size_t read = state.readings.size();
     words += fmt::format("; {} marker{} read", read, read == 1 ? "" : "s");
     if (!state.reactions.empty()) words += fmt::format(", {} reactions", state.reactions.size());

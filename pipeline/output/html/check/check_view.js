@@ -28,7 +28,7 @@ function startCheck() {
   const strongest = largest(states.flatMap((s) => s.loads.map((l) => Math.hypot(...l.slice(3))))) || 1;
   const furthest = largest(states.map((s) => largest(Array.from({length: s.moved.length / 3}, (_, i) => norm3(s.moved, i) || 0))));
 
-  const colours = ['supports', ...(data.parts.length ? ['how well its stiffness would be told'] : []), 'one colour'];
+  const colours = ['supports', ...(data.parts.length ? ['how well its stiffness would be determined'] : []), 'one colour'];
   const fill = (select, texts) => select.replaceChildren(...texts.map((t, i) => new Option(t, i)));
   fill(at('colour'), colours);
   fill(at('state'), states.length ? states.map((s) => s.name) : ['at rest']);
@@ -66,8 +66,8 @@ function startCheck() {
     }
     at('legend').hidden = !by.startsWith('how');
     at('gradient').style.background = gradient;
-    at('low').textContent = `not told (sd of ln ${high.toPrecision(2)})`;
-    at('high').textContent = 'well told';
+    at('low').textContent = `not determined (sd of ln ${high.toPrecision(2)})`;
+    at('high').textContent = 'well determined';
   }
 
   const isDark = matchMedia('(prefers-color-scheme: dark)');

@@ -65,3 +65,41 @@ function spread(markers, values, points, reach) {
   }
   return result;
 }
+
+/// Where a surface faces at a vertex, of any length: the sum of its triangles' normals there.
+function outwardAt(points, triangles, vertex) {
+  const sum = [0, 0, 0];
+  for (let t = 0; t < triangles.length; t += 3) {
+    if (triangles[t] !== vertex && triangles[t + 1] !== vertex && triangles[t + 2] !== vertex) continue;
+    const [a, b, c] = [0, 1, 2].map((k) => point3(points, triangles[t + k]));
+    const u = b.map((v, i) => v - a[i]), w = c.map((v, i) => v - a[i]);
+    for (let i = 0; i < 3; ++i) sum[i] += u[(i + 1) % 3] * w[(i + 2) % 3] - u[(i + 2) % 3] * w[(i + 1) % 3];
+  }
+  return sum;
+}
+
+const short = (v) => (Number.isFinite(v) ? `${+v.toPrecision(3)}` : '–');
+/// The measured force of a tool along the axes that were read [N], and the model's along the same.
+const measuredForce = (tool) => Math.hypot(...tool.measured.map((f) => f ?? 0));
+const modelledForce = (tool, force) => Math.hypot(...force.modelled.filter((_, c) => tool.measured[c] !== null));
+
+/// What states are called in lists: probe and time, the force that acts, and whether it was held out.
+function titlesOf(states) {
+  const timed = states.some((s) => s.time !== 0), pressed = states.some((s) => s.loads.length || s.tools.some((t) => t.measured));
+  const forceIn = (s) => {
+    const forces = [...s.loads.map((l) => Math.hypot(l[3], l[4], l[5])), ...s.tools.filter((t) => t.measured).map(measuredForce)];
+    return forces.length ? `${short(forces.reduce((a, b) => a + b))} N` : s.tools.length ? 'force not read' : 'no force';
+  };
+  return states.map((s) => [`${s.probe}${timed ? ` at ${+s.time.toPrecision(4)} s` : ''}`, ...(pressed ? [forceIn(s)] : []),
+    ...(s.held_out ? ['held out'] : [])].join(', '));
+}
+
+/// How far a model is off in a state, by what was read: positions of markers, forces of tools.
+function errorWords(now, answer) {
+  const forces = now.tools.filter((t) => t.measured).map((tool) => {
+    const force = answer.tool_forces.find((f) => f.name === tool.name);
+    return `${tool.name} ${short(measuredForce(tool))} N measured${force ? `, ${short(modelledForce(tool, force))} N modelled` : ''}`;
+  });
+  return [...(answer.markers.id.length ? [`rms error ${short(answer.rms)} mm per coordinate, largest distance ${short(answer.largest)} mm`] : []),
+    ...forces].join('; ') || 'nothing was read';
+}

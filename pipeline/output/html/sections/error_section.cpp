@@ -46,13 +46,15 @@ std::string pictures(const RunFiles& files) {
 std::vector<Bar> error_bars(const RunFiles& files, const json& compare, bool share) {
     const json held_out = files.record.value("held_out_probes", json::array());
     std::vector<Bar> bars;
-    for (const json& p : compare["probes"]) {
+    const auto add = [&](const json& p, const json& value, double factor) {
         const bool kept = std::find(held_out.begin(), held_out.end(), p["probe"]) != held_out.end();
         const std::string label = fmt::format("probe {}, time {:g}{}", p["probe"].get<int>(), p["time"].get<double>(),
                                               kept ? ", held out" : "");
-        const json& value = share ? p["relative"] : p["rms_mm"];
-        if (value.is_number()) bars.push_back({label, (share ? 100 : 1) * value.get<double>(), kept});
-    }
+        if (value.is_number()) bars.push_back({label, factor * value.get<double>(), kept});
+    };
+    for (const json& p : compare["probes"]) add(p, share ? p["relative"] : p["rms_mm"], share ? 100 : 1);
+    if (compare["probes"].empty() && !share)
+        for (const json& force : compare.value("tool_forces", json::array())) add(force, force["error_n"], 1);
     return bars;
 }
 
@@ -66,14 +68,14 @@ std::optional<double> noise_of(const json& compare) {
 std::string probe_chart(const RunFiles& files) {
     const bool held_out = !files.record.value("held_out_probes", json::array()).empty();
     const std::optional<double> noise = noise_of(files.compare);
+    const char* unit = reads_positions(files.compare) ? "mm rms" : "N";
     std::string html = "<div class=\"pair\">";
     if (files.improved.is_object()) {
-        html +=
-            bar_chart(error_bars(files, files.compare, false), "Error of each state, nothing added", "mm rms", noise) +
-            bar_chart(error_bars(files, files.improved, false), "Error of each state, " + with_what(files), "mm rms",
-                      noise);
+        html += bar_chart(error_bars(files, files.compare, false), "Error of each state, nothing added", unit, noise) +
+                bar_chart(error_bars(files, files.improved, false), "Error of each state, " + with_what(files), unit,
+                          noise);
     } else {
-        html += bar_chart(error_bars(files, files.compare, false), "Error of each state", "mm rms", noise) +
+        html += bar_chart(error_bars(files, files.compare, false), "Error of each state", unit, noise) +
                 bar_chart(error_bars(files, files.compare, true), "Error over displacement of each state", "%");
     }
     return html + "</div>" + (held_out ? "<p class=\"soft\">Orange: held out of the fit.</p>" : "");
@@ -136,7 +138,7 @@ std::string worst_section(const json& compare) {
 }  // namespace
 
 std::string error_section(const RunFiles& files) {
-    std::string html = "<h2 id=\"errors\">Where it is wrong</h2>";
+    std::string html = "<h2 id=\"errors\">Remaining error</h2>";
     if (files.improved.is_object()) {
         html += "<p>" +
                 escape(compare_in_words(files.improved, "The model " + with_what(files) + ", fitted to all probes,")) +

@@ -14,7 +14,12 @@ namespace {
 using nlohmann::json;
 
 struct Trace {
-    ChartLine fit{"−ln of the posterior density", {}}, temperature{"temperature", {}}, samples{"effective samples", {}};
+    ChartLine fit{"−ln of the posterior density", {}}, temperature{"tempering exponent", {}},
+        samples{"effective samples", {}};
+    /// No search was recorded, and the particles are of the posterior from the beginning.
+    bool was_drawn_at_once() const {
+        return fit.points.empty() && temperature.points.size() == 1 && temperature.points.front().second == 1;
+    }
 };
 
 /// convergence.csv: stage,step,minus_log_density,temperature,effective_samples, empty where a stage has none.
@@ -39,18 +44,30 @@ Trace read_trace(const std::filesystem::path& file) {
     return trace;
 }
 
+std::string drawn_words(const Trace& trace) {
+    return fmt::format(
+        "The particles were drawn in one step from the normal distribution about the best fit (Laplace's approximation "
+        "of the posterior): {:.0f} effective samples.</p>",
+        trace.samples.points.empty() ? 0 : trace.samples.points.front().second);
+}
+
 }  // namespace
 
 std::string convergence_section(const std::filesystem::path& convergence) {
     if (!std::filesystem::exists(convergence)) return {};
     const Trace trace = read_trace(convergence);
-    return "<h2 id=\"convergence\">Convergence</h2><p>An optimiser found the most probable stiffnesses; the particles "
-           "were "
-           "then tempered from a proposal (exponent 0) to the posterior (exponent 1). With few effective samples the "
-           "posterior is poorly resolved.</p><div class=\"pair\">" +
-           line_chart({trace.fit}, "Search: −ln of the posterior density", "step") +
-           line_chart({trace.samples}, "Particles: effective samples", "step") +
-           line_chart({trace.temperature}, "Particles: tempering exponent", "step") + "</div>";
+    const std::string heading = "<h2 id=\"convergence\">Convergence</h2><p>",
+                      search = line_chart({trace.fit}, "Search: −ln of the posterior density", "step"),
+                      tempering = line_chart({trace.samples}, "Particles: effective samples", "step") +
+                                  line_chart({trace.temperature}, "Particles: tempering exponent", "step");
+    if (search.empty() && tempering.empty()) return trace.was_drawn_at_once() ? heading + drawn_words(trace) : "";
+    std::string words;
+    if (!search.empty()) words += "An optimiser found the most probable stiffnesses. ";
+    if (!tempering.empty())
+        words +=
+            "The particles were tempered from a proposal (exponent 0) to the posterior (exponent 1); with few "
+            "effective samples the posterior is poorly resolved.";
+    return heading + words + "</p><div class=\"pair\">" + search + tempering + "</div>";
 }
 
 std::string spheres_section(const json& quality) {

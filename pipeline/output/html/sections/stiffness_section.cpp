@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "pipeline/output/html/charts/charts.h"
+#include "pipeline/output/html/charts/svg.h"
 #include "pipeline/output/html/escape.h"
 #include "pipeline/output/html/page/page_parts.h"
 
@@ -60,16 +61,21 @@ std::vector<std::pair<std::string, std::vector<Eigen::Index>>> by_kind(const Row
     return kinds;
 }
 
+KnownBeforeAndAfter with_printed_name(KnownBeforeAndAfter known) {
+    known.name = printed_stiffness(known.name);
+    return known;
+}
+
 std::string kinds_of(const Rows& posterior, const ParticleSet& particles, PriorKind prior) {
     std::string html = "<h3>Prior and posterior</h3><div class=\"densities\">";
     bool pooled = false;
     for (const auto& [kind, places] : by_kind(posterior)) {
         const bool alone = places.size() == 1;
         pooled = pooled || !alone;
-        html += density_chart(
-            alone
-                ? density_of(posterior[static_cast<std::size_t>(places.front())], particles, places.front(), prior)
-                : pooled_density(fmt::format("{}, all {}", kind, places.size()), posterior, particles, places, prior));
+        html += density_chart(alone ? with_printed_name(density_of(posterior[static_cast<std::size_t>(places.front())],
+                                                                   particles, places.front(), prior))
+                                    : pooled_density(fmt::format("{}, all {}", printed_stiffness(kind), places.size()),
+                                                     posterior, particles, places, prior));
     }
     html +=
         "</div><p class=\"soft\">Dashed: prior density. Filled: posterior density, of the weighted particles. Above, "
@@ -90,18 +96,37 @@ std::string one_by_one(const Rows& posterior, const ParticleSet& particles, Prio
     nlohmann::json pictures = nlohmann::json::array();
     for (const Eigen::Index p : shown) {
         const identify::PosteriorRow& row = posterior[static_cast<std::size_t>(p)];
-        options += "<option>" + escape(row.parameter) + (row.informed ? " ●" : "") + "</option>";
-        pictures.push_back(density_chart(density_of(row, particles, p, prior)));
+        options += "<option>" + escape(printed_stiffness(row.parameter)) + (row.informed ? " ●" : "") + "</option>";
+        pictures.push_back(density_chart(with_printed_name(density_of(row, particles, p, prior))));
     }
     return fmt::format(
                "<h3>One by one</h3><p><label>Number <select id=\"density-of\">{}</select></label> <span "
-               "class=\"soft\">{}the one first that the measurements tell most of; ● narrower than "
+               "class=\"soft\">{}first the one that the measurements determine best; ● narrower than "
                "its prior</span></p>"
                "<div class=\"densities\" id=\"density\">{}</div>",
                options, all > most_chosen ? fmt::format("{} of {}, ", most_chosen, all) : "",
                pictures.front().get<std::string>()) +
            "<script id=\"density-data\" type=\"application/json\">" + as_script_data(pictures) + "</script><script>" +
            std::string(density_script) + "</script>";
+}
+
+/// Without the word that the chart's title has: "bending, link 17".
+std::string name_of_interval(const std::string& parameter) {
+    std::string name = printed_stiffness(parameter);
+    const std::string word = " stiffness";
+    if (const std::size_t at = name.find(word); at != std::string::npos) name.erase(at, word.size());
+    return name;
+}
+
+/// What a row stands for that is of several links or spheres; "" where none is.
+std::string shared_words(const Rows& posterior) {
+    const auto of_several = [](const identify::PosteriorRow& row) {
+        return row.link < 0 && row.parameter.find(":sphere") == std::string::npos;
+    };
+    return std::ranges::any_of(posterior, of_several) ? " A stiffness that no link is named with is the geometric mean "
+                                                        "over all that share it: the links, or for "
+                                                        "the volume the spheres."
+                                                      : "";
 }
 
 std::string intervals(const Rows& posterior, PriorKind prior) {
@@ -111,7 +136,8 @@ std::string intervals(const Rows& posterior, PriorKind prior) {
         auto& list = by_unit[row.unit];
         if (list.size() == most_intervals) continue;
         const auto [low, high] = prior_interval(row, prior);
-        list.push_back({row.parameter + (row.informed ? " ●" : ""), row.q025, row.q50, row.q975, low, high});
+        list.push_back(
+            {name_of_interval(row.parameter) + (row.informed ? " ●" : ""), row.q025, row.q50, row.q975, low, high});
     }
     std::string html = "<h3>Intervals</h3><div class=\"pair\">";
     for (const auto& [unit, list] : by_unit) html += interval_chart(list, "Stiffness", unit);
@@ -132,9 +158,9 @@ std::string stiffness_section(const Rows& posterior, const ParticleSet& particle
                        particles.stiffness.minCoeff() > 0;
     if (drawn) html += kinds_of(posterior, particles, prior) + one_by_one(posterior, particles, prior);
     return html + intervals(posterior, prior) +
-           "<p class=\"soft\">Grey: 95 % of the prior. Blue: 95 % of the posterior, with its median; those first that "
-           "the measurements tell most of. All numbers are in " +
-           escape(file) + ".</p>";
+           "<p class=\"soft\">Grey: 95 % of the prior. Blue: 95 % of the posterior, with its median; first those that "
+           "the measurements determine best." +
+           shared_words(posterior) + " All numbers are in " + escape(file) + ", where bending is called flexion.</p>";
 }
 
 }  // namespace palpate::pipeline

@@ -9,6 +9,7 @@
 #include "pipeline/output/html/charts/svg.h"
 #include "pipeline/output/html/escape.h"
 #include "pipeline/output/html/page/page_parts.h"
+#include "pipeline/output/html/page_frame.h"
 #include "pipeline/output/text/population.h"
 
 namespace palpate::pipeline {
@@ -40,7 +41,7 @@ public:
             svg += stroke(at(tick), plot_top, at(tick), bottom, faint_line) +
                    words_at(at(tick), bottom + 14, fmt::format("{:.4g}", tick), "middle");
         };
-        constexpr double wide = 4;  // highest over lowest: from there on decades tell more than even steps
+        constexpr double wide = 4;  // highest over lowest: from there on decades are clearer than even steps
         if (is_logarithmic_ && high_ > wide * low_) {
             for (double decade = std::pow(10, std::floor(std::log10(low_))); decade <= high_; decade *= 10)
                 for (const double digit : {1.0, 2.0, 5.0})
@@ -98,13 +99,8 @@ void write_population_page(const std::filesystem::path& page, const json& popula
     }
     if (const std::string links = single_links_in_words(population); !links.empty())
         sections += "<p>" + escape(links) + "</p>";
-    mesh::write_text(page,
-                     "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">"
-                     "<meta name=\"viewport\" content=\"width=device-width,initial-scale=1\">"
-                     "<meta name=\"generator\" content=\"palpate\"><link rel=\"icon\" href=\"data:,\">"
-                     "<title>Population</title><style>" +
-                         std::string(page_style) + "</style></head><body><main><h1>Population</h1>" + sections +
-                         "</main></body></html>\n");
+    mesh::write_text(page, page_head("Population", page_style) + "<body><main><h1>Population</h1>" + sections +
+                               "</main></body></html>\n");
 }
 
 }  // namespace palpate::pipeline

@@ -58,7 +58,7 @@ Description describe_yaml(const fs::path& file) {
 }  // namespace
 
 Description describe(const fs::path& file) {
-    if (!fs::exists(file)) throw IoError(fmt::format("{}: there is no such file or folder", file.string()));
+    if (!fs::exists(file)) throw IoError(fmt::format("{}: no such file or folder.", file.string()));
     if (fs::is_directory(file)) return describe_folder(file);
     const std::string extension = extension_of(file);
     if (extension == ".yaml" || extension == ".yml") return describe_yaml(file);
@@ -91,7 +91,7 @@ Description describe_set(const fs::path& path) {
     if (set.position_noise)
         description.lines.push_back(fmt::format("noise {:.3g} mm (1 sigma)", *set.position_noise));
     else if (readings > 0 || set.reaction_noise == std::nullopt)
-        description.lines.emplace_back("no noise is stated: it is estimated");
+        description.lines.emplace_back("no noise is declared: it is estimated");
     if (set.gravity)
         description.lines.push_back(fmt::format("gravity ({:g}, {:g}, {:g}) mm/s^2 is known to act", set.gravity->x(),
                                                 set.gravity->y(), set.gravity->z()));

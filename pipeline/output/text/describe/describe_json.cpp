@@ -99,17 +99,35 @@ Description describe_json(const fs::path& file) {
     return found->second(file);
 }
 
+namespace {
+
+/// What was found, as the run itself told it: of a model that effects were added to, the one that came of it.
+std::vector<std::string> findings_of_run(const fs::path& folder) {
+    const json ladder = fs::exists(folder / "improve/ladder.json") ? parsed(folder / "improve/ladder.json") : json();
+    const auto added = ladder.is_null() ? std::vector<std::string>{}
+                                        : ladder["steps"].back()["effects"].get<std::vector<std::string>>();
+    std::vector<std::string> lines;
+    if (fs::exists(folder / "diagnose/diagnosis.json"))
+        lines.push_back(diagnosis_in_words(parsed(folder / "diagnose/diagnosis.json")));
+    if (!added.empty() && fs::exists(folder / "improve/compare.json"))
+        lines.push_back(compare_in_words(parsed(folder / "improve/compare.json"),
+                                         fmt::format("The model with {}, fitted to all probes,", listed(added))));
+    else if (fs::exists(folder / "compare/compare.json"))
+        lines.push_back(compare_in_words(parsed(folder / "compare/compare.json")));
+    if (!ladder.is_null()) lines.push_back(ladder_in_words(ladder));
+    return lines;
+}
+
+}  // namespace
+
 Description describe_run(const fs::path& folder) {
     const json record = parsed(folder / "run.json");
-    Description description{
-        .kind = "a run folder, made by palpate " + record.value("version", ""), .lines = {}, .next = {}};
+    Description description{.kind = "a run folder, made by palpate " + record.value("version", ""),
+                            .lines = findings_of_run(folder),
+                            .next = {}};
     for (const auto& [stage, figures] : record["stages"].items()) {
         description.lines.push_back(fmt::format("{:<13} {:.1f} s, {:.0f} MB", stage, figures["seconds"].get<double>(),
                                                 figures["peak_memory_mb"].get<double>()));
-    }
-    for (const char* result : {"compare/compare.json", "diagnose/diagnosis.json", "improve/ladder.json"}) {
-        if (!fs::exists(folder / result)) continue;
-        for (const std::string& line : describe_json(folder / result).lines) description.lines.push_back(line);
     }
     const bool whole = fs::exists(folder / "report.html");
     description.lines.push_back(whole ? "Report: " + (folder / "report.html").string() : "It is not finished.");

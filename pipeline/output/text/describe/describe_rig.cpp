@@ -166,7 +166,7 @@ std::vector<std::string> rig_in_words(const identify::MeasurementSet& set) {
         lines.push_back(fmt::format("{} of the readings are displacements since another state", count));
     if (!lines.empty() && !identify::tells_a_force(set))
         lines.emplace_back(
-            "no force is measured: stiffness is identified up to a common factor, only its ratios are told");
+            "no force is measured: stiffness is identified up to a common factor, only its ratios are determined");
     if (set.reaction_noise) lines.push_back(fmt::format("noise of reactions {:.3g} N (1 sigma)", *set.reaction_noise));
     if (set.moment_noise) lines.push_back(fmt::format("noise of moments {:.3g} N*mm (1 sigma)", *set.moment_noise));
     const std::vector<identify::UnfittedPart> parts = identify::parts_not_fitted_yet(set);

@@ -12,7 +12,7 @@ namespace palpate::pipeline {
 std::size_t loaded_states(const identify::MeasurementSet& set);
 
 /// What moved and drove a body in a set, and what was read of it, a line each: tools, actuators, displacements, and
-/// whether any force is told. Nothing for a set of forces and positions.
+/// whether any force is stated. Nothing for a set of forces and positions.
 std::vector<std::string> rig_in_words(const identify::MeasurementSet& set);
 
 /// The same for scripts: {"tools": [...], "actuators": [...], "displacements", "tells_a_force", "not_fitted_yet"}.

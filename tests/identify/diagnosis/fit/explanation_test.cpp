@@ -109,8 +109,8 @@ TEST_P(Signature, StepsAreTheDerivativeOfTheConfiguration) {
         const Eigen::VectorXd step =
             steps[k].size() > 0 ? steps[k] * (h * direction) : Eigen::VectorXd::Zero(model_->dofs()).eval();
         const Points guess = model_->observe(model_->advance(forward.q[k], step, setting), setting);
-        const double moved = (there.stand[k] - forward.stand[k]).norm();
-        EXPECT_LE((guess - there.stand[k]).norm(), 0.05 * moved + 1e-9) << k;  // the second order of a small step
+        const double moved = (there.channels[k] - forward.channels[k]).norm();
+        EXPECT_LE((guess - there.channels[k]).norm(), 0.05 * moved + 1e-9) << k;  // the second order of a small step
     }
 }
 

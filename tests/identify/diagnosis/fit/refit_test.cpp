@@ -122,7 +122,7 @@ TEST_F(Refits, TrustMarkersLessNextToWhatIsHeld) {
     Eigen::VectorXd unknown(24);  // sd beyond the noise, over what the marker moves
     for (Eigen::Index n = 0; n < problem.rows(); ++n) {
         const int marker = problem.coordinate[n] / 3;
-        const double moved = (forward.stand[problem.action[n]].row(marker) - problem.rest.row(marker)).norm();
+        const double moved = (forward.channels[problem.action[n]].row(marker) - problem.rest.row(marker)).norm();
         unknown[marker] = problem.sigma[n] * std::sqrt(std::pow(weights[n], -2) - 1) / moved;
     }
     EXPECT_GT(unknown.head(4).minCoeff(), 0.03);  // 6 mm from the support, of elements 8 mm long

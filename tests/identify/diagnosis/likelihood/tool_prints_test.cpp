@@ -44,7 +44,7 @@ TEST_F(UnderABall, IsWhereAndAsLargeAsTheContact) {
     EXPECT_LT((prints[0].contact.point - Vec3(20, 5, 10)).norm(), 1.3);  // half the 2.5 mm between the skin's points
     EXPECT_LT(prints[0].contact.radius, 4);                              // the ball's
     EXPECT_GT(prints[0].contact.radius, 0.5);                            // the bar sinks away from it, as it bends
-    const Vec3 felt = forward_.stand[static_cast<std::size_t>(pressed())].row(problem_.markers);
+    const Vec3 felt = forward_.channels[static_cast<std::size_t>(pressed())].row(problem_.markers);
     EXPECT_EQ(prints[0].contact.force, felt);
     EXPECT_LT(felt.z(), 0);
     // The ball came 1 mm from where it just touched; what stands between the points of the skin it reaches first.
@@ -73,7 +73,7 @@ TEST_F(UnderABall, PlayIsAShareOfHowFarItPresses) {
     const Signatures::InAction near = play_of(Vec3(20, 5, 14)), far = play_of(Vec3(20, 5, 94));
     EXPECT_LT((near.reactions - far.reactions).norm(), 1e-9 * near.reactions.norm());
     // By its whole stroke less it would not touch: the slope of its force times that is more than its force.
-    const Vec3 felt = forward_.stand[static_cast<std::size_t>(pressed())].row(problem_.markers);
+    const Vec3 felt = forward_.channels[static_cast<std::size_t>(pressed())].row(problem_.markers);
     EXPECT_GT(stroke, 0);
     EXPECT_LT(near.reactions.col(0).head<3>().dot(felt), 0);
 }

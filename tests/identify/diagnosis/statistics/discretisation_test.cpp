@@ -135,10 +135,10 @@ TEST_F(Discretisation, UnderAToolThatMayPartIsToldByAMeshThatIsFinerThere) {
         const Points moved = truth.observe(exact, setting) - model.observe(q, setting);
         EXPECT_LT((error->markers - moved).norm(), 1e-4 * moved.norm());
     }
-    EXPECT_NEAR(*model.left_of_mesh_error(action), 1.0 / 7, 1e-12);  // e - e/8 is taken off
-    EXPECT_FALSE(model.left_of_mesh_error({}));
+    EXPECT_NEAR(*model.remaining_mesh_error(action), 1.0 / 7, 1e-12);  // e - e/8 is taken off
+    EXPECT_FALSE(model.remaining_mesh_error({}));
     action.motions[0].translation.z() = 1;
-    EXPECT_FALSE(model.left_of_mesh_error(action));
+    EXPECT_FALSE(model.remaining_mesh_error(action));
 }
 
 TEST_F(Discretisation, UnderToolsIsAnUnknownOfEachAction) {

@@ -226,12 +226,12 @@ TEST_F(QualityOfABox, IsWrittenBesideTheModel) {
     EXPECT_NO_THROW(commands::skeleton(options({}), {}));
 }
 
-TEST_F(QualityOfABox, RefusesRungsWithoutSpheresAndFilesOfOthers) {
+TEST_F(QualityOfABox, RefusesStepsWithoutSpheresAndFilesOfOthers) {
     EXPECT_THAT(
         [&] {
             commands::skeleton(options({8, 0}), {});
         },
-        ::testing::ThrowsMessage<InvalidInput>(HasSubstr("0 spheres, allowed is 1 to 20000")));
+        ::testing::ThrowsMessage<InvalidInput>(HasSubstr("spheres of a quality step: 0; allowed are 1 to 20000")));
     mesh::write_text(scratch_ / "arm_quality.csv", "a table of mine\n");
     EXPECT_THAT([&] { commands::skeleton(options({8}), {}); },
                 ::testing::ThrowsMessage<InvalidInput>(HasSubstr("arm_quality.csv: exists")));

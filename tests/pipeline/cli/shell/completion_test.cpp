@@ -48,6 +48,8 @@ TEST(Spelling, NamesTheNearestVerbAndFlag) {
     EXPECT_THAT(spelling_error(small_tree(), {"run", "x.stl", "--ouput=y"}),
                 AllOf(HasSubstr("'--ouput'"), HasSubstr("did you mean '--output'")));
     EXPECT_THAT(spelling_error(small_tree(), {"run", "x.stl", "-f"}), HasSubstr("no flag '-f'"));
+    EXPECT_THAT(spelling_error(small_tree(), {"run", "x.stl", "--out", "y"}), HasSubstr("did you mean '--output'"));
+    EXPECT_THAT(spelling_error(small_tree(), {"eff"}), HasSubstr("did you mean 'effects'"));
 }
 
 TEST(Spelling, FindsNothingWhereAllIsKnown) {

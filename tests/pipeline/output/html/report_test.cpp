@@ -1,5 +1,6 @@
 // The report page of a small run: what it says, and the numbers behind its view.
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -22,6 +23,7 @@
 #include "pipeline/output/html/view_data.h"
 #include "skeleton/model/io/model_io.h"
 #include "skeleton/statics/equilibrium.h"
+#include "tests/messages.h"
 #include "tests/pipeline/output/html/beam_run.h"
 #include "tests/temporary_folder.h"
 
@@ -139,6 +141,72 @@ TEST(ViewData, HoldsTheBodyAndEachAnswer) {
         EXPECT_FALSE(state["measured"].is_null()) << "simulated: the field is known";
 }
 
+/// What links are coloured by, in words and units for people.
+TEST(ViewData, NamesStiffnessesInWords) {
+    std::vector<std::string> names;
+    const json data = data_of(beam_run());
+    for (const json& quantity : data["steps"][0]["quantities"]) {
+        names.push_back(quantity["name"]);
+        const bool is_relative = names.back().ends_with("relative sd"),
+                   is_of_angles = names.back().starts_with("bending") || names.back().starts_with("torsion");
+        EXPECT_EQ(quantity["relative"], is_relative);
+        EXPECT_EQ(quantity["unit"] == "N·mm/rad", is_of_angles && !is_relative) << names.back();
+    }
+    EXPECT_THAT(names, ::testing::IsSupersetOf({"elongation stiffness", "bending stiffness, 2nd plane",
+                                                "shear stiffness, 2nd plane", "bending stiffness, relative sd"}));
+}
+
+/// Tools as the set has them, their measured forces, and what compare.json says of the model's.
+TEST(ViewData, HoldsToolsWithTheirForces) {
+    const TemporaryFolder scratch;
+    std::filesystem::copy(beam_run(), scratch / "run", std::filesystem::copy_options::recursive);
+    const json before = data_of(scratch / "run");
+    const int probe = before["states"][0]["probe"];
+    const double time = before["states"][0]["time"];
+    EXPECT_TRUE(before["states"][0]["tools"].empty());
+    EXPECT_TRUE(before["steps"][0]["forces_rms"].is_null());
+
+    std::filesystem::create_directory(scratch / "set");
+    mesh::write_surface(scratch / "set/rest.stl", mesh::make_box({0, 0, 0}, {100, 20, 20}, {10, 2, 2}));
+    scratch.write("set/set.yaml",
+                  "format: palpate-measurements/2\n"
+                  "units: {length: mm, force: N, time: s, angle: rad}\n"
+                  "rest_surface: rest.stl\n"
+                  "supports: [{box: {min: [-1, -1, -1], max: [0.1, 21, 21]}}]\n"
+                  "tools:\n"
+                  "  - {name: ball, shape: {sphere: {radius: 4}}, at: [50, 10, 25], contact: frictionless}\n"
+                  "  - {name: punch, shape: {flat: {radius: 3}}, at: [70, 10, 20], contact: bonded}\n"
+                  "noise: {reaction: 0.01}\n");
+    const std::string state = fmt::format("{},{},", probe, time);
+    scratch.write("set/motions.csv", "probe,time,tool,x,y,z,rx,ry,rz\n" + state + "ball,0,0,-2,0,0,0\n" + state +
+                                         "punch,,0,0,0,1.5707963267948966,0\n");
+    scratch.write("set/reactions.csv", "probe,time,tool,fx,fy,fz\n" + state + "ball,,,-0.1\n");
+    scratch.write("run/case.yaml", "measurements: '" + (scratch / "set").string() + "'\n");
+
+    json compare = json::parse(mesh::read_text(scratch / "run/compare/compare.json"));
+    compare["error"]["reactions"]["rms_n"] = 0.02;
+    compare["tool_forces"] = json::array(
+        {{{"probe", probe}, {"time", time}, {"tool", "ball"}, {"modelled_n", {0.0, 0.0, -0.08}}, {"error_n", 0.02}}});
+    const json data = view_data(scratch / "run", json::object(), compare, nullptr, nullptr, {});
+    const json& tools = data["states"][0]["tools"];
+    ASSERT_EQ(tools.size(), 2U);
+    EXPECT_EQ(tools[0], (json{{"name", "ball"},
+                              {"at", {50.0, 10.0, 23.0}},
+                              {"radius", 4.0},
+                              {"axis", nullptr},
+                              {"measured", {nullptr, nullptr, -0.1}}}));
+    EXPECT_TRUE(tools[1]["at"].is_null()) << "free along x";
+    EXPECT_NEAR(tools[1]["axis"][0].get<double>(), -1, 1e-12) << "turned from -z about y, to round-off";
+    EXPECT_TRUE(tools[1]["measured"].is_null());
+    EXPECT_EQ(data["steps"][0]["states"][0]["tool_forces"],
+              json::array({{{"name", "ball"}, {"modelled", {0.0, 0.0, -0.08}}}}));
+    EXPECT_EQ(data["steps"][0]["forces_rms"], 0.02);
+
+    scratch.write("run/case.yaml", "measurements: '" + (scratch / "gone").string() + "'\n");
+    EXPECT_TRUE(
+        view_data(scratch / "run", json::object(), compare, nullptr, nullptr, {})["states"][0]["tools"].empty());
+}
+
 /// Where not all states fit, those with the largest errors are kept.
 TEST(ViewData, KeepsTheWorstStatesWithinItsBudget) {
     const json whole = data_of(beam_run()), small = data_of(beam_run(), 1);
@@ -205,6 +273,23 @@ TEST(Simulate, WritesPositionsWithTheirIntervals) {
                                      .add = {"inclusion:ratio=8"}},
                                     {}),
                  InvalidInput);
+}
+
+/// What is missing is said as it is written.
+TEST(Simulate, RefusesAnEffectWithoutNumbers) {
+    const TemporaryFolder scratch;
+    mesh::write_text(scratch / "probes.csv", "probe,time,x,y,z,fx,fy,fz,radius\n1,0,100,10,20,0,0,-0.001,4\n");
+    const auto message = [&](const char* effect) {
+        return message_of<InvalidInput>([&] {
+            commands::simulate({.model = beam_run() / "identify/model.json",
+                                .probes = scratch / "probes.csv",
+                                .output = scratch / "none",
+                                .add = {effect}},
+                               {});
+        });
+    };
+    EXPECT_THAT(message("gravity"), HasSubstr("give them, e.g. gravity:gz=-9810"));
+    EXPECT_THAT(message("stiffening"), HasSubstr("e.g. stiffening:c2=VALUE"));
 }
 
 /// The pictures show what the errors were told of.

@@ -35,6 +35,7 @@ json diagnosis(const std::string& verdict, const std::vector<std::string>& expla
             {"explanation", explanation},
             {"baseline",
              {{"rms_mm", 6.4},
+              {"held_out_rms_mm", 6.6},
               {"whitened_rms", 12.0},
               {"load_exponent", {{"words", "the error is there without any load"}}}}},
             {"ranking",
@@ -47,8 +48,9 @@ TEST(DiagnosisInWords, NamesTheEffectWithItsEvidence) {
     EXPECT_THAT(
         diagnosis_in_words(diagnosis("missing-effect", {"gravity"})),
         AllOf(HasSubstr("Gravity is missing (probability 0.98): 9.90 m/s^2"),
-              HasSubstr("rms error of the model is 6.4 mm, already without load."),
-              HasSubstr("lowers the error to 0.9 mm (0.92 mm on probes held out one by one), no more than noise"),
+              HasSubstr("rms error of the model is 6.4 mm over all states, and there is one without any load, too."),
+              HasSubstr("lowers the error to 0.9 mm, no more than noise"),
+              HasSubstr("Probes that a fit does not see are forecast to within 0.92 mm, before to within 6.6 mm."),
               HasSubstr("Runner-up: misalignment, less than a thousandth as likely."), Not(HasSubstr("10^"))));
 }
 
@@ -167,7 +169,7 @@ TEST(CompareInWords, NeedsNoReference) {
     json c = compared();
     for (const char* key : {"reference", "baseline", "budget"}) c[key] = nullptr;
     EXPECT_THAT(compare_in_words(c),
-                AllOf(HasSubstr("1.8 mm rms"), Not(HasSubstr("finite elements")), HasSubstr("cannot tell apart")));
+                AllOf(HasSubstr("1.8 mm rms"), Not(HasSubstr("finite elements")), HasSubstr("cannot distinguish")));
 }
 
 TEST(LadderInWords, TellsEveryStepAndTheVerdict) {
@@ -269,6 +271,24 @@ TEST(WorstTable, NamesProbesMarkersAndThePartOfTheBody) {
                              HasSubstr("+x end, -y side, top"), HasSubstr("marker 4"), HasSubstr("middle")));
     EXPECT_LT(table.find("probe 3"), table.find("probe 1")) << "the worst first";
     EXPECT_LT(table.find("tip_top"), table.find("marker 4"));
+}
+
+TEST(WorstTable, NamesTheForcesThatAreFarthestOff) {
+    const auto force = [](int probe, json measured, double error, json at) {
+        return json{
+            {"probe", probe},          {"time", 1.0},      {"tool", "indenter"}, {"measured_n", std::move(measured)},
+            {"modelled_n", {0, 0, 0}}, {"error_n", error}, {"at", std::move(at)}};
+    };
+    const json compare = {
+        {"box", {{"min", {0, 0, 0}}, {"max", {80, 20, 20}}}},
+        {"probes", json::array()},
+        {"markers", json::array()},
+        {"tool_forces",
+         {force(2, {nullptr, nullptr, -0.4}, 0.1, {40, 10, 20}), force(7, {0.0, 0.3, -0.4}, 0.25, {80, 10, 20})}}};
+    const std::string table = worst_table(compare);
+    EXPECT_THAT(table, AllOf(HasSubstr("Largest force errors"), HasSubstr("25.0 %"), HasSubstr("50.0 %"),
+                             HasSubstr("indenter, (80, 10, 20) mm, +x end, top")));
+    EXPECT_LT(table.find("probe 7"), table.find("probe 2")) << "the worst first";
 }
 
 TEST(Words, AnAsideStandsBeforeTheColonOrTheFullStop) {

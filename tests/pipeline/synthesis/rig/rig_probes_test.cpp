@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "mesh/core/volume_mesh.h"
 #include "mesh/errors.h"
 #include "mesh/geometry/surface_tree.h"
@@ -23,20 +25,20 @@ RigProbes probes_of(const RigOptions& options, int count = 5) {
 TEST(RigProbes, StartWhereTheToolJustTouches) {
     const RigProbes made = probes_of({.tool = "sphere:radius=6", .depth = {0.5, 1}});
     ASSERT_EQ(made.rig.tools.size(), 1U);
-    ASSERT_EQ(made.courses.size(), 5U);
+    ASSERT_EQ(made.histories.size(), 5U);
     const mesh::SurfaceTree tree(block());
-    for (const LoadCourse& course : made.courses) {
-        ASSERT_TRUE(course.drive.drives());
-        const Vec3 centre = made.rig.tools[0].origin + course.drive.from;
+    for (const ProbeLoadHistory& history : made.histories) {
+        ASSERT_TRUE(history.drive.drives());
+        const Vec3 centre = made.rig.tools[0].origin + history.drive.from;
         EXPECT_NEAR(tree.closest(centre).distance, 6,
                     0.006 * 6);  // it may lie that much deeper, by rounding of a place
         EXPECT_FALSE(tree.inside(centre));
-        EXPECT_NEAR(course.drive.along.norm(), 1, 1e-12);
+        EXPECT_NEAR(history.drive.along.norm(), 1, 1e-12);
         // Pressed in by so much it is so much nearer.
-        EXPECT_NEAR(tree.closest(centre + course.drive.along).distance, 5, 0.01);
-        const identify::LoadState state = course.state(1);
+        EXPECT_NEAR(tree.closest(centre + history.drive.along).distance, 5, 0.01);
+        const identify::LoadState state = history.state(1);
         ASSERT_EQ(state.motions.size(), 1U);
-        EXPECT_NEAR((state.motions[0].translation - course.drive.from).norm(), 1, 1e-12);
+        EXPECT_NEAR((state.motions[0].translation - history.drive.from).norm(), 1, 1e-12);
         EXPECT_TRUE(state.contacts.empty());
     }
 }
@@ -45,8 +47,8 @@ TEST(RigProbes, KeepToolsOffWhatHoldsTheBody) {
     const double radius = 6;
     const RigProbes made = probes_of({.tool = "sphere:radius=6", .depth = {0.5}}, 8);
     const mesh::SurfaceTree tree(block());
-    for (const LoadCourse& course : made.courses) {
-        const Vec3 place = tree.closest(made.rig.tools[0].origin + course.drive.from).position;
+    for (const ProbeLoadHistory& history : made.histories) {
+        const Vec3 place = tree.closest(made.rig.tools[0].origin + history.drive.from).position;
         EXPECT_GT(place.z(), 0.1 + radius);  // the block is held up to there
     }
 }
@@ -54,18 +56,18 @@ TEST(RigProbes, KeepToolsOffWhatHoldsTheBody) {
 TEST(RigProbes, PressAPunchAlongItsAxisAlone) {
     const RigProbes made = probes_of({.tool = "flat:radius=3", .depth = {0.5}}, 3);
     const auto& punch = std::get<mesh::FlatShape>(made.rig.tools[0].shape);
-    for (const LoadCourse& course : made.courses) EXPECT_GT(course.drive.along.dot(punch.axis), 0.999);
+    for (const ProbeLoadHistory& history : made.histories) EXPECT_GT(history.drive.along.dot(punch.axis), 0.999);
 }
 
 TEST(RigProbes, SetEachActuatorToEachValue) {
     const RigProbes made =
         probes_of({.pressure = {0.01, 0.02}, .tendon = {"0,0,5 30,20,15", "60,0,5 30,20,15"}, .pull = {1}});
     EXPECT_EQ(made.rig.actuators.size(), 3U);
-    ASSERT_EQ(made.courses.size(), 4U);
-    EXPECT_EQ(made.courses[1].state(0).actuations[0].value, 0.02);
-    EXPECT_EQ(made.courses[3].state(0).actuations[0].actuator, 2);
+    ASSERT_EQ(made.histories.size(), 4U);
+    EXPECT_EQ(made.histories[1].state(0).actuations[0].value, 0.02);
+    EXPECT_EQ(made.histories[3].state(0).actuations[0].actuator, 2);
     EXPECT_TRUE(std::get<mesh::TendonActuator>(made.rig.actuators[2].kind).by_length);
-    EXPECT_TRUE(made.courses[3].settings(0).empty());
+    EXPECT_TRUE(made.histories[3].settings(0).empty());
 }
 
 TEST(RigProbes, RefuseWhatCannotBeMeant) {
@@ -100,7 +102,7 @@ protected:
         Specimen specimen;
         specimen.set = body_.set({});
         specimen.set.density = 1e-9;
-        specimen.driven = driven.courses;
+        specimen.driven = driven.histories;
         specimen.set.tools = driven.rig.tools;
         specimen.set.actuators = driven.rig.actuators;
         specimen.material = fem::Material{.young = 0.3, .poisson = 0.45, .density = 1e-9};
@@ -149,6 +151,18 @@ TEST_F(RigSet, MayLeaveAllButTheToolUnread) {
     ASSERT_EQ(felt.set.states.size(), seen.set.states.size());
     EXPECT_TRUE(felt.set.states[1].readings.empty());
     EXPECT_EQ(felt.set.states[1].reactions.at(0).force, seen.set.states[1].reactions.at(0).force);
+}
+
+/// Strengths and noise are of what is read: of forces, in N.
+TEST_F(RigSet, ComparesForcesWhereNoMarkersAreRead) {
+    const RigOptions alone{.tool = "sphere:radius=4", .depth = {1}, .reaction_noise = 0, .markers = false};
+    const BlindSet bare = made(alone, {"none"}), slipped = made(alone, {"slip:share=0.8"});
+    const auto force = [](const BlindSet& found) { return found.set.states.at(1).reactions.at(0).force; };
+    const double whole = force(bare).norm(), change = (force(slipped) - force(bare)).norm();
+    EXPECT_NEAR(slipped.strength.displacement, whole / std::sqrt(3), 1e-4 * whole);
+    EXPECT_NEAR(slipped.strength.change, change / std::sqrt(3), 1e-4 * whole);
+    EXPECT_NEAR(slipped.hidden.at(0).strength.change, slipped.strength.change, 1e-4 * whole);
+    EXPECT_EQ(slipped.noise, 0);
 }
 
 TEST_F(RigSet, HidesThatAToolMovesLessThanReported) {

@@ -3,8 +3,8 @@
   const failures = [], expect = (holds, what) => { if (!holds) failures.push(what); };
   const at = (id) => document.getElementById(id);
   const settled = () => new Promise((resolve) => setTimeout(resolve, 400));  // longer than a transition
-  // The page draws at once before it is printed: no waiting for frames, which headless browsers skip.
-  const drawn = () => dispatchEvent(new Event('beforeprint'));
+  // The page draws at once before it is printed, and after: no waiting for frames, which headless browsers skip.
+  const drawn = () => { for (const when of ['beforeprint', 'afterprint']) dispatchEvent(new Event(when)); };
   const canvas = at('canvas'), picture = () => { drawn(); return canvas.toDataURL(); };
   const choose = async (id, value, event) => {
     at(id)[at(id).type === 'checkbox' ? 'checked' : 'value'] = value;
@@ -25,21 +25,48 @@
     expect(new Set(pixels).size > 100, 'the view shows fewer than 100 colours');
     expect(pixels.filter((p) => p !== 0xffffffff).length > 0.02 * pixels.length, 'the view is almost empty');
 
+    // first what is delivered, said where a print-out has it; what a run does not have is not offered
+    const last = at('step').options.length - 1, isOffered = (id) => !at(id).closest('label').hidden;
+    const isMarked = isOffered('show-markers'), error = isMarked ? /rms error .* mm/ : /N measured/;
+    expect(+at('step').value === last, 'the page does not open at the last step');
+    expect(!at('told').closest('#controls'), 'a print-out has no caption');
+    expect(error.test(at('told').textContent), 'the error is not told');
+    expect(at('colour').options[0].text === (isMarked ? 'error [mm]' : 'displacement [mm]'), `the first colour is ${at('colour').options[0].text}`);
+    for (const {text} of at('colour').options) expect(!/[*_]|sd.mean/.test(text), `${text} is no name for people`);
+    expect(isMarked || at('series').hidden, 'there is a motion of markers without markers');
+    // the key has a colour for each
+    const keys = [...at('key').children].filter((item) => !item.hidden).map((item) => getComputedStyle(item.firstChild).backgroundColor);
+    expect(keys.length > 1 && new Set(keys).size === keys.length, `the key has the colours ${keys.join(', ')}`);
+
     // every control changes the picture or says why not
     let before = picture();
     const changes = (what) => { const now = picture(); expect(now !== before, `${what} changes nothing`); before = now; };
-    const other = at('state').value === '0' ? '1' : '0', told = at('told').textContent;
+    const other = at('state').value === '0' ? '1' : String(+at('state').value - 1), told = at('told').textContent;
     await choose('state', other, 'change'); changes('another probe');
     expect(at('told').textContent !== told, 'the words stay the same for another probe');
-    expect(/rms error .* mm/.test(at('told').textContent), 'the error is not told');
     for (let i = 1; i < at('colour').options.length; ++i) { await choose('colour', String(i), 'input'); }
     changes('colouring by stiffness');
-    expect(at('what').textContent.includes('['), 'the legend has no unit');
     await choose('colour', '0', 'input'); before = picture();
-    for (const id of ['show-spheres', 'show-links', 'show-markers']) { await choose(id, false, 'input'); changes(id); }
+    expect(at('what').textContent.includes('['), 'the legend has no unit');
+    for (const id of ['show-spheres', 'show-links', 'show-markers', 'show-tools'].filter(isOffered)) { await choose(id, false, 'input'); changes(id); }
     await choose('opacity', '1', 'input'); changes('the opacity of the skin');
     await choose('magnify', '3', 'input');
-    if (at('step').options.length > 1) { await choose('step', '1', 'change'); expect(at('told').textContent.includes('Model: with'), 'the step is not told'); }
+    if (last > 0) {
+      await choose('step', '0', 'change');
+      expect(at('told').textContent.includes('Model: nothing added'), 'the step is not told');
+      expect(at('found').textContent.startsWith('Not in this model: '), 'what the step lacks is not told');
+      await choose('opacity', '0.35', 'input'); before = picture();
+      const isDrawn = /Gravity/.test(at('found').textContent);  // what has no place is said alone
+      await choose('show-findings', false, 'input');
+      expect(at('found').hidden, 'what was found cannot be hidden');
+      if (isDrawn) changes('what was found, in the first step,');
+      dispatchEvent(new Event('beforeprint'));
+      expect(at('told').textContent.includes('Model: with'), 'another step than the last is printed');
+      drawn();
+      expect(at('told').textContent.includes('Model: nothing added'), 'printing changes the step');
+      await choose('step', String(last), 'change');
+      expect(at('told').textContent.includes('Model: with'), 'the step is not told');
+    }
     before = picture();
     await press('ArrowLeft'); changes('an arrow key');
     await press('+'); changes('plus');

@@ -3,6 +3,7 @@
 browser_test.py PALPATE SOURCE_FOLDER [PICTURES]; ends with 77 (skipped) where there is no Chromium. Screenshots at laptop
 and phone widths go to PICTURES.
 """
+import json
 import os
 import pathlib
 import re
@@ -54,6 +55,27 @@ def check(report, scratch, name):
             browse(report.resolve(), width, 5200 if width > 1000 else 9000, profile, "--virtual-time-budget=4000", f"--screenshot={picture}")
 
 
+def forces_alone(report, page):
+    """A report as of a set in which a ball and a punch were pressed in and their forces read, but no marker."""
+    text = report.read_text()
+    at, end = re.search(r'<script id="run-data" type="application/json">(.*?)</script>', text, re.S).span(1)
+    data = json.loads(text[at:end])
+    nothing = {"type": "f32", "data": ""}
+    for number, state in enumerate(data["states"]):
+        force = [0, 0, -0.1 * number]
+        state["loads"] = []
+        state["tools"] = [{"name": "ball", "at": [50, 10, 22], "radius": 5, "axis": None, "measured": force},
+                          {"name": "punch", "at": [80, 10, 19], "radius": 4, "axis": [0, 0, -1], "measured": None},
+                          {"name": "grip", "at": None, "radius": None, "axis": None, "measured": [None, 0.01, None]}]
+        for step in data["steps"]:
+            step["forces_rms"] = 0.02
+            answer = step["states"][number]
+            answer["markers"] = {"id": [], "coordinates": [], "rest": nothing, "measured": nothing, "error": nothing}
+            answer["tool_forces"] = [{"name": "ball", "modelled": [0, 0, -0.09 * number]}]
+    page.write_text(text[:at] + json.dumps(data).replace("<", "\\u003c") + text[end:])
+    return page
+
+
 with tempfile.TemporaryDirectory() as folder:
     at = pathlib.Path(folder)
     palpate("new", at / "case")
@@ -65,6 +87,7 @@ with tempfile.TemporaryDirectory() as folder:
     palpate("probe", at / "run/identify/model.json", "-o", at / "blind", "--hide", "gravity", "--probes", 5, "--markers", 25)
     palpate("run", at / "blind", "-o", at / "measured", "--parameters", "uniform", "--particles", 40, "--edge-length", 12)
     check(at / "measured/report.html", at, "measured")
+    check(forces_alone(at / "measured/report.html", at / "forces.html"), at, "forces-alone")
 
 for failure in failures:
     print("FAILED", failure)

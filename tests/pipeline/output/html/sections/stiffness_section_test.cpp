@@ -100,7 +100,8 @@ TEST(StiffnessSection, DrawsEachNumberWhereTheyAreFew) {
     const std::vector<identify::PosteriorRow> rows{log_normal_row("elongation", 0, 1), log_normal_row("flexion", 0, 1)};
     EXPECT_THAT(
         stiffness_section(rows, normal_particles({"elongation", "flexion"}, 0, 0.2), PriorKind::log_normal, "p"),
-        AllOf(HasSubstr("x = elongation [N/mm]"), HasSubstr("x = flexion [N/mm]"), Not(HasSubstr("<select"))));
+        AllOf(HasSubstr("x = elongation stiffness [N/mm]"), HasSubstr("x = bending stiffness [N/mm]"),
+              HasSubstr("geometric mean"), Not(HasSubstr("<select"))));
 }
 
 TEST(StiffnessSection, PoolsManyAndLetsOneBeChosen) {
@@ -115,9 +116,28 @@ TEST(StiffnessSection, PoolsManyAndLetsOneBeChosen) {
     rows[7].q975 = 1.01;
     const std::string html =
         stiffness_section(rows, normal_particles(names, 0, 0.2, 50), PriorKind::log_normal, "posterior.csv");
-    EXPECT_THAT(html, AllOf(HasSubstr("shear, all 300"), HasSubstr("[× start value]"), HasSubstr("200 of 300"),
-                            HasSubstr("<select id=\"density-of\"><option>shear:link7<")));
+    EXPECT_THAT(html,
+                AllOf(HasSubstr("shear stiffness, all 300"), HasSubstr("[× start value]"), HasSubstr("200 of 300"),
+                      HasSubstr("<select id=\"density-of\"><option>shear stiffness, link 7<"),
+                      HasSubstr(">shear, link 7</text>")));
     EXPECT_LT(html.size(), 1'000'000U);
+}
+
+/// As many digits as the interval leaves, and no exponents.
+TEST(DensityChart, TellsTheMedianWithItsUnit) {
+    KnownBeforeAndAfter known{.name = "torsion stiffness",
+                              .unit = "N*mm/rad",
+                              .prior = {{4, 1}, {13, 1}},
+                              .posterior = {{4, 1}, {13, 1}},
+                              .low = 115.29,
+                              .middle = 1373.5,
+                              .high = 408037};
+    EXPECT_THAT(density_chart(known), AllOf(HasSubstr("median 1400 N·mm/rad (95 %: 120–410\u202f000)"),
+                                            HasSubstr("x = torsion stiffness [N·mm/rad]"), Not(HasSubstr("e+"))));
+    known.low = 1154.5;
+    known.middle = 1179.4;
+    known.high = 1231.7;
+    EXPECT_THAT(density_chart(known), HasSubstr("median 1180 N·mm/rad (95 %: 1150–1230)"));
 }
 
 TEST(StiffnessSection, DoesWithoutParticles) {

@@ -32,6 +32,7 @@ TEST(RunsSideBySide, TellWhatDiffersAndWhichIsBest) {
 
     const json& told = outcome.json;
     EXPECT_TRUE(told["same_states"].get<bool>());
+    EXPECT_TRUE(told["same_readings"].get<bool>());
     std::map<std::string, std::vector<std::string>> settings;
     for (const json& one : told["settings"]) settings[one["setting"]] = one["values"];
     EXPECT_EQ(settings.at("skeleton.spheres"), (std::vector<std::string>{"6", "9"}));
@@ -59,6 +60,30 @@ TEST(RunsSideBySide, OfOtherStatesAreNotRanked) {
     EXPECT_FALSE(told["same_states"].get<bool>());
     EXPECT_TRUE(told["states"].empty());
     EXPECT_THAT(runs_table(told), HasSubstr("not ranked"));
+}
+
+/// The same loads, and other readings: less of them to explain is no better model.
+TEST(RunsSideBySide, OfOtherReadingsAreNotRanked) {
+    NamedRun one{"one", read_run(beam_run())}, other{"other", one.files};
+    for (json& state : other.files.compare["probes"]) state["rms_mm"] = 0.5 * state["rms_mm"].get<double>();
+    other.files.compare["error"]["rms_mm"] = 0.5 * other.files.compare["error"]["rms_mm"].get<double>();
+    const json told = runs_json({one, other});
+    EXPECT_TRUE(told["same_states"].get<bool>());
+    EXPECT_FALSE(told["same_readings"].get<bool>());
+    EXPECT_THAT(runs_table(told), AllOf(HasSubstr("different measurements"), HasSubstr("not ranked")));
+}
+
+/// Where forces alone are read, errors are in newtons.
+TEST(RunsSideBySide, OfForcesAreRankedInNewtons) {
+    NamedRun one{"one", read_run(beam_run())};
+    one.files.compare["probes"] = json::array();
+    one.files.compare["error"]["rms_mm"] = 0.0;
+    one.files.compare["error"]["reactions"] = {{"rms_n", 0.02}, {"max_n", 0.05}, {"relative", 0.1}};
+    NamedRun other{"other", one.files};
+    other.files.compare["error"]["reactions"] = {{"rms_n", 0.01}, {"max_n", 0.03}, {"relative", 0.05}};
+    EXPECT_THAT(best_run_in_words(runs_json({one, other})), AllOf(HasSubstr("other has"), HasSubstr("0.01 N rms")));
+    other.files.compare["error"]["reactions"]["relative"] = 0.1;
+    EXPECT_THAT(best_run_in_words(runs_json({one, other})), HasSubstr("different measurements"));
 }
 
 /// Runs with ladders: only errors on the same held-out probes can be ranked.

@@ -1,4 +1,4 @@
-#include "identify/diagnosis/fit/kept_tangents.h"
+#include "identify/diagnosis/fit/tangent_cache.h"
 
 namespace palpate::identify {
 

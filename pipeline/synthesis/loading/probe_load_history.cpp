@@ -1,4 +1,4 @@
-#include "pipeline/synthesis/loading/load_course.h"
+#include "pipeline/synthesis/loading/probe_load_history.h"
 
 #include <cmath>
 
@@ -6,7 +6,7 @@
 
 namespace palpate::pipeline {
 
-identify::LoadState LoadCourse::state(std::size_t row) const {
+identify::LoadState ProbeLoadHistory::state(std::size_t row) const {
     identify::LoadState state{.probe = probe, .time = rows[row].time};
     if (drive.drives()) {
         state.motions = motions(rows[row].force);
@@ -19,17 +19,17 @@ identify::LoadState LoadCourse::state(std::size_t row) const {
     return state;
 }
 
-std::vector<mesh::ToolMotion> LoadCourse::motions(double amount) const {
+std::vector<mesh::ToolMotion> ProbeLoadHistory::motions(double amount) const {
     if (drive.tool < 0 || amount == 0) return {};
     return {{.tool = drive.tool, .translation = drive.from + amount * drive.along}};
 }
 
-std::vector<mesh::ActuatorSetting> LoadCourse::settings(double amount) const {
+std::vector<mesh::ActuatorSetting> ProbeLoadHistory::settings(double amount) const {
     if (drive.actuator < 0 || amount == 0) return {};
     return {{drive.actuator, amount}};
 }
 
-double LoadCourse::effective_force(std::size_t row, const std::optional<fem::CreepLaw>& creep) const {
+double ProbeLoadHistory::effective_force(std::size_t row, const std::optional<fem::CreepLaw>& creep) const {
     if (!creep) return rows[row].force;
     double force = 0;
     double before = 0, since = 0;
@@ -42,7 +42,7 @@ double LoadCourse::effective_force(std::size_t row, const std::optional<fem::Cre
     return force;
 }
 
-double LoadCourse::lagged_force(std::size_t row, double lag, const std::optional<fem::CreepLaw>& creep) const {
+double ProbeLoadHistory::lagged_force(std::size_t row, double lag, const std::optional<fem::CreepLaw>& creep) const {
     if (lag == 0) return effective_force(row, creep);
     std::vector<double> times;
     times.reserve(rows.size());
@@ -52,7 +52,7 @@ double LoadCourse::lagged_force(std::size_t row, double lag, const std::optional
     return (1 - at.share) * before + at.share * effective_force(static_cast<std::size_t>(at.after), creep);
 }
 
-LoadCourse unloaded_history() { return {.probe = 0, .contact = {}, .rows = {{}}}; }
+ProbeLoadHistory unloaded_history() { return {.probe = 0, .contact = {}, .rows = {{}}}; }
 
 std::vector<Row> rows_of(const std::vector<double>& forces, const LoadTiming& timing) {
     const std::vector<double> dwell = timing.dwell.empty() ? std::vector<double>{1} : timing.dwell;

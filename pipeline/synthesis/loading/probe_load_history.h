@@ -29,7 +29,7 @@ struct RigDrive {
 
 /// What one probe does: its contact, and row after row how hard it presses. The force of a row acts since the row
 /// before it, that of the first since time 0.
-struct LoadCourse {
+struct ProbeLoadHistory {
     int probe = 0;
     mesh::Contact contact;  // with 1 N
     std::vector<Row> rows;
@@ -48,7 +48,7 @@ struct LoadCourse {
 };
 
 /// Probe 0: nothing touches the body.
-LoadCourse unloaded_history();
+ProbeLoadHistory unloaded_history();
 
 /// Whether the body is let go after each load, whether it goes back through them, and how long after a load was put on
 /// it is read.

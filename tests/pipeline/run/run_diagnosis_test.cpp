@@ -1,4 +1,4 @@
-// Compare, name the missing effect, add it, watch the error fall: on a small beam wmagnet weight is not specified.
+// Compare, name the missing effect, add it, watch the error fall: on a small beam whose weight is not specified.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -10,6 +10,7 @@
 #include "pipeline/case/read_case.h"
 #include "pipeline/command_line/commands.h"
 #include "pipeline/run/expectation.h"
+#include "pipeline/run/model_and_set.h"
 #include "skeleton/model/io/model_io.h"
 #include "tests/messages.h"
 #include "tests/pipeline/heavy_beam.h"
@@ -75,6 +76,24 @@ TEST_F(HeavyBeam, ErrsLessOnceGravityIsIn) {
     const skeleton::Model better = skeleton::read_model(path("run/improve/model.json"));
     ASSERT_EQ(better.effects.size(), 1U);
     EXPECT_EQ(better.effects[0].name, "gravity");
+}
+
+/// What was found stands first, and of the model that was discarded nothing.
+TEST_F(HeavyBeam, LeadsItsDescriptionWithTheVerdict) {
+    const std::string text = commands::info({.file = path("run")}, {}).text;
+    EXPECT_LT(text.find("Gravity is missing"), text.find("The model with gravity, fitted to all probes,"));
+    EXPECT_LT(text.find("With gravity:"), text.find("skeleton  "));
+    EXPECT_THAT(text, testing::Not(HasSubstr("The model is off by")));
+}
+
+/// A rig's set has no forces that could be played: its model is touched by hand.
+TEST(CommandToPlay, DependsOnWhatTheSetPressesWith) {
+    identify::MeasurementSet set = heavy_beam(false);
+    set.folder = "sets/./beam";
+    EXPECT_EQ(commands::command_to_play("run/model.json", set),
+              "palpate simulate run/model.json --probes sets/beam/probes.csv -o played");
+    for (identify::LoadState& state : set.states) state.contacts.clear();
+    EXPECT_EQ(commands::command_to_play("run/model.json", set), "palpate play run/model.json");
 }
 
 TEST_F(HeavyBeam, LeavesTheFilesThatItPromises) {
@@ -252,7 +271,7 @@ TEST_F(HeavyBeam, TakesUpWhatIsLeftAndDraftsIt) {
     EXPECT_THAT(outcome.text, HasSubstr("Draft of an effect: "));
 }
 
-TEST(Inquiry, RefusesADraftThatCannotBeNamedSoBeforeAnythingIsRead) {
+TEST(RunDiagnosis, RefusesADraftThatCannotBeNamedSoBeforeAnythingIsRead) {
     EXPECT_TRUE(says(message_of<InvalidInput>([] {
                          commands::improve(
                              {.model = "m.json", .set = "set", .output = {}, .residual = true, .draft = "gravity.cpp"},
@@ -261,7 +280,7 @@ TEST(Inquiry, RefusesADraftThatCannotBeNamedSoBeforeAnythingIsRead) {
                      {"gravity", "another name"}));
 }
 
-TEST(Inquiry, TellsExpectationsThatAreNotMet) {
+TEST(RunDiagnosis, TellsExpectationsThatAreNotMet) {
     Expectation expect;
     expect.verdict = "missing-effect";
     expect.explanation = {"misalignment", "gravity"};
@@ -273,7 +292,7 @@ TEST(Inquiry, TellsExpectationsThatAreNotMet) {
     EXPECT_THAT(broken_expectations(expect, results), ::testing::IsEmpty());
 }
 
-TEST(Inquiry, AnUnknownEffectIsToldWithItsNeighbour) {
+TEST(RunDiagnosis, AnUnknownEffectIsToldWithItsNeighbour) {
     const auto says_gravity = [](const auto& command) {
         return says(message_of<InvalidInput>(command), {"gravty", "gravity"});
     };
@@ -288,14 +307,14 @@ TEST(Inquiry, AnUnknownEffectIsToldWithItsNeighbour) {
     EXPECT_TRUE(says_gravity([&] { read_case(file); }));
 }
 
-TEST(Inquiry, AVerdictThatThereIsNotIsRefused) {
+TEST(RunDiagnosis, AVerdictThatThereIsNotIsRefused) {
     const TemporaryFolder scratch;
     const auto file = scratch.write("case.yaml", "format: palpate-case/1\nmesh: a.stl\nexpect: {verdict: fine}\n");
     EXPECT_TRUE(says(message_of<InvalidInput>([&] { read_case(file); }), {"line 3", "verdict", "unexplained"}));
 }
 
 /// A sheet with no inside has no finite elements: the comparison goes on without, and says why.
-TEST(Inquiry, ABodyThatCannotBeFilledIsComparedWithoutReference) {
+TEST(RunDiagnosis, ABodyThatCannotBeFilledIsComparedWithoutReference) {
     identify::MeasurementSet set = heavy_beam(false);
     set.rest_surface.triangles.conservativeResize(2, 3);
     const Reference reference = make_reference(set, 0);

@@ -1,4 +1,4 @@
-#include "pipeline/run/inquiry.h"
+#include "pipeline/run/run_diagnosis.h"
 
 #include <fmt/format.h>
 

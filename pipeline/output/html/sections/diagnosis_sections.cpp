@@ -1,4 +1,4 @@
-#include "pipeline/output/html/sections/inquiry_sections.h"
+#include "pipeline/output/html/sections/diagnosis_sections.h"
 
 #include <fmt/format.h>
 
@@ -6,8 +6,6 @@
 #include <cmath>
 #include <string_view>
 
-#include "identify/effects/catalogue.h"
-#include "mesh/errors.h"
 #include "mesh/text/words.h"
 #include "pipeline/output/html/charts/charts.h"
 #include "pipeline/output/html/escape.h"
@@ -59,30 +57,33 @@ std::string why_not_the_closer(const json& candidate, const json& claimed) {
         claimed["effect"].get<std::string>(), own, others);
 }
 
-/// What an effect would mean, and what became of it.
+/// What became of an effect that was fitted to first order alone.
+std::string screened_words(const json& candidate, double baseline_rms) {
+    constexpr double hardly = 0.99;  // of what is left without it
+    const bool has_evidence =
+        candidate["log_bayes_factor"].is_number() && candidate["log_bayes_factor"].get<double>() > 0;
+    const double predicted = candidate["predicted_rms_mm"].get<double>();
+    // The estimate is of positions: where forces alone were read, the evidence decides.
+    const bool explains = has_evidence && (predicted < hardly * baseline_rms || baseline_rms == 0);
+    if (!explains) return "Screened out: its linear estimate explains nothing.";
+    return baseline_rms > 0 ? fmt::format("Screened out: its linear estimate leaves {:.3g} mm rms.", predicted)
+                            : "Screened out.";
+}
+
+/// What became of an effect first, then what it would mean.
 std::string candidate_words(const json& candidate, bool claimed, double baseline_rms, const std::string& why_not) {
-    std::string words = candidate.value("sentence", "");
-    if (claimed) words = "<b>Claimed.</b> " + escape(words);
-    if (words.empty()) {
-        try {
-            words = escape(identify::find_effect(candidate["effect"].get<std::string>())->description().meaning);
-        } catch (const InvalidInput&) {  // an effect of another program's own
-        }
-    }
-    if (candidate.contains("objection"))
-        words += " Not claimed: " + escape(candidate["objection"].get<std::string>()) + ".";
-    if (!candidate["rms_mm"].is_number() && candidate["predicted_rms_mm"].is_number() && !claimed) {
-        constexpr double hardly = 0.99;  // of what is left without it
-        const bool has_evidence =
-            candidate["log_bayes_factor"].is_number() && candidate["log_bayes_factor"].get<double>() > 0;
-        const double predicted = candidate["predicted_rms_mm"].get<double>();
-        // The estimate is of positions: where forces alone were read, the evidence decides.
-        const bool explains = has_evidence && (predicted < hardly * baseline_rms || baseline_rms == 0);
-        words += !explains          ? " Not refitted: by its linear estimate it explains nothing."
-                 : baseline_rms > 0 ? fmt::format(" Not refitted: its linear estimate leaves {:.3g} mm rms.", predicted)
-                                    : " Not refitted.";
-    }
+    const std::string meaning = escape(candidate.value("sentence", ""));
+    std::string words;
+    if (claimed)
+        words = "<b>Claimed.</b> " + meaning;
+    else if (!candidate["rms_mm"].is_number() && candidate["predicted_rms_mm"].is_number())
+        words = screened_words(candidate, baseline_rms);
+    else if (candidate.contains("objection"))
+        words = "<b>Rejected:</b> " + escape(candidate["objection"].get<std::string>()) + ".";
+    else
+        words = "<b>Not claimed.</b>";
     words += escape(why_not);
+    if (!claimed && !meaning.empty()) words += " It would mean: " + meaning;
     const std::string numbers = parameters(candidate["parameters"]);
     if (!numbers.empty()) words += "<br><span class=\"soft\">" + escape(numbers) + "</span>";
     return words;
@@ -114,7 +115,7 @@ std::string ranking_table(const json& diagnosis) {
     }
     return "<div class=\"wide\"><table class=\"cards\"><thead><tr><th>effect</th><th>ln Bayes "
            "factor</th><th>probability</th>"
-           "<th>rms error</th><th>held out</th><th>normalised</th><th class=\"words\">finding</th>"
+           "<th>rms error</th><th>held out</th><th>normalised</th><th class=\"words\">outcome</th>"
            "</tr></thead><tbody>" +
            rows + "</tbody></table></div>";
 }
@@ -162,8 +163,8 @@ std::string where_line(const json& diagnosis) {
     if (!where.is_object()) return {};
     std::string kinds;
     for (const auto& [kind, ln] : where["log_bayes_factors"].items())
-        kinds += fmt::format("{}{} {}", kinds.empty() ? "" : ", ", kind, evidence(ln));
-    // Where an effect has a name, its own numbers tell more.
+        if (ln.is_number()) kinds += fmt::format("{}{} {}", kinds.empty() ? "" : ", ", kind, evidence(ln));
+    // Where an effect has a name, its own numbers are more informative.
     const std::string how = diagnosis["verdict"] == "unexplained"
                                 ? "Fitted where models show such a source, else a linearised estimate"
                                 : "A linearised estimate about the baseline";
@@ -182,7 +183,7 @@ std::string held_out_line(const json& held_out, const json& states) {
         states, [&](const json& state) { return std::ranges::find(held_out, state["probe"]) != held_out.end(); });
     return "<p class=\"soft\">Orange: cross-validation error" +
            (in_turn ? ", a third of the probes held out in turn" : " on probes " + probes + ", held out of each fit") +
-           ". The table above holds out one probe at a time.</p>";
+           ". <span class=\"aside\">The table above holds out one probe at a time.</span></p>";
 }
 
 }  // namespace
@@ -192,12 +193,12 @@ std::string missing_section(const json& diagnosis) {
     const bool is_named = diagnosis["verdict"] == "missing-effect";  // its own numbers come first
     return "<h2 id=\"missing\">What is missing</h2>" + (is_named ? "" : where_line(diagnosis)) +
            ranking_table(diagnosis) +
-           "<p class=\"soft\">ln Bayes factor: evidence against the baseline; an effect is claimed from 10 on, with a "
-           "lead "
-           "of 5. Held out: rms error on each probe by a fit to all others, one by one. Normalised: rms of the errors, "
+           "<p class=\"soft\">ln Bayes factor: the evidence for an effect over the model without effects; it is "
+           "claimed from "
+           "10 on, with a lead of 5. Held out: rms error on each probe by a fit to all others, one by one. Normalised: "
+           "rms of the errors, "
            "each over its standard deviation by measurement noise and unknown contacts; 1 is fully explained. " +
-           escape(baseline_line(diagnosis)) + " All numbers are of the finite-element model.</p>" +
-           (is_named ? where_line(diagnosis) : "");
+           escape(baseline_line(diagnosis)) + " All numbers are of the finite-element model.</p>";
 }
 
 std::string ladder_section(const json& ladder, const json& compare) {
@@ -224,7 +225,9 @@ std::string budget_section(const json& compare, const json& improved) {
         const double left =
             std::pow(improved["error"]["rms_mm"].get<double>() / compare["error"]["rms_mm"].get<double>(), 2);
         html += "<p>Baseline:</p>" + shares_of(before, "Shares of the mean square error, baseline") +
-                fmt::format("<p>With the missing effect added, {:.2g} % of that mean square error:</p>", 100 * left) +
+                fmt::format(
+                    "<p>With the missing effect added the mean square error falls to {:.2g} % of that, of which:</p>",
+                    100 * left) +
                 shares_of(after, "Shares of the mean square error, effect added");
     } else {
         html += shares_of(before, "Shares of the mean square error");
@@ -232,8 +235,8 @@ std::string budget_section(const json& compare, const json& improved) {
     return html +
            "<p class=\"soft\">Shares of the mean square error of the real-time model. Better sensors reduce the noise, "
            "more "
-           "spheres the coarseness of the skeleton; unexplained are missing physics and details of contacts and "
-           "clamps.</p>";
+           "spheres the coarseness of the skeleton; the unexplained share is missing physics and "
+           "details of contacts and clamps.</p>";
 }
 
 }  // namespace palpate::pipeline
