@@ -306,8 +306,9 @@ private:
         result_.identified = skeleton_.identified(last.effects, last.set, progress_);
         last.model = result_.identified.model;
         last.comparison = compare(last.model, last.set, options_.identify.threads);
-        // Where the step was fitted to all states, too, its errors are those of the model that is delivered.
+        // Where the step was fitted to all states, too, it is the model that is delivered, and so are its errors.
         if (fitted_.states.size() != set_.states.size()) return;
+        last.validation_model = last.model;
         take_fitted(last.skeleton, last.comparison);
         if (last.reference) take_fitted(*last.reference, whole);
     }

@@ -50,6 +50,7 @@ fem::ElementRegions element_regions(const mesh::VolumeMesh& mesh, const std::vec
     fem::ElementRegions result;
     if (regions.empty()) return result;
     std::vector<mesh::Surface> surfaces;
+    surfaces.reserve(regions.size());
     for (const mesh::MaterialRegion& region : regions) surfaces.push_back(region.surface);
     result.of_element = mesh::regions_of_elements(mesh, surfaces);
     for (std::size_t r = 0; r < surfaces.size(); ++r) {

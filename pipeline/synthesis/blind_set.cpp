@@ -116,7 +116,8 @@ private:
         for (const EffectSpec& spec : specs_) {
             const std::string why = identify::find_effect(spec.effect)->why_not_driven(static_cast<int>(places));
             if (!why.empty())
-                throw InvalidInput(fmt::format("effect '{}' cannot be hidden here: {}", spec.effect, why));
+                throw InvalidInput(fmt::format("effect '{}' cannot be hidden with {}: {}", spec.effect,
+                                               options_.rig.tool.empty() ? "--pressure or --tendon" : "--tool", why));
         }
     }
 

@@ -79,8 +79,9 @@ public:
     std::vector<skeleton::KnownParameter> numbers_to_hide() const override { return {{"share", "1"}}; }
     std::string why_not_driven(int tool_places) const override {
         if (tool_places < 2) return {};
-        return fmt::format("it is a share of the motion from rest, and the tool presses at {} places; press at one",
-                           tool_places);
+        return fmt::format(
+            "it is a share of the motion from rest, and the tool presses at {} places; press at one (--probes 1)",
+            tool_places);
     }
     std::optional<std::uint64_t> stream() const override { return 20; }
 

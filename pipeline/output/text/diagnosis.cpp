@@ -59,8 +59,8 @@ std::string forecast_words(const json& before, const json& after) {
     if (then.empty() || now.empty()) return {};
     const char* held_out = keys_of(before).held_out;
     const bool improves = after[held_out].get<double>() < before[held_out].get<double>();
-    return fmt::format(" Probes that a fit does not see are forecast to within {}, before to within {}{}.", now, then,
-                       improves ? "" : ": with so few probes the forecast does not improve");
+    return fmt::format(" Probes left out of the fit are predicted to within {} rms, without it to within {}{}.", now,
+                       then, improves ? "" : ": from so few probes the prediction does not improve");
 }
 
 /// What the stiffness comes to with the explanation, and was taken for without it.

@@ -66,7 +66,7 @@ std::string material_in_words(const json& material) {
 
 std::string and_under_load(const json& load_exponent) {
     const std::string words = load_exponent["words"];
-    return words == "the error is there without any load" ? " over all states, and there is one without any load, too"
+    return words == "the error is there without any load" ? " over all states, and it is there without any load, too"
                                                           : ", and " + words;
 }
 

@@ -110,7 +110,7 @@ TEST(Preflight, BareNumbersSayWhatTheyAreOf) {
     EXPECT_EQ(in_words("force-gain", 0.114, "force-gain"), "gain error 11 %");
     EXPECT_EQ(in_words("probe3", 0.114, "force-gain"), "gain error 11 %");
     EXPECT_EQ(in_words("prestress", 0.0323, "prestress"), "0.032 x shear modulus");
-    EXPECT_EQ(in_words("growth", 0.00785, "swelling"), "0.79 % growth");
+    EXPECT_EQ(in_words("growth", 0.0079, "swelling"), "0.79 % growth");
     EXPECT_EQ(in_words("ratio", 1.8, "inclusion"), "ratio 1.8");
 }
 

@@ -64,7 +64,7 @@ class Errors(unittest.TestCase):
             (lambda: palpate.export(model(), "a.xyz"), palpate.InvalidInput, "tells no format"),
             (lambda: palpate.Run(self.folder), palpate.FileError, "run.json"),
             (lambda: palpate.diagnose(model(), measured(), without=5), TypeError, "without: is 5"),
-            (lambda: palpate.check(set_folder(), expect="ghost"), palpate.InvalidInput, "no effect 'ghost'"),
+            (lambda: palpate.check(set_folder(), expect="ghost"), palpate.InvalidInput, "effect 'ghost' is not known"),
             (lambda: palpate.check(set_folder(), expect=[1]), TypeError, "expect: is .1., must be a name"),
             (lambda: palpate.simulate(model(), measured(), draws=-5), palpate.InvalidInput, "draws: is -5"),
             (lambda: model().with_effect("gravity", gx="up"), palpate.InvalidInput, "gx: is 'up', must be a real"),

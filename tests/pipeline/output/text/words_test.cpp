@@ -48,9 +48,9 @@ TEST(DiagnosisInWords, NamesTheEffectWithItsEvidence) {
     EXPECT_THAT(
         diagnosis_in_words(diagnosis("missing-effect", {"gravity"})),
         AllOf(HasSubstr("Gravity is missing (probability 0.98): 9.90 m/s^2"),
-              HasSubstr("rms error of the model is 6.4 mm over all states, and there is one without any load, too."),
+              HasSubstr("rms error of the model is 6.4 mm over all states, and it is there without any load, too."),
               HasSubstr("lowers the error to 0.9 mm, no more than noise"),
-              HasSubstr("Probes that a fit does not see are forecast to within 0.92 mm, before to within 6.6 mm."),
+              HasSubstr("Probes left out of the fit are predicted to within 0.92 mm rms, without it to within 6.6 mm."),
               HasSubstr("Runner-up: misalignment, less than a thousandth as likely."), Not(HasSubstr("10^"))));
 }
 
@@ -127,7 +127,7 @@ TEST(CompareInWords, TellsTheBudgetAndTheWorstRegionFirst) {
         compare_in_words(compared()),
         AllOf(HasSubstr("the model lacks something"), HasSubstr("neo-Hookean law, E = 0.31 MPa, ν = 0.450 ± 0.010"),
               HasSubstr("1.0 % is noise, 12.0 % the coarseness of the skeleton, 87.0 % unexplained"),
-              HasSubstr("2 of 3 regions, worst round (80, 20, 0) (9 sigma), (1, 2, 3)")));
+              HasSubstr("2 of 3 regions, worst around (80, 20, 0) (9 sigma), (1, 2, 3)")));
 }
 
 TEST(CompareInWords, BlamesTheSkeletonWhereFiniteElementsFollow) {
