@@ -9,6 +9,7 @@
 #include "fem/material.h"
 #include "identify/loading/tool_motions.h"
 #include "mesh/errors.h"
+#include "mesh/geometry/local_thickness.h"
 #include "mesh/meshing/smooth_surface.h"
 #include "mesh/regions/check_regions.h"
 #include "mesh/regions/element_regions.h"
@@ -111,7 +112,7 @@ std::unique_ptr<identify::ReferenceBody> fill(const identify::MeasurementSet& se
             return meshes->at(motions);
         };
     }
-    options.dilatation = dilatation_for(set.rest_surface, edge);
+    options.dilatation = dilatation_for(body.surface, edge);
     options.rig = {set.tools, set.actuators};
     options.priors = priors;
     options.regions = with_surfaces(set.regions, body.interfaces);
@@ -144,7 +145,11 @@ double reference_edge_length(const mesh::Surface& surface) {
 }
 
 fem::Dilatation dilatation_for(const mesh::Surface& surface, double edge_length) {
-    return edge_length > thickness_of(surface) ? fem::Dilatation::thin : fem::Dilatation::mean;
+    // Of two elements in a thickness those by the mean dilatation are 2 to 5 % too soft, thin ones 2 % too stiff; of
+    // one they are 13 to 20 % too soft, and 3 % too soft to 8 % too stiff.
+    constexpr double between_one_and_two = 0.6;
+    return edge_length > between_one_and_two * mesh::local_thickness(surface) ? fem::Dilatation::thin
+                                                                              : fem::Dilatation::mean;
 }
 
 Reference make_reference(const identify::MeasurementSet& set, double edge_length, const Progress& progress,

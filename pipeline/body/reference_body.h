@@ -15,8 +15,8 @@ namespace palpate::pipeline {
 double reference_edge_length(const mesh::Surface& surface);
 
 /// How quadratic elements of such an edge length [mm] are to keep their volume in a body: by the mean dilatation, with
-/// which a sheet of one element in thickness would bend too easily (ElementModel::local_bulk); as thin ones where they
-/// are longer than the body is thick on average, 2 V / A.
+/// which a sheet of one element in thickness would bend too easily (ElementModel::local_bulk); as thin ones where one
+/// of them is all there is in the body's thickness.
 fem::Dilatation dilatation_for(const mesh::Surface& surface, double edge_length);
 
 /// The body of a measurement set in finite elements, or why there is none.
