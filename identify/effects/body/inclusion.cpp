@@ -115,7 +115,7 @@ public:
             number_in_words(record, radius, covariance), number_in_words(record, ratio, covariance));
         if (covariance.size() > 0 && std::abs(covariance(radius, ratio)) >
                                          together * std::sqrt(covariance(radius, radius) * covariance(ratio, ratio)))
-            text += "; the smaller it is, the more its stiffness differs: the readings determine both together";
+            text += "; its radius and its stiffness are known together only";
         return text + ".";
     }
 
