@@ -67,6 +67,10 @@ TEST_F(LadderTest, GravityLowersTheErrorOnFittedAndOnHeldOutProbes) {
     EXPECT_LT(with_gravity.skeleton.held_out_rms_mm, 0.7 * bare.skeleton.held_out_rms_mm);
     EXPECT_GT(with_gravity.log_evidence, bare.log_evidence + 1000);
     EXPECT_EQ(ladder.verdict, Verdict::adequate);
+    // All probes are held out in turn, so the last step is the model that is delivered, and compared.
+    EXPECT_EQ(with_gravity.skeleton.rms_mm, with_gravity.comparison.rms);
+    EXPECT_EQ(with_gravity.reference->rms_mm, ladder.whole.best().rms_mm);
+    EXPECT_EQ(with_gravity.validation_model.links.front().stiffness, with_gravity.model.links.front().stiffness);
 
     // Each step tells the material that its own fit comes to.
     const MaterialEstimate told = material_of(*reference_, ladder.whole.best());
