@@ -12,7 +12,7 @@ namespace {
 
 /// The largest ball that touches the surface at a point from inside; `inward` of unit length, `most` of its radius.
 double radius_of_touching_ball(const SurfaceTree& tree, const Vec3& point, const Vec3& inward, double most) {
-    constexpr int rounds = 30;         // each shrinks the ball, most of them to less than half
+    constexpr int rounds = 30;         // each shrinks the ball; so many end what would shrink by ever less
     constexpr double touching = 1e-3;  // of the radius: nothing reaches deeper into the ball but by rounding
     double r = most;
     for (int round = 0; round < rounds; ++round) {

@@ -145,8 +145,8 @@ double reference_edge_length(const mesh::Surface& surface) {
 }
 
 fem::Dilatation dilatation_for(const mesh::Surface& surface, double edge_length) {
-    // Of two elements in a thickness those by the mean dilatation are 2 to 5 % too soft, thin ones 2 % too stiff; of
-    // one they are 13 to 20 % too soft, and 3 % too soft to 8 % too stiff.
+    // Bars and plates of two elements in thickness are 2 to 5 % too soft by the mean dilatation, as thin ones between 1
+    // % too soft and 2 % too stiff; of one element, 13 to 20 % too soft, and between 3 % too soft and 8 % too stiff.
     constexpr double between_one_and_two = 0.6;
     return edge_length > between_one_and_two * mesh::local_thickness(surface) ? fem::Dilatation::thin
                                                                               : fem::Dilatation::mean;

@@ -28,7 +28,7 @@ struct ElementModel {
     /// With mean dilatation that is lambda, as in small strain: K/2 v^2 splits into mu/3 v^2 + lambda/2 (mean v)^2.
     /// With all of K on the mean, coarse meshes are 3 to 5 times as far off. An element that is alone in the thickness
     /// of a plate bends as if nu were 0 then, 20 % too easily at 0.45: thin ones answer at each point with a lambda of
-    /// up to 4 mu, that of nu = 0.4, which does not lock. They are within 5 % for every ratio up to 0.499
+    /// up to 4 mu, that of nu = 0.4, which does not lock. They are within 5 % for every ratio up to 0.49
     /// (tests/fem/large_deformation/elements/dilatation_test.cpp).
     double local_bulk() const {
         constexpr double most = 14.0 / 3;  // of K over mu, at nu = 0.4

@@ -155,6 +155,16 @@ TEST_P(EveryEffect, SaysHowWellItsNumbersAreKnown) {
     EXPECT_THAT(effect().sentence_with(estimate, covariance), HasSubstr("±"));
 }
 
+TEST(Catalogue, AnInclusionSaysWhereItsRadiusAndStiffnessAreKnownTogetherOnly) {
+    const skeleton::EffectRecord ball{
+        "inclusion", {{"cx", 1, "mm"}, {"cy", 2, "mm"}, {"cz", 3, "mm"}, {"radius", 6, "mm"}, {"ratio", 4, "1"}}};
+    Eigen::MatrixXd covariance = Eigen::VectorXd::Ones(5).asDiagonal();
+    const auto sentence = [&] { return find_effect("inclusion")->sentence_with(ball, covariance); };
+    EXPECT_THAT(sentence(), testing::Not(HasSubstr("together")));
+    covariance(3, 4) = covariance(4, 3) = -0.95;
+    EXPECT_THAT(sentence(), HasSubstr("its radius and its stiffness are known together only."));
+}
+
 TEST_P(EveryEffect, OfABodyIsWhatAModelFilePlays) {
     // In force by the fit's numbers and by what a model file says, the body feels the same.
     const auto numbers = effect().numbers(*model_, problem_);
