@@ -96,7 +96,7 @@ Outcome diagnose(const DiagnoseCommandOptions& options, const Common& common);
 
 struct ImproveCommandOptions {
     std::filesystem::path model, set, output;
-    std::vector<std::string> add = {};  // effects, EFFECT[:name=value,...], a rung each; from these values
+    std::vector<std::string> add = {};  // effects, EFFECT[:name=value,...], a step each; from these values
     bool automatic = false;             // what a diagnosis names, in place of those
     bool residual = false;              // the same, and what is left then, located
     std::filesystem::path draft = {};   // C++ file for that as an effect of one's own

@@ -98,8 +98,8 @@ std::unique_ptr<identify::BodyModel> body_of(const identify::MeasurementSet& set
 }
 
 /// "1.2 -> 0.1 mm (-92 %), held out 1.3 -> 0.2 mm; body 25 -> 1.0, held out 26 -> 1.1 times the noise"
-std::string climbed(const identify::BodyModel& body, const identify::MeasurementSet& set,
-                    const identify::Diagnosis& found, const Options& options) {
+std::string errors_of_steps(const identify::BodyModel& body, const identify::MeasurementSet& set,
+                            const identify::Diagnosis& found, const Options& options) {
     identify::LadderOptions how;
     how.identify.threads = how.diagnose.refit.threads = options.threads;
     const identify::Ladder ladder = identify::build_ladder(skeleton_of(set), body, set, found.explanation, how, &found);
@@ -174,7 +174,7 @@ std::string diagnosed(const Truth& truth, const Options& options, Tally& tally) 
             outcome_names[static_cast<std::size_t>(outcome)]);
         if (options.tell) text += estimate(found);
         if (options.ladder && !found.explanation.empty()) {
-            text += fmt::format("| | | | | {} | | | | | | | |\n", climbed(*body, set, found, options));
+            text += fmt::format("| | | | | {} | | | | | | | |\n", errors_of_steps(*body, set, found, options));
         }
         tally.add(truth, found, outcome, identify::material_of(*body, found.best()));
     } catch (const std::exception& e) {
