@@ -297,7 +297,8 @@ private:
     /// The last step once more, on all states and with particles: the model that is delivered.
     void finish() {
         report(progress_, "the model on all states", 0.9);
-        const bool is_known = diagnosis_ && std::ranges::is_permutation(diagnosis_->explanation, added_);
+        const bool is_known =
+            diagnosis_ && std::ranges::is_permutation(estimate(*diagnosis_), added_, {}, &skeleton::EffectRecord::name);
         const Diagnosis& whole = result_.whole = is_known ? *diagnosis_ : explain(set_, added_);
         LadderStep& last = result_.steps.back();
         last.effects = estimate(whole);
