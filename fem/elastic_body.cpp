@@ -22,7 +22,6 @@
 #include "fem/linear_algebra/memory/huge_pages.h"
 #include "fem/linear_algebra/multigrid/morton.h"
 #include "fem/linear_algebra/solver_choice.h"
-#include "mesh/errors.h"
 
 namespace palpate::fem {
 
@@ -32,23 +31,6 @@ constexpr std::size_t together = 8;  // loads whose conjugate gradients read the
 
 double seconds_since(std::chrono::steady_clock::time_point start) {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
-
-void validate(const ElasticBodyOptions& options) {
-    if (options.threads < 1) {
-        throw InvalidInput(fmt::format("threads is {}; allowed: 1 and more.", options.threads));
-    }
-    if (options.block < 1 || options.block > 1024) {
-        throw InvalidInput(
-            fmt::format("block (right-hand sides solved together) is {}; allowed: 1 to 1024.", options.block));
-    }
-    if (!(options.memory >= 0)) {
-        throw InvalidInput(
-            fmt::format("memory (that a factor may take) is {} GB; allowed: 0 and more.", options.memory));
-    }
-    if (options.loads < 0) {
-        throw InvalidInput(fmt::format("loads (to be solved for) is {}; allowed: 0 and more.", options.loads));
-    }
 }
 
 /// As many threads as asked for, but no more than there are: TBB would complain aloud.
@@ -120,7 +102,7 @@ ElasticBody::ElasticBody(mesh::VolumeMesh mesh, Materials materials, const std::
     assert(held.size() == static_cast<std::size_t>(mesh.nodes.rows()));
     assert(materials.of_element.empty() || std::ssize(materials.of_element) == mesh.tetrahedra.rows());
     materials.validate();
-    validate(options);
+    options.validate();
     check_restraint(mesh, held);
     ElasticBodyStats& stats = impl_->stats;
     constexpr double near_incompressible = 0.45;

@@ -9,10 +9,11 @@
 namespace palpate::fem {
 
 struct ElasticBodyOptions {
-    int threads = 1;    // for blocks of right-hand sides
-    int block = 96;     // right-hand sides solved together with a factor, at most, [1, 1024]
-    double memory = 0;  // that a factor may take [GB], >= 0; 0: nine tenths of what is free
-    int loads = 0;      // to be solved for, >= 0: a few of a large body take less without a factor; 0: not known
+    int threads = 1;        // for blocks of right-hand sides
+    int block = 96;         // right-hand sides solved together with a factor, at most, [1, 1024]
+    double memory = 0;      // that a factor may take [GB], >= 0; 0: nine tenths of what is free
+    int loads = 0;          // to be solved for, >= 0: a few of a large body take less without a factor; 0: not known
+    void validate() const;  // @throws InvalidInput naming option, value and bound
 };
 
 struct ElasticBodyStats {

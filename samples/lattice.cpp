@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "identify/measurements/twin.h"
-#include "skeleton/model/attach.h"
+#include "skeleton/model/attachment/attach.h"
 
 namespace palpate::samples {
 namespace {

@@ -19,6 +19,7 @@ set(shared_skeleton_sources
   links/fibres/plastic_fibre.cpp
   links/fibres/uniaxial.cpp
   links/placed/grown_links.cpp
+  links/placed/placed_flow.cpp
   links/placed/placed_links.cpp
   links/placed/placed_volumes.cpp
   links/sections/section_law.cpp
@@ -26,8 +27,8 @@ set(shared_skeleton_sources
   loads/cavities.cpp
   loads/dent.cpp
   loads/load.cpp
-  model/attach.cpp
-  model/carried_point.cpp
+  model/attachment/attach.cpp
+  model/attachment/carried_point.cpp
   model/growth.cpp
   model/link_modulus.cpp
   model/observation.cpp

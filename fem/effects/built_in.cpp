@@ -3,6 +3,7 @@
 #include "fem/effects/local/known_locality.h"
 #include "fem/effects/local/local_force.h"
 #include "fem/effects/local/local_springs.h"
+#include "fem/effects/local/stiffness_map.h"
 #include "fem/effects/material/anisotropy.h"
 #include "fem/effects/material/inclusion.h"
 #include "fem/effects/material/prestress.h"
@@ -83,18 +84,12 @@ KnownEffect fault(std::string name) { return {std::move(name), {}, {}, EffectKin
 
 std::vector<KnownEffect> built_in_effects() {
     return {
-        known_gravity(),         known_compliant_support(),
-        known_stiffening(),      known_anisotropy(),
-        known_inclusion(),       known_contact(),
-        known_pressure(),        known_prestress(),
-        known_swelling(),        known_viscosity(),
-        known_plasticity(),      known_damage(),
-        known_friction(),        known_volume(),
-        known_local_force(),     known_local_springs(),
-        known_local_swelling(),  fault("misalignment"),
-        fault("force-gain"),     fault("slip"),
-        fault("actuation-gain"), fault("clock"),
-        fault("outliers"),
+        known_gravity(),       known_compliant_support(), known_stiffening(),    known_anisotropy(),
+        known_inclusion(),     known_stiffness_map(),     known_contact(),       known_pressure(),
+        known_prestress(),     known_swelling(),          known_viscosity(),     known_plasticity(),
+        known_damage(),        known_friction(),          known_volume(),        known_local_force(),
+        known_local_springs(), known_local_swelling(),    fault("misalignment"), fault("force-gain"),
+        fault("slip"),         fault("actuation-gain"),   fault("clock"),        fault("outliers"),
     };
 }
 

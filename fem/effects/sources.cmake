@@ -12,6 +12,7 @@ set(effect_sources
   material/inclusion.cpp
   material/prestress.cpp
   material/stiffening.cpp
+  local/stiffness_map.cpp
   point/compliant_support.cpp
   point/contact.cpp
   point/gravity.cpp

@@ -21,13 +21,15 @@ std::optional<Eigen::Vector4d> invert(const Eigen::Matrix<double, nodes, 3>& X, 
     if constexpr (nodes == 10) {
         constexpr double tolerance = 1e-13;  // of the coordinates, which are of order 1
         constexpr int iterations = 30;
+        constexpr double far_off =
+            1e3;  // of the coordinates: the point is not in this element, and the map folds there
         for (int k = 0; k < iterations; ++k) {
             const Eigen::Vector4d l = barycentric(tail);
             const Vec3 miss = X.transpose() * shape<4, nodes>(l) - point;
             const Mat3 J = X.transpose() * shape_gradient<4, nodes>(l);
             const Vec3 step = J.inverse() * miss;
             tail -= step;
-            if (!(tail.norm() < 1e3)) return std::nullopt;
+            if (!(tail.norm() < far_off)) return std::nullopt;
             if (step.norm() < tolerance * (1 + tail.norm())) return barycentric(tail);
         }
         return std::nullopt;
@@ -76,10 +78,11 @@ ElementLocator::ElementLocator(const mesh::VolumeMesh& mesh) : mesh_(mesh) {
         all.max = all.max.cwiseMax(boxes_[e].max);
     }
 
-    // About one cell an element, at most 256 along a side.
+    // About one cell an element, and memory for no more than 256^3 where a thin body would ask for more.
+    constexpr int most_cells_along = 256;
     min_ = all.min;
     const Vec3 extent = all.extent();
-    cell_size_ = std::max(std::cbrt(extent.prod() / m), all.longest_side() / 256);
+    cell_size_ = std::max(std::cbrt(extent.prod() / m), all.longest_side() / most_cells_along);
     for (int a = 0; a < 3; ++a) cells_(a) = static_cast<int>(extent(a) / cell_size_) + 1;
 
     // Count, then fill.

@@ -1,8 +1,6 @@
 #pragma once
 
-#include <memory>
-
-#include "mesh/core/tool.h"
+#include "mesh/types.h"
 
 namespace palpate::fem {
 
@@ -25,9 +23,5 @@ public:
     /// About the radius of what it presses with [mm].
     virtual double radius() const = 0;
 };
-
-/// The shape of a tool; null for a grip, which has none.
-/// @throws InvalidInput for a radius that is not positive, or a surface that is not closed.
-std::shared_ptr<const RigidShape> rigid_shape(const mesh::Tool& tool);
 
 }  // namespace palpate::fem

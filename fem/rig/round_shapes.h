@@ -1,6 +1,9 @@
 #pragma once
 
+#include <memory>
+
 #include "fem/rig/rigid_shape.h"
+#include "mesh/core/tool.h"
 
 namespace palpate::fem {
 

@@ -77,8 +77,10 @@ Eigen::VectorXd ToolPotential::grip_weights(const Points& rest) const {
         throw InvalidInput(fmt::format(
             "The regions of the grip \"{}\" hold no material of the body: move or widen them.", tool().name));
     const Points within = rest(in, Eigen::all);
+    // A grip of one node, or of a few in one place, is stiff as one of this size over the body's.
+    constexpr double least_size = 0.01;
     const double a =
-        std::max(mesh::bounding_box(within).longest_side(), 0.01 * mesh::bounding_box(rest).longest_side());
+        std::max(mesh::bounding_box(within).longest_side(), least_size * mesh::bounding_box(rest).longest_side());
     Eigen::VectorXd weights = Eigen::VectorXd::Zero(rest.rows());
     // k a^3 = E a / layer^2
     weights(in).setConstant(young_ * a / (layer * layer) / static_cast<double>(in.size()));

@@ -3,14 +3,14 @@
 #include <memory>
 
 #include "fem/effects/point/point_potential.h"
-#include "fem/rig/rigid_shape.h"
+#include "fem/rig/tool_shape.h"
 
 namespace palpate::fem {
 
 /// A tool as bodies feel it, made once for all its poses.
 struct RigidTool {
-    /// @throws InvalidInput as rigid_shape.
-    explicit RigidTool(mesh::Tool the_tool) : tool(std::move(the_tool)), shape(rigid_shape(tool)) {}
+    /// @throws InvalidInput as tool_shape.
+    explicit RigidTool(mesh::Tool the_tool) : tool(std::move(the_tool)), shape(tool_shape(tool)) {}
     mesh::Tool tool;
     std::shared_ptr<const RigidShape> shape;  // null: a grip
 };

@@ -7,10 +7,11 @@
 #include "identify/comparison/load_exponent.h"
 #include "identify/diagnosis/rigged_skeleton.h"
 #include "identify/inference/domains/position/solver_pool.h"
-#include "identify/loading/load_history.h"
+#include "identify/loading/history/load_history.h"
 #include "identify/loading/readings.h"
 #include "identify/loading/reduced_load.h"
 #include "identify/numerics/parallel.h"
+#include "identify/numerics/summaries.h"
 #include "mesh/errors.h"
 #include "skeleton/statics/equilibrium.h"
 #include "skeleton/statics/statics.h"
@@ -25,7 +26,7 @@ bool is_loaded_from_outside(const LoadState& state) {
 
 constexpr double adequate_rms = 1.1;       // in sigmas: with thousands of readings no p-value forgives rounding
 constexpr double adequate_p_value = 1e-3;  // what is right is refused once in a thousand times, as by a diagnosis
-constexpr int worst_readings = 10;
+constexpr int worst_readings = 10;         // that are listed
 
 double square(double x) { return x * x; }
 
@@ -47,12 +48,9 @@ std::vector<Points> predict(const skeleton::Model& model, const std::vector<Stat
     return predicted;
 }
 
-/// Length of an error, of its measured coordinates.
-Vec3 measured_part(const Eigen::RowVector3d& error) { return error.array().isNaN().select(0, error).transpose(); }
-
 ProbeError error_of(const LoadState& state, const StateReadings& readings, const Points& error) {
     double largest = 0;
-    for (const auto& row : error.rowwise()) largest = std::max(largest, measured_part(row).norm());
+    for (const auto& row : error.rowwise()) largest = std::max(largest, known_part(row.transpose()).norm());
     const double left = rms(error);
     return {state.probe, state.time, left, largest, readings.displacement > 0 ? left / readings.displacement : missing};
 }
@@ -68,7 +66,7 @@ struct Totals {
         displacement += readings.coordinates * square(readings.displacement);
         for (Eigen::Index i = 0; i < difference.rows(); ++i) {
             const int measured = static_cast<int>((!difference.row(i).array().isNaN()).count());
-            const double squares = measured_part(difference.row(i)).squaredNorm();
+            const double squares = known_part(difference.row(i).transpose()).squaredNorm();
             error += squares;
             noise += measured * square(readings.noise[i]);
             chi_squared += squares / square(readings.noise[i]);
@@ -78,8 +76,7 @@ struct Totals {
 
 /// Noise of a state, rms over its coordinates; 0 when unknown.
 double noise_of(const StateReadings& readings) {
-    const double value = std::sqrt(readings.noise.squaredNorm() / static_cast<double>(readings.noise.size()));
-    return std::isnan(value) ? 0 : value;
+    return known_part(std::sqrt(readings.noise.squaredNorm() / static_cast<double>(readings.noise.size())));
 }
 
 void find_worst(const MeasurementSet& set, const std::vector<StateReadings>& states, const std::vector<Points>& errors,
@@ -87,7 +84,7 @@ void find_worst(const MeasurementSet& set, const std::vector<StateReadings>& sta
     for (std::size_t s = 0; s < states.size(); ++s) {
         const LoadState& state = set.states[states[s].state];
         for (Eigen::Index i = 0; i < errors[s].rows(); ++i) {
-            const Vec3 error = measured_part(errors[s].row(i));
+            const Vec3 error = known_part(errors[s].row(i).transpose());
             const Reading& reading = state.readings[states[s].rows[i]];
             result.worst.push_back({set.markers[reading.marker].id, state.probe, state.time, error.norm(),
                                     reading.position, error.normalized()});

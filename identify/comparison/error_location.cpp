@@ -11,9 +11,9 @@
 namespace palpate::identify {
 namespace {
 
-constexpr int most_regions = 12;
-constexpr int markers_per_region = 3;  // on average, or regions would tell no more than markers
-constexpr double strange_p_value = 0.05;
+constexpr int most_regions = 12;          // a choice: a table that is read at a glance
+constexpr int markers_per_region = 3;     // on average, or regions would tell no more than markers
+constexpr double strange_p_value = 0.05;  // the customary level, corrected for the number of places
 
 /// A place's error, its p-value not yet corrected.
 PlaceError error_at(std::vector<int> markers, const Points& rest, const std::vector<Points>& residual_mm,

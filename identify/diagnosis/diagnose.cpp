@@ -6,12 +6,14 @@
 #include <cmath>
 
 #include "identify/diagnosis/locate/locate.h"
+#include "identify/diagnosis/locate/residual.h"
 #include "identify/diagnosis/search/baselines.h"
 #include "identify/diagnosis/search/crushing.h"
 #include "identify/diagnosis/search/mesh_correction.h"
 #include "identify/diagnosis/search/search.h"
 #include "identify/diagnosis/statistics/discretisation.h"
 #include "identify/diagnosis/statistics/independent_readings.h"
+#include "identify/diagnosis/statistics/outliers/set_aside.h"
 #include "identify/diagnosis/verdict/verdict.h"
 #include "identify/effects/catalogue.h"
 #include "mesh/errors.h"
@@ -28,7 +30,7 @@ public:
                         const Progress& progress)
         : model_(model), set_(set), options_(options), progress_(progress), baselines_(model, options) {
         result_.noise_known = all_noise_known(set);
-        result_.problem = make_problem(set, first_noise(set));
+        result_.problem = make_problem(set);
         moved_ = result_.problem.rms_mm(result_.problem.displacement());
         for (const auto& effect : catalogue()) {
             const bool known =
@@ -94,12 +96,6 @@ private:
                });
     }
 
-    /// A hundredth of how far the markers move, to begin with where the noise is not specified [mm].
-    static double first_noise(const MeasurementSet& set) {
-        const Problem problem = make_problem(set, 1);
-        return std::max(0.01 * problem.rms_mm(problem.displacement()), 1e-12);
-    }
-
     const Refit& baseline() const { return baselines_.best(); }
 
     void tell(const std::string& what, double share) const { report(progress_, what, share); }
@@ -147,7 +143,8 @@ private:
         const Refit& fit = leading();
         const Eigen::VectorXd error_mm = fit.residual.cwiseQuotient(fit.V->weights()).cwiseProduct(problem.sigma);
         const double rough = noise_by_roughness(problem, error_mm);
-        const double finest = std::max(options_.resolution * moved_, 1e-12);
+        constexpr double least = 1e-12;  // [mm], where nothing moved: a sigma is above 0
+        const double finest = std::max(options_.resolution * moved_, least);
         const double noise = std::max(rough, finest);
         for (Eigen::Index n = 0; n < problem.rows(); ++n) {
             if (problem.is_guessed[n]) problem.sigma[n] = noise;
@@ -172,6 +169,19 @@ private:
             seek(&Search::single_effects);
             seek(&Search::put_together);
         }
+        seek_last_resorts();
+    }
+
+    /// What no named effect explains may be the stiffness of single parts: where what is left is likelier a place that
+    /// is softer or stiffer, alike in all states, than a force or a fault of the readings.
+    void seek_last_resorts() {
+        const bool has_any = std::ranges::any_of(effects_, [](const auto& effect) { return effect->is_last_resort(); });
+        if (!has_any || leaves_only_noise(leading(), options_)) return;
+        const auto left = locate_missing(model_, result_.problem, leading(), options_.refit.threads);
+        if (!left || left->kind != SourceKind::stiffness) return;
+        const SourceTerm& likeliest = left->likeliest();
+        if (likeliest.form == SourceForm::softening && likeliest.law == SourceLaw::constant)
+            seek(&Search::last_resorts);
     }
 
     void seek(void (Search::*what)()) {
@@ -190,40 +200,18 @@ private:
     bool explained() const { return leader() != nullptr; }
     const Refit& leading() const { return explained() ? leader()->fit : baseline(); }
 
-    /// What a fit to some of the readings alone would leave of their errors d, rms in sigmas, by its linearisation.
-    static double rms_without(const Whitening& V, const Eigen::VectorXd& d, const std::vector<char>& keep) {
-        std::vector<Eigen::Index> dropped;
-        for (std::size_t n = 0; n < keep.size(); ++n) {
-            if (!keep[n]) dropped.push_back(static_cast<Eigen::Index>(n));
-        }
-        const Eigen::VectorXd y = V.apply(d), own = y(dropped);
-        const double chi_square = d.dot(y) - own.dot(V.solve_within(dropped, own).col(0));
-        return std::sqrt(chi_square / static_cast<double>(std::ranges::count(keep, 1)));
-    }
-
     /// Readings that are off by themselves, as a fit sees them; true where some were set aside.
     bool set_outliers_aside(const Refit& fit, double least) {
         if (options_.leaves_out(*single_readings_) || !result_.outliers.readings.empty()) return false;
         tell(single_readings_->name(), 0.4);
-        const Whitening V = with_numbers_unknown(fit);
-        const Outliers found =
-            find_outliers(result_.problem, fit.residual, find_exchanged_markers(result_.problem, V, fit.error));
-        if (found.log_bayes_factor < std::max(least, options_.least_outliers)) return false;
+        const auto found = single_readings_off(result_.problem, fit, std::max(least, options_.least_outliers));
+        if (!found) return false;
         const int before = result_.problem.readings();
-        const std::vector<char> keep = rows_without(result_.problem, found.readings);
-        constexpr double little = 3;  // rms, whitened: where more is left without them, they are not what is wrong
-        if (rms_without(V, fit.error, keep) > little) return false;
-        result_.outliers = found;
-        result_.outliers.readings.clear();
-        for (std::size_t n = 0; n < keep.size(); ++n) {
-            const int number = result_.problem.set_reading[n];
-            std::vector<int>& numbers = result_.outliers.readings;
-            if (!keep[n] && (numbers.empty() || numbers.back() != number)) numbers.push_back(number);
-        }
-        result_.problem = result_.problem.with_rows(keep);
+        result_.outliers = found->outliers;
+        result_.problem = result_.problem.with_rows(found->others);
         result_.notes.push_back(
-            fmt::format("{} of {} readings are outliers and were set aside.", found.readings.size(), before));
-        for (const ExchangedMarkers& one : found.exchanged) {
+            fmt::format("{} of {} readings are outliers and were set aside.", found->outliers.readings.size(), before));
+        for (const ExchangedMarkers& one : found->outliers.exchanged) {
             const LoadState& state = set_.states[one.state];
             result_.notes.push_back(fmt::format(
                 "In probe {} at {:g} s the markers {} and {} look exchanged: with their labels swapped both fit. Swap "
@@ -266,7 +254,8 @@ private:
         // Wrong readings favour what bends to them: another effect may lead without them.
         std::vector<FittedExplanation> rivals;
         for (const FittedExplanation& one : result_.tried) {
-            if (one.log_bayes_factor > 0.5 * leader()->log_bayes_factor) rivals.push_back(one);
+            constexpr double of_leader = 0.5;  // what explains less will not lead; each costs a fit
+            if (one.log_bayes_factor > of_leader * leader()->log_bayes_factor) rivals.push_back(one);
         }
         std::ranges::stable_sort(rivals, std::greater{}, &FittedExplanation::log_bayes_factor);
         return std::ranges::any_of(

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "identify/diagnosis/statistics/chance.h"
+#include "identify/diagnosis/statistics/largest_noise.h"
 #include "identify/effects/catalogue.h"
 #include "mesh/errors.h"
 

@@ -7,8 +7,9 @@
 namespace palpate::identify {
 namespace {
 
-/// Covariance of what is told of fitted numbers v with a covariance C: from the halves of what it differs by between
-/// v + c and v - c, for each column c of C's square root.
+/// Covariance of what is told of fitted numbers v with a covariance C, to first order: by central differences along
+/// each column of C's square root. The steps are a part of a column: a direction's length, which nothing tells, is
+/// known to as much as it is long, and a whole step back would end at no direction.
 Eigen::MatrixXd covariance_of_told(const EffectHypothesis& effect, const std::vector<EffectNumber>& numbers,
                                    const Eigen::VectorXd& v, const Eigen::MatrixXd& covariance) {
     const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> axes(covariance);
@@ -18,10 +19,11 @@ Eigen::MatrixXd covariance_of_told(const EffectHypothesis& effect, const std::ve
         for (Eigen::Index p = 0; p < values.size(); ++p) values[p] = at.parameters[p].value;
         return values;
     };
+    constexpr double step = 0.1;
     Eigen::MatrixXd root(estimate(v).size(), v.size());
     for (Eigen::Index j = 0; j < v.size(); ++j) {
         const Eigen::VectorXd c = std::sqrt(std::max(axes.eigenvalues()[j], 0.0)) * axes.eigenvectors().col(j);
-        root.col(j) = 0.5 * (estimate(v + c) - estimate(v - c));
+        root.col(j) = (estimate(v + step * c) - estimate(v - step * c)) / (2 * step);
     }
     return root * root.transpose();
 }

@@ -9,7 +9,7 @@
 #include "identify/diagnosis/fit/refit.h"
 #include "identify/diagnosis/locate/missing_source.h"
 #include "identify/diagnosis/statistics/held_out.h"
-#include "identify/diagnosis/statistics/outliers.h"
+#include "identify/diagnosis/statistics/outliers/outliers.h"
 #include "mesh/core/contact.h"
 
 namespace palpate::identify {

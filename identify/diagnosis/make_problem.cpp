@@ -6,7 +6,7 @@
 #include <cmath>
 #include <iterator>
 
-#include "identify/loading/lagged_load.h"
+#include "identify/loading/history/lagged_load.h"
 #include "identify/loading/loads.h"
 #include "mesh/errors.h"
 
@@ -196,6 +196,12 @@ Problem make_problem(const MeasurementSet& set, double noise) {
     }
     rows.finish();
     return problem;
+}
+
+Problem make_problem(const MeasurementSet& set) {
+    constexpr double guess = 0.01, least = 1e-12;  // of the displacement; [mm], where nothing moved
+    const Problem problem = make_problem(set, 1);
+    return make_problem(set, std::max(guess * problem.rms_mm(problem.displacement()), least));
 }
 
 MeasurementSet without_readings(const MeasurementSet& set, const std::vector<int>& readings) {

@@ -3,7 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "identify/models/reference_body.h"
+#include "identify/diagnosis/fit/priors/fit_priors.h"
+#include "identify/models/reference/reference_body.h"
 
 namespace palpate::identify {
 namespace {
@@ -26,8 +27,6 @@ double sd_of(const Quantity& quantity, const Refit& fit) {
     return std::sqrt(std::max({slope.dot(fit.covariance * slope), slope.dot(fit.scatter * slope), 0.0}));
 }
 
-constexpr double fixed = 0.1;  // a prior of less, of the logarithm, leaves nothing to be fitted
-
 std::vector<RegionEstimate> regions_of(const BodyModel& model, const Refit& fit) {
     std::vector<RegionEstimate> result;
     const Eigen::VectorXd theta = fit.explanation.setting().theta;
@@ -35,7 +34,7 @@ std::vector<RegionEstimate> regions_of(const BodyModel& model, const Refit& fit)
         const auto name = region_of_parameter(model.parameters()[static_cast<std::size_t>(j)].name);
         if (!name) continue;
         const auto young_of = [j](const ModelSetting& setting) { return std::exp(setting.theta[j]); };
-        const bool is_declared = fit.prior_sd[j] < fixed;
+        const bool is_declared = fit.prior_sd[j] < told_prior_sd;
         result.push_back({*name, std::exp(theta[j]), is_declared ? missing : sd_of(young_of, fit), is_declared});
     }
     return result;
@@ -59,7 +58,7 @@ MaterialEstimate material_of(const BodyModel& model, const Refit& fit) {
     result.poisson = ratio_of(setting);
     result.poisson_sd = sd_of(ratio_of, fit);
     // An effect may say that it is another one.
-    result.poisson_is_declared = fit.prior_sd[j] < fixed && setting.theta[j] == fit.explanation.theta[j];
+    result.poisson_is_declared = fit.prior_sd[j] < told_prior_sd && setting.theta[j] == fit.explanation.theta[j];
     return result;
 }
 

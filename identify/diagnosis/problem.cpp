@@ -4,6 +4,8 @@
 #include <cmath>
 #include <set>
 
+#include "identify/numerics/summaries.h"
+
 namespace palpate::identify {
 namespace {
 
@@ -57,6 +59,14 @@ bool is_same(const Action& a, const Action& b) {
 
 bool is_loaded(const Action& action) {
     return !action.contacts.empty() || !action.motions.empty() || !action.settings.empty();
+}
+
+LoadSizes sizes_of(const Action& action) {
+    LoadSizes sizes;
+    for (const mesh::Contact& contact : action.contacts) sizes.force += contact.force.norm();
+    for (const mesh::ToolMotion& motion : action.motions) sizes.way += known_part(motion.translation).norm();
+    for (const mesh::ActuatorSetting& setting : action.settings) sizes.setting += std::abs(setting.value);
+    return sizes;
 }
 
 Eigen::VectorXd Problem::pick(const std::vector<Points>& channels) const {
@@ -190,8 +200,7 @@ Eigen::Index Problem::count_forces() const {
 }
 
 double Problem::rms_mm(const Eigen::VectorXd& values) const {
-    const double rms = rms_where(values, [this](Eigen::Index n) { return is_position(n); });
-    return std::isnan(rms) ? 0 : rms;
+    return known_part(rms_where(values, [this](Eigen::Index n) { return is_position(n); }));
 }
 
 double Problem::rms_n(const Eigen::VectorXd& values) const {

@@ -18,6 +18,14 @@ struct Stage {
 /// Does anything press at the body, or move or pull at it: a contact, a tool, an actuator?
 bool is_loaded(const Action& action);
 
+/// How large what acts is, by its kind; kinds do not add up.
+struct LoadSizes {
+    double force = 0;    // of contacts [N]
+    double way = 0;      // of tools, as far as it is told [mm]
+    double setting = 0;  // of actuators, without their signs, in the units of each
+};
+LoadSizes sizes_of(const Action& action);
+
 /// Do the same loads act, at the same gravity and pressure?
 bool is_same(const Action& a, const Action& b);
 
@@ -91,6 +99,9 @@ struct Problem {
 /// @throws InvalidInput when there are none.
 Problem make_problem(const MeasurementSet& set, double noise);
 
+/// The same where noise that is not told is a hundredth of how far the markers move: to begin with, as
+/// errors tell it better once something is fitted.
+Problem make_problem(const MeasurementSet& set);
 /// The set without some of the readings, numbered as make_problem numbers them (ascending).
 MeasurementSet without_readings(const MeasurementSet& set, const std::vector<int>& readings);
 

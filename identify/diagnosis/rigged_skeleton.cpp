@@ -7,7 +7,7 @@
 #include "identify/effects/catalogue.h"
 #include "identify/inference/posterior.h"
 #include "identify/inference/problem/parameters.h"
-#include "identify/models/skeleton_body.h"
+#include "identify/models/skeleton/skeleton_body.h"
 #include "identify/numerics/random.h"
 #include "skeleton/statics/statics.h"
 
@@ -25,12 +25,6 @@ SkeletonBody body_of(const skeleton::Model& model, const MeasurementSet& set,
     const bool is_told = set.material && set.material->young > 0;
     return {model,    set.markers, is_told ? set.material->young : start_young, Rig{set.tools, set.actuators},
             prior_sd, priors};
-}
-
-/// Noise that a set does not tell: a hundredth of how far the markers move [mm].
-Problem problem_of(const MeasurementSet& set) {
-    const Problem raw = make_problem(set, 1);
-    return make_problem(set, std::max(0.01 * raw.rms_mm(raw.displacement()), 1e-12));
 }
 
 constexpr int large_rotation = 1;  // law
@@ -115,7 +109,7 @@ bool is_rigged(const MeasurementSet& set) {
 IdentifyResult identify_rigged(const skeleton::Model& model, const MeasurementSet& set, const IdentifyOptions& how,
                                const Progress& progress) {
     constexpr int draws_by_default = 200;  // as of the tempered filter
-    Problem problem = problem_of(set);
+    Problem problem = make_problem(set);
     const skeleton::Model start = scaled(model, set, problem, how.threads);
     const SkeletonBody body = body_of(start, set, how.priors);
     DiagnoseOptions options;
@@ -172,7 +166,7 @@ Explanation as_it_is(const skeleton::Model& model, const SkeletonBody& body, con
 
 std::vector<skeleton::Equilibrium> play_rigged(const skeleton::Model& model, const MeasurementSet& set, int threads) {
     const SkeletonBody body = body_of(model, set);
-    const Problem problem = problem_of(set).stage_by_stage();  // states that nobody reads, too
+    const Problem problem = make_problem(set).stage_by_stage();  // states that nobody reads, too
     const Explanation explanation = as_it_is(model, body, problem);
     const ForwardSolution forward = solve_forward(body, problem, explanation, threads);
     std::vector<skeleton::Equilibrium> played;
@@ -183,7 +177,7 @@ std::vector<skeleton::Equilibrium> play_rigged(const skeleton::Model& model, con
 
 RiggedPrediction predict_rigged(const skeleton::Model& model, const MeasurementSet& set, int threads) {
     const SkeletonBody body = body_of(model, set);
-    const Problem problem = problem_of(set);
+    const Problem problem = make_problem(set);
     const Explanation explanation = as_it_is(model, body, problem);
     const Problem asked = explanation.has_memory() && !problem.by_stage ? problem.stage_by_stage() : problem;
     const ForwardSolution forward = solve_forward(body, asked, explanation, threads);

@@ -14,6 +14,7 @@ std::shared_ptr<const EffectHypothesis> gravity_effect();
 std::shared_ptr<const EffectHypothesis> stiffening_effect();
 std::shared_ptr<const EffectHypothesis> anisotropy_effect();
 std::shared_ptr<const EffectHypothesis> inclusion_effect();
+std::shared_ptr<const EffectHypothesis> stiffness_map_effect();
 std::shared_ptr<const EffectHypothesis> volume_effect();
 std::shared_ptr<const EffectHypothesis> torsion_effect();
 std::shared_ptr<const EffectHypothesis> shear_effect();
@@ -40,12 +41,12 @@ namespace {
 
 std::vector<std::shared_ptr<const EffectHypothesis>>& registry() {
     static std::vector<std::shared_ptr<const EffectHypothesis>> all{
-        gravity_effect(),      stiffening_effect(), anisotropy_effect(), inclusion_effect(),
-        volume_effect(),       torsion_effect(),    shear_effect(),      compliant_support_effect(),
-        contact_effect(),      pressure_effect(),   prestress_effect(),  swelling_effect(),
-        viscosity_effect(),    plasticity_effect(), damage_effect(),     friction_effect(),
-        misalignment_effect(), force_gain_effect(), slip_effect(),       actuation_gain_effect(),
-        clock_effect(),        outliers_effect()};
+        gravity_effect(),      stiffening_effect(), anisotropy_effect(),   inclusion_effect(),
+        volume_effect(),       torsion_effect(),    shear_effect(),        compliant_support_effect(),
+        contact_effect(),      pressure_effect(),   prestress_effect(),    swelling_effect(),
+        viscosity_effect(),    plasticity_effect(), damage_effect(),       friction_effect(),
+        misalignment_effect(), force_gain_effect(), slip_effect(),         actuation_gain_effect(),
+        clock_effect(),        outliers_effect(),   stiffness_map_effect()};
     return all;
 }
 

@@ -140,6 +140,18 @@ public:
     /// more, where the body is strained, or under one probe more than under another?
     virtual bool is_like_mesh_error() const { return false; }
 
+    /// Is it so general that it is asked only where no other effect explains the readings, and what is left is of the
+    /// body's stiffness?
+    virtual bool is_last_resort() const { return false; }
+    /// Is that number fitted? Others only tell what it is of, as where something lies.
+    virtual bool is_fitted(Eigen::Index /*number*/) const { return true; }
+    /// How many of its first `numbers` are.
+    Eigen::Index count_fitted(Eigen::Index numbers) const {
+        Eigen::Index count = 0;
+        for (Eigen::Index j = 0; j < numbers; ++j) count += is_fitted(j) ? 1 : 0;
+        return count;
+    }
+
     /// Of the evidence that it brings, the share that its idealisation (even springs, a ball) may leave to another
     /// effect.
     virtual double idealisation_share() const { return 5e-4; }
@@ -185,7 +197,7 @@ public:
     virtual std::string why_not_driven(int /*tool_places*/) const { return {}; }
     /// Its numbers as they are told for that; by default those of its physics.
     virtual std::vector<skeleton::KnownParameter> numbers_to_hide() const;
-    /// The stream of random numbers that its own are drawn from, part of what a seed means: 0 to 21 are taken. None:
+    /// The stream of random numbers that its own are drawn from, part of what a seed means: 0 to 22 are taken. None:
     /// nothing is drawn; one number may be left out, which is then how strong it is.
     virtual std::optional<std::uint64_t> stream() const { return std::nullopt; }
     /// What is told is taken, the rest drawn. Several: other places for it, for where it can hardly be felt in the

@@ -22,6 +22,7 @@ std::vector<Vec3> lattice_directions() {
 
 /// Points of the skin that a plane may push on: free, and away from the supports.
 std::vector<char> free_skin(const BodyModel& model) {
+    // A design choice: what touches nearer to a support is hardly told from the support.
     const double away = 0.1 * model.size();
     const double no_area = 1e-6 * model.skin_areas().maxCoeff();  // what rounding makes of the corners of faces
     std::vector<char> result(model.skin().rows());
@@ -36,6 +37,8 @@ std::vector<char> free_skin(const BodyModel& model) {
 Eigen::VectorXd complementary(const Eigen::MatrixXd& C, const Eigen::VectorXd& h) {
     Eigen::VectorXd f = Eigen::VectorXd::Zero(h.size());
     if (h.maxCoeff() <= 0) return f;
+    // Numerical: a diagonal that is 0 divides nothing; sweeps end at a millionth of the largest force, or at a bound
+    // that keeps a slow case from holding up the scan, whose planes are fitted afterwards.
     const double floor = 1e-9 * C.diagonal().sum();
     for (int sweep = 0; sweep < 300; ++sweep) {
         double change = 0;
@@ -74,7 +77,7 @@ PlaneScan::PlaneScan(const BodyModel& model, const Problem& problem, const Model
         if (depth < 3 * problem.rms_sigma()) continue;
 
         // Patches round the points that lie apart, each of those next to it.
-        constexpr int most_patches = 12;
+        constexpr int most_patches = 12;  // a choice: each costs a solve in every action and direction
         const Points candidates = rest(beyond, Eigen::all);
         const std::vector<int> seeds = mesh::farthest_points(candidates, most_patches);
         Direction direction{n, std::ssize(patches), std::ssize(seeds), {}};

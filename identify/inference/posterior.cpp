@@ -10,10 +10,10 @@
 namespace palpate::identify {
 namespace {
 
-constexpr double informed_share = 0.7;  // of the prior's sd
-constexpr double worth_knowing = 0.7;   // correlation
-constexpr std::size_t most_correlations = 100;
-constexpr double hardly_informed = 0.9;  // of the prior's sd: what hangs together is known in part
+constexpr double informed_share = 0.7;          // of the prior's sd
+constexpr double worth_knowing = 0.7;           // correlation
+constexpr std::size_t most_correlations = 100;  // that are told: more are not read
+constexpr double hardly_informed = 0.9;         // of the prior's sd: what hangs together is known in part
 
 struct Moments {
     double mean, sd;
@@ -58,7 +58,7 @@ std::vector<Correlation> strong_correlations(const Eigen::MatrixXd& particles, c
     const double least = std::max(worth_knowing, by_chance);
 
     std::vector<Correlation> result;
-    constexpr Eigen::Index strip = 256;
+    constexpr Eigen::Index strip = 256;  // columns: wide enough for matrix products at full speed
     for (Eigen::Index first = 0; first < S.cols(); first += strip) {
         const Eigen::Index count = std::min(strip, S.cols() - first);
         const Eigen::MatrixXd R = S.middleCols(first, count).transpose() * S.rightCols(S.cols() - first);

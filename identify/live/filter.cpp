@@ -2,16 +2,18 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 
 #include "identify/diagnosis/rigged_skeleton.h"
 #include "identify/inference/particles/proposal.h"
 #include "identify/inference/posterior.h"
-#include "identify/loading/load_history.h"
-#include "identify/loading/read_state.h"
+#include "identify/loading/history/load_history.h"
+#include "identify/loading/readings.h"
 #include "identify/numerics/random.h"
 #include "identify/numerics/spectrum_update.h"
+#include "identify/numerics/summaries.h"
 #include "mesh/errors.h"
 
 namespace palpate::identify {
@@ -188,9 +190,9 @@ std::vector<PosteriorRow> Filter::posterior() const {
         row.unit = skeleton::stiffness_units[static_cast<int>(parameter.kind)];
         row.mean = median * std::exp(variance[p] / 2);
         row.sd = row.mean * std::sqrt(std::expm1(variance[p]));
-        row.q025 = median * std::exp(-1.959964 * sd);
+        row.q025 = median * std::exp(-sds_of_95_percent * sd);
         row.q50 = median;
-        row.q975 = median * std::exp(1.959964 * sd);
+        row.q975 = median * std::exp(sds_of_95_percent * sd);
         row.prior_mean = before.mean[p];
         row.prior_sd = before.sd[p];
         row.informed = row.sd <= informed_share * row.prior_sd && sd <= informed_share * prior.sd[p];

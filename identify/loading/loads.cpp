@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "identify/numerics/summaries.h"
 #include "mesh/geometry/surface_tree.h"
 
 namespace palpate::identify {
@@ -103,7 +104,7 @@ bool is_always_loaded(const skeleton::Model& model) {
     return !skeleton::effect_force(model, rest_state(model)).isZero(0);
 }
 
-double known_pressure(const LoadState& state) { return std::isnan(state.pressure) ? 0 : state.pressure; }
+double known_pressure(const LoadState& state) { return known_part(state.pressure); }
 
 std::optional<Vec3> known_gravity(const MeasurementSet& set, const LoadState& state) {
     if (state.gravity.allFinite()) return state.gravity;
@@ -111,8 +112,7 @@ std::optional<Vec3> known_gravity(const MeasurementSet& set, const LoadState& st
 }
 
 bool is_off_rest(const mesh::ToolMotion& motion) {
-    const auto differs = [](double x) { return x != 0 && !std::isnan(x); };
-    return std::ranges::any_of(motion.translation, differs) || std::ranges::any_of(motion.rotation, differs);
+    return !known_part(motion.translation).isZero(0) || !known_part(motion.rotation).isZero(0);
 }
 
 bool is_known_to_act(const MeasurementSet& set, const LoadState& state) {

@@ -5,7 +5,7 @@
 
 #include "identify/measurements/measurement_set.h"
 #include "mesh/core/contact.h"
-#include "skeleton/model/attach.h"
+#include "skeleton/model/attachment/attach.h"
 #include "skeleton/statics/statics.h"
 
 namespace palpate::identify {

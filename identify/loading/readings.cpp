@@ -4,10 +4,9 @@
 #include <cmath>
 #include <map>
 
-#include "identify/loading/creep.h"
+#include "identify/loading/history/creep.h"
 #include "identify/loading/loads.h"
-#include "identify/loading/read_state.h"
-#include "skeleton/model/attach.h"
+#include "skeleton/model/attachment/attach.h"
 
 namespace palpate::identify {
 

@@ -26,6 +26,13 @@ struct StateReadings {
 /// Where markers hang on a skeleton, one each.
 std::vector<skeleton::Attachment> marker_attachments(const skeleton::Model& model, const std::vector<Marker>& markers);
 
+class ContactLoads;
+
+/// The labelled readings of one state of an elastic body, whatever the states before. `markers`: where the set's
+/// markers hang; `set` tells what is known of all states. No rows where there is no such reading.
+StateReadings read_state(const MeasurementSet& set, const LoadState& state, const ContactLoads& loads,
+                         const std::vector<skeleton::Attachment>& markers, bool always_loaded);
+
 /// A state each that has labelled readings, in the set's order; unlabelled readings are left out.
 std::vector<StateReadings> collect_readings(const skeleton::Model& model, const MeasurementSet& set);
 

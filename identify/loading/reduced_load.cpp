@@ -1,21 +1,20 @@
 #include "identify/loading/reduced_load.h"
 
+#include "identify/numerics/load_reduction.h"
 #include "mesh/errors.h"
 
 namespace palpate::identify {
 
 ReducedLoadEquilibrium solve_with_reduced_load(skeleton::StaticsSolver& solver, const Eigen::VectorXd& k,
                                                skeleton::Load load, const skeleton::FibreStates& before) {
-    constexpr int attempts = 10;
-    constexpr double lowered = 0.8;
-    for (int attempt = 0;; ++attempt) {
+    for (int reductions = 0;; ++reductions) {
         try {
-            return {solver.solve(k, load, {}, nullptr, before), load, attempt == 0};
+            return {solver.solve(k, load, {}, nullptr, before), load, reductions == 0};
         } catch (const SolverFailure&) {
-            if (attempt == attempts) throw;
-            for (skeleton::PointForce& force : load.forces) force.force *= lowered;
-            for (skeleton::PatchForce& press : load.patch_forces) press.force *= lowered;
-            load.pressure *= lowered;
+            if (reductions == most_load_reductions) throw;
+            for (skeleton::PointForce& force : load.forces) force.force *= load_reduction;
+            for (skeleton::PatchForce& press : load.patch_forces) press.force *= load_reduction;
+            load.pressure *= load_reduction;
         }
     }
 }

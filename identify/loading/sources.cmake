@@ -1,7 +1,7 @@
 # For palpate_identify and for the module for browsers.
 set(loading_sources
-  creep.cpp
-  load_history.cpp
+  history/creep.cpp
+  history/load_history.cpp
   loads.cpp
   readings.cpp
   reduced_load.cpp)

@@ -4,6 +4,8 @@
 #include <type_traits>
 #include <variant>
 
+#include "identify/numerics/summaries.h"
+
 namespace palpate::identify {
 namespace {
 
@@ -27,8 +29,7 @@ double half_width(const mesh::Tool& tool) {
 bool may_part(const mesh::Tool& tool) { return !tool.bonded && !std::holds_alternative<mesh::GripShape>(tool.shape); }
 
 bool roams(const mesh::Tool& tool, const mesh::ToolMotion& motion) {
-    const Vec3 moved = motion.translation.array().isNaN().select(0, motion.translation);
-    return may_part(tool) && moved.norm() > half_width(tool);
+    return may_part(tool) && known_part(motion.translation).norm() > half_width(tool);
 }
 
 }  // namespace palpate::identify

@@ -3,8 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
+
+#include "identify/numerics/summaries.h"
 
 namespace palpate::identify {
 namespace {
@@ -23,9 +24,6 @@ struct Extremes {
     double softest = std::numeric_limits<double>::infinity();
 };
 
-/// Components that are NaN count as 0.
-double norm_of_known(const Vec3& v) { return v.array().isNaN().select(0, v.array()).matrix().norm(); }
-
 /// The longest side of the box round the markers [mm].
 double extent_of_markers(const MeasurementSet& set) {
     if (set.markers.empty()) return 0;
@@ -41,7 +39,7 @@ Extremes extremes_of(const MeasurementSet& set) {
         for (const Reading& reading : state.readings) {
             if (reading.marker < 0) continue;
             const Marker& marker = set.markers[reading.marker];
-            const double distance = norm_of_known(reading.position - marker.rest);
+            const double distance = known_part(reading.position - marker.rest).norm();
             moved = std::max(moved, distance);
             if (distance > extremes.moved) {
                 extremes.moved = distance;
@@ -50,8 +48,9 @@ Extremes extremes_of(const MeasurementSet& set) {
             }
         }
         for (const mesh::Contact& contact : state.contacts) force += contact.force.norm();
-        for (const ReactionReading& reading : state.reactions) force += norm_of_known(reading.force);
-        for (const mesh::ToolMotion& motion : state.motions) moved = std::max(moved, norm_of_known(motion.translation));
+        for (const ReactionReading& reading : state.reactions) force += known_part(reading.force).norm();
+        for (const mesh::ToolMotion& motion : state.motions)
+            moved = std::max(moved, known_part(motion.translation).norm());
         if (force > 0 && moved > 0) {
             extremes.stiffest = std::max(extremes.stiffest, force / moved);
             extremes.softest = std::min(extremes.softest, force / moved);

@@ -2,7 +2,7 @@
 
 #include "identify/loading/loads.h"
 #include "identify/numerics/random.h"
-#include "skeleton/model/attach.h"
+#include "skeleton/model/attachment/attach.h"
 #include "skeleton/statics/equilibrium.h"
 #include "skeleton/statics/statics.h"
 

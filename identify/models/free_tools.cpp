@@ -14,7 +14,8 @@ namespace {
 
 constexpr double tolerance = 1e-8;  // of what tools exert in all
 constexpr double nothing = 1e-12;   // of the body's size: a step that rounding makes of stiff springs' forces
-constexpr int most_steps = 40, halvings = 12;
+constexpr int most_steps = 40;      // Newton's method needs a few: by then it wanders
+constexpr int halvings = 12;        // to a four-thousandth of a step: nothing falls along it
 
 /// d turn / d w: how the turn in space follows the rotation vector w.
 Mat3 turn_by_vector(const Vec3& w) {
@@ -54,7 +55,8 @@ public:
         }
         return D;
     }
-    /// A step of the coordinates that is no longer than the body, shorter by a whole if it is.
+    /// The share of a step that is taken: no translation goes by more than a fifth of the body's size, so that a tool
+    /// does not leap past what it touches.
     static double limit(const Eigen::VectorXd& step, double size) {
         return std::min(1.0, 0.2 * size / std::max(step.cwiseAbs().maxCoeff(), 1e-300));
     }
@@ -76,7 +78,7 @@ private:
 /// A^-1 b but for directions in which A is nothing.
 Eigen::MatrixXd solve_resisted(const Eigen::MatrixXd& A, const Eigen::MatrixXd& b) {
     Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> decomposition;
-    decomposition.setThreshold(1e-10);
+    decomposition.setThreshold(1e-10);  // of the largest pivot: a choice above rounding
     decomposition.compute(A);
     return decomposition.solve(b);
 }

@@ -37,7 +37,7 @@ public:
     }
 
 private:
-    static constexpr std::size_t window = 4;
+    static constexpr std::size_t window = 4;  // rounds that are kept: older ones are of another slope. A choice
     struct Round {
         Eigen::VectorXd g, f;
     };

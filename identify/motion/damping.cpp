@@ -7,9 +7,9 @@
 
 #include "identify/inference/particles/resampling.h"
 #include "identify/inference/particles/tempered_filter.h"
-#include "identify/loading/loads.h"
 #include "identify/motion/residuals.h"
 #include "identify/motion/ringing_fit.h"
+#include "identify/motion/vibration_speed.h"
 #include "mesh/errors.h"
 
 namespace palpate::identify {
@@ -252,42 +252,6 @@ private:
     DampingResult result_;
 };
 
-/// Does weight act, in the model or in the set? Masses have to stay then.
-bool weighs(const skeleton::Model& model, const MeasurementSet& set) {
-    const auto known = [&](const LoadState& state) {
-        return !known_gravity(set, state).value_or(Vec3::Zero()).isZero(0);
-    };
-    const auto pulls = [](const auto& potential) { return potential->acts_on() == fem::ActsOn::material; };
-    return std::ranges::any_of(skeleton::physics_of(model.effects).points, pulls) ||
-           std::ranges::any_of(set.states, known);
-}
-
-/// Makes the model vibrate as fast as the body, where its masses are a guess; else says what differs.
-void settle_speed(skeleton::Model& model, const MeasurementSet& set, DampingResult& result) {
-    constexpr double worth_telling = 0.03;
-    const double speed = result.speed.q50;
-    if (!result.speed.informed || std::abs(speed - 1) < worth_telling) return;
-    if (!set.density && !weighs(model, set)) {
-        result.mass = 1 / (speed * speed);
-        for (skeleton::Sphere& sphere : model.spheres) {
-            sphere.mass *= result.mass;
-            sphere.inertia *= result.mass;
-        }
-        result.notes.push_back(
-            fmt::format("The set tells no density: the model's masses were multiplied by {:.3g}, so "
-                        "that it vibrates as fast as the body.",
-                        result.mass));
-        return;
-    }
-    // as fast as it is, the model is to die away in as many cycles
-    result.damping.alpha /= speed;
-    result.damping.beta *= speed;
-    result.notes.push_back(
-        fmt::format("The body vibrates {:.3g} times as fast as the model: in motion it is {:.2g} times as stiff as at "
-                    "rest, or its density is {:.2g} times what was told.",
-                    speed, speed * speed, 1 / (speed * speed)));
-}
-
 }  // namespace
 
 std::optional<DampingResult> identify_damping(skeleton::Model& model, const MeasurementSet& set,
@@ -297,7 +261,7 @@ std::optional<DampingResult> identify_damping(skeleton::Model& model, const Meas
     const Ringdowns all = ringdowns(model, set, options.modes);
     report(progress, "Damping", 0.1);
     DampingResult result = Identification(set, options, of_modes(all, chosen_modes(all, options.most))).run();
-    settle_speed(model, set, result);
+    match_vibration_speed(model, set, result);
     model.damping = result.damping;
     return result;
 }

@@ -8,7 +8,7 @@ namespace {
 /// How long a row of errors is like itself, in instants: 1 + 2 sum of its correlations, until they are lost; of all
 /// rows together.
 double correlation_time(const Eigen::MatrixXd& errors) {
-    constexpr double lost = 0.05;
+    constexpr double lost = 0.05;  // smaller ones are hardly told from chance: 2 / sqrt(n) of 1600 instants
     const double square = errors.squaredNorm();
     double time = 1;
     for (Eigen::Index lag = 1; lag < errors.cols() / 2 && square > 0; ++lag) {

@@ -167,7 +167,7 @@ Eigen::VectorXd RingdownFit::most_probable(const Eigen::VectorXd& start, double 
 Eigen::VectorXd RingdownFit::scanned(double variance) const {
     constexpr double reach = 2;          // sd of the speed
     constexpr double out_of_step = 0.1;  // of a cycle, that neighbours on the grid are so far apart in the end
-    constexpr int most = 400;
+    constexpr int most = 400;            // steps of the grid, which bound its cost; then it is coarser
     double cycles = 1;
     for (const Ringdown& ringdown : ringdowns_.recordings)
         cycles = std::max(cycles,

@@ -93,7 +93,7 @@ Eigen::MatrixXd times_mass(const Model& model, const State& state, const Eigen::
 }
 
 Vibration vibration(const Model& model, const skeleton::StaticsSolver& solver, const State& state, int modes) {
-    constexpr int iterations = 1000;
+    constexpr int iterations = 1000;    // restarts of Lanczos' method: a bound
     constexpr double tolerance = 1e-8;  // of eigenvalues
     Flexibility B(model, solver, state);
     const int most = 6 * B.moving();

@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "identify/diagnosis/search/baselines.h"
-#include "identify/diagnosis/statistics/exchanged_markers.h"
 #include "identify/diagnosis/statistics/independent_readings.h"
+#include "identify/diagnosis/statistics/outliers/exchanged_markers.h"
 #include "identify/effects/catalogue.h"
 #include "identify/measurements/rig/fittable.h"
 #include "mesh/errors.h"
@@ -95,7 +95,8 @@ Preflight assess(const BodyModel& model, const MeasurementSet& set, const Prefli
     report(progress, "effects", 0.2);
     std::vector<std::shared_ptr<const EffectHypothesis>> asked;
     for (const auto& effect : catalogue())
-        if (!options.diagnose.leaves_out(*effect) && !effect->sets_readings_aside()) asked.push_back(effect);
+        if (!options.diagnose.leaves_out(*effect) && !effect->sets_readings_aside() && !effect->is_last_resort())
+            asked.push_back(effect);
     result.effects = effect_prospects(model, problem, point.all, signatures_at(model, problem, point, asked, threads),
                                       options.diagnose);
     if (const auto single = effect_of_single_readings(); !options.diagnose.leaves_out(*single))

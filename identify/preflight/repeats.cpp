@@ -4,6 +4,8 @@
 #include <cmath>
 #include <map>
 
+#include "identify/numerics/summaries.h"
+
 namespace palpate::identify {
 namespace {
 
@@ -11,7 +13,7 @@ constexpr double alike = 0.02;  // of a load: what a rig reaches again
 
 bool is_near(const Vec3& a, const Vec3& b) {
     if ((a.array().isNaN() != b.array().isNaN()).any()) return false;
-    const Vec3 x = a.array().isNaN().select(0, a), y = b.array().isNaN().select(0, b);
+    const Vec3 x = known_part(a), y = known_part(b);
     return (x - y).norm() <= alike * std::max(x.norm(), y.norm());
 }
 

@@ -7,15 +7,16 @@
 #include <cmath>
 #include <map>
 
-#include "identify/diagnosis/statistics/outliers.h"
+#include "identify/diagnosis/statistics/outliers/outliers.h"
 #include "mesh/geometry/surface_tree.h"
 #include "mesh/geometry/winding.h"
+#include "mesh/numbers/median.h"
 
 namespace palpate::identify {
 namespace {
 
-constexpr double most_scales = 6;  // of the robust scale of all: one of many thousands by chance
-constexpr double least_sigmas = 5;
+constexpr double most_scales = 6;   // of the robust scale of all: one of many thousands by chance
+constexpr double least_sigmas = 5;  // of the stated noise too: hardly one of a million by chance
 
 struct ReadingOf {
     int state = 0, marker = 0, coordinates = 0;
@@ -35,12 +36,6 @@ std::vector<ReadingOf> by_reading(const Problem& problem, const Eigen::VectorXd&
         ++one.coordinates;
     }
     return result;
-}
-
-double median(std::vector<double> values) {
-    const auto middle = values.begin() + std::ssize(values) / 2;
-    std::ranges::nth_element(values, middle);
-    return *middle;
 }
 
 /// Products of the coordinates up to a degree (n x 1, 4, 10 or 20), of places about their mean, in their spread.
@@ -65,7 +60,7 @@ Eigen::VectorXd without_trend(const Problem& problem, const Eigen::VectorXd& err
         if (problem.is_position(n)) rows[{problem.state[n], problem.coordinate[n] % 3}].push_back(n);
     Eigen::VectorXd result = error_mm;
     for (const auto& [of, own] : rows) {
-        constexpr std::array coefficients{1, 4, 10, 20};
+        constexpr std::array coefficients{1, 4, 10, 20};  // of polynomials in x, y, z up to each degree
         int degree = 0;
         while (degree < 3 && 2 * coefficients[static_cast<std::size_t>(degree) + 1] <= std::ssize(own)) ++degree;
         if (degree == 0) continue;
@@ -102,7 +97,7 @@ std::vector<Suspicion> rough_readings(const Problem& problem, const Eigen::Vecto
             by_marker[one.marker].push_back({Suspect::rough, one.state, one.marker, -1, found.size[i], sigmas});
     }
     for (const auto& [marker, own] : by_marker) {
-        constexpr int several = 3;
+        constexpr int several = 3;  // two may fall on one marker by chance
         if (std::ssize(own) >= several && 2 * std::ssize(own) > of_marker[marker]) {
             Suspicion worst = *std::ranges::max_element(own, {}, &Suspicion::mm);
             worst.kind = Suspect::everywhere;
@@ -136,7 +131,7 @@ std::vector<Suspicion> jumps(const Problem& problem, const std::vector<ReadingOf
         }
     }
     if (sizes.empty()) return {};
-    const double scale = median(sizes);
+    const double scale = mesh::upper_median(sizes);
     std::erase_if(bends,
                   [&](const Suspicion& one) { return one.mm <= most_scales * scale || one.sigmas <= least_sigmas; });
     return bends;

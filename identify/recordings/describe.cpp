@@ -42,7 +42,7 @@ std::string padded(const std::string& text, std::size_t width) {
 }
 
 std::size_t name_width(std::size_t longest) {
-    constexpr std::size_t least = 8, most = 40;
+    constexpr std::size_t least = 8, most = 40;  // characters: the table stays readable
     return std::clamp(longest, least, most) + 2;
 }
 

@@ -64,7 +64,8 @@ Crossing cross(const Kernel::Triangle_3& triangle, const Kernel::Point_3& p, con
     return Crossing::Through;
 }
 
-/// Directions spread over the sphere, none along an axis. (Fibonacci lattice.)
+/// Directions spread over the sphere (Fibonacci lattice), moved by 0.7 and 0.4 so that none runs along an axis, as
+/// edges of bodies often do.
 Vec3 direction(int i, int count) {
     const double z = 1 - (2 * i + 0.7) / count;
     const double angle = 0.4 + i * std::numbers::pi * (3 - std::sqrt(5.0));

@@ -10,7 +10,7 @@
 #include <tuple>
 #include <utility>
 
-#include "mesh/core/closest_within.h"
+#include "mesh/geometry/closest_within.h"
 #include "mesh/geometry/surface_tree.h"
 
 namespace palpate::mesh {

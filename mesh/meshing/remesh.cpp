@@ -4,6 +4,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
@@ -24,7 +25,12 @@ using Face = Mesh::Face_index;
 using Vertex = Mesh::Vertex_index;
 
 constexpr int attempts = 7;
-constexpr double most_triangles = 100'000;  // more would make a body that nobody can compute with
+constexpr double usual_edge = 0.06;  // over the longest side
+// The next length aims at this share of the volume's change that is allowed, but is no less than so much of the last,
+// which may have told it badly, and shorter at least by a tenth, or a fourth where the triangles crossed.
+constexpr double aimed_change = 0.8, shortest_next = 0.4, longest_next = 0.9, longest_after_crossing = 0.75;
+constexpr std::array widths_left{0.5, 1.0, 2.0, 3.0};  // edges round a crossing, tried in turn: fewest stay as they are
+constexpr double most_triangles = 100'000;             // more would make a body that nobody can compute with
 
 /// What one attempt came to.
 struct Attempt {
@@ -98,7 +104,7 @@ void fix_near(const std::vector<Vec3>& crossings, double reach, const Surface& s
 Attempt attempt_around_thin_places(const Surface& surface, const Creases& creases, double length, int iterations) {
     Fixed fixed{creases, std::vector<char>(static_cast<std::size_t>(surface.triangles.rows()), 0)};
     Attempt tried = attempt(surface, fixed, length, iterations);
-    for (const double reach : {0.5, 1.0, 2.0, 3.0}) {
+    for (const double reach : widths_left) {
         if (tried.sound || tried.crossings.empty()) break;
         fix_near(tried.crossings, reach * length, surface, fixed);
         tried = attempt(surface, fixed, length, iterations);
@@ -112,7 +118,7 @@ std::string reason(const Attempt& tried, double allowed) {
 }
 
 double target_length(const Surface& surface, const RemeshOptions& options) {
-    return options.edge_length > 0 ? options.edge_length : 0.06 * bounding_box(surface.vertices).longest_side();
+    return options.edge_length > 0 ? options.edge_length : usual_edge * bounding_box(surface.vertices).longest_side();
 }
 
 double triangles_of(const Surface& surface, double length) {
@@ -137,8 +143,8 @@ Surface remeshed(const Surface& surface, const RemeshOptions& options) {
         const Attempt tried = attempt_around_thin_places(surface, creases, length, options.iterations);
         if (tried.sound && tried.volume_change <= options.volume_change) return tried.surface;
         last = fmt::format("at {:.4g} mm {}", length, reason(tried, options.volume_change));
-        const double wanted = std::sqrt(0.8 * options.volume_change / std::max(tried.volume_change, 1e-12));
-        length *= std::clamp(wanted, 0.4, tried.sound ? 0.9 : 0.75);
+        const double wanted = std::sqrt(aimed_change * options.volume_change / std::max(tried.volume_change, 1e-12));
+        length *= std::clamp(wanted, shortest_next, tried.sound ? longest_next : longest_after_crossing);
     }
     throw SolverFailure(
         fmt::format("Remeshing found no sound triangles for an edge length of {:.4g} mm: {}. Thicken or "

@@ -12,6 +12,7 @@
 #include "mesh/meshing/repair/guarded.h"
 #include "mesh/meshing/repair/steps.h"
 #include "mesh/meshing/repair/wrap_round.h"
+#include "mesh/numbers/median.h"
 #include "mesh/system/isolated.h"
 #include "mesh/topology/check_surface.h"
 #include "mesh/topology/shells.h"
@@ -26,10 +27,7 @@ void serialize(Archive& archive, RepairResult& result) {
 
 namespace {
 
-double median_of(Eigen::VectorXd values) {
-    std::nth_element(values.begin(), values.begin() + values.size() / 2, values.end());
-    return values[values.size() / 2];
-}
+double median_of(const Eigen::VectorXd& values) { return upper_median(std::vector(values.begin(), values.end())); }
 
 /// No triangle with an area is left once corners within `distance` count as one.
 [[noreturn]] void throw_nothing_left(const Surface& input, double distance) {

@@ -2,8 +2,8 @@
 
 #include <fmt/core.h>
 
-#include "mesh/core/closest_within.h"
 #include "mesh/errors.h"
+#include "mesh/geometry/closest_within.h"
 #include "mesh/meshing/smooth/bulges.h"
 #include "mesh/meshing/smooth/follow_boundary.h"
 #include "mesh/meshing/smooth/move_nodes.h"

@@ -8,6 +8,8 @@
 #include <array>
 #include <cmath>
 
+#include "mesh/numbers/median.h"
+
 namespace palpate::mesh {
 namespace {
 
@@ -47,8 +49,7 @@ double edge_of(const VolumeMesh& mesh) {
         const auto corners = mesh.tetrahedra.row(static_cast<Eigen::Index>(e));
         edges[e] = (mesh.nodes.row(corners[0]) - mesh.nodes.row(corners[1])).norm();
     }
-    std::ranges::nth_element(edges, edges.begin() + std::ssize(edges) / 2);
-    return edges[edges.size() / 2];
+    return upper_median(std::move(edges));
 }
 
 bool holds_a_side(const VolumeMesh& mesh, const std::vector<char>& held) {

@@ -26,8 +26,15 @@ EdgeTriangles edge_triangles_of(const Surface& surface) {
     return edges;
 }
 
-/// Flat faces that are broad: at least 1 % of the whole area, eight triangles, and rounder than a strip of 1 : 6,
-/// which the facets of a cylinder are. For each triangle the number of its flat face, or -1.
+// What counts as a broad flat face: a choice between creases lost round small faces and facets of round bodies that are
+// taken for faces.
+constexpr double one_plane = 0.5 * degree;  // between normals: more than files round off
+constexpr std::size_t least_triangles = 8;
+constexpr double least_part = 0.01;       // of the whole area
+constexpr double least_roundness = 0.03;  // area over perimeter squared, 0.08 of a disc: 0.03 of a strip of 1 : 6
+
+/// Flat faces that are broad, and rounder than the facets of a cylinder. For each triangle the number of its flat face,
+/// or -1.
 std::vector<int> flat_faces(const Surface& surface, const Points& normals, const EdgeTriangles& edges) {
     const Eigen::Index m = surface.triangles.rows();
     std::vector<std::array<int, 3>> neighbours(static_cast<std::size_t>(m), {-1, -1, -1});
@@ -55,19 +62,19 @@ std::vector<int> flat_faces(const Surface& surface, const Points& normals, const
             total += areas[members[k]];
             for (const int next : neighbours[static_cast<std::size_t>(members[k])]) {
                 if (next < 0 || seen[static_cast<std::size_t>(next)]) continue;
-                if (normals.row(seed).dot(normals.row(next)) < std::cos(0.5 * degree)) continue;
+                if (normals.row(seed).dot(normals.row(next)) < std::cos(one_plane)) continue;
                 seen[static_cast<std::size_t>(next)] = 1;
                 members.push_back(next);
             }
         }
-        if (members.size() < 8 || total < 0.01 * areas.sum()) continue;
+        if (members.size() < least_triangles || total < least_part * areas.sum()) continue;
         for (const int t : members) face[static_cast<std::size_t>(t)] = count;
         for (const auto& [edge, pair] : edges) {
             const bool first = face[static_cast<std::size_t>(pair[0])] == count;
             const bool second = pair[1] >= 0 && face[static_cast<std::size_t>(pair[1])] == count;
             if (first != second) perimeter += (surface.vertices.row(edge[0]) - surface.vertices.row(edge[1])).norm();
         }
-        if (total < 0.03 * perimeter * perimeter) {
+        if (total < least_roundness * perimeter * perimeter) {
             for (const int t : members) face[static_cast<std::size_t>(t)] = -1;
             continue;
         }

@@ -7,13 +7,13 @@
 #include "fem/interpolation/interpolation.h"
 #include "mesh/errors.h"
 #include "pipeline/body/body.h"
-#include "pipeline/body/subject_body.h"
+#include "pipeline/case/subject/subject_body.h"
 
 namespace palpate::pipeline {
 namespace {
 
 constexpr double coarser = 1.5;  // edges of the second mesh against those of the first
-constexpr int most_states = 8;
+constexpr int most_states = 8;   // a choice of time: each is solved on the second mesh, too
 
 /// Displacements of the markers under each load (3m x loads) [mm].
 Eigen::MatrixXd at_markers(const fem::ElasticBody& body, const std::vector<mesh::Contact>& loads, double reach,

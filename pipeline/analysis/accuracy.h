@@ -4,7 +4,7 @@
 
 #include "fem/elastic_body.h"
 #include "identify/measurements/measurement_set.h"
-#include "pipeline/case/subject.h"
+#include "pipeline/case/subject/subject.h"
 
 namespace palpate::pipeline {
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "identify/inference/posterior_row.h"
-#include "pipeline/output/csv/particles.h"
+#include "pipeline/analysis/particles.h"
 
 namespace palpate::pipeline {
 

@@ -3,10 +3,11 @@
 #include <map>
 
 #include "identify/diagnosis/rigged_skeleton.h"
-#include "identify/loading/load_history.h"
+#include "identify/loading/history/load_history.h"
 #include "identify/loading/loads.h"
 #include "identify/loading/readings.h"
 #include "identify/loading/reduced_load.h"
+#include "skeleton/model/observation.h"
 
 namespace palpate::pipeline {
 namespace {
@@ -47,6 +48,11 @@ std::vector<identify::ReducedLoadEquilibrium> play(const skeleton::Model& model,
         so_far[r] = played.back().equilibrium;
     }
     return played;
+}
+
+Points skin_displacement(const skeleton::Model& model, const skeleton::Equilibrium& equilibrium,
+                         const skeleton::Load& load) {
+    return skeleton::observed(model, equilibrium, load, model.skin) - model.surface.vertices;
 }
 
 }  // namespace palpate::pipeline

@@ -1,17 +1,21 @@
 #pragma once
 
-#include <nlohmann/json.hpp>
+#include <memory>
+#include <optional>
 #include <string>
 
 #include "identify/measurements/measurement_set.h"
+#include "identify/models/reference/reference_body.h"
+#include "identify/preflight/preflight.h"
 #include "mesh/progress.h"
 
 namespace palpate::pipeline {
 
 /// What a set is good for, before any fit.
 struct PreflightOfSet {
-    nlohmann::json preflight = nullptr;  // as in check.json; null: it could not be judged
-    std::string why_none;                // then
+    std::unique_ptr<identify::ReferenceBody> body = {};  // that it was judged on
+    std::optional<identify::Preflight> preflight = {};   // absent: it could not be judged
+    std::string why_none = {};                           // then
 };
 
 /// On a coarse body of finite elements: some seconds. `set`: with the supports that hold it.

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -25,10 +24,5 @@ struct SharedNumber {
     std::vector<identify::SpecimenNumber> specimens;
     std::vector<std::string> without;  // runs that do not tell it
 };
-
-/// What two runs or more tell: stiffness of the body in finite elements and of the skeleton, and the numbers of the
-/// effects that their diagnoses name. @throws IoError, InvalidInput naming the run, for less than two runs, one that is
-/// told twice, or runs that share no number.
-std::vector<SharedNumber> shared_numbers(const std::vector<std::filesystem::path>& runs);
 
 }  // namespace palpate::pipeline

@@ -81,6 +81,8 @@ std::vector<FineZone> zones_touched(const std::vector<mesh::Tool>& tools, const 
 }
 
 std::vector<FineZone> affordable(std::vector<FineZone> zones) {
+    // In all zones together: a choice of cost, as solves grow with the square of the nodes; fewer make contacts
+    // coarser.
     constexpr double most_nodes = 6000;
     // Tetrahedra grow slower away from a zone than its surface asks for.
     constexpr double nodes_of_zone = 130;  // (radius / edge)^3, counted on a block
@@ -109,7 +111,7 @@ std::vector<FineZone> contact_zones(const identify::MeasurementSet& set) {
 }
 
 double edge_at(const Vec3& place, const std::vector<FineZone>& zones, double edge) {
-    constexpr double growth = 0.8;
+    constexpr double growth = 0.8;  // of an edge per length away: a choice; less makes more elements about a zone
     for (const FineZone& zone : zones) {
         const double away = std::max(0.0, (place - zone.at).norm() - zone.radius);
         edge = std::min(edge, zone.edge + growth * away);

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "identify/measurements/measurement_set.h"
-#include "identify/models/reference_body.h"
+#include "identify/models/reference/reference_body.h"
 #include "mesh/geometry/surface_tree.h"
 #include "pipeline/body/body.h"
 

@@ -139,9 +139,9 @@ double reference_edge_length(const mesh::Surface& surface) {
     const double longest_side = mesh::bounding_box(surface.vertices).longest_side();
     const double volume = std::abs(mesh::signed_volume(surface));
     // A body of edge length h has about 13.5 V / h^3 nodes, where it is thicker than that.
-    constexpr double nodes = 2500;
-    const double edge = std::clamp(std::cbrt(13.5 * volume / nodes), 0.07 * longest_side, 0.12 * longest_side);
-    return edge_for_thickness(surface, edge, nodes);
+    const double edge =
+        std::clamp(std::cbrt(13.5 * volume / reference_nodes), 0.07 * longest_side, 0.12 * longest_side);
+    return edge_for_thickness(surface, edge, reference_nodes);
 }
 
 fem::Dilatation dilatation_for(const mesh::Surface& surface, double edge_length) {

@@ -5,13 +5,17 @@
 #include <vector>
 
 #include "identify/measurements/measurement_set.h"
-#include "identify/models/reference_body.h"
+#include "identify/models/reference/reference_body.h"
 #include "mesh/progress.h"
 
 namespace palpate::pipeline {
 
+/// Quadratic nodes of a reference body by default, where it is stout: finer ones change its answers by less than
+/// contacts are known, and a diagnosis factors hundreds of tangents, at a cost that grows with the square of the nodes.
+inline constexpr int reference_nodes = 2500;
+
 /// Edge length of a reference body's elements by default [mm]: 7 % of the longest side, or, for a stout body, what
-/// makes some 2,500 nodes; finer ones change its answers by less than contacts are known.
+/// makes some `reference_nodes`.
 double reference_edge_length(const mesh::Surface& surface);
 
 /// How quadratic elements of such an edge length [mm] are to keep their volume in a body: by the mean dilatation, with

@@ -125,7 +125,7 @@ KeptSurface keep_pieces(const mesh::Surface& surface, KeptPieces kept) {
     }
     result.surface = pieces.only(body);
     if (!others.empty()) {
-        constexpr std::size_t most = 3;
+        constexpr std::size_t most = 3;  // that a message has room for
         const std::size_t more = others.size() - std::min(most, others.size());
         others.resize(std::min(most, others.size()));
         result.refusal = fmt::format(

@@ -5,8 +5,9 @@
 #include <cmath>
 #include <optional>
 
+#include "identify/numerics/summaries.h"
 #include "mesh/errors.h"
-#include "pipeline/output/html/run_files.h"
+#include "pipeline/case/json_file.h"
 
 namespace palpate::pipeline {
 namespace {
@@ -16,7 +17,6 @@ using nlohmann::json;
 
 /// Of a number on the scale on which it is normal. None: that of an effect, or one that may be negative.
 std::optional<identify::InformativePrior> prior_of(const json& number) {
-    constexpr double of_95_percent = 1.959964;
     const std::string name = number.at("name"), scale = number.at("scale");
     if (scale == "linear") return std::nullopt;
     const bool is_ratio = scale == "compressibility";
@@ -26,7 +26,7 @@ std::optional<identify::InformativePrior> prior_of(const json& number) {
         const double x = number.at("next").at(which);
         return std::log(is_ratio ? 1 - 2 * x : x);
     };
-    const double sd = std::abs(on_scale("high") - on_scale("low")) / (2 * of_95_percent);
+    const double sd = std::abs(on_scale("high") - on_scale("low")) / (2 * identify::sds_of_95_percent);
     return identify::InformativePrior{is_ratio ? "compressibility" : name, on_scale("value"), sd};
 }
 
@@ -44,7 +44,7 @@ std::vector<identify::InformativePrior> read_population_prior(const fs::path& po
         throw InvalidInput(fmt::format("{}: there is no such file; 'palpate pool RUN... -o {}' writes it",
                                        file.string(),
                                        file.has_parent_path() ? file.parent_path().string() : "POPULATION"));
-    const json read = read_json(file);
+    const json read = json_of_file(file);
     if (!read.is_object() || read.value("format", "") != "palpate-population/1")
         throw InvalidInput(
             fmt::format("{}: is no population; 'palpate pool RUN... -o POPULATION' writes one", file.string()));

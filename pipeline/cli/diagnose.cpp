@@ -10,7 +10,8 @@
 #include "pipeline/output/json/diagnosis.h"
 #include "pipeline/output/text/diagnosis.h"
 #include "pipeline/output/vtk/missing_series.h"
-#include "pipeline/run/model_and_set.h"
+#include "pipeline/output/vtk/stiffness_map_file.h"
+#include "pipeline/run/inputs/model_and_set.h"
 
 namespace palpate::pipeline::commands {
 
@@ -21,6 +22,8 @@ Diagnosed diagnose(const ModelAndSet& given, const DiagnoseCommandOptions& optio
     const auto body = body_to_diagnose(options.body, given, options.overrides.on_defaults());
     const identify::Diagnosis found = identify::diagnose(*body, given.set, how, Console::progress());
     const std::string field = options.output.empty() ? "" : write_missing_series(options.output, given.set, found);
+    const auto* solid = dynamic_cast<const identify::ReferenceBody*>(body.get());
+    if (solid && !options.output.empty()) write_stiffness_map(options.output, solid->body().mesh(), found);
     return {to_json(found, *body, given.set, field), found.explanation, found.notes};
 }
 
@@ -62,7 +65,8 @@ void Subcommands::add_diagnose(CLI::App& app) {
                            [this] { return commands::diagnose(diagnose, common); });
     sub->add_option("MODEL", diagnose.model, "model.json")->required();
     sub->add_option("SET", diagnose.set, "The measurements")->required();
-    sub->add_option("-o,--output", diagnose.output, "Folder for diagnosis.json");
+    sub->add_option("-o,--output", diagnose.output,
+                    "Folder for diagnosis.json, and for what is located or mapped (ParaView)");
     sub->add_option("--without", diagnose.without, "An effect to leave out of the catalogue; repeatable")
         ->expected(1)
         ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);

@@ -9,12 +9,13 @@
 #include "pipeline/command_line/objects.h"
 #include "pipeline/command_line/subcommands.h"
 #include "pipeline/live/follow.h"
-#include "pipeline/output/identification.h"
 #include "pipeline/output/json/comparison.h"
 #include "pipeline/output/json/reference_comparison.h"
-#include "pipeline/output/text/comparison.h"
+#include "pipeline/output/results/identification.h"
+#include "pipeline/output/text/comparison/comparison.h"
+#include "pipeline/output/text/identification.h"
 #include "pipeline/output/vtk/series.h"
-#include "pipeline/run/model_and_set.h"
+#include "pipeline/run/inputs/model_and_set.h"
 
 namespace palpate::pipeline::commands {
 

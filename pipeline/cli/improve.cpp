@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "identify/diagnosis/diagnose.h"
-#include "identify/diagnosis/ladder.h"
+#include "identify/diagnosis/ladder/ladder.h"
 #include "identify/diagnosis/locate/residual.h"
 #include "identify/effects/catalogue.h"
 #include "mesh/errors.h"
@@ -14,11 +14,11 @@
 #include "pipeline/command_line/objects.h"
 #include "pipeline/command_line/subcommands.h"
 #include "pipeline/output/json/diagnosis.h"
-#include "pipeline/output/ladder.h"
-#include "pipeline/output/text/comparison.h"
+#include "pipeline/output/results/ladder.h"
+#include "pipeline/output/text/comparison/comparison.h"
 #include "pipeline/output/text/diagnosis.h"
 #include "pipeline/output/text/draft.h"
-#include "pipeline/run/model_and_set.h"
+#include "pipeline/run/inputs/model_and_set.h"
 #include "pipeline/synthesis/effects/effect_spec.h"
 
 namespace palpate::pipeline::commands {

@@ -7,14 +7,14 @@
 #include "mesh/formats/vtk/vtk_files.h"
 #include "mesh/text/atomic_file.h"
 #include "pipeline/body/body.h"
-#include "pipeline/body/subject_body.h"
-#include "pipeline/case/read_case.h"
-#include "pipeline/case/subject.h"
+#include "pipeline/case/settings/read_case.h"
+#include "pipeline/case/subject/subject.h"
+#include "pipeline/case/subject/subject_body.h"
 #include "pipeline/command_line/commands.h"
 #include "pipeline/command_line/flags.h"
 #include "pipeline/command_line/objects.h"
 #include "pipeline/command_line/subcommands.h"
-#include "pipeline/output/quality.h"
+#include "pipeline/output/results/quality.h"
 #include "skeleton/model/io/model_io.h"
 
 namespace palpate::pipeline::commands {

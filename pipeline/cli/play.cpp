@@ -4,7 +4,7 @@
 
 #include "mesh/errors.h"
 #include "mesh/text/atomic_file.h"
-#include "pipeline/case/read_case.h"
+#include "pipeline/case/settings/read_case.h"
 #include "pipeline/command_line/commands.h"
 #include "pipeline/command_line/flags.h"
 #include "pipeline/command_line/subcommands.h"
@@ -31,7 +31,7 @@ void serve_aloud(nlohmann::json told, const std::string& page, int port, bool as
 /// Writes a page, or serves it. `next`: what to do with it, in words.
 Outcome hand_out(const std::string& page, nlohmann::json told, const std::string& next, const PlayOptions& options,
                  const Common& common) {
-    constexpr std::size_t large = 5'000'000;
+    constexpr std::size_t large = 5'000'000;  // bytes: a choice; the warning hinders nothing
     if (page.size() > large) {
         Console::warning(
             fmt::format("The page has {:.1f} MB: browsers open it slowly. A skin of fewer triangles makes it smaller.",

@@ -1,12 +1,12 @@
 #include <fmt/format.h>
 
 #include "mesh/text/atomic_file.h"
-#include "pipeline/analysis/specimens.h"
 #include "pipeline/command_line/commands.h"
 #include "pipeline/command_line/subcommands.h"
 #include "pipeline/output/html/several/population.h"
 #include "pipeline/output/json/population.h"
-#include "pipeline/output/text/population.h"
+#include "pipeline/output/text/comparison/population.h"
+#include "pipeline/run/several/shared_numbers.h"
 
 namespace palpate::pipeline::commands {
 

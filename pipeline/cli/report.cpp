@@ -8,8 +8,8 @@
 #include "mesh/errors.h"
 #include "pipeline/command_line/commands.h"
 #include "pipeline/output/html/several/runs_page.h"
-#include "pipeline/output/json/runs.h"
-#include "pipeline/output/text/runs.h"
+#include "pipeline/output/text/comparison/runs.h"
+#include "pipeline/run/several/runs.h"
 
 namespace palpate::pipeline::commands {
 namespace {

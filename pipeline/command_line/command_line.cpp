@@ -7,8 +7,8 @@
 #include <thread>
 
 #include "pipeline/command_line/subcommands.h"
-#include "pipeline/command_line/terminal/usage_error.h"
-#include "pipeline/command_line/tree.h"
+#include "pipeline/command_line/tree/tree.h"
+#include "pipeline/command_line/tree/usage_error.h"
 #include "pipeline/command_line/version_text.h"
 
 namespace palpate::pipeline {

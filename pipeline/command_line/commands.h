@@ -1,7 +1,6 @@
 #pragma once
 
 #include <filesystem>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <vector>
@@ -9,35 +8,13 @@
 #include "pipeline/analysis/quality/convergence_study.h"
 #include "pipeline/case/settings/overrides.h"
 #include "pipeline/command_line/terminal/console.h"
+#include "pipeline/command_line/terminal/outcome.h"
+#include "pipeline/run/run.h"
 #include "pipeline/synthesis/options.h"
 
+// Each command with its options; that of `run` is in run/run.h.
+
 namespace palpate::pipeline::commands {
-
-enum ExitCode { done = 0, internal_error = 1, wrong_usage = 2, bad_input = 3, numerical_failure = 4, not_met = 5 };
-
-/// What every command understands.
-struct Common {
-    bool json = false;   // the result as one JSON object on standard output, nothing else there
-    bool force = false;  // overwrite what palpate did not make
-    int threads = 1;
-    std::optional<std::uint64_t> seed;  // absent: the case's, or 1
-};
-
-/// What a command comes to: for people, for scripts, and for the shell.
-struct Outcome {
-    std::string text;
-    nlohmann::json json;
-    ExitCode code = done;
-};
-
-/// @throws InvalidInput when `target` exists, palpate did not make it, and `force` is false.
-void refuse_to_overwrite(const std::filesystem::path& target, bool force);
-
-struct RunOptions {
-    std::filesystem::path input, output;
-    CaseOverrides overrides;
-};
-Outcome run(const RunOptions& options, const Common& common);
 
 struct CheckOptions {
     std::filesystem::path input;

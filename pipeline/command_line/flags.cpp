@@ -2,10 +2,10 @@
 
 #include <fmt/format.h>
 
-#include <cctype>
 #include <stdexcept>
 
 #include "pipeline/case/settings/settings.h"
+#include "pipeline/output/text/words.h"
 
 namespace palpate::pipeline {
 namespace {
@@ -20,11 +20,6 @@ std::string type_in_words(const nlohmann::ordered_json& schema) {
         return fmt::format("{{{}}}", fmt::join(schema["enum"].get<std::vector<std::string>>(), ","));
     return fmt::format("{} in [{:g}, {:g}]", schema["type"] == "integer" ? "INT" : "FLOAT",
                        schema["minimum"].get<double>(), schema["maximum"].get<double>());
-}
-
-std::string capitalised(std::string text) {
-    text[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(text[0])));
-    return text;
 }
 
 CLI::Option* add_with_argument(CLI::App* command, CaseOverrides& overrides, const CaseSetting& setting) {

@@ -6,10 +6,10 @@
 #include <new>
 
 #include "mesh/errors.h"
-#include "pipeline/cli/shell/system_limits.h"
 #include "pipeline/command_line/command_line.h"
 #include "pipeline/command_line/commands.h"
-#include "pipeline/output/text/printed_units.h"
+#include "pipeline/command_line/terminal/printed_units.h"
+#include "pipeline/command_line/terminal/system_limits.h"
 
 namespace {
 

@@ -3,11 +3,11 @@
 #include <memory>
 
 #include "identify/comparison/comparison.h"
-#include "identify/diagnosis/ladder.h"
+#include "identify/diagnosis/ladder/ladder.h"
 #include "identify/inference/identify_result.h"
 #include "pipeline/body/body.h"
 #include "pipeline/command_line/commands.h"
-#include "pipeline/run/model_and_set.h"
+#include "pipeline/run/inputs/model_and_set.h"
 #include "skeleton/construction/build.h"
 
 // What the commands of these names do between reading files and writing them: for them, and for other programs. Files

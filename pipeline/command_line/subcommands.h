@@ -35,7 +35,7 @@ struct Subcommands {
     commands::NewOptions new_case;
     commands::InfoOptions info;
 
-    // Each in its own file, pipeline/cli/<command>.cpp, beside what the command does (that of probe: probe_flags.cpp).
+    // Each beside what the command does, in pipeline/cli/<command>.cpp or the folder of that name.
     void add_run(CLI::App& app);
     void add_check(CLI::App& app);
     void add_import(CLI::App& app);

@@ -65,6 +65,7 @@ shown = {
     "stiffening": Shown("stiffening", ("--levels", 3)),
     "anisotropy": Shown("anisotropy:k=20,nx=0.8,ny=0.6,nz=0"),
     "inclusion": Shown("inclusion:cx=30,cy=8,cz=8,radius=12,ratio=8"),
+    "map": Shown("map:contrast=3"),
     "volume": Shown("volume:poisson=0.2", coarse, ("--tendon", "1,12,12 39,12,12", "--tension", "2,4,5"), "block", coarse),
     # uniform links have a torsion and a shear of their own, which would stand for these
     "torsion": Shown("torsion:torsion=0.3", fit=("--fixed", "torsion")),

@@ -10,8 +10,8 @@
 namespace palpate::pipeline {
 namespace {
 
-constexpr double gel_metres = 1e-3, gel_kilograms = 1e3;  // a millimetre, a tonne
-constexpr double gel_stiffness = 1e3, gel_turning_stiffness = 1e-3;
+constexpr double gel_metres = 1e-3, gel_kilograms = 1e3;             // a millimetre, a tonne
+constexpr double gel_stiffness = 1e3, gel_turning_stiffness = 1e-3;  // N/mm in N/m, N mm in N m
 
 constexpr const char* gel_builder = R"cpp(
     /// Makes the body in a GEL world: m, N, kg, s. Its links remember the poses of their nodes as at rest, so make it

@@ -4,14 +4,14 @@
 #include <algorithm>
 
 #include "mesh/errors.h"
-#include "skeleton/model/carried_point.h"
+#include "skeleton/model/attachment/carried_point.h"
 #include "skeleton/statics/equilibrium.h"
 #include "skeleton/statics/statics.h"
 
 namespace palpate::pipeline {
 namespace {
 
-constexpr int pushed_places = 12;
+constexpr int pushed_places = 12;  // a choice; each is three solves, fewer leave parts of the skin unseen
 
 /// Vertices far from one another: each the farthest from those before.
 std::vector<int> spread_vertices(const Points& vertices, int count) {

@@ -13,12 +13,13 @@
 #include "identify/measurements/measurement_places.h"
 #include "mesh/errors.h"
 #include "mesh/text/atomic_file.h"
+#include "pipeline/command_line/terminal/console.h"
 #include "pipeline/live/cloud_file.h"
 #include "pipeline/live/json_lines.h"
 #include "pipeline/live/set_tail.h"
 #include "pipeline/output/csv/posterior.h"
 #include "pipeline/output/json/json_values.h"
-#include "pipeline/run/model_and_set.h"
+#include "pipeline/run/inputs/model_and_set.h"
 #include "skeleton/model/io/model_io.h"
 
 namespace palpate::pipeline::commands {
@@ -33,7 +34,7 @@ constexpr std::size_t few_numbers = 6;    // that a line has room for
 constexpr std::size_t few_json = 30;      // and an object
 constexpr double large_cloud = 2e5;       // numbers: such a file is written every few seconds only
 constexpr double between_clouds = 5;      // [s]
-constexpr int poll_ms = 50;
+constexpr int poll_ms = 50;               // between looks for readings: delays an answer by as much
 
 double seconds_since(Clock::time_point then) { return std::chrono::duration<double>(Clock::now() - then).count(); }
 

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "identify/live/filter.h"
-#include "pipeline/command_line/commands.h"
+#include "pipeline/command_line/terminal/outcome.h"
 
 namespace palpate::pipeline::commands {
 

@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 
+#include "identify/effects/body/material/stiffness_parts.h"
 #include "identify/effects/catalogue.h"
 #include "identify/effects/vector_words.h"
 
@@ -33,9 +34,11 @@ const json* candidate_of(const json& diagnosis, const std::string& effect) {
     return found == diagnosis["ranking"].end() ? nullptr : &*found;
 }
 
-/// Without the components that the readings do not determine, by the bounds of vector_words.h.
-void leave_undetermined_out(json& vector, const std::array<const char*, 3>& names, const json* candidate) {
+/// Takes out of a finding's vector the components that the readings do not determine, by the bounds of vector_words.h.
+void set_undetermined_apart(json& found, const std::array<const char*, 3>& names, const json* candidate) {
+    found["undetermined"] = json::array();
     if (!candidate) return;
+    json& vector = found["vector"];
     const json& parameters = (*candidate)["parameters"];
     std::array<double, 3> sd{};
     for (std::size_t a = 0; a < 3; ++a) {
@@ -47,8 +50,12 @@ void leave_undetermined_out(json& vector, const std::array<const char*, 3>& name
         double rest = 0;
         for (std::size_t b = 0; b < 3; ++b)
             if (b != a) rest = std::hypot(rest, vector[b].get<double>());
-        if (rest > 0 && sd[a] > identify::undetermined_share * rest && sd[a] > identify::undetermined_ratio * least)
+        if (rest > 0 && sd[a] > identify::undetermined_share * rest && sd[a] > identify::undetermined_ratio * least) {
+            json axis{0, 0, 0};
+            axis[a] = 1;
+            found["undetermined"].push_back({{"axis", axis}, {"value", vector[a]}, {"sd", sd[a]}});
             vector[a] = 0.0;
+        }
     }
 }
 
@@ -59,6 +66,19 @@ std::string words_of(const skeleton::EffectRecord& effect, const json* candidate
     return known && !effect.parameters.empty() ? known->sentence(effect) : effect.name;
 }
 
+/// The parts of a map of stiffness, as balls.
+void add_parts(const skeleton::EffectRecord& effect, const std::string& words, json& findings) {
+    const identify::StiffnessEstimate map(effect);
+    const std::vector<identify::StiffnessPart> parts = map.parts();
+    if (parts.empty()) findings.push_back({{"effect", effect.name}, {"words", words}, {"kind", "words"}});
+    for (const identify::StiffnessPart& part : parts)
+        findings.push_back({{"effect", effect.name},
+                            {"words", words},
+                            {"kind", "ball"},
+                            {"center", {part.centre.x(), part.centre.y(), part.centre.z()}},
+                            {"radius", map.length()}});
+}
+
 }  // namespace
 
 json findings_json(const std::vector<skeleton::EffectRecord>& effects, const json& diagnosis) {
@@ -67,11 +87,15 @@ json findings_json(const std::vector<skeleton::EffectRecord>& effects, const jso
     json findings = json::array();
     for (const skeleton::EffectRecord& effect : effects) {
         const json* candidate = candidate_of(diagnosis, effect.name);
+        if (effect.name == "map" && !effect.parameters.empty()) {
+            add_parts(effect, words_of(effect, candidate), findings);
+            continue;
+        }
         json found{{"effect", effect.name}, {"words", words_of(effect, candidate)}, {"kind", "words"}};
         if (has(effect, gravity.front())) {
             found["kind"] = "arrow";
             found["vector"] = vector(effect, gravity);
-            leave_undetermined_out(found["vector"], gravity, candidate);
+            set_undetermined_apart(found, gravity, candidate);
         } else if (has(effect, centre.front())) {
             found["kind"] = "ball";
             found["center"] = vector(effect, centre);

@@ -8,7 +8,8 @@
 namespace palpate::pipeline {
 
 /// What of a model's effects can be drawn in the body, as html/page/findings.js and vtk/findings_file.h draw it: an
-/// {effect, words, kind} each, with what its kind has: "arrow" (gravity) and "axis" (fibres) a `vector`; "ball" (an
+/// {effect, words, kind} each, with what its kind has: "arrow" (gravity) and "axis" (fibres) a `vector`, of an arrow
+/// without its `undetermined` components, each an {axis, value, sd}; "ball" (an
 /// inclusion, a force on a part) `center`, `radius` and, of a force, its `vector`; "plane" (contact) `vector`, its
 /// normal, and `offset`; "springs" (a compliant support) and "words" nothing. `effect` is empty for what no effect is
 /// named for.

@@ -3,17 +3,20 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 
 #include "identify/diagnosis/rigged_skeleton.h"
 #include "identify/effects/catalogue.h"
-#include "identify/loading/creep.h"
+#include "identify/loading/history/creep.h"
 #include "identify/measurements/rig/fittable.h"
 #include "mesh/errors.h"
 #include "mesh/formats/read_body.h"
 #include "mesh/text/atomic_file.h"
-#include "pipeline/case/read_case.h"
-#include "pipeline/case/subject.h"
+#include "mesh/text/words.h"
+#include "pipeline/case/json_file.h"
+#include "pipeline/case/settings/read_case.h"
+#include "pipeline/case/subject/subject.h"
 #include "pipeline/output/findings.h"
 #include "pipeline/output/html/run_files.h"
 #include "pipeline/output/text/words.h"
@@ -73,7 +76,7 @@ std::vector<Candidate> candidates_in(const fs::path& input) {
     }
     if (const fs::path ladder = input / "ladder.json"; fs::exists(ladder)) {
         try {
-            return candidates_of_ladder(input, read_json(ladder));
+            return candidates_of_ladder(input, json_of_file(ladder));
         } catch (const json::exception& e) {
             throw InvalidInput(fmt::format("{}: is not what palpate improve writes: {}", ladder.string(), e.what()));
         }
@@ -155,7 +158,7 @@ json corrected_sets(const skeleton::Model& model, const identify::MeasurementSet
 /// What was diagnosed in a run, or null.
 json diagnosis_of(const fs::path& run) {
     const fs::path file = run / "diagnose/diagnosis.json";
-    return fs::exists(file) ? read_json(file) : json();
+    return fs::exists(file) ? json_of_file(file) : json();
 }
 
 /// Markers that look swapped: the probe and time of each pair, and their numbers in the set.
@@ -170,14 +173,34 @@ json exchanged_in(const json& diagnosis, const std::optional<identify::Measureme
     return result;
 }
 
+/// What was diagnosed of a number of an effect: its {value, sd, unit}, or null.
+json diagnosed_number(const json& diagnosis, const std::string& effect, const std::string& number) {
+    if (diagnosis.is_null()) return {};
+    for (const json& candidate : diagnosis["ranking"])
+        if (candidate["effect"] == effect) return candidate["parameters"].value(number, json());
+    return {};
+}
+
+/// "gz = -9790 ± 20 mm/s^2". The standard deviation is of finite elements' number: where the model was given another
+/// one, by a fit of its own, that number and its deviation stand beside it.
+std::string effect_number_in_words(const skeleton::EffectParameter& number, const json& diagnosed) {
+    const std::string unit = number.unit == "1" || number.unit.empty() ? "" : " " + number.unit;
+    const bool has_sd = diagnosed.is_object() && diagnosed["value"].is_number() && diagnosed["sd"].is_number();
+    if (!has_sd) return fmt::format("{} = {:.4g}{}", number.name, number.value, unit);
+    const double value = diagnosed["value"], sd = diagnosed["sd"];
+    const std::string known = mesh::with_sd(value, sd);
+    if (std::abs(number.value - value) <= 1e-9 * std::abs(value))  // both were printed in full
+        return fmt::format("{} = {}{}", number.name, known, unit);
+    return fmt::format("{} = {:.4g}{} ({} in finite elements)", number.name, number.value, unit, known);
+}
+
 /// What the page says of an effect: its meaning, and its numbers.
-ordered_json effect_json(const skeleton::EffectRecord& effect) {
+ordered_json effect_json(const skeleton::EffectRecord& effect, const json& diagnosis) {
     const auto known = identify::effect_named(effect.name);
     std::vector<std::string> numbers;
     numbers.reserve(effect.parameters.size());
     for (const skeleton::EffectParameter& parameter : effect.parameters) {
-        numbers.push_back(fmt::format("{} = {:.4g}{}", parameter.name, parameter.value,
-                                      parameter.unit == "1" || parameter.unit.empty() ? "" : " " + parameter.unit));
+        numbers.push_back(effect_number_in_words(parameter, diagnosed_number(diagnosis, effect.name, parameter.name)));
     }
     return {{"name", effect.name},      {"meaning", known ? known->description().meaning : ""},
             {"numbers", numbers},       {"fault", is_of_measurement(effect)},
@@ -232,7 +255,8 @@ PlayData play_data(const fs::path& input, const fs::path& set_folder) {
         ordered_json one = {{"name", candidate.name}, {"about", candidate.about}, {"told", candidate.errors}};
         one["findings"] = findings_json(model.effects, diagnosis);
         one["effects"] = ordered_json::array();
-        for (const skeleton::EffectRecord& effect : model.effects) one["effects"].push_back(effect_json(effect));
+        for (const skeleton::EffectRecord& effect : model.effects)
+            one["effects"].push_back(effect_json(effect, diagnosis));
         if (set) one["sets"] = corrected_sets(model, *set, sets);
         one["text"] = first.is_null() ? text : difference(first, text);
         if (first.is_null()) first = std::move(text);
@@ -252,7 +276,7 @@ PlayData play_data(const fs::path& input, const fs::path& set_folder) {
             "The models of the ladder's steps are not here: an older palpate made it. Run it again for them.");
     }
     const json held_out =
-        fs::exists(ladder) ? read_json(ladder).value("held_out_probes", json::array()) : json::array();
+        fs::exists(ladder) ? json_of_file(ladder).value("held_out_probes", json::array()) : json::array();
     data.content = {{"name", data.name},    {"models", models},
                     {"sets", sets},         {"exchanged", exchanged_in(diagnosis, set)},
                     {"held_out", held_out}, {"notes", data.notes}};

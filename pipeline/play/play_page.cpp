@@ -12,7 +12,7 @@ namespace palpate::pipeline {
 namespace {
 
 /// As gzip packs it, without a time in it: the same text gives the same bytes.
-std::string packed(const std::string& text) {
+std::string compressed(const std::string& text) {
     z_stream stream{};
     constexpr int gzip_window = 15 + 16;
     if (deflateInit2(&stream, Z_BEST_COMPRESSION, Z_DEFLATED, gzip_window, 9, Z_DEFAULT_STRATEGY) != Z_OK)
@@ -38,7 +38,7 @@ std::string data_block(const std::string& id, const std::string_view base64) {
 
 std::string play_page(const PlayData& data) {
     return page_head(data.name + ", interactive", play_style) + "<body>\n" + std::string(play_view) +
-           data_block("play-data", base64(packed(data.content.dump()))) + data_block("play-module", play_module) +
+           data_block("play-data", base64(compressed(data.content.dump()))) + data_block("play-module", play_module) +
            "<script>" + std::string(play_script) + "</script></body></html>\n";
 }
 

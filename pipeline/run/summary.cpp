@@ -2,13 +2,14 @@
 
 #include <fmt/format.h>
 
+#include "pipeline/command_line/terminal/console.h"
 #include "pipeline/output/damping.h"
-#include "pipeline/output/ladder.h"
-#include "pipeline/output/text/comparison.h"
+#include "pipeline/output/results/ladder.h"
+#include "pipeline/output/text/comparison/comparison.h"
+#include "pipeline/output/text/comparison/worst.h"
 #include "pipeline/output/text/diagnosis.h"
 #include "pipeline/output/text/words.h"
-#include "pipeline/output/text/worst.h"
-#include "pipeline/run/model_and_set.h"
+#include "pipeline/run/inputs/model_and_set.h"
 
 namespace palpate::pipeline::commands {
 namespace {
@@ -71,14 +72,6 @@ Outcome outcome_of(const Subject& subject, const RunResults& results, const RunF
     outcome.json["expectations_not_met"] = broken;
     outcome.code = broken.empty() ? done : not_met;
     return outcome;
-}
-
-void report_stage(const RunFolder& folder, const std::string& stage, bool ran, const std::string& what) {
-    const nlohmann::json& record = folder.record()["stages"][stage];
-    Console::notice(fmt::format("{:<12} {} ({})", stage, what,
-                                ran ? fmt::format("{:.1f} s, {:.0f} MB", record["seconds"].get<double>(),
-                                                  record["peak_memory_mb"].get<double>())
-                                    : "unchanged"));
 }
 
 }  // namespace palpate::pipeline::commands

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "pipeline/case/subject.h"
-#include "pipeline/command_line/commands.h"
+#include "pipeline/case/subject/subject.h"
+#include "pipeline/command_line/terminal/outcome.h"
 #include "pipeline/run/expectation.h"
 #include "pipeline/run/folder/run_folder.h"
 
@@ -10,8 +10,5 @@ namespace palpate::pipeline::commands {
 /// What a run came to: how wrong, what is missing, the ladder, where to look, what to type next, and which of the
 /// case's expectations are not met.
 Outcome outcome_of(const Subject& subject, const RunResults& results, const RunFolder& folder);
-
-/// Says on a line what a stage came to, and how long it took.
-void report_stage(const RunFolder& folder, const std::string& stage, bool ran, const std::string& what);
 
 }  // namespace palpate::pipeline::commands

@@ -60,7 +60,7 @@ public:
           seed_(seed),
           play_{.continuous = sequence_.continuous, .threads = threads},
           progress_(progress) {
-        std::erase_if(specs_, [](const EffectSpec& spec) { return spec.effect == "none"; });
+        std::erase_if(specs_, [](const EffectSpec& spec) { return spec.effect == no_effect; });
         std::ranges::for_each(specs_, check_spec);
     }
 

@@ -6,15 +6,15 @@
 #include <numbers>
 
 #include "identify/measurements/twin.h"
-#include "identify/models/reference_body.h"
-#include "identify/models/skeleton_body.h"
+#include "identify/models/reference/reference_body.h"
+#include "identify/models/skeleton/skeleton_body.h"
 #include "mesh/errors.h"
 #include "mesh/geometry/surface_tree.h"
 #include "mesh/meshing/smooth_surface.h"
 #include "pipeline/body/body.h"
 #include "pipeline/body/contact_zones.h"
 #include "pipeline/body/reference_body.h"
-#include "pipeline/body/subject_body.h"
+#include "pipeline/case/subject/subject_body.h"
 #include "pipeline/synthesis/probing/probing.h"
 #include "pipeline/synthesis/probing/skeleton_probing.h"
 #include "pipeline/synthesis/rig/rig_probes.h"

@@ -3,28 +3,39 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <numeric>
 
 #include "mesh/errors.h"
+#include "mesh/numbers/median.h"
 #include "skeleton/construction/placement/cover.h"
 #include "skeleton/construction/placement/place.h"
 #include "skeleton/construction/placement/topology_repair.h"
 #include "skeleton/construction/properties/masses.h"
 #include "skeleton/construction/properties/sections.h"
 #include "skeleton/construction/properties/skin.h"
-#include "skeleton/model/attach.h"
+#include "skeleton/model/attachment/attach.h"
 
 namespace palpate::skeleton {
 namespace {
 
-constexpr int fineness = 60;  // tetrahedra a sphere, at least
+constexpr int fineness = 60;               // tetrahedra a sphere, at least
+constexpr int least_tetrahedra = 6000;     // however few spheres: cells and their sections are made of these
+constexpr double medial_spacing = 0.02;    // of samples, over the diagonal: what is smaller gets no ball of its own
+constexpr double usual_coverage = 0.05;    // over the longest side
+constexpr double topology_detail = 0.005;  // over the longest side: what is smaller is noise of the surface
+constexpr double chain_spacing = 0.5;      // over the mean radius: closer together, spheres fill the body in layers
+constexpr double least_stiffness = 1e-3;   // of the median link: slivers must not make the model singular
+// Of the spacing, from covering spheres to the others: the widest that covers the body.
+constexpr std::array gaps{0.5, 0.25, 0.0};
 
 PlacementBody prepare(const mesh::Surface& surface, const mesh::SurfaceTree& tree, const mesh::VolumeMesh& volume,
                       const std::vector<mesh::Region>& supports, int spheres, double delta) {
     PlacementBody body;
-    body.graph = make_tet_graph(volume, std::max(6000, fineness * spheres));
+    body.graph = make_tet_graph(volume, std::max(least_tetrahedra, fineness * spheres));
     body.interface = find_support_interface(body.graph, supports);
-    body.axis = medial_axis(surface, tree, std::min(0.02 * mesh::bounding_box(surface.vertices).diagonal(), delta));
+    body.axis =
+        medial_axis(surface, tree, std::min(medial_spacing * mesh::bounding_box(surface.vertices).diagonal(), delta));
     if (body.axis.radii.size() == 0)
         throw InvalidInput("no ball fits into the surface: is it closed, and does it look outward?");
     body.core = find_core(body.graph, body.axis);
@@ -98,12 +109,11 @@ std::vector<Link> make_links(const std::vector<Section>& sections, const fem::Ma
         links.push_back(std::move(link));
     }
 
-    // No link is softer than a thousandth of the median one: slivers must not make the model singular.
     for (int k = 0; k < (is_full(kind) ? 6 : 3); ++k) {
         std::vector<double> values(links.size());
         std::transform(links.begin(), links.end(), values.begin(), [&](const Link& link) { return link.stiffness(k); });
-        std::nth_element(values.begin(), values.begin() + values.size() / 2, values.end());
-        for (Link& link : links) link.stiffness(k) = std::max(link.stiffness(k), 1e-3 * values[values.size() / 2]);
+        const double least = values.empty() ? 0 : least_stiffness * mesh::upper_median(std::move(values));
+        for (Link& link : links) link.stiffness(k) = std::max(link.stiffness(k), least);
     }
     return links;
 }
@@ -139,7 +149,7 @@ Model build_skeleton(const mesh::Surface& surface, const mesh::VolumeMesh& volum
     material.validate();
     const mesh::SurfaceTree tree(surface);
     const double delta =
-        options.coverage > 0 ? options.coverage : 0.05 * mesh::bounding_box(surface.vertices).longest_side();
+        options.coverage > 0 ? options.coverage : usual_coverage * mesh::bounding_box(surface.vertices).longest_side();
     PlacementBody body = prepare(surface, tree, volume, supports, options.spheres, delta);
     BuildReport result;
     result.medial_centers = body.axis.centers;
@@ -150,14 +160,14 @@ Model build_skeleton(const mesh::Surface& surface, const mesh::VolumeMesh& volum
                           ? options.spheres
                           : default_spheres(body.graph, body.free_volumes, body.core, body.path_length.maxCoeff());
     double spacing = spacing_of_spheres(body.free_volumes, body.core, count);
-    if (spacing < 0.5 * mean_radius(body.free_volumes, body.core)) {
+    if (spacing < chain_spacing * mean_radius(body.free_volumes, body.core)) {
         body.core = fill_core(body.graph, body.core);
         spacing = spacing_of_spheres(body.free_volumes, body.core, count);
     }
 
     // Where: spread evenly over the core, and where links could not follow the body else.
     const Handles handles = find_handles(body.graph);
-    const double tolerance = 0.005 * mesh::bounding_box(surface.vertices).longest_side();
+    const double tolerance = topology_detail * mesh::bounding_box(surface.vertices).longest_side();
     std::vector<Site> sites =
         place_sites(body, tree, handles, supports, spacing, tolerance, count, options.spheres > 0);
 
@@ -173,7 +183,7 @@ Model build_skeleton(const mesh::Surface& surface, const mesh::VolumeMesh& volum
         result.coverage = std::max(0., vertices.rows() > 0 ? distance.maxCoeff() : 0);
     };
     place_spheres();
-    for (double gap : {0.5, 0.25, 0.}) {
+    for (const double gap : gaps) {
         if (options.spheres > 0 || result.coverage <= delta) break;
         const std::vector<Site> added =
             covering_sites(body, supports, sites, model.spheres, vertices, delta, gap * spacing);

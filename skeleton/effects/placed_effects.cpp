@@ -9,7 +9,7 @@
 
 #include "mesh/errors.h"
 #include "skeleton/effects/tool_points.h"
-#include "skeleton/model/carried_point.h"
+#include "skeleton/model/attachment/carried_point.h"
 
 namespace palpate::skeleton {
 

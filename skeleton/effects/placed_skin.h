@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "fem/effects/surface/facet.h"
-#include "skeleton/model/carried_point.h"
+#include "skeleton/model/attachment/carried_point.h"
 
 namespace palpate::skeleton {
 

@@ -2,7 +2,7 @@
 
 #include <Eigen/Geometry>
 
-#include "skeleton/model/attach.h"
+#include "skeleton/model/attachment/attach.h"
 
 namespace palpate::skeleton {
 

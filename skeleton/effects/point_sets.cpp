@@ -7,7 +7,7 @@
 #include <numbers>
 
 #include "mesh/errors.h"
-#include "skeleton/model/attach.h"
+#include "skeleton/model/attachment/attach.h"
 
 namespace palpate::skeleton {
 

@@ -2,7 +2,7 @@
 
 #include <numbers>
 
-#include "skeleton/model/attach.h"
+#include "skeleton/model/attachment/attach.h"
 
 namespace palpate::skeleton {
 

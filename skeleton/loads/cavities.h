@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "mesh/core/actuator.h"
-#include "skeleton/model/carried_point.h"
+#include "skeleton/model/attachment/carried_point.h"
 
 namespace palpate::skeleton {
 

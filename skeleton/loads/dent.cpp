@@ -10,9 +10,10 @@ namespace {
 constexpr std::array<double, 3> reaches{1, 2, 4};  // R
 
 double kernel(double distance, double radius, double reach) {
+    constexpr double blunt = 0.3;  // of the radius: part of the law (dent.h) that models' amplitudes were found with
     const double x = distance / (reach * radius);
     if (x >= 1) return 0;
-    return (1 - x) * (1 - x) * (1 + 2 * x) / std::hypot(distance, 0.3 * radius);
+    return (1 - x) * (1 - x) * (1 + 2 * x) / std::hypot(distance, blunt * radius);
 }
 
 }  // namespace

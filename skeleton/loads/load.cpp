@@ -2,7 +2,7 @@
 
 #include <Eigen/Geometry>
 
-#include "skeleton/model/carried_point.h"
+#include "skeleton/model/attachment/carried_point.h"
 
 namespace palpate::skeleton {
 

@@ -4,6 +4,8 @@
 #include <numbers>
 #include <vector>
 
+#include "mesh/numbers/median.h"
+
 namespace palpate::skeleton {
 
 double link_modulus(const Model& model) {
@@ -14,9 +16,8 @@ double link_modulus(const Model& model) {
         if (section > 0) all.push_back(link.stiffness[0] * link.length / section);
     }
     if (all.empty()) return 1;
-    const auto middle = all.begin() + std::ssize(all) / 2;
-    std::nth_element(all.begin(), middle, all.end());
-    return *middle > 0 ? *middle : 1;
+    const double median = mesh::upper_median(std::move(all));
+    return median > 0 ? median : 1;
 }
 
 }  // namespace palpate::skeleton

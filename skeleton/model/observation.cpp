@@ -1,6 +1,6 @@
 #include "skeleton/model/observation.h"
 
-#include "skeleton/model/carried_point.h"
+#include "skeleton/model/attachment/carried_point.h"
 #include "skeleton/model/growth.h"
 
 namespace palpate::skeleton {

@@ -1,6 +1,5 @@
 #include "skeleton/model/state.h"
 
-#include <Eigen/Geometry>
 #include <cassert>
 #include <cmath>
 
@@ -32,18 +31,13 @@ Mat3 skew(const Vec3& w) {
     return W;
 }
 
-Mat3 rotation(const Vec3& w) {
-    // exp(i w/2) as a unit quaternion: (cos |w|/2, sin(|w|/2) w/|w|), whose norm is 1 however small w is.
-    const double half = 0.5 * w.norm();
-    const double sinc = half > 1e-9 ? std::sin(half) / half : 1.0;
-    const Vec3 v = 0.5 * sinc * w;
-    return Eigen::Quaterniond(std::cos(half), v.x(), v.y(), v.z()).toRotationMatrix();
-}
+Mat3 rotation(const Vec3& w) { return quaternion_of(w).toRotationMatrix(); }
 
 Vec3 rotation_vector(const Mat3& R) {
     Eigen::Quaterniond q(R);
     if (q.w() < 0) q.coeffs() = -q.coeffs();
     const double sine = q.vec().norm();
+    // Below it the quotient is 2 in double precision.
     const double scale = sine > 1e-12 ? 2 * std::atan2(sine, q.w()) / sine : 2.0;
     return scale * q.vec();
 }

@@ -8,6 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "skeleton/runtime/tools/tool_load.h"
+
 namespace palpate::skeleton {
 struct Model;
 }
@@ -32,12 +34,6 @@ struct [[gnu::visibility("default")]] BodyOptions {
     // Of implicit steps: how far off a sphere may be, as a share of the mean link length, in (0, 1).
     double step_tolerance = 1e-6;
     void validate() const;  // @throws InvalidInput naming option, value and bound
-};
-
-/// What a tool does to the body: a force, and its moment about where the tool is.
-struct ToolLoad {
-    Eigen::Vector3d force = Eigen::Vector3d::Zero();   // [N]
-    Eigen::Vector3d moment = Eigen::Vector3d::Zero();  // [N mm]
 };
 
 struct EquilibriumReport {

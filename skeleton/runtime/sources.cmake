@@ -5,7 +5,7 @@ set(runtime_kernels
   kernels/paper_links.cpp
   kernels/skinning.cpp)
 set(runtime_sources
-  body.cpp
+  body_motion.cpp
   walk_order.cpp
   contacts/contacts.cpp
   contacts/creep.cpp
@@ -17,10 +17,14 @@ set(runtime_sources
   forces/point_effects.cpp
   forces/poses.cpp
   solver/learnt_curvature.cpp
+  solver/modes.cpp
   solver/solver.cpp
   tools/stiffened_matrix.cpp
   tools/tendons.cpp
-  tools/tools.cpp)
+  tools/tools.cpp
+  # Not part of any step.
+  body_construction.cpp
+  body_inputs.cpp)
 list(TRANSFORM runtime_kernels PREPEND "${CMAKE_CURRENT_LIST_DIR}/")
 list(TRANSFORM runtime_sources PREPEND "${CMAKE_CURRENT_LIST_DIR}/")
 list(APPEND runtime_sources ${runtime_kernels})

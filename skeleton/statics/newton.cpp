@@ -3,13 +3,20 @@
 #include <algorithm>
 #include <cmath>
 
+#include "skeleton/blocks/tangent_shift.h"
+
 namespace palpate::skeleton {
 
 namespace {
 
 constexpr double sufficient_decrease = 1e-4;  // of what the slope at the start promises
-constexpr double most_left = 0.25;  // of the net force, by a step with a tangent from nearby that is worth another
-constexpr double deep = 1e-3;       // of the tolerance
+constexpr double most_left = 0.25;       // of the net force, by a step with a tangent from nearby that is worth another
+constexpr double deep = 1e-3;            // of the tolerance
+constexpr int most_halvings = 27;        // a share of 1e-8: where none leads down, the direction is wrong
+constexpr double within_rounding = 1e3;  // times a potential's rounding, up to which a rise of it tells nothing
+constexpr int inverse_iterations = 10;   // to a direction that need not be exact: any that leads down serves
+constexpr double first_share = 0.2;      // of the longest step allowed, along that direction
+constexpr int saddle_halvings = 18;      // a share of 1e-6: nearer to the saddle its fall drowns in rounding
 
 // What is sought, all together.
 struct Problem {
@@ -25,8 +32,8 @@ struct Problem {
 bool factor_shifted(const Problem& problem, double& shift) {
     const double stiffest = problem.system.stiffest(problem.k);
     while (problem.system.factor(shift)) {
-        shift = std::max(10 * shift, 1e-4 * stiffest);
-        if (!(shift < 1e8 * stiffest)) return false;
+        shift = larger_shift(shift, stiffest);
+        if (!can_shift(shift, stiffest)) return false;
     }
     return true;
 }
@@ -36,13 +43,13 @@ bool factor_shifted(const Problem& problem, double& shift) {
 bool descend(const Problem& problem, const Eigen::VectorXd& step, State& state, Balance& here) {
     const double slope = here.net.dot(step);
     double share = problem.system.step_limit(state, step);
-    for (int halving = 0; halving < 27; ++halving, share /= 2) {
+    for (int halving = 0; halving < most_halvings; ++halving, share /= 2) {
         const State trial = problem.system.advance(state, step, share);
         const Balance there = problem.balance(trial);
         const double fall = here.potential - there.potential, left = there.net.dot(step);
         const bool falls = fall >= sufficient_decrease * share * slope - here.rounding;
-        const bool falls_by_slopes = fall >= -1e3 * here.rounding && left >= (2 * sufficient_decrease - 1) * slope &&
-                                     there.largest < here.largest;
+        const bool falls_by_slopes = fall >= -within_rounding * here.rounding &&
+                                     left >= (2 * sufficient_decrease - 1) * slope && there.largest < here.largest;
         if (falls || falls_by_slopes) {
             state = trial;
             here = there;
@@ -57,12 +64,12 @@ bool descend(const Problem& problem, const Eigen::VectorXd& step, State& state, 
 bool leave_saddle(const Problem& problem, State& state, Balance& here) {
     Eigen::VectorXd direction(here.net.size());
     for (Eigen::Index i = 0; i < direction.size(); ++i) direction[i] = std::sin(1.0 + static_cast<double>(i));
-    for (int iteration = 0; iteration < 10; ++iteration)
+    for (int iteration = 0; iteration < inverse_iterations; ++iteration)
         direction = problem.system.solve(problem.system.metric_times(direction)).normalized();
-    direction *= 1e3 * problem.system.length();  // beyond the limit
+    direction *= 1e3 * problem.system.length();  // beyond the limit, which cuts it
     direction *= problem.system.step_limit(state, direction);
-    double share = 0.2;
-    for (int halving = 0; halving < 18; ++halving, share /= 2)
+    double share = first_share;
+    for (int halving = 0; halving < saddle_halvings; ++halving, share /= 2)
         for (const double sign : {1.0, -1.0}) {
             const State trial = problem.system.advance(state, direction, sign * share);
             const Balance there = problem.balance(trial);
@@ -117,7 +124,7 @@ bool newton(SkeletonSystem& system, const Eigen::VectorXd& k, const Load& load, 
         const bool moved =
             balanced ? leave_saddle(problem, at.state, here) : descend(problem, system.solve(here.net), at.state, here);
         if (!moved) return false;
-        shift = shift > 1e-3 * system.stiffest(k) ? shift / 10 : 0;
+        shift = smaller_shift(shift, system.stiffest(k));
     }
 }
 

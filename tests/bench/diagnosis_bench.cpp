@@ -24,9 +24,9 @@
 
 #include "diagnosis/tally.h"
 #include "identify/diagnosis/diagnose.h"
-#include "identify/diagnosis/ladder.h"
+#include "identify/diagnosis/ladder/ladder.h"
 #include "identify/effects/catalogue.h"
-#include "identify/models/skeleton_body.h"
+#include "identify/models/skeleton/skeleton_body.h"
 #include "identify/numerics/parallel.h"
 #include "mesh/errors.h"
 #include "pipeline/body/body.h"

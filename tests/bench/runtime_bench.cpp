@@ -10,7 +10,7 @@
 #include <functional>
 #include <string>
 
-#include "skeleton/model/attach.h"
+#include "skeleton/model/attachment/attach.h"
 #include "skeleton/runtime/body.h"
 #include "skeleton/statics/equilibrium.h"
 #include "skeleton/statics/statics.h"

@@ -63,7 +63,7 @@ TEST(ContactPlane, PlaneBearsWhatPressesOnIt) {
     for (const MaterialLaw law : laws) {
         const Eigen::VectorXd u = block.body.equilibrium(block.setting(law), 0.5 * block.down).u;
         // The springs take what they are pressed by 0.1 mm or so: 1e-4 N. There is no friction.
-        EXPECT_LT((block.force(u) - Vec3(0, 0, 0.5)).norm(), 1e-3);
+        EXPECT_LT((block.force(u) - Vec3(0, 0, 0.5)).norm(), 2e-4);
         // The face sinks in by pressure over stiffness, in the mean; edges and middle differ by as much again.
         const double expected = -0.1 - 0.5 / (16 * Block::k);
         EXPECT_NEAR(u.reshaped(3, u.size() / 3).row(2).maxCoeff(), expected, 0.5 / (16 * Block::k));
@@ -97,7 +97,7 @@ TEST(ContactPlane, BentBeamComesToRestOnIt) {
                                       {.young = 0.1, .poisson = 0.4, .density = 0},
                                       {.points = {std::make_shared<ContactPlane>(Vec3(0, 0, 1), -1.5, k)}}};
             const BodyEquilibrium found = body.equilibrium(setting, f);
-            EXPECT_NEAR(beam.tip(found.u).z(), -1.5, 0.15);  // free, it would come down by more than 8 mm
+            EXPECT_NEAR(beam.tip(found.u).z(), -1.5, 0.06);  // free, it would come down by more than 8 mm
             EXPECT_LT(body.equilibrium(setting, 1.03 * f, {}, &found.u).factorisations, 5);
         }
     }

@@ -13,7 +13,7 @@
 #include "mesh/formats/volume/write_volume.h"
 #include "mesh/formats/vtk/vtk_files.h"
 #include "mesh/text/atomic_file.h"
-#include "pipeline/case/read_case.h"
+#include "pipeline/case/settings/read_case.h"
 #include "pipeline/output/csv/posterior.h"
 #include "samples/lattice.h"
 #include "skeleton/model/io/model_io.h"

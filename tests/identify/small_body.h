@@ -7,11 +7,11 @@
 #include <vector>
 
 #include "identify/diagnosis/fit/explanation.h"
-#include "identify/models/reference_body.h"
-#include "identify/models/skeleton_body.h"
+#include "identify/models/reference/reference_body.h"
+#include "identify/models/skeleton/skeleton_body.h"
 #include "identify/numerics/random.h"
 #include "mesh/core/volume_mesh.h"
-#include "skeleton/model/attach.h"
+#include "skeleton/model/attachment/attach.h"
 
 namespace palpate::identify {
 
@@ -215,6 +215,11 @@ inline Eigen::VectorXd example(const EffectHypothesis& effect, const std::vector
         {"shear", {0.3}}};
     const auto found = chosen.find(effect.name());
     Eigen::VectorXd values(std::ssize(numbers));
+    if (effect.name() == "map") {  // a length, then a place and an amplitude each: soft and stiff in turn
+        for (Eigen::Index j = 0; j < values.size(); ++j)
+            values[j] = j == 0 || !effect.is_fitted(j) ? numbers[j].start : j % 8 == 0 ? 0.8 : -0.8;
+        return values;
+    }
     for (Eigen::Index j = 0; j < values.size(); ++j) {
         values[j] = found != chosen.end() ? found->second[j]
                                           : numbers[j].prior_mean + 0.2 * numbers[j].prior_sd * (j % 2 ? 1 : -0.7);

@@ -24,7 +24,10 @@ Inclusion Inclusion::box(const Vec3& centre, const Vec3& half_widths, double rat
 double Inclusion::stiffness(const Vec3& X) const {
     const Vec3 off = (X - centre_).cwiseQuotient(half_widths_);
     const double d = shape_ == Shape::sphere ? off.norm() : off.cwiseAbs().maxCoeff();
-    return std::exp(log_ratio_ * std::clamp((1.15 - d) / 0.3, 0.0, 1.0));
+    // The border is half outside and half inside of the edge: wide enough for answers to follow the place, narrow
+    // enough for the half widths to tell the size. What blind sets and diagnoses mean by an inclusion rests on it.
+    constexpr double outer = 1.15, width = 0.3;
+    return std::exp(log_ratio_ * std::clamp((outer - d) / width, 0.0, 1.0));
 }
 
 KnownEffect known_inclusion() {

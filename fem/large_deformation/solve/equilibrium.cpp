@@ -121,7 +121,12 @@ BodyEquilibrium find_equilibrium(const BodyShape& body, const EliminationOrder& 
 
     Newton newton(order, options.iterations);
     Eigen::VectorXd& u = result.u;
-    const double rough = std::max(options.tolerance, 1e-3);
+    // Of the load: steps on the way need no more to be where the next sets out from, and a smaller share takes longer.
+    constexpr double rough_share = 1e-3;
+    // Of the load: a body that flows is near its answer where less is unbalanced, and steps from there are of its own
+    // law.
+    constexpr double near_share = 0.2;
+    const double rough = std::max(options.tolerance, rough_share);
     // A body that flows sets out from where it would stand if it did not, unless it is near its answer.
     const auto within = [&](double share) { return NewtonTolerance{share * load, share}; };
     const auto elastically = [&](double share) {
@@ -133,7 +138,7 @@ BodyEquilibrium find_equilibrium(const BodyShape& body, const EliminationOrder& 
         if (!start) return false;
         u = unknowns.scatter(unknowns.gather(*start));
         if (!loaded.admits(u)) return false;
-        const bool near = loaded.conservative() || unknowns.gather(loaded.net_force(u)).norm() < 0.2 * load;
+        const bool near = loaded.conservative() || unknowns.gather(loaded.net_force(u)).norm() < near_share * load;
         return (near || elastically(1)) && newton.minimise(loaded, within(options.tolerance), u, guide);
     };
     // Each step starts where the last two point to; only the last has to be exact.

@@ -19,9 +19,14 @@ constexpr std::size_t most_secants = 12;    // steps with one factor
 constexpr int halvings = 30;                // of a step
 constexpr double armijo = 1e-4;             // share of the decrease that the slope promises
 constexpr double least_shift = 1e-5;        // share of the diagonal's mean
-constexpr double watchdog_shift = 2e-2;     // where a watchdog_step landed: enough nearly always
-constexpr int most_astray = 10;             // shifts on end: on the way to an equilibrium there are up to three
-constexpr double roundings = 4;             // rounding is estimated as of independent errors; some go together
+constexpr double most_shift = 100;          // of it: a step is the net force over the shift then, and another is wrong
+// Of the terms that a potential adds up: a few hundred roundings, what independent ones of 10^5 terms come to.
+constexpr double rounding_of_sums = 1e-13;
+constexpr double shortest_next = 0.1,
+                 longest_next = 0.5;     // of a step, the next that is tried: a parabola may be a poor guess
+constexpr double watchdog_shift = 2e-2;  // where a watchdog_step landed: enough nearly always
+constexpr int most_astray = 10;          // shifts on end: on the way to an equilibrium there are up to three
+constexpr double roundings = 4;          // rounding is estimated as of independent errors; some go together
 // Share of the largest displacement that a Newton step moves at most where nothing lowers the potential any more:
 // readings are known to a thousandth of it at best, and the answer is good to far less than that.
 constexpr double nothing_more = 1e-6;
@@ -78,7 +83,7 @@ bool Newton::factor_shifted(double share) {
 bool Newton::factor_with_shift(const LoadedBody& body, const Eigen::VectorXd& u) {
     const double last = std::exchange(shift_, 0);
     if (factor(body, u)) return true;
-    for (shift_ = std::max(least_shift, last / 10); shift_ < 100; shift_ *= 10) {
+    for (shift_ = std::max(least_shift, last / 10); shift_ < most_shift; shift_ *= 10) {
         if (factor_shifted(shift_)) return true;
     }
     return false;
@@ -121,13 +126,13 @@ double Newton::search(const LoadedBody& body, const State& from, const Eigen::Ve
         if (change <= -armijo * length * slope) return length;
         if (body.conservative()) {
             // Where differences of energy drown in rounding the slope stands for them. [Hager & Zhang 2005]
-            const double rounding = 1e-13 * to.potential.scale;
+            const double rounding = rounding_of_sums * to.potential.scale;
             if (change <= rounding && end_slope >= -(1 - 2 * armijo) * slope) return length;
         } else if (to.r.norm() <= (1 - armijo * length) * from.r.norm()) {
             return length;
         }
         // Where a parabola through both slopes has its least value.
-        length *= std::clamp(slope / (slope - end_slope), 0.1, 0.5);
+        length *= std::clamp(slope / (slope - end_slope), shortest_next, longest_next);
     }
     return 0;
 }

@@ -22,6 +22,15 @@ PALPATE_INLINE void put(double* y, double sum, Join join) {
     *y = join == Join::set ? sum : join == Join::add ? *y + sum : *y - sum;
 }
 
+/// Asks for the values that rows to come need: a row's panel is R short streams, which end before the processor has
+/// made them out. A page ahead is some hundred cycles of work; asking beyond the end does nothing.
+template <std::size_t bytes>
+PALPATE_INLINE void ahead(const void* now) {
+    constexpr std::size_t line = 64, page = 4096;
+    for (std::size_t k = 0; k < bytes + line - 1; k += line)
+        __builtin_prefetch(static_cast<const char*>(now) + page + k);
+}
+
 /// Eight columns of X at once: each entry of A meets a vector.
 template <int R, int C, class Value>
 PALPATE_INLINE void multiply_eight(const int* column, const Value* panel, std::int64_t width, const double* X, int p,
@@ -29,6 +38,7 @@ PALPATE_INLINE void multiply_eight(const int* column, const Value* panel, std::i
     Lanes sum[R] = {}, x;
     for (std::int64_t k = 0; k < width; k += C) {
         const double* from = X + static_cast<std::int64_t>(C) * *column++ * p;
+        ahead<R * C * sizeof(Value)>(panel + R * k);
         for (int c = 0; c < C; ++c) {
             load(from + static_cast<std::int64_t>(c) * p, x);
             for (int r = 0; r < R; ++r) sum[r] += static_cast<double>(panel[r * width + k + c]) * x;
@@ -52,6 +62,7 @@ PALPATE_INLINE void multiply_one(const int* column, const Value* panel, std::int
             xs[i] = X[(static_cast<std::int64_t>(C) * column[i / C] + i % C) * p];
         }
         column += gathered / C;
+        ahead<R * gathered * sizeof(Value)>(panel + R * k);
         for (int i = 0; i < gathered; i += lanes) {
             load(xs + i, x);
             for (int r = 0; r < R; ++r) {
@@ -62,6 +73,7 @@ PALPATE_INLINE void multiply_one(const int* column, const Value* panel, std::int
     }
     for (; k < width; k += C) {
         const double* from = X + static_cast<std::int64_t>(C) * *column++ * p;
+        ahead<R * C * sizeof(Value)>(panel + R * k);
         for (int c = 0; c < C; ++c) {
             for (int r = 0; r < R; ++r) rest[r] += panel[r * width + k + c] * from[static_cast<std::int64_t>(c) * p];
         }

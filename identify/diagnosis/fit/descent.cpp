@@ -15,7 +15,8 @@ double settled(double objective, Eigen::Index readings, bool has_effects) {
     const double noise = 0.5 * static_cast<double>(readings);
     constexpr double share = 1e-3;
     const double most = has_effects ? 20 * share : share;
-    return std::max(0.02, std::clamp(share * objective / noise, share, most) * (objective - noise));
+    constexpr double least = 0.02;  // of ln of evidence
+    return std::max(least, std::clamp(share * objective / noise, share, most) * (objective - noise));
 }
 
 /// The move m that maximises g^T m - m^T H m / 2 where some numbers have theirs already.
@@ -56,7 +57,7 @@ Eigen::VectorXd limited_move(const Eigen::MatrixXd& H, const Eigen::VectorXd& g,
 }  // namespace
 
 double objective(const Whitening& V, const Eigen::VectorXd& d, const FitPriors& priors, const Eigen::VectorXd& x) {
-    return 0.5 * d.dot(V.apply(d).col(0)) + priors.objective(x);
+    return 0.5 * V.chi_square(d) + priors.objective(x);
 }
 
 Eigen::VectorXd error_of(const Problem& problem, const ForwardSolution& forward) {
@@ -76,7 +77,8 @@ void Descent::run(int most_steps, bool to_the_end) {
     int crawling = 0;
     double now = objective(*at_.V, at_.error, priors_, at_.explanation.all());
     linearise();
-    // A fit that still decreases by a tenth per step is converging: it gets additional steps.
+    // A fit that still decreases by a tenth per step is converging: it gets additional steps, up to a bound on its
+    // price.
     constexpr int at_most = 4;  // times as many
     constexpr double much = 0.1;
     bool falls = true;
@@ -96,7 +98,7 @@ void Descent::run(int most_steps, bool to_the_end) {
         if (!advance(limited_move(H, g, priors_, held, move), now)) return;
         falls = before - now > much * before && !at_.explanation.has_memory();
         linearise();
-        constexpr double little = 0.01;
+        constexpr double little = 0.01;  // of the objective; design choice: the second round goes to the end
         crawling = is_shortened_ && before - now < little * now ? crawling + 1 : 0;
         if (crawling == 2 && !to_the_end && at_.explanation.has_memory()) return;
     }
@@ -107,15 +109,18 @@ bool Descent::cannot_catch_up(double now, double promised) const {
     constexpr int first_steps = 3;  // whose slopes are those of another place
     constexpr int many_steps = 6;
     const double rivals = 0.5 * rival_ * rival_ * static_cast<double>(problem_.rows());
-    const bool is_slow = at_.steps >= first_steps && now - 3 * promised > 1.5 * 1.5 * rivals;
-    return is_slow || (at_.steps >= many_steps && now > 5 * 5 * rivals);
+    // Design choices, see RefitOptions::rival: with less fits are given up that would lead.
+    constexpr double more = 3, behind = 1.5, far_behind = 5;  // times the promise; times the rival's rms
+    const bool is_slow = at_.steps >= first_steps && now - more * promised > behind * behind * rivals;
+    return is_slow || (at_.steps >= many_steps && now > far_behind * far_behind * rivals);
 }
 
 /// Plays a step, shortened until the objective falls. False when none was found.
 bool Descent::advance(const Eigen::VectorXd& move, double& now) {
     const Eigen::VectorXd x = at_.explanation.all();
     const ModelSetting setting = at_.explanation.setting();
-    for (double share = 1; share > 0.01; share *= 0.4) {
+    constexpr double shorter = 0.4, shortest = 0.01;  // six attempts, each of which solves all actions
+    for (double share = 1; share > shortest; share *= shorter) {
         Explanation trial = at_.explanation;
         trial.set_all((x + share * move).cwiseMax(priors_.least).cwiseMin(priors_.most));
         std::vector<Eigen::VectorXd> predicted = at_.forward.q;

@@ -2,8 +2,8 @@
 
 #include <vector>
 
-#include "identify/diagnosis/fit/fit_priors.h"
-#include "identify/diagnosis/fit/refit.h"
+#include "identify/diagnosis/fit/priors/fit_priors.h"
+#include "identify/diagnosis/fit/refit_result.h"
 
 namespace palpate::identify {
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "identify/numerics/parallel.h"
+#include "mesh/errors.h"
 
 namespace palpate::identify {
 namespace {
@@ -80,6 +81,15 @@ Points channels_of(const BodyModel& model, const Problem& problem, const ModelSe
         channels.row(force + 1) = reactions.segment<3>(6 * static_cast<Eigen::Index>(i) + 3);
     }
     return channels;
+}
+
+bool has_equilibrium(const BodyModel& model, const ModelSetting& setting, const Action& action) {
+    try {
+        model.equilibrium(setting, action);
+        return true;
+    } catch (const SolverFailure&) {
+        return false;
+    }
 }
 
 ForwardSolution solve_forward(const BodyModel& model, const Problem& problem, const Explanation& explanation,

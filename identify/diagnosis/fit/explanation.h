@@ -50,6 +50,9 @@ ForwardSolution solve_forward(const BodyModel& model, const Problem& problem, co
                               int threads, const std::vector<Eigen::VectorXd>* start = nullptr,
                               const TangentCache* guides = nullptr);
 
+/// Does the body bear an action, from rest?
+bool has_equilibrium(const BodyModel& model, const ModelSetting& setting, const Action& action);
+
 /// Sensitivities of the measured coordinates to force signatures at the solved configurations, over sigma: P (J^-1
 /// forces + steps), through the measurement effects of the explanation (N x width each). One factorisation an action
 /// serves all. `steps_of_first` (when asked for): J^-1 forces of the first signatures (K of dofs x width).

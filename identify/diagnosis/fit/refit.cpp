@@ -5,8 +5,8 @@
 #include <numbers>
 
 #include "identify/diagnosis/fit/descent.h"
-#include "identify/diagnosis/fit/fit_priors.h"
-#include "identify/diagnosis/fit/known_magnitude.h"
+#include "identify/diagnosis/fit/priors/fit_priors.h"
+#include "identify/diagnosis/fit/priors/known_magnitude.h"
 #include "identify/diagnosis/fit/scatter.h"
 #include "mesh/errors.h"
 
@@ -28,14 +28,15 @@ void begin(const BodyModel& model, const Problem& problem, int threads, const Re
         } catch (const SolverFailure&) {  // too far from there
         }
     }
-    const int most = start ? 2 : 6;  // times
+    constexpr double stiffer = 0.3;  // ln of the stiffness, each time: a third more
+    const int most = start ? 2 : 6;  // times: to 1.8 or 6 times as stiff; a guess is further off than a fit nearby
     for (int attempt = 0;; ++attempt) {
         try {
             return stands(nullptr);
         } catch (const SolverFailure&) {
             if (attempt == most) throw;
             for (Eigen::Index p = 0; p < at.explanation.theta.size(); ++p) {
-                if (model.parameters()[p].stiffens) at.explanation.theta[p] += 0.3;
+                if (model.parameters()[p].stiffens) at.explanation.theta[p] += stiffer;
             }
         }
     }
@@ -54,7 +55,6 @@ void take_nuisances(const BodyModel& model, const Problem& problem, const RefitO
 }
 
 void conclude(const Problem& problem, const FitPriors& priors, Refit& at) {
-    const auto N = static_cast<double>(problem.rows());
     const Eigen::VectorXd x = at.explanation.all();
     // ln Z = -(chi^2 + priors)/2 - ln |V| / 2 - sum ln sd + ln |covariance| / 2
     const Eigen::LLT<Eigen::MatrixXd> factor(at.covariance);
@@ -65,7 +65,7 @@ void conclude(const Problem& problem, const FitPriors& priors, Refit& at) {
     const Eigen::VectorXd unscaled = at.error.cwiseProduct(problem.sigma);
     at.rms_mm = problem.rms_mm(unscaled);
     at.rms_n = problem.rms_n(unscaled);
-    at.whitened_rms = std::sqrt(at.error.dot(at.V->apply(at.error).col(0)) / N);
+    at.whitened_rms = at.V->rms(at.error);
     const Eigen::VectorXd nuisance_pulls = at.V->nuisances(at.error);
     if (nuisance_pulls.size() > 0) {
         Eigen::Index most = 0;
@@ -153,9 +153,8 @@ Refit refit(const BodyModel& model, const Problem& problem, const Explanation& e
     }
     Descent descent(model, problem, priors, options, at);
     descent.run(options.steps, false);
-    constexpr double hopeless = 2;  // rms left, whitened
-    const double left = std::sqrt(at.error.dot(at.V->apply(at.error).col(0)) / static_cast<double>(problem.rows()));
-    if (!(start && start->V) || left < hopeless) {
+    constexpr double hopeless = 2;  // rms left, whitened: a second round would hardly make it noise, and is saved
+    if (!(start && start->V) || at.V->rms(at.error) < hopeless) {
         take_nuisances(model, problem, options, at);
         descent.run(options.steps, true);
     } else {

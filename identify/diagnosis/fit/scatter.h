@@ -1,7 +1,7 @@
 #pragma once
 
-#include "identify/diagnosis/fit/fit_priors.h"
-#include "identify/diagnosis/fit/refit.h"
+#include "identify/diagnosis/fit/priors/fit_priors.h"
+#include "identify/diagnosis/fit/refit_result.h"
 
 namespace palpate::identify {
 

@@ -39,6 +39,7 @@ AtOnce effect_at_once(const BodyModel& model, const Problem& problem, const Expl
     ModelSetting setting = explanation.setting();
     const bool enforced = explanation.effects[effect]->enforce(values, setting);
     for (Eigen::Index j = 0; j < values.size(); ++j) {
+        if (!explanation.effects[effect]->is_fitted(j)) continue;
         const Sides sides = about(explanation, effect, j);
         Action ahead = sides.ahead.act(problem, k), behind = sides.behind.act(problem, k);
         if (!enforced && is_same(ahead, behind)) continue;
@@ -291,6 +292,7 @@ Eigen::MatrixXd seen_directly(const BodyModel& model, const Problem& problem, co
     Eigen::Index column = explanation.theta.size();
     for (std::size_t e = 0; e < explanation.effects.size(); ++e) {
         for (Eigen::Index j = 0; j < explanation.values[e].size(); ++j, ++column) {
+            if (!explanation.effects[e]->is_fitted(j)) continue;
             constexpr double h = 1e-5;
             Explanation ahead = explanation, behind = explanation;
             ahead.values[e][j] += h;

@@ -13,7 +13,7 @@ namespace palpate::identify {
 /// several threads that ask for different actions.
 class TangentCache {
 public:
-    static constexpr double default_capacity = 0.5;  // [GB]
+    static constexpr double default_capacity = 0.5;  // [GB]; a fit has two at a time, more saves factorisations
     explicit TangentCache(std::size_t actions, double capacity = default_capacity)
         : kept_(actions), capacity_(capacity) {}
 

@@ -9,8 +9,10 @@ struct NuisanceOptions {
     double shift = 0.25;    // of a contact along the surface, 1 sd as a share of its radius
     double radius = 0.25;   // of its radius itself
     double softness = 0.3;  // of ln stiffness within two radii of a contact
-    double clamp = 0.6;     // of ln stiffness in each sector of what a support's border cuts
-    int clamp_sectors = 30;
+    /// Of ln stiffness in each sector of the elements along a support's border. Where a clamp ends, or the mesh of
+    /// another program, is known to an element: uniform over one, which is 1/sqrt(12) of its length.
+    double clamp = 0.29;
+    int clamp_sectors = 30;        // with six a border that is ragged was taken for an inclusion
     double gain_at_support = 0.3;  // of ln force of a probe, or what a tool feels, that reaches a support
     /// Of a tool's largest motion: its play, and what machine and grip yield under its largest force. Strain by
     /// the travel of a crosshead is off by some per cent, which is what extensometers are for.

@@ -8,14 +8,10 @@
 
 #include "identify/diagnosis/likelihood/tool_prints.h"
 #include "identify/loading/tool_motions.h"
+#include "identify/numerics/summaries.h"
 
 namespace palpate::identify {
 namespace {
-
-/// The motion, 0 where a coordinate is left free.
-Vec3 imposed(const mesh::ToolMotion& motion) {
-    return motion.translation.array().isNaN().select(Vec3::Zero(), motion.translation);
-}
 
 Vec3 force_on_body(const Problem& problem, const ForwardSolution& forward, std::size_t k, int tool) {
     return forward.channels[k].row(problem.markers + 2 * Eigen::Index{tool});
@@ -25,7 +21,7 @@ Vec3 force_on_body(const Problem& problem, const ForwardSolution& forward, std::
 Vec3 stroke_of(const BodyModel& model, const Problem& problem, const ModelSetting& setting,
                const ForwardSolution& forward, int k, std::size_t motion) {
     const mesh::ToolMotion& own = forward.actions[k].motions[motion];
-    if (!may_part(problem.rig->tools[own.tool])) return imposed(own);
+    if (!may_part(problem.rig->tools[own.tool])) return known_part(own.translation);
     for (const ToolPrint& print : tool_prints(model, problem, setting, forward, k))
         if (print.motion == motion) return print.stroke * print.contact.force.normalized();
     return Vec3::Zero();

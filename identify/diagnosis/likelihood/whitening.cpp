@@ -3,6 +3,7 @@
 #include <cassert>
 #include <cmath>
 #include <map>
+#include <numbers>
 #include <vector>
 
 namespace palpate::identify {
@@ -97,6 +98,11 @@ std::vector<ScreenResult> screen_alternatives(const Whitening& V, const Eigen::V
                            .identifiable = all > 0 ? M.trace() / all : 0});
     }
     return results;
+}
+
+double one_sided_evidence(double log_bayes_factor, double estimate) {
+    constexpr double impossible = -50;
+    return estimate > 0 ? log_bayes_factor + std::numbers::ln2 : impossible;
 }
 
 LeftOutErrors leave_out(const Whitening& V, const Eigen::MatrixXd& d, const std::vector<int>& group) {

@@ -2,6 +2,7 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/Core>
+#include <cmath>
 #include <vector>
 
 namespace palpate::identify {
@@ -16,6 +17,9 @@ public:
 
     /// V^-1 b (N x p).
     Eigen::MatrixXd apply(const Eigen::MatrixXd& b) const;
+    /// d^T V^-1 d of errors d (N), and its root over N: 1 where they are noise.
+    double chi_square(const Eigen::VectorXd& d) const { return d.dot(apply(d).col(0)); }
+    double rms(const Eigen::VectorXd& d) const { return std::sqrt(chi_square(d) / static_cast<double>(d.size())); }
     double log_determinant() const { return log_determinant_; }
     /// The most probable nuisances behind errors d, in their prior standard deviations (c).
     Eigen::VectorXd nuisances(const Eigen::VectorXd& d) const;
@@ -53,6 +57,14 @@ ScreenResult screen(const Whitening& V, const Eigen::VectorXd& d, const Eigen::M
 /// The same for alternatives, each a group of p columns side by side (N x alternatives p), all at once.
 std::vector<ScreenResult> screen_alternatives(const Whitening& V, const Eigen::VectorXd& d, const Eigen::MatrixXd& b,
                                               const Eigen::VectorXd& tau);
+
+/// The same evidence of numbers that mean nothing below 0, out of that under the symmetric prior and their estimate.
+///
+/// The half of the prior that counts is twice as dense, and the posterior lies in it by a share of Phi(estimate / sd):
+/// ln 2 + ln Phi more. Instead of Phi a step is taken at 0, which differs from it within two sd. Design choice: what is
+/// estimated below 0 is out, as if by ten sd (ln 2 Phi(-10) = -52); finite, so that alternatives of which all are out
+/// still have a mean.
+double one_sided_evidence(double log_bayes_factor, double estimate);
 
 /// Errors d (N x p) of each group of rows (ids >= 0, N) as predicted from all the others: [V^-1]_gg^-1 [V^-1 d]_g.
 struct LeftOutErrors {

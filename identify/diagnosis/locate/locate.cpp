@@ -4,12 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <set>
 
-#include "identify/diagnosis/locate/residual.h"
-#include "identify/diagnosis/locate/source_bases.h"
-#include "identify/diagnosis/locate/source_evidence.h"
-#include "identify/diagnosis/locate/source_laws.h"
+#include "identify/diagnosis/locate/sources/source_bases.h"
+#include "identify/diagnosis/locate/sources/source_evidence.h"
+#include "identify/diagnosis/locate/sources/source_laws.h"
 
 namespace palpate::identify {
 namespace {
@@ -50,7 +48,7 @@ public:
             const double share = -std::log(static_cast<double>(laws.size() + (alone ? 2 : 0)));
             // A set says what touches the body: that something does in all states, though none says so, is less likely
             // than a force that needs no touch, which it cannot be told from where the body is slender.
-            constexpr double unsaid = -2.3;  // ln of a tenth
+            constexpr double unsaid = -2.3;  // ln of a tenth: a prior, design choice
             for (const auto& [law, strength] : laws) {
                 const bool touches = basis.kind == SourceKind::boundary && law == SourceLaw::constant;
                 add(basis, law, strength, share + (touches ? unsaid : 0));
@@ -233,24 +231,19 @@ std::vector<MissingSource::Rival> rivals_among(const std::vector<Alternative>& a
     return rivals;
 }
 
-/// Does a source's vector point somewhere?
-bool has_direction(SourceForm form) {
-    return form == SourceForm::force || form == SourceForm::traction || form == SourceForm::marker;
-}
-
 /// Place, spread and direction, averaged over the terms.
 void summarise(MissingSource& source) {
     Vec3 along = Vec3::Zero();
     for (const SourceTerm& term : source.terms) {
         source.at += term.probability * term.centre;
-        if (has_direction(term.form)) along += term.probability * term.mean.head<3>().normalized();
+        if (is_vector(term.form)) along += term.probability * term.mean.head<3>().normalized();
     }
     double squares = 0;
     for (const SourceTerm& term : source.terms)
         squares += term.probability * ((term.centre - source.at).squaredNorm() + term.extent * term.extent);
     source.spread = std::sqrt(squares);
     const SourceTerm& first = source.likeliest();
-    if (!has_direction(first.form)) {
+    if (!is_vector(first.form)) {
         source.direction = first.axis;
         if (first.form == SourceForm::frame) source.direction = first.mean.head<3>().normalized();
         return;
@@ -281,9 +274,11 @@ std::optional<MissingSource> locate_missing(const BodyModel& model, const Proble
     source.kind =
         static_cast<SourceKind>(std::ranges::max_element(source.log_bayes_factors) - source.log_bayes_factors.begin());
     const double sum = source.log_bayes_factor();
-    source.rivals = rivals_among(all, 0.25 * model.size());
+    constexpr double apart =
+        0.25;  // of the body's size: design choice, nearer ones are one place for a source of the largest size
+    source.rivals = rivals_among(all, apart * model.size());
     std::erase_if(all, [&](const Alternative& one) {
-        constexpr double negligible = 1e-3;  // probability
+        constexpr double negligible = 1e-3;  // probability: what is below adds little to a mean, and would be stored
         return one.kind != source.kind || one.log_weight - sum < std::log(negligible);
     });
     if (all.empty()) return std::nullopt;
@@ -297,50 +292,6 @@ std::optional<MissingSource> locate_missing(const BodyModel& model, const Proble
         source.terms.push_back(std::move(one.term));
     }
     summarise(source);
-    return source;
-}
-
-namespace {
-
-/// Single readings that were set aside, as a source.
-MissingSource source_of_outliers(const MeasurementSet& set, const Diagnosis& diagnosis) {
-    const Problem whole = make_problem(set, 1);
-    std::set<int> states;
-    std::vector<Vec3> places;
-    for (Eigen::Index n = 0; n < whole.rows(); ++n) {
-        const bool is_first = n == 0 || whole.reading[n] != whole.reading[n - 1];
-        if (!is_first || !std::ranges::binary_search(diagnosis.outliers.readings, whole.reading[n])) continue;
-        states.insert(whole.state[n]);
-        if (whole.is_position(n)) places.emplace_back(whole.rest.row(whole.channel(n)));
-    }
-    MissingSource source{.kind = SourceKind::sensor};
-    source.log_bayes_factors.fill(-INFINITY);
-    source.log_bayes_factors[static_cast<std::size_t>(SourceKind::sensor)] = diagnosis.outliers.log_bayes_factor;
-    source.states.assign(states.begin(), states.end());
-    SourceTerm term{.form = SourceForm::readings, .law = SourceLaw::irregular, .probability = 1};
-    for (const Vec3& place : places) source.at += place / static_cast<double>(places.size());
-    double squares = 0;
-    for (const Vec3& place : places) squares += (place - source.at).squaredNorm() / static_cast<double>(places.size());
-    source.spread = term.extent = std::sqrt(squares);
-    term.centre = source.at;
-    source.terms = {std::move(term)};
-    return source;
-}
-
-}  // namespace
-
-std::optional<MissingSource> where_missing(const BodyModel& model, const MeasurementSet& set,
-                                           const Diagnosis& diagnosis, const DiagnoseOptions& options) {
-    const bool has_outliers = !diagnosis.outliers.readings.empty();
-    const bool is_all = diagnosis.explanation.size() == 1 && !diagnosis.explained;
-    if (has_outliers && is_all) return source_of_outliers(set, diagnosis);
-    const Problem& problem = diagnosis.problem;
-    const Refit& baseline = diagnosis.baseline;
-    const bool is_named = diagnosis.verdict != Verdict::unexplained;  // then its numbers are those of the effect
-    const Refit beside = is_named ? baseline : beside_constant_sources(model, problem, baseline, options.refit);
-    std::optional<MissingSource> source = locate_missing(model, problem, beside, options.refit.threads);
-    if (source && !is_named) fit_source(model, problem, beside, baseline, options, *source);
-    if (!source && has_outliers) return source_of_outliers(set, diagnosis);
     return source;
 }
 

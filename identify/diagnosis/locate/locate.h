@@ -3,8 +3,7 @@
 #include <functional>
 #include <optional>
 
-#include "identify/diagnosis/diagnose_options.h"
-#include "identify/diagnosis/diagnosis.h"
+#include "identify/diagnosis/fit/refit_result.h"
 #include "identify/diagnosis/locate/missing_source.h"
 
 namespace palpate::identify {
@@ -15,10 +14,5 @@ namespace palpate::identify {
 std::optional<MissingSource> locate_missing(const BodyModel& model, const Problem& problem, const Refit& fit,
                                             int threads,
                                             const std::function<bool(const SourceTerm&)>& is_candidate = {});
-
-/// The same of a diagnosis, from what its baseline leaves; where single readings are all that is wrong, those. Where no
-/// effect explains the readings, the source is fitted.
-std::optional<MissingSource> where_missing(const BodyModel& model, const MeasurementSet& set,
-                                           const Diagnosis& diagnosis, const DiagnoseOptions& options);
 
 }  // namespace palpate::identify

@@ -7,10 +7,6 @@
 namespace palpate::identify {
 namespace {
 
-bool is_vector(SourceForm form) {
-    return form == SourceForm::force || form == SourceForm::traction || form == SourceForm::marker;
-}
-
 /// "0.31 +- 0.04".
 std::string with_sd(double value, double sd) { return fmt::format("{:.2g} ± {:.1g}", value, sd); }
 
@@ -54,6 +50,19 @@ std::string vector_in_short(const MissingSource& source, const SourceTerm& term,
 }
 
 }  // namespace
+
+bool is_vector(SourceForm form) {
+    return form == SourceForm::force || form == SourceForm::traction || form == SourceForm::marker;
+}
+
+WeightPlace place_of(const Eigen::VectorXd& weight, const Points& points) {
+    WeightPlace place{.norm = weight.sum()};
+    if (!(place.norm > 0)) return place;
+    place.centroid = points.transpose() * weight / place.norm;
+    place.extent =
+        std::sqrt(weight.dot((points.rowwise() - place.centroid.transpose()).rowwise().squaredNorm()) / place.norm);
+    return place;
+}
 
 Eigen::VectorXd source_weight(const Vec3& centre, double radius, const Points& points) {
     if (std::isinf(radius)) return Eigen::VectorXd::Ones(points.rows());

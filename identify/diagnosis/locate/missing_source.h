@@ -52,6 +52,9 @@ enum class SourceForm {
     readings,   // single readings that are off, each by itself; it has no numbers
 };
 
+/// Is it a force or a shift, which has a direction?
+bool is_vector(SourceForm form);
+
 /// One way to explain what is left: where it is, how strong, how likely among those of its kind.
 struct SourceTerm {
     SourceForm form = SourceForm::force;
@@ -111,5 +114,13 @@ SourceField field_of(const MissingSource& source, const Points& points, int stat
 
 /// Weight of a source at some points (n).
 Eigen::VectorXd source_weight(const Vec3& centre, double radius, const Points& points);
+
+/// Where some weight over points is (n): its sum, its centroid, and its rms distance from there [mm].
+struct WeightPlace {
+    double norm = 0;  // if that is 0, the others are not known
+    Vec3 centroid = Vec3::Zero();
+    double extent = 0;
+};
+WeightPlace place_of(const Eigen::VectorXd& weight, const Points& points);
 
 }  // namespace palpate::identify

@@ -4,8 +4,14 @@
 
 #include "identify/diagnosis/diagnose_options.h"
 #include "identify/diagnosis/diagnosis.h"
+#include "identify/diagnosis/locate/fitted/source_fit.h"
 
 namespace palpate::identify {
+
+/// What the baseline of a diagnosis leaves, located; where single readings are all that is wrong, those. Where no
+/// effect explains the readings, the source is fitted.
+std::optional<MissingSource> where_missing(const BodyModel& model, const MeasurementSet& set,
+                                           const Diagnosis& diagnosis, const DiagnoseOptions& options);
 
 /// What an explanation, or the baseline where there is none, leaves of the readings, as an effect that models show:
 /// where a fit may begin with it.
@@ -19,19 +25,5 @@ struct Residual {
 /// that go with a load or with the time have no cause that a model knows of; faults of the readings are none of a body.
 std::optional<Residual> find_residual(const BodyModel& model, const Diagnosis& diagnosis,
                                       const DiagnoseOptions& options);
-
-/// The fit that sources are located beside. A constant one bends a fit until the stiffness does what the source does;
-/// so where most of what a fit leaves is alike in all states, it is fitted anew to how the states differ. Its `error`
-/// is that of the problem itself.
-Refit beside_constant_sources(const BodyModel& model, const Problem& problem, const Refit& fit,
-                              const RefitOptions& options);
-
-/// A source that was located beside a fit, fitted to the readings: place, size and strength at the equilibria that they
-/// come to, where first order tells of a strong one in kind alone, and not always of that. Every source that models
-/// show is tried, and the likeliest from several places and under every law. It stays as it is where one that models do
-/// not show is likelier than all fits, and where no fit is likelier than the one `without` a source. The fit; absent:
-/// it stays.
-std::optional<Refit> fit_source(const BodyModel& model, const Problem& problem, const Refit& beside,
-                                const Refit& without, const DiagnoseOptions& options, MissingSource& source);
 
 }  // namespace palpate::identify

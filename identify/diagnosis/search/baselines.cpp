@@ -27,7 +27,8 @@ Explanation Baselines::start(const Problem& problem, int law, const Eigen::Vecto
 Refit Baselines::fit_under(const Problem& problem, int law, const Refit* neighbour) const {
     RefitOptions how = options_->refit;
     if (neighbour) {
-        how.steps = std::min(how.steps, 4);
+        constexpr int from_near = 4;  // steps: few are enough from close by; design choice
+        how.steps = std::min(how.steps, from_near);
         Refit from = *neighbour;
         from.V.reset();
         return identify::refit(*model_, problem, start(problem, law, from.explanation.theta), how, &from);
@@ -50,7 +51,9 @@ bool Baselines::could_match(const Problem& problem, int law, const Refit& fit) c
     Explanation explanation = fit.explanation;
     explanation.law = law;
     const double promised = promised_objective(*model_, problem, explanation, options_->refit, fit);
-    constexpr double about = 50;  // ln of evidence, in units of what is left
+    // ln of evidence, in units of what is left. Design choice: with more, laws are fitted that do not lead; with less,
+    // one is missed whose nuisances, taken where it stands, would make up for what it lags by.
+    constexpr double about = 50;
     return promised < objective(fit) + about * std::max(1.0, fit.whitened_rms * fit.whitened_rms);
 }
 
@@ -167,8 +170,10 @@ Explanation first_guess(const BodyModel& model, const Problem& problem, int law,
         sums.pm += w * modelled[n] * (measured[n] - unloaded);
         sums.pp += w * modelled[n] * modelled[n];
     }
+    // Below a fiftieth the answers hardly go with the linear ones, or against them, and tell no scale.
+    constexpr double least = 0.02;
     const auto ratio = [](const Sums& sums) {
-        return sums.pp > 0 && sums.pm > 0.02 * sums.pp ? sums.pm / sums.pp : 1.0;
+        return sums.pp > 0 && sums.pm > least * sums.pp ? sums.pm / sums.pp : 1.0;
     };
     const double stiffer = stiffness.pp > 0 ? ratio(stiffness) : 1 / ratio(compliance);
     for (Eigen::Index p = 0; p < guess.theta.size(); ++p) {

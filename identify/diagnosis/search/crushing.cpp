@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "identify/diagnosis/fit/explanation.h"
 #include "identify/diagnosis/search/baselines.h"
 #include "mesh/errors.h"
 
@@ -22,15 +23,6 @@ double pressure_of(const BodyModel& model, const Action& action) {
 }
 
 }  // namespace
-
-bool has_equilibrium(const BodyModel& model, const ModelSetting& setting, const Action& action) {
-    try {
-        model.equilibrium(setting, action);
-        return true;
-    } catch (const SolverFailure&) {
-        return false;
-    }
-}
 
 Problem without_crushing_probes(const BodyModel& model, const Problem& problem, int threads,
                                 std::vector<std::string>& notes) {

@@ -4,9 +4,6 @@
 
 namespace palpate::identify {
 
-/// Does the body bear an action, from rest?
-bool has_equilibrium(const BodyModel& model, const ModelSetting& setting, const Action& action);
-
 /// The problem without the probes that press harder than Young's modulus on a patch and find no equilibrium under the
 /// model's last law: they say nothing. Each is told in `notes`.
 /// @throws SolverFailure when no loaded action remains.

@@ -72,7 +72,8 @@ std::string note_of_correction(const Problem& problem) {
         "off the readings.",
         of_forces ? problem.rms_n(problem.discretisation) : mm, of_forces ? "N" : "mm", 100 * share,
         of_forces ? "forces" : "displacement");
-    constexpr double most = 0.2;  // halved edges leave up to a third of it, more than most effects are worth
+    // Halved edges leave up to a third of it: a fifteenth of the displacement, more than most effects are worth.
+    constexpr double most = 0.2;
     if (share > most) {
         note +=
             " That is too much to correct reliably: shorter elements (--edge-length) reduce it to a quarter where they "

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "identify/diagnosis/search/screen_plan.h"
+#include "identify/numerics/summaries.h"
 
 namespace palpate::identify {
 namespace {
@@ -66,26 +67,21 @@ ScreenedEffect score_columns(const Problem& problem, const FitResidual& residual
     std::size_t best = 0;
     std::vector<double> evidence;
     for (const ScreenResult& one : all) {
-        // half of the prior lies where the numbers mean nothing
-        constexpr double impossible = -50;
-        const double own = !b.one_sided          ? one.log_bayes_factor
-                           : one.value.sum() > 0 ? one.log_bayes_factor + std::log(2.0)
-                                                 : impossible;
+        const double own =
+            b.one_sided ? one_sided_evidence(one.log_bayes_factor, one.value.sum()) : one.log_bayes_factor;
         evidence.push_back(own);
         if (own > evidence[best]) best = evidence.size() - 1;
     }
-    double mean = 0;
-    for (const double one : evidence) mean += std::exp(one - evidence[best]) / static_cast<double>(evidence.size());
-    result.log_bayes_factor = evidence[best] + std::log(mean);
+    result.log_bayes_factor = log_mean_exp(evidence);
     result.identifiable = all[best].identifiable;
     const auto columns = b.columns.middleCols(static_cast<Eigen::Index>(best) * p, p);
     result.predicted_rms_mm = residual.predicted_rms(problem, columns, b.prior_sd);
-    for (const double share : {1.0, 0.3, 0.1, 0.03}) {
+    for (const double share : {1.0, 0.3, 0.1, 0.03}) {  // half decades: see start_of
         const Eigen::VectorXd start = plan.start(static_cast<Eigen::Index>(best), share * all[best].value);
         if (result.starts.empty() || start != result.starts.back()) result.starts.push_back(start);
     }
     if (!plan.place) return result;
-    constexpr double nearly = 0.9;
+    constexpr double nearly = 0.9;  // of the best one's evidence; design choice, it may cost a second refit
     double second = nearly * evidence[best];
     for (std::size_t i = 0; i < evidence.size(); ++i) {
         const auto alternative = static_cast<Eigen::Index>(i);
@@ -150,7 +146,7 @@ Eigen::VectorXd start_of(const ScreenedEffect& screened, double without,
     for (const Eigen::VectorXd& start : screened.scan) {
         const double begins = objective(start);
         worse = begins > least + alike ? worse + 1 : 0;
-        if (worse == 2) break;  // more of it is worse still
+        if (worse == 2) break;  // twice by more than chance: more of it is worse still
         if (!(begins < least)) continue;
         least = begins;
         best = start;

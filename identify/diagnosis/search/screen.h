@@ -19,7 +19,7 @@ struct ScreenedEffect {
     std::vector<Eigen::VectorXd> scan = {};         // see ScreenPlan
 
     /// Upper bound for a refit: the screen is a linearisation, which a refit may exceed twofold, and a small one
-    /// several times.
+    /// several times. Design choice: a higher bound costs refits that do not lead, a lower one may miss one that does.
     double at_most() const { return 2 * log_bayes_factor + 200; }
 };
 

@@ -4,9 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
-#include "identify/diagnosis/statistics/chance.h"
 #include "identify/diagnosis/statistics/independent_readings.h"
+#include "identify/diagnosis/statistics/largest_noise.h"
 #include "identify/diagnosis/verdict/verdict.h"
 #include "mesh/errors.h"
 
@@ -52,6 +53,13 @@ std::size_t Search::index_of_leader() const {
                                     tried_.begin());
 }
 
+std::vector<std::size_t> Search::by_evidence() const {
+    std::vector<std::size_t> order(tried_.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::ranges::stable_sort(order, std::greater{}, [&](std::size_t i) { return tried_[i].log_bayes_factor; });
+    return order;
+}
+
 const Problem& Search::problem_for(const Explanation& explanation) const {
     return explanation.has_memory() ? stages_ : problem_;
 }
@@ -59,7 +67,7 @@ const Problem& Search::problem_for(const Explanation& explanation) const {
 std::vector<ScreenedEffect> Search::screen_at(const Refit& base, const std::vector<std::string>& without) const {
     std::vector<std::shared_ptr<const EffectHypothesis>> others;
     std::ranges::copy_if(effects_, std::back_inserter(others), [&](const auto& effect) {
-        return std::ranges::find(without, effect->name()) == without.end();
+        return !effect->is_last_resort() && std::ranges::find(without, effect->name()) == without.end();
     });
     std::vector<ScreenedEffect> result =
         screen_effects(model_, problem_for(base.explanation), base, others, options_.refit.threads);
@@ -70,7 +78,8 @@ std::vector<ScreenedEffect> Search::screen_at(const Refit& base, const std::vect
 void Search::refit_tried(const Problem& corrected) {
     problem_ = corrected;
     stages_ = problem_.by_stage ? problem_ : problem_.stage_by_stage();
-    const double least = leader() ? 0.5 * leader()->log_bayes_factor : 0;
+    constexpr double of_leader = 0.5;  // what explains less will not lead by another correction; each costs a fit
+    const double least = leader() ? of_leader * leader()->log_bayes_factor : 0;
     for (FittedExplanation& one : tried_) {
         report(progress_, "refit with a finer mesh's correction", 0.9);
         std::optional<FittedExplanation> found;
@@ -169,9 +178,11 @@ void Search::confirm_single_effects() {
                             .log_bayes_factor = screened.log_bayes_factor,
                             .identifiable = screened.identifiable,
                             .predicted_rms_mm = screened.predicted_rms_mm};
-        double least = std::max(options_.least_screen, 0.1 * screened_[law].front().log_bayes_factor);
-        // A refit finds more than a linearisation promises, and not many times as much.
-        if (enough) least = std::max(least, 0.3 * least_next_to_noise(*screened.effect, problem_, options_));
+        // A refit finds more than a linearisation promises, and not many times as much: design choices, which save
+        // refits.
+        constexpr double of_leader = 0.1, of_claim = 0.3;
+        double least = std::max(options_.least_screen, of_leader * screened_[law].front().log_bayes_factor);
+        if (enough) least = std::max(least, of_claim * least_next_to_noise(*screened.effect, problem_, options_));
         if (could_explain_anything(base, *screened.effect))
             candidate.objection = fmt::format(
                 "with {} independent readings it would explain whatever was measured. Read more markers, or load other "
@@ -201,9 +212,7 @@ void Search::confirm_single_effects() {
     }
     confirm_at_load_response(law);
     // The law goes with the effect: the two that lead are tried under the others too.
-    std::vector<std::size_t> order(tried_.size());
-    for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
-    std::ranges::stable_sort(order, std::greater{}, [&](std::size_t i) { return tried_[i].log_bayes_factor; });
+    const std::vector<std::size_t> order = by_evidence();
     for (std::size_t i = 0; i < std::min<std::size_t>(2, order.size()); ++i) try_other_laws(order[i]);
     for (int other = 0; other < baselines_.laws(); ++other) {
         if (other != law && !screened_[other].empty()) confirm_under(other);
@@ -227,7 +236,7 @@ bool Search::claims(const FittedExplanation& explained) const {
 
 /// Has it, with the stiffness, as many numbers as there are independent readings? No claim would come of its fit.
 bool Search::could_explain_anything(const Refit& base, const EffectHypothesis& effect) const {
-    return free_numbers(base) + std::ssize(effect.numbers(model_, problem_)) >= independent_;
+    return free_numbers(base) + effect.count_fitted(std::ssize(effect.numbers(model_, problem_))) >= independent_;
 }
 
 bool Search::has_claim() const {

@@ -12,7 +12,7 @@ namespace palpate::identify {
 ///
 /// Forward: next to the two single effects that explain most, what leads the screen there is added, and so on from the
 /// best pair. Backward: effects that became redundant are dropped; at each position an exchange for another one is
-/// tried.
+/// tried. Last resorts are none of these: they are asked for.
 class Search {
 public:
     /// Keeps references to all but the problem. `effects`: that may be missing.
@@ -22,6 +22,7 @@ public:
 
     void single_effects();
     void put_together();  // @pre single_effects
+    void last_resorts();  // the effects that are, where the others explain too little; @pre single_effects
     /// Fits once more, from where they stand, to a problem whose readings were corrected: the explanations with at
     /// least half the leader's evidence; the others are reassessed. @pre the baselines were
     void refit_tried(const Problem& corrected);
@@ -55,6 +56,7 @@ private:
     void drop_and_swap();
     const Problem& problem_for(const Explanation& explanation) const;
     std::size_t index_of_leader() const;
+    std::vector<std::size_t> by_evidence() const;  // places in tried_, most first
     bool was_tried(const std::vector<std::string>& names) const;
 
     const BodyModel& model_;

@@ -38,7 +38,7 @@ void Search::restart_leader() {
 /// Where nothing explains the readings under the law that promised most, something may under this one: what leads its
 /// screen, and what evades it.
 void Search::confirm_under(int law) {
-    constexpr int most_refits = 2;
+    constexpr int most_refits = 2;  // of what leads its screen: the price of another law
     const Refit& base = *baselines_.under(law);
     const double behind = baselines_.best().log_evidence - baselines_.evidence(law);
     int refitted = 0;
@@ -76,9 +76,9 @@ void Search::keep_better(FittedExplanation found) {
 /// a soft body that hangs under its weight looks as stiff as steel. So fits start there as well, and the better one is
 /// kept.
 void Search::confirm_at_load_response(int law) {
-    constexpr double much = 3;              // whitened rms
-    const double far = std::log(3.0);       // of Young's modulus, or what stands for it
-    constexpr std::size_t most_refits = 3;  // of effects, by the screen from there
+    constexpr double much = 3;              // whitened rms: where less is left, little has bent the fit
+    const double far = std::log(3.0);       // of Young's modulus, or what stands for it: design choice
+    constexpr std::size_t most_refits = 3;  // of effects, by the screen from there: the price of another start
     const Refit& base = *baselines_.under(law);
     if (base.whitened_rms < much) return;
     RefitOptions without_steps = options_.refit;
@@ -118,7 +118,7 @@ void Search::try_other_laws(std::size_t tried) {
         std::optional<FittedExplanation> other;
         if (law > 0 && own > 0) {
             // next to another law of large deformation; a matter of what little is left, where it does as well without
-            constexpr double as_well = 20;  // ln of evidence
+            constexpr double as_well = 20;  // ln of evidence: design choice, a law that lags by more is not fitted
             if (!leaves_only_noise(single.fit, options_)) continue;
             if (baselines_.evidence(law) + as_well < baselines_.evidence(own)) continue;
             tell();

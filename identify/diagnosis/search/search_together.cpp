@@ -1,4 +1,4 @@
-// Several effects at once.
+// Several effects at once, and those that are asked where no other one explains the readings.
 
 #include <algorithm>
 #include <cmath>
@@ -72,8 +72,9 @@ bool Search::extend(std::size_t from, int most) {
         const double least = noise_is_left ? least_next_to_effect(*screened.effect, base, problem_, options_)
                                            : options_.least_evidence();
         // A screen is a linearisation, and says somewhat too little at times; little of much explains nothing.
-        constexpr double share = 0.05;
-        const double worth_a_fit = std::max({options_.least_evidence(), 0.5 * least, share * excess(base)});
+        // Design choices, which save refits.
+        constexpr double of_claim = 0.5, of_excess = 0.05;
+        const double worth_a_fit = std::max({options_.least_evidence(), of_claim * least, of_excess * excess(base)});
         const bool said = refitted < most && screened.log_bayes_factor >= worth_a_fit;
         if (!said && !(screened.effect->evades_screen() && residual_is_small())) continue;
         std::vector<std::string> names = there;
@@ -98,9 +99,7 @@ bool Search::extend(std::size_t from, int most) {
 void Search::put_together() {
     if (options_.together < 2 || tried_.empty()) return;
     // The two single effects that explain most, then the best of what came out.
-    std::vector<std::size_t> order(tried_.size());
-    for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
-    std::ranges::stable_sort(order, std::greater{}, [&](std::size_t i) { return tried_[i].log_bayes_factor; });
+    const std::vector<std::size_t> order = by_evidence();
     const bool first_is_enough = leaves_only_noise(tried_[order.front()].fit, options_);
     for (std::size_t i = 0; i < std::min<std::size_t>(first_is_enough ? 1 : 2, order.size()); ++i) {
         if (!is_claimable(tried_[order[i]], options_)) break;
@@ -126,7 +125,8 @@ void Search::drop_and_swap() {
         std::vector<std::string> rest = names_of(best);
         std::erase(rest, effect->name());
         const double own = evidence_for(best.fit, effect->name());
-        const bool needed = own > 10 * options_.least_evidence();
+        constexpr double plenty = 10;  // times what a claim asks for: a fit without the effect hardly makes up for it
+        const bool needed = own > plenty * options_.least_evidence();
         if (needed && leaves_only_noise(best.fit, options_)) continue;
         // Without an effect that says nothing the others explain as much from here, where their own fit did not get to.
         const bool is_idle = own < options_.least_evidence();
@@ -158,6 +158,34 @@ void Search::drop_and_swap() {
         if (part && tried_[leader].log_bayes_factor - fewer.log_bayes_factor < options_.least_evidence()) {
             tried_.erase(tried_.begin() + static_cast<std::ptrdiff_t>(leader));
             return;
+        }
+    }
+}
+
+void Search::last_resorts() {
+    for (const auto& effect : effects_) {
+        if (!effect->is_last_resort()) continue;
+        // By itself, and next to what leads.
+        std::vector<FittedExplanation> bases{{.effects = {}, .fit = baselines_.best()}};
+        if (leader() && is_claimable(*leader(), options_)) bases.push_back(*leader());
+        for (const FittedExplanation& base : bases) {
+            const std::vector<ScreenedEffect> screened =
+                screen_effects(model_, problem_for(base.fit.explanation), base.fit, {effect}, options_.refit.threads);
+            if (screened.empty()) break;
+            const bool is_alone = base.effects.empty();
+            if (is_alone)
+                ranking_.push_back({.effect = effect,
+                                    .screened = screened[0].log_bayes_factor,
+                                    .log_bayes_factor = screened[0].log_bayes_factor,
+                                    .identifiable = screened[0].identifiable,
+                                    .predicted_rms_mm = screened[0].predicted_rms_mm});
+            if (screened[0].log_bayes_factor < options_.least_screen || could_explain_anything(base.fit, *effect))
+                continue;
+            report(progress_, "refit with " + effect->name(), 0.88);
+            std::optional<FittedExplanation> found = refit_with(base.fit, screened[0]);
+            if (!found || found->log_bayes_factor < base.log_bayes_factor + options_.least_evidence()) continue;
+            found->effects.insert(found->effects.begin(), base.effects.begin(), base.effects.end());
+            tried_.push_back(std::move(*found));
         }
     }
 }

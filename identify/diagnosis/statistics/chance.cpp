@@ -1,7 +1,6 @@
 #include "identify/diagnosis/statistics/chance.h"
 
 #include <boost/math/special_functions/erf.hpp>
-#include <boost/math/special_functions/gamma.hpp>
 #include <cmath>
 #include <cstdint>
 #include <numbers>
@@ -26,11 +25,6 @@ Eigen::MatrixXd draw_errors(const Refit& fit, int count, std::uint64_t batch) {
 }
 
 }  // namespace
-
-double largest_noise(Eigen::Index readings, double probability) {
-    const auto N = static_cast<double>(readings);
-    return std::sqrt(2 * boost::math::gamma_q_inv(N / 2, probability) / N);
-}
 
 double largest_held_out(const Problem& problem, const Refit& fit, double probability) {
     constexpr int batches = 8, at_once = 50;  // 400 draws tell a standard deviation to 1/28

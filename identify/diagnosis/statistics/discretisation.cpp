@@ -15,12 +15,6 @@ namespace {
 /// in proportion to the displacement alters it by a tenth or so, which is nothing next to noise then.
 constexpr double small_for_noise = 1;
 
-double total(const Action& action) {
-    double sum = 0;
-    for (const mesh::Contact& contact : action.contacts) sum += contact.force.norm();
-    return sum;
-}
-
 /// Do the same contacts press along the same lines, by more or less, on a body that remembers nothing and that neither
 /// tools nor actuators load?
 bool press_alike(const Action& a, const Action& b) {
@@ -29,7 +23,7 @@ bool press_alike(const Action& a, const Action& b) {
     };
     return is_pressed_alone(a) && is_pressed_alone(b) && a.pressure == b.pressure && a.gravity == b.gravity &&
            std::ranges::equal(a.contacts, b.contacts, [](const mesh::Contact& x, const mesh::Contact& y) {
-               constexpr double aligned = 0.999;
+               constexpr double aligned = 0.999;  // cosine: within 2.6 degrees
                return x.point == y.point && x.radius == y.radius &&
                       x.force.dot(y.force) > aligned * x.force.norm() * y.force.norm();
            });
@@ -41,7 +35,7 @@ std::vector<int> largest_alike(const std::vector<Action>& actions) {
     for (std::size_t k = 0; k < actions.size(); ++k) {
         largest[k] = static_cast<int>(k);
         for (std::size_t j = 0; j < actions.size(); ++j) {
-            if (total(actions[j]) > total(actions[largest[k]]) && press_alike(actions[j], actions[k]))
+            if (sizes_of(actions[j]).force > sizes_of(actions[largest[k]]).force && press_alike(actions[j], actions[k]))
                 largest[k] = static_cast<int>(j);
         }
     }

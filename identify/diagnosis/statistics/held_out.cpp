@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "identify/diagnosis/search/crushing.h"
 #include "identify/diagnosis/statistics/discretisation.h"
+#include "identify/numerics/load_reduction.h"
 #include "mesh/core/scaled_motion.h"
 #include "mesh/errors.h"
 
@@ -85,11 +85,12 @@ Problem with_reduced_loads(const BodyModel& model, const Problem& problem, const
     const ModelSetting setting = explanation.setting();
     Problem eased = problem;
     for (int k = 0; k < static_cast<int>(eased.actions.size()); ++k) {
-        constexpr double less = 0.8;
-        for (int attempt = 0; attempt < 10 && !has_equilibrium(model, setting, explanation.act(eased, k)); ++attempt) {
-            for (mesh::Contact& contact : eased.actions[k].contacts) contact.force *= less;
-            for (mesh::ToolMotion& motion : eased.actions[k].motions) motion = mesh::scaled(motion, less);
-            for (mesh::ActuatorSetting& setting_of_one : eased.actions[k].settings) setting_of_one.scale(less);
+        Action& action = eased.actions[k];
+        for (int reductions = 0; reductions < most_load_reductions; ++reductions) {
+            if (has_equilibrium(model, setting, explanation.act(eased, k))) break;
+            for (mesh::Contact& contact : action.contacts) contact.force *= load_reduction;
+            for (mesh::ToolMotion& motion : action.motions) motion = mesh::scaled(motion, load_reduction);
+            for (mesh::ActuatorSetting& one : action.settings) one.scale(load_reduction);
         }
     }
     return eased;
@@ -131,10 +132,8 @@ HeldOut predict(const BodyModel& model, const Problem& merged, const Refit& fit,
     Eigen::VectorXd precisions(A.cols());
     precisions << Eigen::VectorXd::Ones(own.cols()), nuisances.precisions;
     const Whitening V(reading_weights(model, unseen, explanation, forward, options.nuisances), A, precisions);
-    const auto N = static_cast<double>(unseen.rows());
     const Eigen::VectorXd unscaled = error.cwiseProduct(unseen.sigma);
-    return {unseen.rms_mm(unscaled), unseen.rms_n(unscaled), std::sqrt(error.dot(V.apply(error).col(0)) / N),
-            V.residual(error)};
+    return {unseen.rms_mm(unscaled), unseen.rms_n(unscaled), V.rms(error), V.residual(error)};
 }
 
 }  // namespace palpate::identify

@@ -7,6 +7,8 @@
 #include <map>
 #include <vector>
 
+#include "identify/numerics/summaries.h"
+
 namespace palpate::identify {
 namespace {
 
@@ -15,14 +17,11 @@ bool are_parallel(const Vec3& a, const Vec3& b) {
     return std::abs(a.dot(b)) >= parallel * a.norm() * b.norm() && a.isZero(0) == b.isZero(0);
 }
 
-/// Coordinates that are left free say nothing.
-Vec3 without_free(const Vec3& motion) { return motion.array().isNaN().select(Vec3::Zero(), motion); }
-
 /// The same load but for its size and sign?
 bool is_same_way(const Action& a, const Action& b) {
     const auto same_motion = [](const mesh::ToolMotion& one, const mesh::ToolMotion& other) {
-        return one.tool == other.tool && are_parallel(without_free(one.translation), without_free(other.translation)) &&
-               are_parallel(without_free(one.rotation), without_free(other.rotation));
+        return one.tool == other.tool && are_parallel(known_part(one.translation), known_part(other.translation)) &&
+               are_parallel(known_part(one.rotation), known_part(other.rotation));
     };
     return are_parallel(a.gravity, b.gravity) && (a.pressure == 0) == (b.pressure == 0) &&
            std::ranges::equal(a.motions, b.motions, same_motion) &&
@@ -38,7 +37,7 @@ double size_of(const Action& action) {
     if (!action.contacts.empty()) return action.contacts.front().force.sum();
     if (!action.motions.empty()) {
         const mesh::ToolMotion& motion = action.motions.front();
-        return without_free(motion.translation).sum() + without_free(motion.rotation).sum();
+        return known_part(motion.translation).sum() + known_part(motion.rotation).sum();
     }
     if (!action.settings.empty()) return action.settings.front().value;
     return action.pressure != 0 ? action.pressure : action.gravity.sum();
@@ -50,7 +49,8 @@ int terms_needed(const std::vector<std::pair<double, double>>& curve) {
     const auto L = std::ssize(curve);
     double largest = 0;
     for (const auto& [t, d] : curve) largest = std::max(largest, std::abs(t));
-    Eigen::MatrixXd powers(L, std::min<Eigen::Index>(L, 6));
+    constexpr Eigen::Index most_terms = 6;  // design choice: what a response in so many powers leaves counts as no more
+    Eigen::MatrixXd powers(L, std::min(L, most_terms));
     Eigen::VectorXd d(L);
     for (Eigen::Index i = 0; i < L; ++i) {
         const double t = largest > 0 ? curve[i].first / largest : 1;

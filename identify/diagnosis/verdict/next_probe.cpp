@@ -82,7 +82,7 @@ private:
     Distance apart_at_rest(const Refit& one, const Refit& other) const {
         const Points& support = model_.support_points();
         if (support.rows() == 0) return {};
-        constexpr int fiducials = 4;
+        constexpr int fiducials = 4;  // three fix a frame, one more checks them
         const Points points = support(mesh::farthest_points(support, fiducials), Eigen::all);
         const auto seen = [&](const Explanation& explanation) {
             const Points at = explanation.see(problem_, points);
@@ -98,7 +98,7 @@ private:
             A.col(c) = seen(moved) - own;
         }
         const Whitening V(Eigen::VectorXd::Ones(d.size()), A, Eigen::VectorXd::Ones(A.cols()));
-        return {std::sqrt(d.dot(V.apply(d).col(0))), sigma_ * d.norm() / std::sqrt(static_cast<double>(d.size()))};
+        return {std::sqrt(V.chi_square(d)), sigma_ * d.norm() / std::sqrt(static_cast<double>(d.size()))};
     }
 
     /// What is read in a trial: all markers, in every state.
@@ -139,36 +139,15 @@ const EffectHypothesis& own_effect(const FittedExplanation& of, const FittedExpl
     return found == of.effects.end() ? *of.effects.front() : **found;
 }
 
-/// Trials of each kind under which the markers move furthest apart, three of a kind at most.
+/// Trials of each kind under which the markers move furthest apart, a few of a kind.
 std::vector<int> best_of_each_kind(const std::vector<CandidateProbe>& all, const std::vector<double>& moved) {
     std::vector<int> order(all.size());
     std::iota(order.begin(), order.end(), 0);
     std::ranges::stable_sort(order, std::greater{}, [&](int i) { return moved[i]; });
     std::map<std::string, int> taken;
-    std::erase_if(order, [&](int i) { return ++taken[all[i].probe.kind] > 3; });
+    constexpr int most = 3;  // each is played with its nuisances under every pair of explanations, which takes longest
+    std::erase_if(order, [&](int i) { return ++taken[all[i].probe.kind] > most; });
     return order;
-}
-
-/// What is to be done, as a clause.
-std::string asks(const NextProbe& probe) {
-    const auto listed = [](const Vec3& v) { return fmt::format("({:.3g}, {:.3g}, {:.3g})", v.x(), v.y(), v.z()); };
-    if (probe.kind == "load") return "press and read all markers";
-    if (probe.kind == "repeat") return fmt::format("repeat probe {}", probe.probe);
-    if (probe.kind == "dwell") {
-        return fmt::format("hold one load, and read it after {:.3g} s and after {:.3g} s", probe.times[0],
-                           probe.times[1]);
-    }
-    if (probe.kind == "unload") {
-        return fmt::format("{}, and read the body again at half {} and once it is off",
-                           probe.contact ? "load once more, stronger" : "drive it once more as far as ever",
-                           probe.contact ? "the load" : "of that");
-    }
-    if (probe.kind == "orientation") {
-        return fmt::format("read the unloaded body turned by {:.0f} degrees about {}, with its support",
-                           probe.turn->degrees, listed(probe.turn->axis));
-    }
-    if (probe.kind == "pressure") return "open the cavities, and read the unloaded body";
-    return "read markers that are fixed next to the supports";
 }
 
 }  // namespace
@@ -188,7 +167,7 @@ NextProbe separate(const BodyModel& model, const Problem& problem, const std::ve
     const EffectHypothesis &one = own_effect(*alike[0], *alike[1]), &other = own_effect(*alike[1], *alike[0]);
     const std::string separates = fmt::format("separates {} from {}", one.name(), other.name());
     const auto best = std::ranges::max_element(apart, {}, &Distance::sigmas) - apart.begin();
-    constexpr double tells = 3;  // sigmas
+    constexpr double tells = 3;  // sigmas, the usual bound of what is told apart
     if (!(apart[best].sigmas > tells)) {
         return {.kind = one.description().next_probe,
                 .why = fmt::format("{}: {}", separates, one.description().separating_probe)};
@@ -198,7 +177,7 @@ NextProbe separate(const BodyModel& model, const Problem& problem, const std::ve
     result.rms_mm = apart[best].rms_mm;
     result.why =
         fmt::format("{}: {}; their predictions would differ by {:.2g} mm rms there, {:.3g} times the uncertainty",
-                    separates, asks(result), result.rms_mm, result.sigmas);
+                    separates, all[best].asks, result.rms_mm, result.sigmas);
     return result;
 }
 

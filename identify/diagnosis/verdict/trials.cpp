@@ -1,13 +1,13 @@
 #include "identify/diagnosis/verdict/trials.h"
 
-#include <Eigen/Geometry>
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
-#include <cmath>
-#include <numbers>
 #include <optional>
 
+#include "identify/diagnosis/verdict/further_loads.h"
+#include "identify/diagnosis/verdict/probe_kinds.h"
 #include "mesh/core/scaled_motion.h"
 #include "mesh/geometry/sampling.h"
 
@@ -16,12 +16,8 @@ namespace {
 
 /// How strong an action is among those of its kind; presses before all others.
 std::array<double, 3> strength_of(const Action& action) {
-    double force = 0, value = 0, way = 0;
-    for (const mesh::Contact& contact : action.contacts) force += contact.force.norm();
-    for (const mesh::ActuatorSetting& setting : action.settings) value += std::abs(setting.value);
-    for (const mesh::ToolMotion& motion : action.motions)
-        way += motion.translation.array().isNaN().select(0, motion.translation).norm();
-    return {force, value, way};
+    const LoadSizes sizes = sizes_of(action);
+    return {sizes.force, sizes.setting, sizes.way};
 }
 
 /// Collects trials that begin like the problem's own probes.
@@ -52,9 +48,14 @@ public:
         }
         add_turns();
         if (model_.has_cavities()) {
-            all_.push_back({.probe = {.kind = "pressure"}, .states = {unloaded(0)}, .conditions = {.vented = true}});
+            all_.push_back({.probe = {.kind = probe_kinds::pressure},
+                            .asks = "open the cavities, and read the unloaded body",
+                            .states = {unloaded(0)},
+                            .conditions = {.vented = true}});
         }
-        all_.push_back({.probe = {.kind = "fiducials"}, .states = {}});
+        all_.push_back({.probe = {.kind = probe_kinds::fiducials},
+                        .asks = "read markers that are fixed next to the supports",
+                        .states = {}});
         return std::move(all_);
     }
 
@@ -79,47 +80,50 @@ private:
 
     /// Inwards and outwards at places over the markers, as strong as the own ones are on average.
     void add_loads() {
-        double force = 0, radius = 0;
-        int count = 0;
-        for (const Stage& stage : own_) {
-            for (const mesh::Contact& contact : stage.action.contacts) {
-                force += contact.force.norm();
-                radius += contact.radius;
-                ++count;
-            }
-        }
-        constexpr int places = 16;
+        MeanPush push;
+        for (const Stage& stage : own_)
+            for (const mesh::Contact& contact : stage.action.contacts) push.count(contact);
+        constexpr int places = 16;  // each is played twice under every explanation: the price of a finer search
         for (const int marker : mesh::farthest_points(problem_.rest.topRows(problem_.markers), places)) {
-            const Vec3 at = problem_.rest.row(marker);
-            const Vec3 push = -force / count * model_.normal_near(at, 0.05 * model_.size());
+            const mesh::Contact inwards = push.at(model_, problem_.rest.row(marker));
             for (const double sign : {1.0, -1.0}) {
-                const mesh::Contact contact{.point = at, .force = sign * push, .radius = radius / count};
-                all_.push_back({.probe = {.kind = "load", .contact = contact}, .states = {under({contact}, last_)}});
+                mesh::Contact contact = inwards;
+                contact.force *= sign;
+                all_.push_back({.probe = {.kind = probe_kinds::load, .contact = contact},
+                                .asks = "press and read all markers",
+                                .states = {under({contact}, last_)}});
             }
         }
     }
 
     void add_repeats() {
         for (const Stage& stage : own_) {
-            all_.push_back({.probe = {.kind = "repeat", .contact = contact_of(stage), .probe = stage.probe},
+            all_.push_back({.probe = {.kind = probe_kinds::repeat, .contact = contact_of(stage), .probe = stage.probe},
+                            .asks = fmt::format("repeat probe {}", stage.probe),
                             .states = {under(stage.action, stage.time)}});
         }
     }
 
-    /// The strongest held, read at once and ten times as late as any so far.
+    /// The strongest held.
     void add_dwell() {
-        const double late = last_ > 0 ? 10 * last_ : 100, soon = 1e-3 * late;
+        const auto [soon, late] = dwell_times(last_);
         const Stage& stage = own_.front();
-        all_.push_back({.probe = {.kind = "dwell", .contact = contact_of(stage), .times = {soon, late}},
+        all_.push_back({.probe = {.kind = probe_kinds::dwell, .contact = contact_of(stage), .times = {soon, late}},
+                        .asks = fmt::format("hold one load, and read it after {:.3g} s and after {:.3g} s", soon, late),
                         .states = {under(stage.action, soon), under(stage.action, late)}});
     }
 
     /// The strongest half as strong again, half of that, and nothing; what is driven goes as far as it did.
     void add_release() {
         const Stage& stage = own_.front();
-        const double most = stage.action.contacts.empty() ? 1 : 1.5;
-        CandidateProbe trial{.probe = {.kind = "unload", .contact = contact_of(stage)},
-                             .states = {under(stage.action, 1, most), under(stage.action, 2, most / 2), unloaded(3)}};
+        const bool is_pressed = !stage.action.contacts.empty();
+        const double most = is_pressed ? overload : 1;
+        CandidateProbe trial{
+            .probe = {.kind = probe_kinds::unload, .contact = contact_of(stage)},
+            .asks = fmt::format("{}, and read the body again at half {} and once it is off",
+                                is_pressed ? "load once more, stronger" : "drive it once more as far as ever",
+                                is_pressed ? "the load" : "of that"),
+            .states = {under(stage.action, 1, most), under(stage.action, 2, most / 2), unloaded(3)}};
         if (trial.probe.contact) trial.probe.contact->force *= most;
         all_.push_back(std::move(trial));
     }
@@ -129,11 +133,13 @@ private:
         for (int axis = 0; axis < 3; ++axis) {
             for (const double degrees : {90.0, 180.0}) {
                 const Vec3 about = Vec3::Unit(axis);
-                // The room's directions turn the other way in the body's frame.
-                const Mat3 turn = Eigen::AngleAxisd(-degrees * std::numbers::pi / 180, about).toRotationMatrix();
+                const Mat3 turn = room_of_turned(about, degrees);
                 LoadState state = unloaded(0);
                 if (!known.isZero(0)) state.gravity = turn * known;
-                all_.push_back({.probe = {.kind = "orientation", .turn = BodyTurn{about, degrees}},
+                all_.push_back({.probe = {.kind = probe_kinds::orientation, .turn = BodyTurn{about, degrees}},
+                                .asks = fmt::format("read the unloaded body turned by {:.0f} degrees about ({:.3g}, "
+                                                    "{:.3g}, {:.3g}), with its support",
+                                                    degrees, about.x(), about.y(), about.z()),
                                 .states = {state},
                                 .conditions = {.turn = turn}});
             }

@@ -7,6 +7,7 @@ namespace palpate::identify {
 /// A probe that could be made next.
 struct CandidateProbe {
     NextProbe probe;                // what it is, without what it would tell
+    std::string asks;               // what is to be done, as a clause
     std::vector<LoadState> states;  // what would be read, without readings; none: only what stands still
     ProbeConditions conditions = {};
 };

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <set>
 
+#include "identify/diagnosis/fit/priors/fit_priors.h"
 #include "identify/diagnosis/statistics/chance.h"
 #include "identify/diagnosis/verdict/next_probe.h"
 #include "identify/effects/catalogue.h"
@@ -51,6 +52,7 @@ bool leaves_too_much(const Refit& without, const FittedExplanation& explained) {
     const double before = without.whitened_rms * without.whitened_rms;
     const double after = explained.fit.whitened_rms * explained.fit.whitened_rms;
     const double most = std::ranges::all_of(explained.effects, &EffectHypothesis::is_like_mesh_error) ? 0.5 : 1;
+    // One standard deviation of a mean square of noise, whose expectation is 1.
     const double chance = std::sqrt(2 / static_cast<double>(explained.fit.residual.size()));
     return after - 1 > most * (before - after) + chance;
 }
@@ -71,7 +73,7 @@ std::string objection_of_few_readings(const Diagnosis& diagnosis, const FittedEx
     Eigen::Index numbers = free_numbers(explained.fit);
     for (std::size_t e = 0; e < explained.fit.explanation.effects.size(); ++e)
         if (explained.has(explained.fit.explanation.effects[e]->name()))
-            numbers += std::ssize(explained.fit.numbers[e]);
+            numbers += explained.fit.explanation.effects[e]->count_fitted(std::ssize(explained.fit.numbers[e]));
     if (numbers < diagnosis.independent) return {};
     return fmt::format(
         "including the stiffness it has {} parameters for {} independent readings, enough to fit any data. Read more "
@@ -81,11 +83,8 @@ std::string objection_of_few_readings(const Diagnosis& diagnosis, const FittedEx
 
 /// A correct explanation predicts left-out probes better than the baseline, whatever the nuisances absorb.
 std::string objection_of_held_out(const Diagnosis& diagnosis, const FittedExplanation& explained) {
-    // Numbers that only the probe left out tells, as its gain, are unknown there: it errs as much as without the
-    // effect, and by chance a little more.
-    constexpr double chance = 1.1;
     const double with = explained.held_out.rms_mm, without = diagnosis.baseline_held_out.rms_mm;
-    if (with <= chance * without) return {};
+    if (with <= held_out_tolerance * without) return {};
     return fmt::format("held-out probes are predicted worse with it, to {:.3g} mm instead of {:.3g} mm", with, without);
 }
 
@@ -123,17 +122,22 @@ std::string objection_to(const Diagnosis& diagnosis, const FittedExplanation& ex
 }
 
 /// Likely explanations that explain enough and do not fall behind the likeliest, by evidence. Those with an effect that
-/// is refused for what it came out as (`refused`) are no rivals.
+/// is refused for what it came out as (`refused`) are no rivals; nor are aliases that were put together, of a last
+/// resort: what they mimic may be just that.
 /// Nothing is claimed that ranks below an effect that could not be fitted (`unfitted`, its evidence by the screen).
 std::vector<const FittedExplanation*> explain_alike(const std::vector<const FittedExplanation*>& by_evidence,
                                                     const std::set<const FittedExplanation*>& refused, double unfitted,
                                                     const DiagnoseOptions& options) {
     std::vector<const FittedExplanation*> alike;
-    double most = unfitted;
+    double most = unfitted, of_aliases = -INFINITY;
     for (const FittedExplanation* one : by_evidence) {
         if (!is_claimable(*one, options) || refused.contains(one)) continue;
-        most = std::max(most, one->log_bayes_factor);
-        const bool leads = most - one->log_bayes_factor < options.least_lead;
+        const bool is_of_aliases = !put_together_of_aliases(*one).empty();
+        double& best = is_of_aliases ? of_aliases : most;
+        best = std::max(best, one->log_bayes_factor);
+        const bool is_last_resort = std::ranges::any_of(one->effects, &EffectHypothesis::is_last_resort);
+        const double rival = is_last_resort ? most : std::max(most, of_aliases);
+        const bool leads = rival - one->log_bayes_factor < options.least_lead;
         if (leaves_only_noise(one->fit, options) && leads && one->objection.empty()) alike.push_back(one);
     }
     return alike;
@@ -160,8 +164,7 @@ void name_effects(Diagnosis& diagnosis) {
 }  // namespace
 
 Eigen::Index free_numbers(const Refit& fit) {
-    constexpr double fixed = 0.1;  // a prior of less, as that of a ratio that is told, leaves nothing to be fitted
-    return (fit.prior_sd.head(fit.explanation.theta.size()).array() > fixed).count();
+    return (fit.prior_sd.head(fit.explanation.theta.size()).array() > told_prior_sd).count();
 }
 
 bool is_claimable(const FittedExplanation& explained, const DiagnoseOptions& options) {
@@ -175,7 +178,7 @@ bool leaves_only_noise(const Refit& fit, const DiagnoseOptions& options) {
 }
 
 double least_next_to_noise(const EffectHypothesis& effect, const Problem& problem, const DiagnoseOptions& options) {
-    const double least = 2 * options.least_evidence();
+    const double least = 2 * options.least_evidence();  // the odds of a claim, squared
     if (!effect.is_like_mesh_error()) return least;
     // Halved edges leave a third of what they show, where errors fall with the square of the edge.
     constexpr double beyond_halved_edges = 1.0 / 3;
@@ -211,7 +214,8 @@ void decide_verdict(const BodyModel& model, const DiagnoseOptions& options, Diag
         if (own != diagnosis.ranking.end()) own->objection = one.objection;
     }
     std::ranges::stable_sort(by_evidence, std::greater{}, &FittedExplanation::log_bayes_factor);
-    // Is there evidence for more than what is claimed? Little of what an error of the mesh brings about is none.
+    // Is there evidence for more than what is claimed? Little of what an error of the mesh brings about is none: what
+    // explains less than half of what leads. Design choice between calling a set unexplained and calling it adequate.
     const auto first =
         std::ranges::find_if(by_evidence, [&](const FittedExplanation* one) { return !refused.contains(one); });
     const double most = first == by_evidence.end() ? 0 : (*first)->log_bayes_factor;

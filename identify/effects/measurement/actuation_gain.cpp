@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "identify/effects/effect.h"
-#include "identify/effects/vector_words.h"
+#include "identify/effects/measurement/gains.h"
 #include "mesh/errors.h"
 
 namespace palpate::identify {
@@ -53,16 +53,11 @@ public:
     std::string sentence(const skeleton::EffectRecord& record) const override { return sentence_with(record, {}); }
 
     std::string sentence_with(const skeleton::EffectRecord& record, const Eigen::MatrixXd& covariance) const override {
-        const auto [least, most] =
-            std::ranges::minmax_element(record.parameters, {}, &skeleton::EffectParameter::value);
-        const auto in_words = [&](auto gain) {
-            return number_in_words(record, static_cast<std::size_t>(gain - record.parameters.begin()), covariance);
-        };
+        const auto [least, most] = gain_range(record, covariance);
         if (record.parameters.size() == 1)
-            return fmt::format("An actuator does not do what it is set to: the {} is {}.", least->name,
-                               in_words(least));
-        return fmt::format("Actuators do not do what they are set to: the {} is {}, the {} {}.", least->name,
-                           in_words(least), most->name, in_words(most));
+            return fmt::format("An actuator does not do what it is set to: the {} is {}.", least.name, least.in_words);
+        return fmt::format("Actuators do not do what they are set to: the {} is {}, the {} {}.", least.name,
+                           least.in_words, most.name, most.in_words);
     }
 
     MeasurementSet corrected(const MeasurementSet& set, const skeleton::EffectRecord& record) const override {
@@ -93,11 +88,7 @@ public:
                 "effect 'actuation-gain' needs another actuator or a tool beside the first actuator, as a gain that "
                 "all loads share is the body's stiffness: add a --cavity, a --tendon or --tool");
         }
-        constexpr double most = 100;
-        specified.positive_value("gain", 1, most);
-        const double sign = context.random.uniform() < 0.5 ? -1 : 1;
-        const auto at = [=](double x) { return specified.effect({{"gain", std::exp(sign * x)}}); };
-        return {{.at = at, .start = 0.3, .most = std::log(4.0), .is_specified = specified.has("gain")}};
+        return gain_samplers(context, specified);
     }
 
 private:

@@ -5,7 +5,8 @@
 
 #include "identify/diagnosis/fit/explanation.h"
 #include "identify/effects/effect.h"
-#include "identify/loading/lagged_load.h"
+#include "identify/loading/history/lagged_load.h"
+#include "mesh/numbers/median.h"
 #include "mesh/text/words.h"
 
 namespace palpate::identify {
@@ -148,10 +149,7 @@ private:
             if (before.probe == now.probe && now.time > before.time && is_loaded_otherwise(before.action, now.action))
                 intervals.push_back(now.time - before.time);
         }
-        if (intervals.empty()) return 0;
-        const auto middle = intervals.begin() + std::ssize(intervals) / 2;
-        std::ranges::nth_element(intervals, middle);
-        return *middle;
+        return intervals.empty() ? 0 : mesh::upper_median(std::move(intervals));
     }
 
     /// What acted a while before action k, which the other effects have made `now`.

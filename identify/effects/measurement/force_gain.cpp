@@ -5,7 +5,7 @@
 #include <map>
 
 #include "identify/effects/effect.h"
-#include "identify/effects/vector_words.h"
+#include "identify/effects/measurement/gains.h"
 #include "mesh/errors.h"
 
 namespace palpate::identify {
@@ -63,15 +63,11 @@ public:
     std::string sentence(const skeleton::EffectRecord& record) const override { return sentence_with(record, {}); }
 
     std::string sentence_with(const skeleton::EffectRecord& record, const Eigen::MatrixXd& covariance) const override {
-        const auto [least, most] =
-            std::ranges::minmax_element(record.parameters, {}, &skeleton::EffectParameter::value);
-        const auto in_words = [&](auto gain) {
-            return number_in_words(record, static_cast<std::size_t>(gain - record.parameters.begin()), covariance);
-        };
+        const auto [least, most] = gain_range(record, covariance);
         return fmt::format(
             "The force sensor's gain differs between probes: the true force is {} ({}) to {} ({}) times the reported "
             "one.",
-            in_words(least), least->name, in_words(most), most->name);
+            least.in_words, least.name, most.in_words, most.name);
     }
 
     MeasurementSet corrected(const MeasurementSet& set, const skeleton::EffectRecord& record) const override {
@@ -104,11 +100,7 @@ public:
         if (context.baseline.size() < 3) {
             throw InvalidInput("effect 'force-gain' is of every second probe: ask for two probes at least");
         }
-        constexpr double most = 100;
-        specified.positive_value("gain", 1, most);
-        const double sign = context.random.uniform() < 0.5 ? -1 : 1;
-        const auto at = [=](double x) { return specified.effect({{"gain", std::exp(sign * x)}}); };
-        return {{.at = at, .start = 0.3, .most = std::log(4.0), .is_specified = specified.has("gain")}};
+        return gain_samplers(context, specified);
     }
 
 private:

@@ -8,7 +8,8 @@
 #include <optional>
 
 #include "identify/inference/maximum/modes.h"
-#include "identify/loading/load_history.h"
+#include "identify/inference/problem/inform.h"
+#include "identify/loading/history/load_history.h"
 #include "mesh/errors.h"
 #include "mesh/text/words.h"
 #include "skeleton/statics/statics.h"

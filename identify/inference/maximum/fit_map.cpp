@@ -12,7 +12,7 @@ namespace {
 
 /// The start, or if nothing stands there, all stiffnesses threefold until something does.
 Prediction first_prediction(const PositionDomain& domain, int threads, Eigen::VectorXd& theta) {
-    constexpr int tries = 6;
+    constexpr int tries = 6;  // up to 729 times as stiff: what even that does not bear is told as a failure
     for (int i = 0;; ++i) {
         try {
             return domain.predict(theta, threads, nullptr, true);
@@ -32,11 +32,11 @@ std::optional<Prediction> try_prediction(const PositionDomain& domain, int threa
     }
 }
 
-constexpr double most_numbers = 4e6;  // of a spectrum's vectors
-constexpr double forcing = 1e-2;      // of what a step promises, that it may leave,
-constexpr double of_nothing = 0.1;    // or of a fall that is none
-constexpr double roughly = 1e-2;      // of what a promise tells
-constexpr int products_of_a_promise = 60;
+constexpr double most_numbers = 4e6;          // of a spectrum's vectors
+constexpr double forcing = 1e-2;              // of what a step promises, that it may leave,
+constexpr double of_nothing = 0.1;            // or of a fall that is none
+constexpr double roughly = 1e-2;              // of what a promise tells
+constexpr int products_of_a_promise = 60;     // at most: a bound of its cost
 constexpr int stale = 12;                     // products of steps, after which the spectrum is found anew, at least
 constexpr double column_cost_ratio = 3;       // products with a column after another, to one of a spectrum's
 constexpr int on_the_way = 128;               // directions of a spectrum that is there to precondition

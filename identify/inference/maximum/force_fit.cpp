@@ -7,7 +7,7 @@
 namespace palpate::identify {
 namespace {
 
-constexpr int most_iterations = 100;
+constexpr int most_iterations = 100;  // a bound: it ends before where a step promises nothing
 constexpr double enough = 1e-10;      // of ln density, that a step promises
 constexpr double least_share = 1e-8;  // of the loads and forces, that a net force is sure to: rounding of equilibria
 

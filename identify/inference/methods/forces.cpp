@@ -6,6 +6,7 @@
 #include "identify/inference/methods/methods.h"
 #include "identify/inference/particles/tempered_filter.h"
 #include "identify/inference/posterior.h"
+#include "identify/inference/problem/inform.h"
 #include "skeleton/statics/statics.h"
 
 namespace palpate::identify {

@@ -9,8 +9,8 @@
 namespace palpate::identify {
 namespace {
 
-constexpr double effective_share = 0.2;  // of the particles, when the sigmas are found
-constexpr double mutation_of_spread = 1.0 / 3;
+constexpr double effective_share = 0.2;         // of the particles, when the sigmas are found
+constexpr double mutation_of_spread = 1.0 / 3;  // of the particles' own sd, where options.mutation is 0: a choice
 
 /// The scale s for which exp(-e / 2 s) leaves the wanted effective sample size.
 double annealed_scale(const Eigen::VectorXd& e, double wanted) {

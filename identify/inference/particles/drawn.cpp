@@ -9,7 +9,7 @@ namespace palpate::identify {
 
 namespace {
 
-constexpr int least_independent = 24;
+constexpr int least_independent = 24;       // an sd from so many is known to 15 %, 1 / sqrt(2 * 23)
 constexpr double most_drawn_numbers = 2e5;  // of independent draws
 
 /// Particles that are not weighed (N x P), each less likely than the mean by half a square (N).

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "identify/measurements/labels/coherent_drift.h"
+#include "mesh/numbers/median.h"
 
 namespace palpate::identify {
 namespace {
@@ -45,8 +46,7 @@ struct Markers {
             squares[m] = extent * extent;
             nearest.push_back(std::sqrt(squares.minCoeff()));
         }
-        std::ranges::nth_element(nearest, nearest.begin() + std::ssize(nearest) / 2);
-        return nearest[nearest.size() / 2];
+        return mesh::upper_median(std::move(nearest));
     }
 };
 

@@ -10,6 +10,7 @@
 
 #include "identify/measurements/rest_body.h"
 #include "identify/measurements/rig/rig_places.h"
+#include "identify/numerics/summaries.h"
 #include "mesh/errors.h"
 
 namespace palpate::identify {
@@ -54,9 +55,6 @@ struct SizeOfShape {
     double operator()(const mesh::GripShape&) const { return 0; }
 };
 
-/// Coordinates that are left free count as 0.
-Vec3 without_free(const Vec3& coordinates) { return coordinates.array().isNaN().select(0, coordinates); }
-
 /// Does a tool in its place reach over a point of the body at rest? Coordinates that are left free count as 0.
 class TouchedPlace {
 public:
@@ -65,7 +63,7 @@ public:
     }
 
     bool holds(const mesh::ToolMotion& motion, const Vec3& point) const {
-        const Vec3 moved = without_free(motion.translation), turn = without_free(motion.rotation);
+        const Vec3 moved = known_part(motion.translation), turn = known_part(motion.rotation);
         const double angle = turn.norm();
         const Mat3 R = angle > 0 ? Eigen::AngleAxisd(angle, turn / angle).toRotationMatrix() : Mat3::Identity();
         // the point as the tool sees it: at rest, about its origin
@@ -205,7 +203,7 @@ void note_far_tools(MeasurementSet& set) {
             if (motion == state.motions.end()) continue;
             is_read = is_read || std::ranges::find(state.reactions, static_cast<int>(t), &ReactionReading::tool) !=
                                      state.reactions.end();
-            const Vec3 place = tool.origin + without_free(motion->translation);
+            const Vec3 place = tool.origin + known_part(motion->translation);
             nearest = std::min(nearest, body.holds(place) ? 0 : body.tree.closest(place).distance - reach);
         }
         if (is_read && nearest > allowed)

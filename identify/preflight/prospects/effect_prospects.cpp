@@ -4,7 +4,7 @@
 #include <cmath>
 #include <map>
 
-#include "identify/diagnosis/statistics/outliers.h"
+#include "identify/diagnosis/statistics/outliers/outliers.h"
 #include "identify/diagnosis/verdict/verdict.h"
 
 namespace palpate::identify {

@@ -3,23 +3,10 @@
 #include <string>
 #include <vector>
 
-#include "identify/measurements/measurement_set.h"
 #include "identify/preflight/prospects/effect_prospects.h"
+#include "identify/preflight/prospects/possible_experiments.h"
 
 namespace palpate::identify {
-
-/// More states for a set, as a rig could bring them within an hour.
-struct Experiment {
-    std::string kind;                    // unload, levels, repeat, orientation, load, dwell, release, pressure
-    std::string words;                   // what to do, as an order
-    std::vector<LoadState> states = {};  // without readings
-    std::vector<ProbeConditions> conditions = {};  // of each state
-};
-
-/// Those that the set lacks: the unloaded pose, the body turned, every probe at one and two thirds of its load and once
-/// more, presses at other places, the strongest load held, or taken off, vented cavities. Loads, tools and actuators
-/// are the set's own.
-std::vector<Experiment> possible_experiments(const BodyModel& model, const MeasurementSet& set, const Problem& problem);
 
 /// What an experiment would do for an effect.
 struct ExperimentGain {

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "identify/recordings/assembly/frames/register_states.h"
+#include "identify/recordings/assembly/register_states.h"
 
 namespace palpate::identify {
 

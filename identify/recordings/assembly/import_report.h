@@ -4,16 +4,10 @@
 #include <string>
 #include <vector>
 
+#include "identify/recordings/assembly/clocks/clock_report.h"
 #include "identify/recordings/assembly/frames/rigid_motion.h"
 
 namespace palpate::identify {
-
-/// How a file's clock became that of its probe.
-struct ClockReport {
-    std::string file, how;
-    int probe = 0;
-    double offset = 0, rate = 1, sd = 0;  // t = offset + rate t_file [s], sd in the middle
-};
 
 /// What became of a probe.
 struct ProbeReport {

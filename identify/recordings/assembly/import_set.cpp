@@ -5,11 +5,11 @@
 #include <algorithm>
 #include <set>
 
-#include "identify/recordings/assembly/clocks/probe_recording.h"
+#include "identify/recordings/assembly/clocks/merge_recordings.h"
 #include "identify/recordings/assembly/fill_set.h"
-#include "identify/recordings/assembly/frames/register_states.h"
 #include "identify/recordings/assembly/map/import_map.h"
 #include "identify/recordings/assembly/map/map_entries.h"
+#include "identify/recordings/assembly/register_states.h"
 #include "identify/recordings/assembly/tracks/mend_tracks.h"
 #include "identify/recordings/assembly/tracks/name_points.h"
 #include "identify/recordings/files/read_recordings.h"
@@ -98,7 +98,7 @@ std::vector<FileRecordings> read_files(const ImportMap& map, const ImportOptions
 
 /// The middle of each point's track over its first frames.
 Points first_places(const Recording& recording) {
-    constexpr Eigen::Index frames = 20;
+    constexpr Eigen::Index frames = 20;  // a choice: their mean smooths noise, and the body has hardly moved yet
     Points places(std::ssize(recording.points), 3);
     for (Eigen::Index p = 0; p < places.rows(); ++p) {
         const Eigen::Matrix3Xd& at = recording.points[static_cast<std::size_t>(p)].at;
@@ -169,7 +169,7 @@ void check_names(const ImportMap& map, const std::vector<ProbeRecording>& probes
                           const std::set<std::string>& known) {
         if (known.contains(name)) return;
         const std::vector<std::string> names(known.begin(), known.end());
-        constexpr std::size_t most_listed = 20;
+        constexpr std::size_t most_listed = 20;  // names in a message
         std::vector<std::string> listed = names;
         listed.resize(std::min(listed.size(), most_listed));
         throw InvalidInput(fmt::format(
@@ -206,7 +206,7 @@ ImportedSet import_set(const ImportOptions& options) {
     PlacesOfFiles places;
     for (const FileRecordings& file : files)
         for (const Recording& recording : file.recordings) add_places_at_rest(recording, places);
-    const std::vector<ProbeRecording> recordings = merge_recordings(map, std::move(files), report);
+    const std::vector<ProbeRecording> recordings = merge_recordings(map, std::move(files), report.clocks);
     check_names(map, recordings);
 
     const double range = common_range(recordings);

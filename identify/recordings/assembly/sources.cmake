@@ -2,14 +2,17 @@ set(assembly_sources
   assembly/fill_set.cpp
   assembly/import_report.cpp
   assembly/import_set.cpp
+  assembly/register_states.cpp
+  assembly/clocks/common_column.cpp
   assembly/clocks/lag.cpp
   assembly/clocks/merge_recordings.cpp
+  assembly/clocks/probe_recording.cpp
   assembly/clocks/signal.cpp
   assembly/clocks/triggers.cpp
-  assembly/frames/register_states.cpp
   assembly/frames/rigid_motion.cpp
   assembly/frames/surface_fit.cpp
   assembly/map/map_entries.cpp
+  assembly/map/plateau_options.cpp
   assembly/map/read_import_map.cpp
   assembly/states/imported_state.cpp
   assembly/states/plateaus.cpp

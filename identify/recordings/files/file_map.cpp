@@ -83,7 +83,7 @@ MappedSheets read_mapped_sheets(const YamlFields& fields) {
 
 FileMap read_file_map(const YamlFields& fields) {
     FileMap map;
-    constexpr int most_lines = 1000000;
+    constexpr int most_lines = 1000000;  // above a table: a larger number is a slip
     if (fields.has("format")) map.format = fields.choice("format", format_names);
     if (fields.has("encoding")) map.encoding = fields.choice("encoding", {"utf-8", "utf-16", "latin-1"});
     if (fields.has("delimiter"))

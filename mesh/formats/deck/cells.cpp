@@ -6,6 +6,8 @@
 #include <array>
 #include <utility>
 
+#include "mesh/text/words.h"
+
 namespace palpate::mesh {
 namespace {
 
@@ -65,6 +67,24 @@ CellNodes nodes_of(CellShape shape) {
             break;
     }
     return {8, 20};
+}
+
+std::optional<CellShape> shape_of_type(const std::string& type) {
+    if (!type.starts_with("C3D")) return std::nullopt;
+    std::string_view digits = std::string_view(type).substr(3);
+    digits = digits.substr(0, digits.find_first_not_of("0123456789"));
+    for (const CellShape shape :
+         {CellShape::tetrahedron, CellShape::pyramid, CellShape::wedge, CellShape::hexahedron}) {
+        const CellNodes nodes = nodes_of(shape);
+        if (digits == std::to_string(nodes.corners) || digits == std::to_string(nodes.all)) return shape;
+    }
+    return std::nullopt;
+}
+
+int nodes_of_type(const std::string& type) {
+    const std::size_t from = type.find_first_of("0123456789", 2);
+    return parse_integer(std::string_view(type).substr(from, type.find_first_not_of("0123456789", from) - from))
+        .value_or(0);
 }
 
 Elements as_tetrahedra(const Cells& cells, std::vector<std::string>& notes) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -29,6 +30,11 @@ struct CellNodes {
     int corners, all;
 };
 CellNodes nodes_of(CellShape shape);
+
+/// The shape behind an element's type in a deck, as "C3D10M" or "C3D8R"; none: no solid.
+std::optional<CellShape> shape_of_type(const std::string& type);
+/// The first number in such a type, of a solid or not, which names how many nodes it has; 0: none.
+int nodes_of_type(const std::string& type);
 
 /// The cells as tetrahedra. Those that all are tetrahedra with the same number of nodes stay as they are; else each is
 /// cut by its corners, midsides left out, so that sides which two cells share are cut alike: all diagonals start from

@@ -13,25 +13,6 @@
 namespace palpate::mesh {
 namespace {
 
-/// The shape behind an element's type, as "C3D10M" or "C3D8R"; none: no solid.
-std::optional<CellShape> shape_of(const std::string& type) {
-    if (!type.starts_with("C3D")) return std::nullopt;
-    std::string_view digits = std::string_view(type).substr(3);
-    digits = digits.substr(0, digits.find_first_not_of("0123456789"));
-    for (const CellShape shape :
-         {CellShape::tetrahedron, CellShape::pyramid, CellShape::wedge, CellShape::hexahedron}) {
-        const CellNodes nodes = nodes_of(shape);
-        if (digits == std::to_string(nodes.corners) || digits == std::to_string(nodes.all)) return shape;
-    }
-    return std::nullopt;
-}
-
-int nodes_named_by(const std::string& type) {
-    const std::size_t from = type.find_first_of("0123456789", 2);
-    return parse_integer(std::string_view(type).substr(from, type.find_first_not_of("0123456789", from) - from))
-        .value_or(0);
-}
-
 /// "PART-1-1.12" is 12: a flat mesh has one instance.
 std::string without_instance(const std::string& word) {
     const std::size_t dot = word.rfind('.');
@@ -136,7 +117,7 @@ private:
 
     void begin_elements() {
         const std::string type = now_->parameter("TYPE");
-        shape_ = shape_of(type);
+        shape_ = shape_of_type(type);
         if (!shape_) {
             if (type.starts_with("C3D"))
                 throw InvalidInput(
@@ -145,7 +126,7 @@ private:
             left_out_.insert(type);
             return;
         }
-        cell_nodes_ = nodes_named_by(type);
+        cell_nodes_ = nodes_of_type(type);
         read_ = &DeckReader::read_element;
     }
 

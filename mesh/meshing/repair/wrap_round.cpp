@@ -18,7 +18,10 @@ namespace {
 constexpr double allowed_growth = 0.03;  // share of the volume
 constexpr int growth_points = 2500;      // tell that share to 0.34 %, one sigma
 constexpr double allowed_skin = 0.02;    // share of the area
-constexpr int most_wrapped = 100'000;    // triangles of a wrap, for limits on time and memory
+// Sizes of the ball that wraps, as parts of the diagonal, coarse, usual and fine: it enters no gaps narrower than it,
+// and the triangles of a wrap grow with the square of the part. The wrap lies a twentieth of the ball off the surface.
+constexpr double coarse_part = 25, usual_part = 100, fine_part = 170, parts_of_ball = 20;
+constexpr int most_wrapped = 100'000;  // triangles of a wrap, for limits on time and memory
 
 Surface wrapped_with(const Surface& surface, double alpha, double offset) {
     if (const auto wrapped =
@@ -93,6 +96,7 @@ public:
 
 private:
     static constexpr double share_of_move = 0.6;  // sheets that touch stay apart, and walls without thickness have some
+    static constexpr double least_left = 0.1;     // of a triangle's area, seen along its normal: it has all but folded
     static constexpr int rounds = 10, last_rounds = 4;
 
     std::vector<char> vertices_at_fault(const Surface& moved) const {
@@ -106,7 +110,7 @@ private:
             for (const int triangle : place.triangles) blame(triangle);
         const Points normals = area_vectors(moved);
         for (Eigen::Index t = 0; t < normals.rows(); ++t)
-            if (normals.row(t).dot(normals_.row(t)) < 0.1 * normals_.row(t).squaredNorm()) blame(t);
+            if (normals.row(t).dot(normals_.row(t)) < least_left * normals_.row(t).squaredNorm()) blame(t);
         return at_fault;
     }
 
@@ -116,7 +120,7 @@ private:
 
 /// Sound and round everything; no longer larger than the body where its vertices could go back onto it.
 Surface wrapped_closely(const Surface& surface, double alpha, double largest_hole) {
-    const double offset = alpha / 20;
+    const double offset = alpha / parts_of_ball;
     const Surface wrapped = wrapped_with(surface, alpha, offset);
     require_body(wrapped, offset, largest_hole);
     require_no_skin(wrapped, offset, largest_hole);
@@ -128,10 +132,10 @@ Surface wrapped_closely(const Surface& surface, double alpha, double largest_hol
 Wrapping wrap_round(const Surface& surface, double largest_hole) {
     const double diagonal = bounding_box(surface.vertices).diagonal();
     // A coarse wrap costs little, and tells a sheet from a body already.
-    const double coarse = diagonal / 25;
-    require_body(wrapped_with(surface, coarse, coarse / 20), coarse / 20, largest_hole);
+    const double coarse = diagonal / coarse_part;
+    require_body(wrapped_with(surface, coarse, coarse / parts_of_ball), coarse / parts_of_ball, largest_hole);
     double alpha = 0, growth = 0;
-    for (const double part : {100.0, 170.0}) {
+    for (const double part : {usual_part, fine_part}) {
         alpha = diagonal / part;
         const Surface wrapped = wrapped_closely(surface, alpha, largest_hole);
         growth = share_outside(wrapped, surface, growth_points);

@@ -14,7 +14,7 @@
 namespace palpate::pipeline {
 namespace {
 
-constexpr int most_spheres_with_all_probes = 200;
+constexpr int most_spheres_with_all_probes = 200;  // a choice of time: beyond, every second probe is fitted to
 
 /// Every second loaded state, and all unloaded ones.
 ProbedQuality with_half_the_probes(const ProbedQuality& probed) {

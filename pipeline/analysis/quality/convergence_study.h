@@ -7,7 +7,7 @@
 #include "pipeline/analysis/quality/graph.h"
 #include "pipeline/analysis/quality/shape.h"
 #include "pipeline/body/body.h"
-#include "pipeline/case/subject.h"
+#include "pipeline/case/subject/subject.h"
 
 namespace palpate::pipeline {
 

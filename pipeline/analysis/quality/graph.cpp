@@ -113,7 +113,7 @@ int genus(const mesh::Surface& surface) {
 }
 
 bool leaves(const mesh::SurfaceTree& body, const Vec3& from, const Vec3& to) {
-    constexpr int points = 16;
+    constexpr int points = 16;  // along the link: a gap shorter than a sixteenth of it may go unseen
     for (int i = 1; i < points; ++i) {
         if (!body.inside(from + (to - from) * i / points)) return true;
     }

@@ -15,7 +15,7 @@ namespace {
 
 constexpr double finer = 0.8;     // edges against those that were asked for
 constexpr int fit_markers = 150;  // as a run reads
-constexpr int all_markers = 100000;
+constexpr int all_markers = ProbeOptions::most_markers;
 
 /// Numbers of the probes that are held out, of 1 to `probes`. Drawn: directions come round every four probes, and a
 /// regular choice might meet one of them only.

@@ -6,7 +6,7 @@
 #include "fem/large_deformation/material_law.h"
 #include "identify/measurements/measurement_set.h"
 #include "mesh/progress.h"
-#include "pipeline/case/subject.h"
+#include "pipeline/case/subject/subject.h"
 
 namespace palpate::pipeline {
 

@@ -2,7 +2,7 @@
 
 #include "fem/material.h"
 #include "mesh/supports/region_yaml.h"
-#include "pipeline/case/read_case.h"
+#include "pipeline/case/settings/read_case.h"
 #include "pipeline/case/settings/settings.h"
 
 namespace palpate::pipeline {

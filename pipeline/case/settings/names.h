@@ -9,7 +9,7 @@
 #include "identify/inference/problem/identify_options.h"
 #include "mesh/errors.h"
 #include "pipeline/case/body_verdict.h"
-#include "pipeline/run/run_diagnosis_options.h"
+#include "pipeline/case/run_diagnosis_options.h"
 #include "skeleton/construction/properties/link_kind.h"
 #include "skeleton/model/model.h"
 

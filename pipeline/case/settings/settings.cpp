@@ -3,155 +3,24 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <type_traits>
 
 #include "identify/diagnosis/diagnosis.h"
 #include "mesh/errors.h"
 #include "pipeline/case/population_prior.h"
-#include "pipeline/case/settings/names.h"
+#include "pipeline/case/settings/declare.h"
 
 namespace palpate::pipeline {
 namespace {
 
 using mesh::YamlFields;
 using nlohmann::json;
-using nlohmann::ordered_json;
 
 constexpr double no_unit_is_so_large = 1e9;  // of any length [mm] or modulus [MPa]
-
-struct Range {
-    double least, most;
-};
-
-/// Where a setting stands, "section.key".
-CaseSetting declared(std::string_view place, std::string help) {
-    CaseSetting setting;
-    const std::size_t dot = place.find('.');
-    if (dot != std::string_view::npos) setting.section = place.substr(0, dot);
-    setting.key = place.substr(dot == std::string_view::npos ? 0 : dot + 1);
-    setting.help = std::move(help);
-    setting.stage = setting.section;
-    return setting;
-}
-
-template <typename T>
-struct Unwrapped {
-    using type = T;
-};
-template <typename T>
-struct Unwrapped<std::optional<T>> {
-    using type = T;
-};
-
-template <typename T>
-constexpr bool is_optional = !std::is_same_v<T, typename Unwrapped<T>::type>;
-
-/// The type of what `member` names in a case.
-template <typename Member>
-using Held = std::remove_cvref_t<std::invoke_result_t<Member, Case&>>;
-
-template <typename Member>
-json value_of(Member member, const Case& c) {
-    const auto& held = member(c);
-    if constexpr (is_optional<std::remove_cvref_t<decltype(held)>>)
-        return held ? json(*held) : json();
-    else
-        return held;
-}
-
-/// A number, or a whole number, as its member in the case is. `member`: from a case, const or not, to a reference.
-template <typename Member>
-CaseSetting number(std::string_view place, std::string help, Range range, Member member) {
-    using Number = typename Unwrapped<Held<Member>>::type;
-    CaseSetting setting = declared(place, std::move(help));
-    if constexpr (std::is_integral_v<Number>) {
-        const int least = static_cast<int>(range.least), most = static_cast<int>(range.most);
-        setting.schema = {{"type", "integer"}, {"minimum", least}, {"maximum", most}};
-        setting.read = [key = setting.key, least, most, member](const YamlFields& yaml, Case& c) {
-            member(c) = static_cast<Number>(yaml.integer(key, least, most));
-        };
-    } else {
-        setting.schema = {{"type", "number"}, {"minimum", range.least}, {"maximum", range.most}};
-        setting.read = [key = setting.key, range, member](const YamlFields& yaml, Case& c) {
-            member(c) = yaml.number(key, range.least, range.most);
-        };
-    }
-    setting.value = [member](const Case& c) { return value_of(member, c); };
-    return setting;
-}
-
-template <typename Member>
-CaseSetting yes_or_no(std::string_view place, std::string help, Member member) {
-    CaseSetting setting = declared(place, std::move(help));
-    setting.schema = {{"type", "boolean"}};
-    setting.read = [key = setting.key, member](const YamlFields& yaml, Case& c) { member(c) = yaml.boolean(key); };
-    setting.value = [member](const Case& c) { return json(member(c)); };
-    return setting;
-}
-
-template <typename Enum, std::size_t N>
-std::vector<std::string> words_of(const Names<Enum, N>& names) {
-    std::vector<std::string> words;
-    for (const auto& [name, value] : names) words.emplace_back(name);
-    return words;
-}
-
-template <typename Enum, std::size_t N, typename Member>
-CaseSetting choice(std::string_view place, std::string help, const Names<Enum, N>& names, Member member) {
-    CaseSetting setting = declared(place, std::move(help));
-    setting.schema = {{"enum", words_of(names)}};
-    setting.read = [key = setting.key, &names, member](const YamlFields& yaml, Case& c) {
-        member(c) = parse(names, yaml.text(key), yaml.where(key));
-    };
-    setting.value = [&names, member](const Case& c) { return json(name_of(names, member(c))); };
-    return setting;
-}
-
-/// Several of these names.
-template <typename Enum, std::size_t N, typename Member>
-CaseSetting choices(std::string_view place, std::string help, const Names<Enum, N>& names, Member member) {
-    CaseSetting setting = declared(place, std::move(help));
-    setting.schema = {{"type", "array"}, {"items", {{"enum", words_of(names)}}}};
-    setting.flag_is_repeatable = true;
-    setting.read = [key = setting.key, &names, member](const YamlFields& yaml, Case& c) {
-        member(c).clear();
-        for (const std::string& name : yaml.texts(key)) member(c).push_back(parse(names, name, yaml.where(key)));
-    };
-    setting.value = [&names, member](const Case& c) {
-        json words = json::array();
-        for (const Enum one : member(c)) words.push_back(name_of(names, one));
-        return words;
-    };
-    return setting;
-}
-
-template <typename Member>
-CaseSetting texts(std::string_view place, std::string help, Member member) {
-    CaseSetting setting = declared(place, std::move(help));
-    setting.schema = {{"type", "array"}, {"items", {{"type", "string"}}}};
-    setting.read = [key = setting.key, member](const YamlFields& yaml, Case& c) { member(c) = yaml.texts(key); };
-    setting.value = [member](const Case& c) { return value_of(member, c); };
-    return setting;
-}
-
-/// A flag of its own name for it: --edge-length for volume.edge_length.
-CaseSetting with_flag(std::string group, CaseSetting setting) {
-    setting.flag = "--" + setting.key;
-    std::ranges::replace(setting.flag, '_', '-');
-    setting.group = std::move(group);
-    if (setting.schema.value("type", "") == "boolean") setting.flag_value = "true";
-    return setting;
-}
-
-CaseSetting of_stage(std::string stage, CaseSetting setting) {
-    setting.stage = std::move(stage);
-    return setting;
-}
 
 constexpr Names<double, 3> units{{{"mm", 1}, {"cm", 10}, {"m", 1000}}};
 
 CaseSetting expectation_of_verdict() {
-    CaseSetting setting = declared("expect.verdict", "verdict of the diagnosis");
+    CaseSetting setting = declare::declared("expect.verdict", "verdict of the diagnosis");
     setting.schema = {{"enum", identify::verdict_names}};
     setting.read = [](const YamlFields& yaml, Case& c) {
         c.expect.verdict = yaml.choice("verdict", {identify::verdict_names.begin(), identify::verdict_names.end()});
@@ -162,7 +31,8 @@ CaseSetting expectation_of_verdict() {
 
 /// Read when it is named; a path in a file counts from where the file is.
 CaseSetting prior_of_population() {
-    CaseSetting setting = declared("identify.prior", "folder of `palpate pool`: its specimens tell what to expect");
+    CaseSetting setting =
+        declare::declared("identify.prior", "folder of `palpate pool`: its specimens tell what to expect");
     setting.schema = {{"type", "string"}};
     setting.read = [](const YamlFields& yaml, Case& c) {
         c.prior = std::filesystem::absolute(yaml.file().parent_path() / yaml.text("prior")).lexically_normal();
@@ -173,6 +43,7 @@ CaseSetting prior_of_population() {
 }
 
 void add_body(std::vector<CaseSetting>& all) {
+    using namespace declare;
     const auto body = [&](const char* stage, CaseSetting setting) {
         all.push_back(of_stage(stage, with_flag("Body", std::move(setting))));
     };
@@ -208,6 +79,7 @@ void add_body(std::vector<CaseSetting>& all) {
 }
 
 void add_skeleton(std::vector<CaseSetting>& all) {
+    using namespace declare;
     const auto skeleton = [&](CaseSetting setting) { all.push_back(with_flag("Skeleton", std::move(setting))); };
     skeleton(number(
         "skeleton.spheres", "number of free spheres; 0: by the body's shape", {0, skeleton::BuildOptions::most_spheres},
@@ -231,6 +103,7 @@ void add_skeleton(std::vector<CaseSetting>& all) {
 }
 
 void add_probing(std::vector<CaseSetting>& all) {
+    using namespace declare;
     const auto probing = [&](CaseSetting setting) {
         all.push_back(with_flag("Probing", of_stage("measurements", std::move(setting))));
     };
@@ -257,6 +130,7 @@ void add_probing(std::vector<CaseSetting>& all) {
 }
 
 void add_identification(std::vector<CaseSetting>& all) {
+    using namespace declare;
     const auto identification = [&](CaseSetting setting) {
         all.push_back(with_flag("Identification", std::move(setting)));
     };
@@ -295,6 +169,7 @@ void add_identification(std::vector<CaseSetting>& all) {
 }
 
 void add_diagnosis(std::vector<CaseSetting>& all) {
+    using namespace declare;
     CaseSetting reference = yes_or_no(
         "diagnose.reference", "diagnose, on the finite-element model: minutes",
         [](auto& c) -> auto& { return c.diagnose.reference; });
@@ -319,6 +194,7 @@ void add_diagnosis(std::vector<CaseSetting>& all) {
 }
 
 void add_expectations(std::vector<CaseSetting>& all) {
+    using namespace declare;
     const auto expect = [&](CaseSetting setting) { all.push_back(of_stage("", std::move(setting))); };
     expect(number(
         "expect.relative_at_most", "largest rms error over rms displacement", {0, 1e9},

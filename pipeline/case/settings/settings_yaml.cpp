@@ -22,7 +22,7 @@ std::string yaml_of(const json& value) {
     return value.is_number_float() ? fmt::format("{}", value.get<double>()) : value.dump();
 }
 
-constexpr std::size_t comment_column = 30;
+constexpr std::size_t comment_column = 30;  // beyond most settings with their values
 
 /// "(full, burion2008)" where there is a choice.
 std::string choice_in_words(const ordered_json& schema) {

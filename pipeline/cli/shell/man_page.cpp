@@ -1,9 +1,9 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "pipeline/command_line/command_tree.h"
 #include "pipeline/command_line/subcommands.h"
-#include "pipeline/command_line/tree.h"
+#include "pipeline/command_line/tree/command_tree.h"
+#include "pipeline/command_line/tree/tree.h"
 #include "pipeline/version.h"
 
 namespace palpate::pipeline {

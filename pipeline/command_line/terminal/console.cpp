@@ -15,7 +15,7 @@
 #include <thread>
 
 #include "pipeline/command_line/terminal/listener.h"
-#include "pipeline/output/text/printed_units.h"
+#include "pipeline/command_line/terminal/printed_units.h"
 
 namespace palpate::pipeline {
 namespace {

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "identify/numerics/summaries.h"
 #include "mesh/geometry/surface_tree.h"
 
 namespace palpate::pipeline {
@@ -35,7 +36,6 @@ std::vector<OnSkin> points_of(const mesh::Surface& skin, const std::vector<ident
 
 std::string played_positions_csv(const skeleton::Model& model, const std::vector<identify::LoadState>& states,
                                  const std::vector<Forecast>& forecasts, const std::vector<identify::Marker>& markers) {
-    constexpr double sigmas_of_95 = 1.96;
     const std::vector<OnSkin> points = points_of(model.surface, markers);
     std::string text =
         "# palpate: positions of markers in the played model [mm]; within_95: half-width of the 95 % interval of a "
@@ -52,7 +52,8 @@ std::string played_positions_csv(const skeleton::Model& model, const std::vector
             const Vec3 x = point.rest + u;
             text += fmt::format("{},{},{},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},", states[s].probe, states[s].time,
                                 point.label, x.x(), x.y(), x.z(), u.x(), u.y(), u.z());
-            text += forecasts[s].sd.size() > 0 ? fmt::format("{:.4g},{:.4g}\n", sd, sigmas_of_95 * sd) : ",\n";
+            text += forecasts[s].sd.size() > 0 ? fmt::format("{:.4g},{:.4g}\n", sd, identify::sds_of_95_percent * sd)
+                                               : ",\n";
         }
     }
     return text;

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "identify/measurements/measurement_set.h"
-#include "pipeline/analysis/forecast.h"
+#include "pipeline/analysis/forecast/forecast.h"
 
 namespace palpate::pipeline {
 

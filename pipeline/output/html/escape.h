@@ -3,7 +3,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "pipeline/output/text/printed_units.h"
+#include "pipeline/command_line/terminal/printed_units.h"
 
 namespace palpate::pipeline {
 

@@ -16,7 +16,7 @@
 #include "pipeline/output/html/sections/fit_sections.h"
 #include "pipeline/output/html/sections/stiffness_section.h"
 #include "pipeline/output/html/view_data.h"
-#include "pipeline/output/text/comparison.h"
+#include "pipeline/output/text/comparison/comparison.h"
 #include "pipeline/output/text/diagnosis.h"
 #include "pipeline/output/text/words.h"
 
@@ -123,7 +123,7 @@ std::string stage_table(const RunFiles& files) {
         rows += fmt::format("<tr><td>{}</td><td>{:.1f}</td><td>{:.0f}</td><td style=\"text-align:left\">{}</td></tr>",
                             stage, s["seconds"].get<double>(), s["peak_memory_mb"].get<double>(), escape(figures));
     }
-    return "<div class=\"wide\"><table><tr><th>stage</th><th>seconds</th><th>peak MB</th><th "
+    return "<div class=\"wide\" tabindex=\"0\"><table><tr><th>stage</th><th>seconds</th><th>peak MB</th><th "
            "style=\"text-align:left\">figures</th></tr>" +
            rows + "</table></div>";
 }

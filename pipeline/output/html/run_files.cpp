@@ -10,6 +10,7 @@
 #include "mesh/formats/vtk/poly_data.h"
 #include "mesh/formats/yaml/yaml_fields.h"
 #include "mesh/text/atomic_file.h"
+#include "pipeline/case/json_file.h"
 #include "pipeline/output/csv/posterior.h"
 #include "pipeline/output/text/words.h"
 #include "skeleton/model/io/model_io.h"
@@ -19,22 +20,14 @@ namespace palpate::pipeline {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-json read_json(const fs::path& file) {
-    try {
-        return json::parse(mesh::read_text(file));
-    } catch (const json::exception& e) {
-        throw InvalidInput(fmt::format("{}: is no JSON: {}", file.string(), e.what()));
-    }
-}
-
 namespace {
 
-json read_if_there(const fs::path& file) { return fs::exists(file) ? read_json(file) : json(); }
+json read_if_there(const fs::path& file) { return fs::exists(file) ? json_of_file(file) : json(); }
 
 /// As `skeleton --quality` leaves it beside a model, else the run's own short one.
 json read_quality(const fs::path& folder) {
     for (const auto& entry : fs::directory_iterator(folder)) {
-        if (entry.path().filename().string().ends_with("_quality.json")) return read_json(entry.path());
+        if (entry.path().filename().string().ends_with("_quality.json")) return json_of_file(entry.path());
     }
     return read_if_there(folder / "sphere_curve.json");
 }
@@ -105,8 +98,8 @@ RunFiles read_run(const fs::path& run) {
             fmt::format("{}: holds no run.json, so it is no run folder; palpate run makes one", run.string()));
     }
     RunFiles files;
-    files.record = read_json(run / "run.json");
-    files.compare = read_json(run / "compare/compare.json");
+    files.record = json_of_file(run / "run.json");
+    files.compare = json_of_file(run / "compare/compare.json");
     files.diagnosis = read_if_there(run / "diagnose/diagnosis.json");
     files.ladder = read_if_there(run / "improve/ladder.json");
     files.quality = read_quality(run / "skeleton");

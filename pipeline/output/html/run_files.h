@@ -33,9 +33,6 @@ std::vector<std::string> added_effects(const RunFiles& files);
 /// "nothing added" or "with gravity".
 std::string with_what(const RunFiles& files);
 
-/// @throws IoError when there is no such file, InvalidInput when it is no JSON.
-nlohmann::json read_json(const std::filesystem::path& file);
-
 /// @throws IoError, InvalidInput naming the file that is missing or broken.
 RunFiles read_run(const std::filesystem::path& run);
 

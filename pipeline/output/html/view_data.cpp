@@ -2,8 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Geometry>
-
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -15,10 +13,12 @@
 #include "mesh/formats/vtk/poly_data.h"
 #include "mesh/formats/yaml/yaml_fields.h"
 #include "pipeline/analysis/link_uncertainty.h"
+#include "pipeline/case/json_file.h"
 #include "pipeline/output/findings.h"
 #include "pipeline/output/html/charts/svg.h"
 #include "pipeline/output/html/packed_rows.h"
 #include "pipeline/output/html/run_files.h"
+#include "pipeline/output/html/view_tools.h"
 #include "pipeline/output/json/json_values.h"
 #include "pipeline/output/text/words.h"
 #include "skeleton/model/io/model_io.h"
@@ -82,7 +82,8 @@ std::vector<Series> all_series(const fs::path& run, const json& compare, const j
     }
     if (!all.empty()) {  // the last one plays the model to use
         all.back().model = run / "improve/model.json";
-        if (fs::exists(run / "improve/compare.json")) all.back().comparison = read_json(run / "improve/compare.json");
+        if (fs::exists(run / "improve/compare.json"))
+            all.back().comparison = json_of_file(run / "improve/compare.json");
     } else if (fs::exists(run / "compare/skeleton.pvd")) {
         all.push_back(series_in(run / "compare", "as fitted"));
         all.back().model = run / "identify/model.json";
@@ -105,47 +106,6 @@ std::optional<identify::MeasurementSet> set_of(const fs::path& run) {
     }
 }
 
-bool is_of(const json& row, const identify::StateName& state) {
-    return row["probe"] == state.probe && row["time"] == state.time;
-}
-
-/// The tools of a state: where each is, null where a coordinate is left free; its radius and, of a flat one, where it
-/// presses to; and the force on the body, null along an axis that was not read.
-json tools_json(const identify::MeasurementSet& set, const identify::StateName& name) {
-    json tools = json::array();
-    const identify::LoadState* state = identify::find_state(set, name);
-    if (!state) return tools;
-    for (const mesh::ToolMotion& motion : state->motions) {
-        const mesh::Tool& tool = set.tools[static_cast<std::size_t>(motion.tool)];
-        json one{{"name", tool.name}, {"at", nullptr}, {"radius", nullptr}, {"axis", nullptr}, {"measured", nullptr}};
-        if (!motion.translation.hasNaN()) one["at"] = numbers(tool.origin + motion.translation);
-        if (const auto* ball = std::get_if<mesh::SphereShape>(&tool.shape)) one["radius"] = ball->radius;
-        if (const auto* flat = std::get_if<mesh::FlatShape>(&tool.shape); flat && !motion.rotation.hasNaN()) {
-            const double angle = motion.rotation.norm();
-            const Vec3 axis = angle > 0 ? Eigen::AngleAxisd(angle, motion.rotation / angle) * flat->axis : flat->axis;
-            one["radius"] = flat->radius;
-            one["axis"] = numbers(axis);
-        }
-        const auto reading = std::ranges::find(state->reactions, motion.tool, &identify::ReactionReading::tool);
-        if (reading != state->reactions.end() && !reading->force.array().isNaN().all()) {
-            one["measured"] = json::array();
-            for (const double component : reading->force) one["measured"].push_back(known(component));
-        }
-        tools.push_back(one);
-    }
-    return tools;
-}
-
-/// What a model makes of the tools' forces in a state.
-json modelled_forces(const json& comparison, const identify::StateName& state) {
-    json forces = json::array();
-    if (comparison.is_null()) return forces;
-    for (const json& row : comparison.value("tool_forces", json::array())) {
-        if (is_of(row, state)) forces.push_back({{"name", row["tool"]}, {"modelled", row["modelled_n"]}});
-    }
-    return forces;
-}
-
 identify::StateName played_state(const mesh::PolyData& spheres, const fs::path& file) {
     return {static_cast<int>(array_of(spheres, "probe", file)(0, 0)), array_of(spheres, "time [s]", file)(0, 0)};
 }
@@ -159,9 +119,9 @@ std::vector<double> errors_of(const Series& series, const json& compare) {
         const identify::StateName name = played_state(mesh::read_poly_data(spheres.file), spheres.file);
         double error = 0;
         for (const json& probe : compare["probes"])
-            if (is_of(probe, name)) error = probe["rms_mm"].get<double>();
+            if (is_of_state(probe, name)) error = probe["rms_mm"].get<double>();
         for (const json& force : forces)
-            if (compare["probes"].empty() && is_of(force, name))
+            if (compare["probes"].empty() && is_of_state(force, name))
                 error = std::max(error, force["error_n"].get<double>());
         errors.push_back(error);
     }
@@ -190,7 +150,7 @@ json state_json(const Series& series, std::size_t s, const json& held_out,
                    {"time", name.time},
                    {"held_out", std::ranges::find(held_out, json(name.probe)) != held_out.end()},
                    {"loads", json::array()},
-                   {"tools", set ? tools_json(*set, name) : json::array()},
+                   {"tools", set ? tools_in_state(*set, name) : json::array()},
                    {"measured", nullptr}};
     if (const auto* measured = find(skin.data.points, "measured [mm]")) result["measured"] = levels(*measured);
     for (Eigen::Index c = 0; c < loads.points.rows(); ++c) {
@@ -210,7 +170,7 @@ json answer_json(const Series& series, std::size_t s) {
     const Eigen::MatrixXd& measured = array_of(markers, "measured [mm]", file);
     return {{"skin", levels(array_of(skin, "displacement [mm]", series.skin[s].file))},
             {"spheres", levels(array_of(spheres, "displacement [mm]", series.spheres[s].file))},
-            {"tool_forces", modelled_forces(series.comparison, played_state(spheres, series.spheres[s].file))},
+            {"tool_forces", modelled_tool_forces(series.comparison, played_state(spheres, series.spheres[s].file))},
             {"markers",
              {{"id", flat<int>(array_of(markers, "marker", file))},
               {"coordinates", flat<int>(array_of(markers, "coordinates", file))},
@@ -264,8 +224,13 @@ json view_data(const fs::path& run, const json& record, const json& compare, con
           {"radii", floats(array_of(spheres, "radius [mm]", all.front().spheres.front().file))},
           {"held", flat<int>(array_of(spheres, "held", all.front().spheres.front().file))}}},
         {"links", packed("i32", flat<std::int32_t>(spheres.lines))},
+        {"tools", json::array()},
         {"states", json::array()},
         {"steps", json::array()}};
+
+    const std::optional<identify::MeasurementSet> set = set_of(run);
+    if (set) result["tools"] = tools_at_rest(*set, skin.points, skin.triangles);
+    budget -= std::min(budget, result["tools"].dump().size());
 
     // its states, and how each model answers them: 8 bytes of base64 a vertex, for each model and the measured shape
     const std::size_t size =
@@ -273,7 +238,6 @@ json view_data(const fs::path& run, const json& record, const json& compare, con
     const std::vector<std::size_t> states =
         kept_states(all.front(), std::max<std::size_t>(1, budget / std::max<std::size_t>(size, 1)), compare);
     json held_out = ladder.is_null() ? record.value("held_out_probes", json::array()) : ladder["held_out_probes"];
-    const std::optional<identify::MeasurementSet> set = set_of(run);
     for (const std::size_t s : states) result["states"].push_back(state_json(all.front(), s, held_out, set));
     // Where every probe was held out in turn, none is different from the others.
     if (std::ranges::all_of(result["states"], [](const json& state) { return state["held_out"].get<bool>(); })) {

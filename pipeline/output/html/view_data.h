@@ -14,8 +14,8 @@ namespace palpate::pipeline {
 ///
 /// `compare`, `ladder`, `diagnosis`: as in the files of these names, the last two may be null. `posterior`: of the last
 /// step. Arrays are in base64; shapes are cut into 65,535 levels. Of more states than fit into `budget` bytes those
-/// with the largest errors are kept, and "left_out" states how many are not. Tools are those of the set that case.yaml
-/// names, where it is still there.
+/// with the largest errors are kept, and "left_out" states how many are not. Tools (view_tools.h) are those of the set
+/// that case.yaml names, where it is still there.
 /// @throws IoError, InvalidInput when a file of a series is missing or broken.
 nlohmann::json view_data(const std::filesystem::path& run, const nlohmann::json& record, const nlohmann::json& compare,
                          const nlohmann::json& ladder, const nlohmann::json& diagnosis,

@@ -9,6 +9,7 @@
 #include <map>
 #include <utility>
 
+#include "identify/numerics/summaries.h"
 #include "pipeline/output/actuator_unit.h"
 #include "pipeline/output/damping.h"
 #include "pipeline/output/json/json_values.h"
@@ -33,8 +34,8 @@ json driven_by(const identify::MeasurementSet& set, int probe, double time) {
     if (!state) return nullptr;
     std::vector<std::string> drives;
     for (const mesh::ToolMotion& motion : state->motions) {
-        const Vec3 moved = motion.translation.array().isNaN().select(0, motion.translation);
-        drives.push_back(fmt::format("{} by {:.3g} mm", set.tools[motion.tool].name, moved.norm()));
+        const double moved = identify::known_part(motion.translation).norm();
+        drives.push_back(fmt::format("{} by {:.3g} mm", set.tools[motion.tool].name, moved));
     }
     for (const identify::Actuation& one : state->actuations) {
         if (one.value == 0) continue;
@@ -55,7 +56,7 @@ json load_of(const identify::MeasurementSet& set, int probe, double time) {
     };
     for (const mesh::Contact& contact : state->contacts) add("forces", "N", contact.force.norm());
     for (const mesh::ToolMotion& motion : state->motions)
-        add("tools", "mm", motion.translation.array().isNaN().select(0, motion.translation).matrix().norm());
+        add("tools", "mm", identify::known_part(motion.translation).norm());
     for (const identify::Actuation& one : state->actuations)
         add("actuators", unit_of(set.actuators[one.actuator]), std::abs(one.value));
     if (loads.empty()) return {{"by", "nothing"}, {"value", 0.0}, {"unit", nullptr}};
@@ -99,8 +100,7 @@ json tool_forces(const identify::ReactionError& reactions, const identify::Measu
         Vec3 at = tool.origin;
         if (const identify::LoadState* state = identify::find_state(set, {force.probe, force.time})) {
             for (const mesh::ToolMotion& motion : state->motions)
-                if (motion.tool == force.tool)
-                    at += motion.translation.array().isNaN().select(0, motion.translation).matrix();
+                if (motion.tool == force.tool) at += identify::known_part(motion.translation);
         }
         json measured = json::array();
         for (const double component : force.measured) measured.push_back(known(component));
@@ -161,7 +161,7 @@ json to_json(const identify::Comparison& c, const identify::MeasurementSet& set)
 }
 
 json worst_probes_json(const identify::Comparison& comparison, const identify::MeasurementSet& set) {
-    constexpr std::size_t listed_probes = 3;
+    constexpr std::size_t listed_probes = 3;  // enough to see whether one stands out
     std::vector<identify::ProbeError> worst;
     std::ranges::copy_if(comparison.probes, std::back_inserter(worst),
                          [](const identify::ProbeError& p) { return std::isfinite(p.relative); });

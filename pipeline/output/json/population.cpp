@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "identify/numerics/summaries.h"
+
 namespace palpate::pipeline {
 namespace {
 
@@ -9,9 +11,8 @@ using nlohmann::json;
 
 /// The middle and 95 % of what is normal about a mean, in the number's own unit.
 json interval(const SharedNumber& number, double mean, double sd) {
-    constexpr double of_95_percent = 1.959964;
-    const double below = number_at(number.scale, mean - of_95_percent * sd);
-    const double above = number_at(number.scale, mean + of_95_percent * sd);
+    const double below = number_at(number.scale, mean - identify::sds_of_95_percent * sd);
+    const double above = number_at(number.scale, mean + identify::sds_of_95_percent * sd);
     return {
         {"low", std::min(below, above)}, {"value", number_at(number.scale, mean)}, {"high", std::max(below, above)}};
 }

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "identify/numerics/summaries.h"
+#include "pipeline/output/text/preflight.h"
 #include "pipeline/output/text/words.h"
 
 namespace palpate::pipeline {
@@ -29,7 +31,8 @@ std::string state_words(const identify::MeasurementSet& set, int state) {
 /// 95 % of a number of the fit, as it is reported.
 json parameter_json(const identify::ParameterProspect& one, const std::string& name, const std::string& unit,
                     double (*reported)(double)) {
-    const double a = reported(one.value - 1.96 * one.sd), b = reported(one.value + 1.96 * one.sd);
+    const double reach = identify::sds_of_95_percent * one.sd;
+    const double a = reported(one.value - reach), b = reported(one.value + reach);
     return {{"name", name},
             {"unit", unit},
             {"value", reported(one.value)},
@@ -138,7 +141,7 @@ json suspicion_json(const identify::Suspicion& one, const identify::MeasurementS
 json repeat_json(const identify::Repeat& one, const identify::MeasurementSet& set, bool noise_known) {
     json states = json::array();
     std::string names;
-    constexpr std::size_t most_named = 6;
+    constexpr std::size_t most_named = 6;  // that a sentence has room for
     for (std::size_t i = 0; i < one.states.size(); ++i) {
         states.push_back(state_name(set, one.states[i]));
         if (i < most_named) names += (i == 0 ? "" : ", ") + state_words(set, one.states[i]);

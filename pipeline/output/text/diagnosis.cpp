@@ -27,7 +27,7 @@ std::string sentence_of(const json& candidate, bool alone) {
 
 /// How much less likely than the first the second is.
 std::string how_likely(double log_ratio) {
-    constexpr double ruled_out = 1e-3;
+    constexpr double ruled_out = 1e-3;  // below it the number itself says nothing more
     if (log_ratio < std::log(ruled_out)) return "less than a thousandth as likely";
     return fmt::format("{:.2g} times as likely", std::exp(log_ratio));
 }

@@ -1,3 +1,5 @@
+#include "pipeline/output/text/identification.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -7,7 +9,6 @@
 
 #include "mesh/text/words.h"
 #include "pipeline/output/damping.h"
-#include "pipeline/output/identification.h"
 #include "pipeline/output/text/words.h"
 
 namespace palpate::pipeline {

@@ -7,7 +7,6 @@
 #include <map>
 #include <utility>
 
-#include "pipeline/output/json/preflight.h"
 #include "pipeline/output/text/words.h"
 
 namespace palpate::pipeline {
@@ -34,7 +33,7 @@ constexpr std::size_t most_next = 3;  // likewise, of what to do next
 
 /// To three digits, without powers of ten as far as people write numbers so.
 std::string in_digits(double value) {
-    constexpr double large = 1e3, most = 1e6;
+    constexpr double large = 1e3, most = 1e6;  // {:.3g} has a power of ten from 1e3 on; so have people from 1e6
     // a ratio that is nearly 1 needs more
     if (std::abs(value - 1) < 0.1) return fmt::format("{:.4g}", value);
     if (std::abs(value) < large || std::abs(value) >= most) return fmt::format("{:.3g}", value);
@@ -44,7 +43,7 @@ std::string in_digits(double value) {
 
 /// Three, or as many as it takes to tell two numbers apart.
 int digits_apart(double low, double high) {
-    constexpr int most = 6;
+    constexpr int most = 6;  // numbers that agree in so many are told as equal
     int digits = 3;
     while (digits < most && fmt::format("{:.{}g}", low, digits) == fmt::format("{:.{}g}", high, digits)) ++digits;
     return digits;

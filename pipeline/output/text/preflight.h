@@ -8,6 +8,10 @@ namespace palpate::pipeline {
 
 // A preflight, as its JSON states it, in words.
 
+/// An effect counts as one that a set can show where it could be named in at least this share of the cases that its
+/// prior expects (locations, directions) [-]: the set is then more likely to show it than not.
+inline constexpr double sufficient_share = 0.5;
+
 /// "It could name gravity and inclusion; ...": the first sentences of the page.
 std::string preflight_lead(const nlohmann::json& preflight);
 

@@ -1,5 +1,8 @@
 #include "pipeline/output/text/words.h"
 
+#include <cctype>
+
+#include "fem/large_deformation/material_law_names.h"
 #include "mesh/text/words.h"
 
 namespace palpate::pipeline {
@@ -71,16 +74,20 @@ std::string and_under_load(const json& load_exponent) {
 }
 
 std::string law_in_words(const std::string& law) {
-    if (law == "neo-hooke") return "neo-Hookean law";
-    if (law == "svk") return "St Venant-Kirchhoff law";
-    return law + " law";
+    const auto of_material = fem::material_law(law);
+    return (of_material ? std::string(fem::name_in_prose(*of_material)) : law) + " law";
 }
 
 std::string probability_in_words(double probability) {
-    constexpr double reported = 0.01;
+    constexpr double reported = 0.01;  // two digits behind the point are told
     if (probability < reported) return "below 0.01";
     if (probability > 1 - reported) return "above 0.99";
     return fmt::format("{:.2f}", probability);
+}
+
+std::string capitalised(std::string text) {
+    if (!text.empty()) text.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(text.front())));
+    return text;
 }
 
 std::string listed(const std::vector<std::string>& names) {

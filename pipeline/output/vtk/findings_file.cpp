@@ -17,6 +17,8 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <iterator>
 #include <numbers>
 #include <vector>
 
@@ -54,8 +56,10 @@ public:
         const auto kind = finding["kind"].get<std::string>();
         if (kind == "words") return;
         if (kind == "arrow") {
-            const Vec3 down = vector_of(finding["vector"]).normalized();
+            const Vec3 vector = vector_of(finding["vector"]), down = vector.normalized();
             arrow(middle_ + 0.12 * size_ * down, 0.25 * size_ * down);
+            for (const json& open : finding.value("undetermined", json::array()))
+                dashes(middle_ + 0.37 * size_ * down, open, 0.25 * size_ / vector.norm());
         } else if (kind == "axis") {
             const Vec3 along = vector_of(finding["vector"]).normalized();
             for (const double sign : {1, -1}) arrow(middle_, sign * 0.3 * size_ * along);
@@ -64,8 +68,7 @@ public:
             if (finding.contains("vector"))
                 arrow(vector_of(finding["center"]), 0.25 * size_ * vector_of(finding["vector"]).normalized());
         } else if (kind == "plane") {
-            const Vec3 normal = vector_of(finding["vector"]).normalized();
-            disk(middle_ - (normal.dot(middle_) - finding["offset"].get<double>()) * normal, normal);
+            wall(vector_of(finding["vector"]).normalized(), finding["offset"]);
         } else if (kind == "springs") {
             springs();
         }
@@ -109,12 +112,26 @@ private:
         unit->SetPhiResolution(16);
         add(unit.Get(), turned(center, Vec3::UnitX(), Vec3::UnitX()));
     }
-    void disk(const Vec3& foot, const Vec3& normal) {
+    /// A disk below the sphere that comes nearest to the wall.
+    void wall(const Vec3& normal, double offset) {
+        const auto height = [&](const skeleton::Sphere& sphere) { return normal.dot(sphere.center) - offset; };
+        const auto nearest = std::ranges::min_element(
+            model_.spheres, {}, [&](const auto& sphere) { return std::abs(height(sphere)) - sphere.radius; });
         const vtkNew<vtkDiskSource> unit;  // across z
         unit->SetInnerRadius(0);
-        unit->SetOuterRadius(0.35 * size_);
+        unit->SetOuterRadius(0.3 * size_);
         unit->SetCircumferentialResolution(48);
-        add(unit.Get(), turned(foot, Vec3::UnitZ(), normal));
+        add(unit.Get(), turned(nearest->center - height(*nearest) * normal, Vec3::UnitZ(), normal));
+    }
+    /// What is not determined of a vector, `scale` times as long: a dashed line through its tip, over its standard
+    /// deviation either way. It ends at half the body's size, as a deviation may be as long as it likes.
+    void dashes(const Vec3& tip, const json& open, double scale) {
+        const Vec3 axis = vector_of(open["axis"]);
+        const double value = open["value"], sd = open["sd"], most = 0.5 * size_;
+        const double low = std::max(scale * (value - sd), -most), high = std::min(scale * (value + sd), most);
+        const int count = std::max(3, static_cast<int>(std::lround((high - low) / (0.035 * size_))));
+        const double pitch = (high - low) / (count - 0.4);
+        for (int i = 0; i < count; ++i) tube({tip + (low + i * pitch) * axis, tip + (low + (i + 0.6) * pitch) * axis});
     }
     void tube(const std::vector<Vec3>& places) {
         const vtkNew<vtkPoints> points;
@@ -128,20 +145,19 @@ private:
         round->CappingOn();
         add(round.Get(), turned(Vec3::Zero(), Vec3::UnitX(), Vec3::UnitX()));
     }
-    /// Springs from spheres that are held, away from the body.
+    /// Springs out of spheres that are held, from their surface, away from the body.
     void springs() {
-        std::vector<Vec3> places;
-        for (const skeleton::Sphere& sphere : model_.spheres)
-            if (sphere.held) places.push_back(sphere.center);
+        std::vector<skeleton::Sphere> held;
+        std::ranges::copy_if(model_.spheres, std::back_inserter(held), &skeleton::Sphere::held);
         constexpr std::size_t about = 6;
-        const std::size_t step = std::max<std::size_t>(1, (places.size() + about - 1) / about);
-        for (std::size_t i = 0; i < places.size(); i += step) {
-            const Vec3 away = (places[i] - middle_).normalized();
-            const Vec3 side = away.unitOrthogonal();
-            std::vector<Vec3> turns{places[i]};
+        const std::size_t step = std::max<std::size_t>(1, (held.size() + about - 1) / about);
+        for (std::size_t i = 0; i < held.size(); i += step) {
+            const Vec3 away = (held[i].center - middle_).normalized();
+            const Vec3 side = away.unitOrthogonal(), from = held[i].center + held[i].radius * away;
+            std::vector<Vec3> turns{from};
             for (int turn = 1; turn <= 7; ++turn) {
                 const double out = turn == 7 ? 0 : turn % 2 == 1 ? 0.02 : -0.02;
-                turns.push_back(places[i] + size_ * (0.02 * turn * away + out * side));
+                turns.push_back(from + size_ * (0.02 * turn * away + out * side));
             }
             tube(turns);
         }

@@ -2,7 +2,7 @@
 
 #include <filesystem>
 
-#include "identify/diagnosis/ladder.h"
+#include "identify/diagnosis/ladder/ladder.h"
 
 namespace palpate::pipeline {
 

@@ -107,11 +107,6 @@ void write_marker_series(const fs::path& folder, const std::string& name, const 
     mesh::write_pvd(folder / (name + ".pvd"), steps);
 }
 
-Points skin_displacement(const skeleton::Model& model, const skeleton::Equilibrium& equilibrium,
-                         const skeleton::Load& load) {
-    return skeleton::observed(model, equilibrium, load, model.skin) - model.surface.vertices;
-}
-
 void write_played_series(const fs::path& folder, const skeleton::Model& model, const identify::MeasurementSet& set,
                          const identify::Comparison& comparison) {
     write_marker_series(folder, "markers", set, comparison);

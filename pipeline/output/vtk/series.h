@@ -37,10 +37,6 @@ void write_marker_series(const std::filesystem::path& folder, const std::string&
 void write_played_series(const std::filesystem::path& folder, const skeleton::Model& model,
                          const identify::MeasurementSet& set, const identify::Comparison& comparison);
 
-/// A skin at rest with its displacement to an equilibrium.
-Points skin_displacement(const skeleton::Model& model, const skeleton::Equilibrium& equilibrium,
-                         const skeleton::Load& load);
-
 /// The particle sets as a series like figures 3 and 5 of Burion 2008: a point a particle in the plane of elongation
 /// [N/mm] and flexion (scaled to the same width) per zone; "weight [-]" and every stiffness as arrays.
 void write_particle_series(const std::filesystem::path& file, const identify::IdentifyResult& result);

@@ -184,7 +184,7 @@ def stiffness_view(view):
     told = "Stiffness of the links (%s/model.vtp)" % best
     if os.path.exists(path("findings.vtp")):  # at rest, as the model is here
         plain(Show(XMLPolyDataReader(FileName=[path("findings.vtp")]), view), FOUND, 0.7)
-        told += "; what was found to be missing in purple"
+        told += "; what was found to be missing in purple, dashed where it is not determined, by one standard deviation either way"
     return told
 
 

@@ -42,9 +42,6 @@ function roundUp(value) {
   return ten * [1, 2, 5, 10].find((f) => f * ten >= value * 0.999999);
 }
 
-const ballAt = (center, radius, colour) => ({
-  start: [center[0], center[1], center[2] - radius], end: [center[0], center[1], center[2] + radius], radius, colour});
-
 /// Colours of vertices by values, and the scale that they are on.
 function coloured(values, high, colours) {
   for (let v = 0; v < values.length; ++v) {

@@ -66,7 +66,8 @@ class SeenPlayer extends Player {
   /// Gravity, fibres and lumps go with the sphere nearest to them; walls and clamps stay.
   drawFindings() {
     const {spheres} = this.model.text, at = Float32Array.from(spheres.flatMap((s) => s.center));
-    const body = {middle: this.middle, size: this.size, spheres: spheres.map((s) => s.center), held: spheres.map((s) => s.held)};
+    const body = {middle: this.middle, size: this.size, spheres: spheres.map((s) => s.center),
+      radii: spheres.map((s) => s.radius), held: spheres.map((s) => s.held)};
     for (const found of this.findings) {
       const moves = this.centres && !['plane', 'springs'].includes(found.kind);
       const near = moves ? nearestVertex(at, found.center ?? body.middle) : -1;

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "pipeline/case/subject.h"
+#include "pipeline/case/subject/subject.h"
 
 namespace palpate::pipeline {
 

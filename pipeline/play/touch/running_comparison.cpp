@@ -1,6 +1,6 @@
 #include "pipeline/play/touch/running_comparison.h"
 
-#include "identify/loading/load_history.h"
+#include "identify/loading/history/load_history.h"
 
 namespace palpate::pipeline {
 

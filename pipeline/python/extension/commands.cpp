@@ -3,10 +3,9 @@
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
-#include <map>
-
+#include "fem/large_deformation/material_law_names.h"
 #include "pipeline/case/settings/settings.h"
-#include "pipeline/output/ladder.h"
+#include "pipeline/output/results/ladder.h"
 #include "pipeline/output/text/diagnosis.h"
 #include "pipeline/python/extension/bind.h"
 #include "pipeline/python/extension/conversions/border.h"
@@ -33,9 +32,6 @@ py::list all_settings() {
 }
 
 pipeline::BlindSetOptions synthesis_of(const py::dict& given) {
-    const std::map<std::string, fem::MaterialLaw> laws{{"linear", fem::MaterialLaw::linear},
-                                                       {"svk", fem::MaterialLaw::svk},
-                                                       {"neo-hooke", fem::MaterialLaw::neo_hookean}};
     pipeline::BlindSetOptions how;
     for (const auto& [key, value] : given) {
         const auto name = key.cast<std::string>();
@@ -50,10 +46,9 @@ pipeline::BlindSetOptions synthesis_of(const py::dict& given) {
         if (name == "unlabelled") how.unlabelled = value.cast<double>();
         if (name == "include_material") how.include_material = value.cast<bool>();
         if (name != "law") continue;
-        const auto law = laws.find(value.cast<std::string>());
-        if (law == laws.end())
+        how.law = fem::material_law(value.cast<std::string>());
+        if (!how.law)
             throw InvalidInput("law: is '" + value.cast<std::string>() + "', must be linear, svk or neo-hooke");
-        how.law = law->second;
     }
     how.validate();
     return how;

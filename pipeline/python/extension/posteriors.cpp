@@ -3,11 +3,12 @@
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
+#include "pipeline/analysis/particles.h"
 #include "pipeline/command_line/commands.h"
-#include "pipeline/output/csv/particles.h"
 #include "pipeline/output/csv/posterior.h"
-#include "pipeline/output/identification.h"
 #include "pipeline/output/json/comparison.h"
+#include "pipeline/output/results/identification.h"
+#include "pipeline/output/text/identification.h"
 #include "pipeline/python/extension/bind.h"
 #include "pipeline/python/extension/conversions/arrays.h"
 

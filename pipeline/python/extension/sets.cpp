@@ -1,7 +1,7 @@
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
-#include "pipeline/case/subject.h"
+#include "pipeline/case/subject/subject.h"
 #include "pipeline/python/extension/bind.h"
 #include "pipeline/python/extension/conversions/arrays.h"
 #include "pipeline/python/extension/conversions/border.h"

@@ -32,7 +32,7 @@ std::vector<std::string> drawn_effects() {
 /// The known effects in one list; what is spelled nearly like one of them is pointed to.
 [[noreturn]] void refuse_unknown(const std::string& name) {
     std::vector<std::string> names = drawn_effects();
-    names.insert(names.begin(), "none");
+    names.insert(names.begin(), no_effect);
     throw InvalidInput(fmt::format("effect {} is not known{}; known are {}", mesh::cited(name),
                                    mesh::suggestion(name, names), mesh::listed(names)));
 }

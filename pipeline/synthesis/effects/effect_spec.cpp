@@ -78,9 +78,9 @@ std::vector<EffectSpec> read_specs(const std::vector<std::string>& specs) {
         }
         result.push_back(std::move(spec));
     }
-    const auto none = std::ranges::find(result, "none", &EffectSpec::effect);
+    const auto none = std::ranges::find(result, no_effect, &EffectSpec::effect);
     if (none != result.end() && (result.size() > 1 || !none->given.empty())) {
-        throw InvalidInput("'none' hides nothing: it stands alone, without values");
+        throw InvalidInput(fmt::format("'{}' hides nothing: it stands alone, without values", no_effect));
     }
     return result;
 }

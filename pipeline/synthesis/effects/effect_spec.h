@@ -8,9 +8,12 @@
 
 namespace palpate::pipeline {
 
+/// In place of an effect: nothing is hidden.
+inline constexpr const char* no_effect = "none";
+
 /// Specification of an effect to be hidden, with some of its parameters.
 struct EffectSpec {
-    std::string effect;  // "none": nothing
+    std::string effect;  // or no_effect
     std::vector<skeleton::EffectParameter> given;
 };
 
@@ -18,7 +21,7 @@ struct EffectSpec {
 std::string objection_to_spec(const std::string& spec);
 
 /// Reads them. @pre objection_to_spec finds nothing in any. @throws InvalidInput for a value that is no number, a name
-/// given twice, an effect specified twice, "none" beside others.
+/// given twice, an effect specified twice, no_effect beside others.
 std::vector<EffectSpec> read_specs(const std::vector<std::string>& specs);
 
 /// The first spec whose effect has this need; null: none has.

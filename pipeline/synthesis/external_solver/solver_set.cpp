@@ -13,7 +13,8 @@
 #include "mesh/formats/vtk/vtk_files.h"
 #include "mesh/geometry/sampling.h"
 #include "mesh/geometry/surface_tree.h"
-#include "pipeline/case/subject.h"
+#include "mesh/numbers/median.h"
+#include "pipeline/case/subject/subject.h"
 #include "pipeline/synthesis/external_solver/nodal_loads.h"
 
 namespace palpate::pipeline {
@@ -52,9 +53,7 @@ double spacing_of(const mesh::Surface& surface) {
     std::vector<double> edges;
     for (const auto& triangle : surface.triangles.rowwise())
         edges.push_back((surface.vertices.row(triangle[0]) - surface.vertices.row(triangle[1])).norm());
-    const auto middle = edges.begin() + std::ssize(edges) / 2;
-    std::ranges::nth_element(edges, middle);
-    return *middle;
+    return mesh::upper_median(std::move(edges));
 }
 
 Points as_points(const std::vector<Vec3>& points) {

@@ -2,7 +2,7 @@
 
 #include "fem/elements/patch_load.h"
 #include "identify/measurements/files/probes_table.h"
-#include "identify/models/reference_body.h"
+#include "identify/models/reference/reference_body.h"
 #include "mesh/formats/volume/write_volume.h"
 #include "mesh/text/atomic_file.h"
 
@@ -14,10 +14,11 @@ int write_deck(const std::filesystem::path& folder, const Specimen& specimen, co
         for (std::size_t row = 0; row < history.rows.size(); ++row) states.push_back(history.state(row));
 
     const fem::Material& material = *specimen.material;
-    mesh::SolverSetting setting{.held = mesh::contains(specimen.set.supports, specimen.volume.nodes),
-                                .material = {material.young, material.poisson, material.density},
-                                .is_neo_hookean = specimen.law() == "neo-hooke",
-                                .large_deformation = !specimen.in_small_strain()};
+    mesh::SolverSetting setting{
+        .held = mesh::contains(specimen.set.supports, specimen.volume.nodes),
+        .material = {material.young, material.poisson, material.density},
+        .is_neo_hookean = specimen.setting.law == static_cast<int>(fem::MaterialLaw::neo_hookean),
+        .large_deformation = !specimen.in_small_strain()};
     const auto& reference = dynamic_cast<const identify::ReferenceBody&>(*specimen.model);
     for (const fem::Material& own : reference.region_materials(specimen.setting))
         setting.regions.push_back({own.young, own.poisson, own.density});

@@ -1,8 +1,7 @@
 #include "pipeline/synthesis/loading/probe_load_history.h"
 
-#include <cmath>
-
-#include "identify/loading/lagged_load.h"
+#include "identify/loading/history/creep.h"
+#include "identify/loading/history/lagged_load.h"
 
 namespace palpate::pipeline {
 
@@ -29,25 +28,24 @@ std::vector<mesh::ActuatorSetting> ProbeLoadHistory::settings(double amount) con
     return {{drive.actuator, amount}};
 }
 
+std::vector<double> ProbeLoadHistory::times_until(std::size_t row) const {
+    std::vector<double> times;
+    times.reserve(row + 1);
+    for (std::size_t j = 0; j <= row; ++j) times.push_back(rows[j].time);
+    return times;
+}
+
 double ProbeLoadHistory::effective_force(std::size_t row, const std::optional<fem::CreepLaw>& creep) const {
     if (!creep) return rows[row].force;
+    const std::vector<double> weights = identify::superposition_weights(times_until(row), *creep);
     double force = 0;
-    double before = 0, since = 0;
-    for (std::size_t j = 0; j <= row; ++j) {
-        const double held = rows[row].time - since;
-        force += (rows[j].force - before) * (1 + creep->creep * (1 - std::exp(-held / creep->tau)));
-        before = rows[j].force;
-        since = rows[j].time;
-    }
+    for (std::size_t j = 0; j <= row; ++j) force += weights[j] * rows[j].force;
     return force;
 }
 
 double ProbeLoadHistory::lagged_force(std::size_t row, double lag, const std::optional<fem::CreepLaw>& creep) const {
     if (lag == 0) return effective_force(row, creep);
-    std::vector<double> times;
-    times.reserve(rows.size());
-    for (const Row& one : rows) times.push_back(one.time);
-    const identify::InstantBetween at = identify::place_among(times, rows[row].time - lag);
+    const identify::InstantBetween at = identify::place_among(times_until(rows.size() - 1), rows[row].time - lag);
     const double before = at.before < 0 ? 0 : effective_force(static_cast<std::size_t>(at.before), creep);
     return (1 - at.share) * before + at.share * effective_force(static_cast<std::size_t>(at.after), creep);
 }

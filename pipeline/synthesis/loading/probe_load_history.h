@@ -40,8 +40,10 @@ struct ProbeLoadHistory {
     std::vector<mesh::ActuatorSetting> settings(double amount) const;
     /// The state of a measurement set that a row is.
     identify::LoadState state(std::size_t row) const;
-    /// The force that an elastic body would have to bear to stand as a creeping one does under what has acted so far:
-    /// sum over j <= row of (f_j - f_j-1) J(t_row - t_j-1), J(t) = 1 + creep (1 - exp(-t / tau)). [Boltzmann 1876]
+    /// When the rows are read, up to one of them [s].
+    std::vector<double> times_until(std::size_t row) const;
+    /// The force that an elastic body would have to bear to stand as a creeping one does under what has acted so far
+    /// (identify::superposition_weights).
     double effective_force(std::size_t row, const std::optional<fem::CreepLaw>& creep) const;
     /// The same a while before [s], if it changes evenly from row to row; 0 at time 0.
     double lagged_force(std::size_t row, double lag, const std::optional<fem::CreepLaw>& creep) const;

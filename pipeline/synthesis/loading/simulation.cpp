@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "identify/effects/catalogue.h"
-#include "identify/loading/lagged_load.h"
+#include "identify/loading/history/lagged_load.h"
 #include "identify/numerics/parallel.h"
 #include "mesh/errors.h"
 

@@ -9,6 +9,16 @@
 namespace palpate::skeleton {
 namespace {
 
+// Of a unit vector: what is left across a link of one that lies along it, whose direction would be rounding's and the
+// elements'.
+constexpr double lies_along = 1e-3;
+// Of what the faces between two cells count: less than this seen along their link is next to nothing.
+constexpr double least_seen = 1e-3;
+// Cells that meet at their rims, faces that look back: the centroid stays within this of the link's length from its
+// ends, and within half of it aside.
+constexpr double from_ends = 0.2, aside_at_most = 0.5;
+constexpr double widest = 50;  // over the thickness of a strip: no section bends more easily
+
 // Integrals over the faces between two cells, projected on the plane across the link: faces that lean against it
 // count less and those that look back count negative, so that the teeth of a jagged border cancel.
 struct Integrals {
@@ -49,7 +59,7 @@ std::map<std::pair<int, int>, Integrals> integrate(const TetGraph& graph, const 
 // that of `vector`.
 Vec3 across_of(const Vec3& along, const Vec3& vector) {
     Vec3 across = vector - vector.dot(along) * along;
-    if (!(across.norm() > 1e-3)) {
+    if (!(across.norm() > lies_along)) {
         Eigen::Index least = 0;
         along.cwiseAbs().minCoeff(&least);
         across = Vec3::Unit(least) - along[least] * along;
@@ -75,12 +85,11 @@ Section section_of(const Integrals& sum, int a, int b, const Vec3& origin, const
     const Vec3 values = principal.eigenvalues();
     const Vec3 along = axis.normalized(), far = across_of(along, principal.eigenvectors().col(2));
     s.axes << along.transpose(), far.transpose(), along.cross(far).transpose();
-    // Cells that meet at their rims, faces that look back: the centroid stays near the middle.
     Vec3 aside = across * centroid;
-    aside *= std::min(1.0, 0.5 * s.length / std::max(aside.norm(), 1e-300));
-    s.centroid = origin + std::clamp(centroid.dot(along) / s.length, 0.2, 0.8) * axis + aside;
-    // No section of this area bends more easily than a strip 50 times as wide as thick.
-    const double least = s.area * s.area / (12 * 50);
+    aside *= std::min(1.0, aside_at_most * s.length / std::max(aside.norm(), 1e-300));
+    s.centroid = origin + std::clamp(centroid.dot(along) / s.length, from_ends, 1 - from_ends) * axis + aside;
+    // Of a strip of this area, w = 50 t: w t^3 / 12.
+    const double least = s.area * s.area / (12 * widest);
     s.moment_1 = std::max(values(2), least);
     s.moment_2 = std::max(values(1), least);
     return s;
@@ -111,8 +120,8 @@ std::vector<Section> find_sections(const TetGraph& graph, const Core& core, cons
         const Vec3 axis = sites[pair.second].at - sites[pair.first].at;
         // Cells may touch behind each other's back: next to nothing is seen along such a link.
         Integrals visible = sum;
-        if (visible.area < 1e-3 * sum.weight) {
-            visible.area = 1e-3 * sum.weight;
+        if (visible.area < least_seen * sum.weight) {
+            visible.area = least_seen * sum.weight;
             visible.first = 0.5 * visible.area * axis;
             visible.second = 0.25 * visible.area * axis * axis.transpose();
         }

@@ -8,18 +8,22 @@
 
 #include "fem/elastic_body.h"
 #include "fem/interpolation/interpolation.h"
-#include "skeleton/model/attach.h"
+#include "mesh/numbers/median.h"
+#include "skeleton/model/attachment/attach.h"
 #include "skeleton/model/state.h"
 
 namespace palpate::skeleton {
 namespace {
 
-constexpr int carriers = 6;           // spheres that carry a vertex
-constexpr double reach = 0.45;        // sd of the weights, of the links' median length
-constexpr double ridge = 1e-3;        // of the mean square of what spheres move
-constexpr int most_corners = 8000;    // of a body whose elements are quadratic, or are made so
-constexpr double most_poisson = 0.4;  // that linear ones bear without locking
-constexpr int hops = 2;               // over links, to the spheres that may carry a vertex
+constexpr int carriers = 6;            // spheres that carry a vertex
+constexpr double reach = 0.45;         // sd of the weights, of the links' median length
+constexpr double ridge = 1e-3;         // of the mean square of what spheres move
+constexpr int most_corners = 8000;     // of a body whose elements are quadratic, or are made so
+constexpr double most_poisson = 0.4;   // that linear ones bear without locking
+constexpr int hops = 2;                // over links, to the spheres that may carry a vertex
+constexpr double splinter = 0.2;       // of the median cell: smaller spheres carry no vertex
+constexpr double past_last = 1.2;      // of the distance of the last sphere, where none is left out: it counts, too
+constexpr double least_window = 1e-4;  // of a sphere at the edge: a softness stays a number
 
 using Mat36 = Eigen::Matrix<double, 3, 6>;
 using Mat6 = Eigen::Matrix<double, 6, 6>;
@@ -115,12 +119,6 @@ Condensed condense(const mesh::VolumeMesh& body, const fem::Material& material, 
     return result;
 }
 
-double median(std::vector<double> values) {
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
-}
-
 // The spheres that may carry a vertex that hangs at `home`.
 std::vector<int> within_hops(const std::vector<std::vector<int>>& neighbours, const std::vector<int>& home) {
     std::vector<int> found = home;
@@ -147,8 +145,8 @@ public:
         std::vector<double> cells, lengths;
         for (const Sphere& sphere : model.spheres) cells.push_back(sphere.cell);
         for (const Link& link : model.links) lengths.push_back(link.length);
-        splinter_ = 0.2 * median(cells);
-        spacing_ = median(lengths);
+        splinter_ = splinter * mesh::upper_median(cells);
+        spacing_ = mesh::upper_median(lengths);
     }
 
     Attachment operator()(Eigen::Index vertex) const {
@@ -212,7 +210,7 @@ private:
         const auto rows = 6 * static_cast<Eigen::Index>(moving.size());
         Eigen::MatrixXd F = Eigen::MatrixXd::Zero(rows, 6 * k);
         Eigen::VectorXd softness(rows);
-        const double furthest = near.size() > carriers ? near.back().first : 1.2 * near.back().first;
+        const double furthest = near.size() > carriers ? near.back().first : past_last * near.back().first;
         for (std::size_t m = 0; m < moving.size(); ++m) {
             const auto row = 6 * static_cast<Eigen::Index>(m);
             F.block<6, 6>(row, 6 * moving[m]).setIdentity();
@@ -226,7 +224,7 @@ private:
             F.middleRows<3>(row + 3) *= spacing_;
             // those that are about to be left out count little, so that the skin has no seams
             const double window = 1 - std::pow(near[moving[m]].first / furthest, 2);
-            softness.segment<6>(row).setConstant(1 / std::pow(std::max(window, 1e-4), 2));
+            softness.segment<6>(row).setConstant(1 / std::pow(std::max(window, least_window), 2));
         }
 
         // ridge regression of what the vertex moves beyond the mean

@@ -9,9 +9,18 @@
 #include <tuple>
 
 #include "mesh/errors.h"
+#include "mesh/numbers/median.h"
 
 namespace palpate::skeleton {
 namespace {
+
+// Sites have settled where none moves by more than this of the spacing; slow ones are left as they are after so many
+// rounds. Choices: where they stand exactly is of no concern.
+constexpr double settled = 0.02;
+constexpr int most_rounds = 40;
+// Of the volume that a site is to have: one with less is idle where the largest cell has so many times as much, half of
+// which then is more for both.
+constexpr double idle = 0.35, much_larger = 3;
 
 double distance(const TetGraph& graph, const Core& core, int tet, const Site& site) {
     return ((site.extra ? graph.centers : core.at).row(tet).transpose() - site.at).norm();
@@ -70,7 +79,7 @@ void settle(const TetGraph& graph, const Core& core, const std::vector<char>& he
             std::vector<Site>& sites) {
     double step = spacing;
     std::vector<int> owner = grow_cells(graph, core, held, sites);
-    for (int round = 0; round < 40 && step > 0.02 * spacing; ++round) {
+    for (int round = 0; round < most_rounds && step > settled * spacing; ++round) {
         if (round > 0) regrow_cells(graph, core, held, sites, owner);
         Points middle = Points::Zero(std::ssize(sites), 3);
         Eigen::VectorXd volume = Eigen::VectorXd::Zero(std::ssize(sites));
@@ -97,9 +106,7 @@ int halfway(const TetGraph& graph, const Core& core, const std::vector<int>& own
         if (owner[t] == cell && t != site.tet) order.emplace_back(distance(graph, core, t, site), t);
     }
     if (order.empty()) return site.tet;
-    const auto middle = order.begin() + std::ssize(order) / 2;
-    std::nth_element(order.begin(), middle, order.end());
-    return middle->second;
+    return mesh::upper_median(std::move(order)).second;
 }
 
 // Sites that got stuck in a corner of the core go to help with the largest cell. Were there any?
@@ -112,9 +119,9 @@ bool move_idle(const TetGraph& graph, const Core& core, const std::vector<char>&
     }
     bool moved = false;
     for (std::size_t s = 0; s < sites.size(); ++s) {
-        if (sites[s].held || sites[s].extra || share[s] > 0.35) continue;
+        if (sites[s].held || sites[s].extra || share[s] > idle) continue;
         const auto largest = std::max_element(share.begin(), share.end()) - share.begin();
-        if (share[largest] < 3 * share[s]) continue;
+        if (share[largest] < much_larger * share[s]) continue;
         const int tet = halfway(graph, core, owner, static_cast<int>(largest), sites[largest]);
         if (tet == sites[largest].tet) continue;
         sites[s].at = core.at.row(tet);
@@ -170,6 +177,7 @@ void add_sites(const TetGraph& graph, const Core& core, const std::vector<char>&
     for (int n = 0; n < count; ++n) {
         int furthest = -1;
         for (int t = 0; t < graph.size(); ++t) {
+            // Equal distances, but for rounding, fall to the first: the choice is the same on all machines.
             if (!taken[t] && (furthest < 0 || distances(t) > distances(furthest) * (1 + 1e-9))) furthest = t;
         }
         if (furthest < 0 || !(distances(furthest) > 0)) {

@@ -13,8 +13,32 @@ namespace {
 // V / r^3 below this: a lump all over. A ball has 4.2, a cube 8, a square bar 4 per width, a round limb 6.3 per
 // diameter: one of three diameters errs as little as a chain as filled with ten times the spheres.
 constexpr double lump = 16;
-constexpr double view = 4;        // a neighbourhood reaches this many radii
-constexpr double runs_on = 0.42;  // a direction counts whose variance is at least this share of the largest
+constexpr double view = 4;            // a neighbourhood reaches this many radii
+constexpr double runs_on = 0.42;      // a direction counts whose variance is at least this share of the largest
+constexpr double touched = 1.002;     // of a ball's squared radius: its own touching points count, which rounding moves
+constexpr double alike_radius = 0.9;  // of a ball's radius: others as large stand for the same part of the body
+
+// A ball is stood for by one before it that is hardly larger and whose centre is this near, as shares of its radius
+// (and of its square): choices between detail and the cost of looking round each.
+constexpr double as_large = 0.95, as_near_squared = 0.04;
+
+// The way from a section's edge leads on where the next ball is so many times as large: between the 1.1 of a limb that
+// tapers by a tenth and the 3.4 of a square's edge. By that factor each, eight steps reach balls 8 times as large.
+constexpr double leads_on = 1.3;
+constexpr int most_steps = 8;
+
+// A limb's section, over r^2: between a circle's, pi, and a square's, 4.
+constexpr double limb_section = 3.5;
+constexpr double least_ball = 0.75;  // of the limbs' mean radius: smaller ones are those of edges and ends
+// Of the volume: up to the first of another kind is a limb's end or a plate's rim, and the second more is a part;
+// between them it counts in proportion, so that the number of spheres does not leap.
+constexpr double end_share = 0.05, part_over_end = 0.1;
+// By default, choices between error and cost: a plate or lump has so many spheres, a limb so many from the support to
+// its far end, but not closer together or further apart than these shares of its radius.
+constexpr double spheres_of_plate = 60, spheres_of_lump = 120, spheres_along = 14;
+constexpr double least_apart = 0.6, most_apart = 2;
+constexpr int least_spheres = 4;
+constexpr int bisections = 60;  // to the last digit: a double has 53 bits
 
 // Medial balls, largest first.
 struct Balls {
@@ -45,7 +69,7 @@ struct Balls {
     int largest_at(const Vec3& point) const {
         const auto n = static_cast<int>(radii.size());
         for (int i = 0; i < n; ++i) {
-            if (squared_distance(i, point) <= 1.002 * radii(i) * radii(i)) return i;
+            if (squared_distance(i, point) <= touched * radii(i) * radii(i)) return i;
         }
         Eigen::Index nearest = 0;
         (squared_distances(n, point).sqrt() - radii).minCoeff(&nearest);
@@ -55,7 +79,7 @@ struct Balls {
     // Of the balls that hold a point and are about as large as the given one: that with the nearest centre.
     int nearest_like(int ball, const Vec3& point) const {
         const auto smaller = [&](double radius, double least) { return radius >= least; };
-        const auto end = std::lower_bound(radii.begin(), radii.end(), 0.9 * radii(ball), smaller);
+        const auto end = std::lower_bound(radii.begin(), radii.end(), alike_radius * radii(ball), smaller);
         const Eigen::ArrayXd squared = squared_distances(end - radii.begin(), point);
         int best = ball;
         double least = squared_distance(ball, point);
@@ -73,10 +97,11 @@ struct Balls {
         for (int b = 0; b < std::ssize(used); ++b) {
             stands[b] = b;
             if (!used[b]) continue;
-            const auto like = [&](int k) {
-                return radii(b) > 0.95 * radii(k) && squared_distance(k, center(b)) < 0.04 * radii(k) * radii(k);
+            const auto alike = [&](int k) {
+                return radii(b) > as_large * radii(k) &&
+                       squared_distance(k, center(b)) < as_near_squared * radii(k) * radii(k);
             };
-            const auto found = std::find_if(kept.begin(), kept.end(), like);
+            const auto found = std::find_if(kept.begin(), kept.end(), alike);
             if (found != kept.end()) {
                 stands[b] = *found;
             } else {
@@ -93,11 +118,11 @@ struct Balls {
 int ball_of(const Balls& balls, const Vec3& point, std::vector<int>& onward) {
     Vec3 inner = point;
     int ball = balls.largest_at(point);
-    for (int step = 0; step < 8; ++step) {
+    for (int step = 0; step < most_steps; ++step) {
         const Vec3 center = balls.center(ball);
         if (onward[ball] < 0) onward[ball] = balls.largest_at(center);
         const int larger = onward[ball];
-        if (balls.radii(larger) < 1.3 * balls.radii(ball)) break;
+        if (balls.radii(larger) < leads_on * balls.radii(ball)) break;
         ball = larger;
         inner = center;
     }
@@ -150,8 +175,7 @@ void collapse(const TetGraph& graph, Core& core) {
 }  // namespace
 
 double Neighborhood::section() const {
-    // A limb's is between a circle's, pi r^2, and a square's, 4 r^2.
-    return dimensions == 1 ? 3.5 * radius * radius : dimensions == 2 ? 2 * radius : 1;
+    return dimensions == 1 ? limb_section * radius * radius : dimensions == 2 ? 2 * radius : 1;
 }
 
 Core find_core(const TetGraph& graph, const MedialAxis& axis) {
@@ -215,7 +239,7 @@ double spacing_of_spheres(const Eigen::VectorXd& volumes, const Core& core, int 
     for (int t = 0; t < volumes.size(); ++t) extent(core.of(t).dimensions - 1) += volumes(t) / core.of(t).section();
     double low = 0, high = std::max({3 * extent(0) / spheres, std::sqrt(3 * extent(1) / spheres),
                                      std::cbrt(3 * extent(2) / spheres)});
-    for (int i = 0; i < 60; ++i) {
+    for (int i = 0; i < bisections; ++i) {
         const double h = (low + high) / 2;
         const double count = extent(0) / h + extent(1) / (h * h) + extent(2) / (h * h * h);
         (count > spheres ? low : high) = h;
@@ -238,24 +262,25 @@ int default_spheres(const TetGraph& graph, const Eigen::VectorXd& volumes, const
         // Edges and ends have small balls of their own, which would count as much length.
         radius /= share(0);
         for (int t = 0; t < volumes.size(); ++t) {
-            const double r = std::max(core.of(t).radius, 0.75 * radius);
+            const double r = std::max(core.of(t).radius, least_ball * radius);
             if (core.of(t).dimensions == 1) length += volumes(t) / Neighborhood{.dimensions = 1, .radius = r}.section();
         }
         // Balls miss the middle of a section by up to their spacing; its moment tells its size on the whole:
         // a circle's mean square is r^2 / 2, so its area 2 pi times that, and a square's nearly.
-        const double size = std::sqrt(2 * std::numbers::pi / 3.5 * squares / share(0));
+        const double size = std::sqrt(2 * std::numbers::pi / limb_section * squares / share(0));
         length *= std::pow(radius / size, 2);
         radius = size;
     }
 
-    // A few per cent of another kind are a limb's end or a plate's rim: they are no part to be counted.
     share /= share.sum();
     Vec3 part;
-    for (int d = 0; d < 3; ++d) part(d) = share(d) * std::clamp((share(d) - 0.05) / 0.1, 0., 1.);
+    for (int d = 0; d < 3; ++d) part(d) = share(d) * std::clamp((share(d) - end_share) / part_over_end, 0., 1.);
     part /= part.sum();
-    double count = 60 * part(1) + 120 * part(2);
-    if (part(0) > 0) count += part(0) / share(0) * length / std::clamp(reach / 14, 0.6 * radius, 2 * radius);
-    return std::max(4, static_cast<int>(std::lround(count)));
+    double count = spheres_of_plate * part(1) + spheres_of_lump * part(2);
+    if (part(0) > 0)
+        count +=
+            part(0) / share(0) * length / std::clamp(reach / spheres_along, least_apart * radius, most_apart * radius);
+    return std::max(least_spheres, static_cast<int>(std::lround(count)));
 }
 
 double mean_radius(const Eigen::VectorXd& volumes, const Core& core) {

@@ -55,21 +55,6 @@ struct Rings {
     }
 };
 
-// Nothing crosses at the faces of a tree through all tetrahedra.
-void cross_no_tree(const TetGraph& graph, const Rings& rings, std::vector<char>& known) {
-    std::vector<char> seen(graph.size());
-    std::vector<int> front{0};
-    seen[0] = 1;
-    for (std::size_t i = 0; i < front.size(); ++i) {
-        for (int c = 0; c < 4; ++c) {
-            const int u = graph.neighbors(front[i], c);
-            if (u < 0 || std::exchange(seen[u], 1)) continue;
-            known[rings.face[front[i]][c]] = 1;
-            front.push_back(u);
-        }
-    }
-}
-
 // Crossings that agree with all rings but some at which loose ends met; `generators`: how many bits were taken.
 std::vector<Bits> spread(const Rings& rings, std::vector<char> known, int& generators) {
     std::vector<Bits> crossing(rings.sides.size(), 0);
@@ -132,7 +117,8 @@ std::vector<Bits> null_space(const std::vector<Bits>& sums, int generators) {
 Handles find_handles(const TetGraph& graph) {
     const Rings rings(graph);
     std::vector<char> known(rings.sides.size());
-    cross_no_tree(graph, rings, known);
+    // Nothing crosses at the faces of a tree through all tetrahedra.
+    walk(graph, [&](int tet, int corner) { known[rings.face[tet][corner]] = 1; });
     int generators = 0;
     const std::vector<Bits> crossing = spread(rings, known, generators);
     std::vector<Bits> sums;

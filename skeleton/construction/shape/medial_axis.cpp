@@ -14,6 +14,16 @@ namespace {
 // closer to each other than two samples are, than that: bumps of the surface are no walls.
 constexpr double least_angle = 0.6, least_angle_nearby = 1.8;  // [rad]
 
+constexpr int most_cuts = 200;    // of a triangle's side: 40,000 samples of one, however small the spacing is
+constexpr int most_shrinks = 30;  // a ball that shrinks longer does so by noise: what is left of it tells the radius
+constexpr double hardly_nearer = 1e-4;  // of the radius: a surface that comes no nearer than this touches the ball
+constexpr double beside_sample =
+    1e-12;  // of the radius: what lies no higher over the sample lies beside it, by rounding
+
+// Balls of whose radius the surface cuts off more than this, or that hardly leave it, as a share of the largest that
+// the body's box could hold, are noise of the facets.
+constexpr double uncut = 0.7, least_ball_of_box = 1e-3;
+
 struct Sample {
     Vec3 point, inward;
 };
@@ -63,7 +73,7 @@ std::vector<Sample> sample_surface(const mesh::Surface& surface, const mesh::Sur
         if (!(area.norm() > 0)) continue;
         // Into k x k equal triangles that are smaller than the cells.
         const double longest = std::max({u.norm(), v.norm(), (u - v).norm()});
-        const int k = std::clamp(static_cast<int>(std::ceil(longest / spacing)), 1, 200);
+        const int k = std::clamp(static_cast<int>(std::ceil(longest / spacing)), 1, most_cuts);
         for (int i = 0; i < k; ++i) {
             for (int j = 0; j < 2 * (k - i) - 1; ++j) {
                 // Upright and upside-down triangles of strip i in turn.
@@ -80,14 +90,14 @@ std::vector<Sample> sample_surface(const mesh::Surface& surface, const mesh::Sur
 
 // The radius of the largest ball that touches the surface at the sample from inside, at most `radius`.
 double shrink(const mesh::SurfaceTree& tree, const Sample& sample, double spacing, double radius) {
-    for (int step = 0; step < 30; ++step) {
+    for (int step = 0; step < most_shrinks; ++step) {
         const Vec3 center = sample.point + radius * sample.inward;
         const mesh::SurfacePoint hit = tree.closest(center);
-        if (hit.distance > radius * (1 - 1e-4)) break;
+        if (hit.distance > radius * (1 - hardly_nearer)) break;
         // The ball through both points with its centre on the sample's normal: |d|^2 = 2 r d.n.
         const Vec3 d = hit.position - sample.point;
         const double height = d.dot(sample.inward);
-        if (!(height > 1e-12 * radius)) break;
+        if (!(height > beside_sample * radius)) break;
         const double smaller = d.squaredNorm() / (2 * height);
         const Vec3 next = sample.point + smaller * sample.inward;
         const double cosine = (sample.point - next).normalized().dot((hit.position - next).normalized());
@@ -109,8 +119,7 @@ MedialAxis medial_axis(const mesh::Surface& surface, const mesh::SurfaceTree& tr
         const Vec3 center = sample.point + grown * sample.inward;
         const mesh::SurfacePoint nearest = tree.closest(center);
         const double radius = nearest.distance;
-        // Balls that the surface cuts deeply, or that hardly leave it, are noise of the facets.
-        if (radius < 0.7 * grown || radius < 1e-3 * largest || !tree.inside(center)) continue;
+        if (radius < uncut * grown || radius < least_ball_of_box * largest || !tree.inside(center)) continue;
         centers.push_back(center);
         radii.push_back(radius);
         touching.push_back(nearest.position);

@@ -91,20 +91,6 @@ TetGraph::Quads find_neighbors(const TetGraph& graph) {
     return neighbors;
 }
 
-// Whether neighbours lead from the first tetrahedron to each (m).
-std::vector<char> reachable(const TetGraph& graph) {
-    std::vector<char> seen(graph.size());
-    std::vector<int> front{0};
-    seen[0] = 1;
-    for (std::size_t i = 0; i < front.size(); ++i) {
-        for (int c = 0; c < 4; ++c) {
-            const int u = graph.neighbors(front[i], c);
-            if (u >= 0 && !std::exchange(seen[u], 1)) front.push_back(u);
-        }
-    }
-    return seen;
-}
-
 }  // namespace
 
 std::array<int, 3> TetGraph::face_nodes(int tet, int corner) const {
@@ -132,7 +118,7 @@ TetGraph make_tet_graph(const mesh::VolumeMesh& body, int least) {
         graph.volumes(t) = volume(graph.nodes, {c(0), c(1), c(2), c(3)});
     }
 
-    const std::vector<char> together = reachable(graph);
+    const std::vector<char> together = walk(graph, [](int, int) {});
     const auto apart = std::find(together.begin(), together.end(), 0);
     if (apart != together.end()) {
         const Vec3 at = graph.centers.row(apart - together.begin());

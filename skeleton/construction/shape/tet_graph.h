@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <utility>
 #include <vector>
 
 #include "mesh/core/volume_mesh.h"
@@ -24,6 +25,24 @@ struct TetGraph {
     /// The three corners of that face, counter-clockwise seen from outside.
     std::array<int, 3> face_nodes(int tet, int corner) const;
 };
+
+/// Walks over neighbours from the first tetrahedron, calls visit(tet, corner) of each face that leads to a new one, and
+/// tells which were reached (m).
+template <typename Visit>
+std::vector<char> walk(const TetGraph& graph, const Visit& visit) {
+    std::vector<char> seen(graph.size());
+    std::vector<int> front{0};
+    seen[0] = 1;
+    for (std::size_t i = 0; i < front.size(); ++i) {
+        for (int corner = 0; corner < 4; ++corner) {
+            const int next = graph.neighbors(front[i], corner);
+            if (next < 0 || std::exchange(seen[next], 1)) continue;
+            visit(front[i], corner);
+            front.push_back(next);
+        }
+    }
+    return seen;
+}
 
 /// Each tetrahedron is split in eight, again and again, until there are at least so many.
 /// @throws InvalidInput when the body is in several pieces.

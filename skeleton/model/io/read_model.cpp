@@ -6,7 +6,7 @@
 
 #include "mesh/errors.h"
 #include "mesh/text/atomic_file.h"
-#include "skeleton/model/attach.h"
+#include "skeleton/model/attachment/attach.h"
 #include "skeleton/model/io/json_fields.h"
 #include "skeleton/model/io/model_io.h"
 

@@ -7,7 +7,7 @@
 #include <limits>
 
 #include "skeleton/loads/dent.h"
-#include "skeleton/model/attach.h"
+#include "skeleton/model/attachment/attach.h"
 
 namespace palpate::runtime {
 

@@ -3,18 +3,8 @@
 #include <algorithm>
 
 #include "skeleton/model/state.h"
-#include "skeleton/runtime/kernels/tables.h"
 
 namespace palpate::runtime {
-
-namespace {
-
-Eigen::Quaterniond turn_of(const double* pose, int sphere) {
-    return Eigen::Quaterniond(Eigen::Map<const Eigen::Vector4d>(pose + row_length * sphere + 4));
-}
-Vec3 centre_of(const double* pose, int sphere) { return Eigen::Map<const Vec3>(pose + row_length * sphere); }
-
-}  // namespace
 
 void RuntimePoint::assign(const skeleton::Attachment& point, const std::vector<skeleton::Sphere>& spheres) {
     rest_ = point.rest;
@@ -35,16 +25,16 @@ void RuntimePoint::assign(const skeleton::Attachment& point, const std::vector<s
 }
 
 void RuntimePoint::place(const double* pose) {
-    const Eigen::Quaterniond reference = turn_of(pose, shares_.front().sphere);
+    const Eigen::Quaterniond reference = orientation_of(pose, shares_.front().sphere);
     const auto alike = [&](const Share& s) {
-        Eigen::Quaterniond q = turn_of(pose, s.sphere);
+        Eigen::Quaterniond q = orientation_of(pose, s.sphere);
         if (q.dot(reference) < 0) q.coeffs() = -q.coeffs();
         return q;
     };
     Vec3 mean = Vec3::Zero();
     Eigen::Vector4d sum = Eigen::Vector4d::Zero();
     for (const Share& s : shares_) {
-        mean += s.w * centre_of(pose, s.sphere);
+        mean += s.w * moves_of(pose, s.sphere);
         sum += s.w * alike(s).coeffs();
     }
     n_ = sum.norm();
@@ -52,7 +42,7 @@ void RuntimePoint::place(const double* pose) {
     R_ = q.toRotationMatrix();
     Vec3 arm = to_rest_;
     for (Share& s : shares_) {
-        s.y = centre_of(pose, s.sphere) - mean;
+        s.y = moves_of(pose, s.sphere) - mean;
         const Eigen::Quaterniond beyond = alike(s) * q.conjugate();
         s.c = beyond.w();
         s.v = beyond.vec();
@@ -76,8 +66,7 @@ Vec3 RuntimePoint::velocity(const double* velocity) const {
     Vec3 sum = Vec3::Zero();
     for (int axis = 0; axis < 3; ++axis) {
         pull_back(Vec3::Unit(axis), [&](int sphere, const Vec3& force, const Vec3& torque) {
-            const double* row = velocity + row_length * sphere;
-            sum[axis] += force.dot(Eigen::Map<const Vec3>(row)) + torque.dot(Eigen::Map<const Vec3>(row + 4));
+            sum[axis] += force.dot(moves_of(velocity, sphere)) + torque.dot(turns_of(velocity, sphere));
         });
     }
     return sum;

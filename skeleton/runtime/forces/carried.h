@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "skeleton/model/model.h"
+#include "skeleton/runtime/forces/rows.h"
 
 namespace palpate::runtime {
 
@@ -25,6 +26,8 @@ public:
     /// Calls visit(sphere, force, torque) with what a force on the point does to each sphere, by virtual work.
     template <typename Visit>
     void pull_back(const Vec3& f, const Visit& visit) const;
+    /// Adds to the spheres' forces (rows) what a force on the point does to each.
+    void add_force(const Vec3& f, double* force) const;
     /// d x / d step of each share's sphere (3 x 6).
     void jacobians(std::vector<Eigen::Matrix<double, 3, 6>>& by_share) const;
     /// How fast it moves with the spheres (rows of velocities) [mm/s].
@@ -69,6 +72,13 @@ void RuntimePoint::pull_back(const Vec3& f, const Visit& visit) const {
         const Vec3 torque = turned_by(s) + (s.w / n_) * (s.c * N + s.v.cross(N));
         visit(s.sphere, force, torque);
     }
+}
+
+inline void RuntimePoint::add_force(const Vec3& f, double* force) const {
+    pull_back(f, [&](int sphere, const Vec3& own_force, const Vec3& torque) {
+        moves_of(force, sphere) += own_force;
+        turns_of(force, sphere) += torque;
+    });
 }
 
 }  // namespace palpate::runtime

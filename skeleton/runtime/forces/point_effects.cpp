@@ -7,21 +7,8 @@
 #include "skeleton/effects/point_sets.h"
 #include "skeleton/loads/cavities.h"
 #include "skeleton/runtime/forces/link_tables.h"
-#include "skeleton/runtime/kernels/tables.h"
 
 namespace palpate::runtime {
-
-namespace {
-
-void add_carried(const RuntimePoint& point, const Vec3& f, double* rows) {
-    point.pull_back(f, [&](int sphere, const Vec3& force, const Vec3& torque) {
-        double* row = rows + row_length * sphere;
-        Eigen::Map<Vec3>(row) += force;
-        Eigen::Map<Vec3>(row + 4) += torque;
-    });
-}
-
-}  // namespace
 
 PointEffects::PointEffects(const skeleton::Model& model, const fem::Effects& effects)
     : model_(model), supported_(model.spheres.size(), 0), surface_(effects.surface), of_effects_(effects.pressure) {
@@ -85,7 +72,7 @@ double PointEffects::add_forces(const double* pose, double* force) {
             point.place(pose);
             const fem::PointTerms terms = effect.potential->terms(point.rest(), point.x());
             energy += effect.weights[p] * terms.energy;
-            if (!terms.gradient.isZero(0)) add_carried(point, -effect.weights[p] * terms.gradient, force);
+            if (!terms.gradient.isZero(0)) point.add_force(-effect.weights[p] * terms.gradient, force);
         }
     }
     if (!surface_.empty()) energy += add_skin(pose, force);
@@ -105,7 +92,7 @@ double PointEffects::add_skin(const double* pose, double* force) {
         energy += own.value();
         for (int v = 0; v < 3; ++v) pulls_[triangle.corners[v]] -= own.by_node(v);
     }
-    for (std::size_t v = 0; v < vertices_.size(); ++v) add_carried(vertices_[v], pulls_[v], force);
+    for (std::size_t v = 0; v < vertices_.size(); ++v) vertices_[v].add_force(pulls_[v], force);
     return energy;
 }
 
@@ -123,7 +110,7 @@ double PointEffects::add_pressure(const double* pose, double* force) {
         volume -= x[0].dot(x[1].cross(x[2])) / 6;
         for (int v = 0; v < 3; ++v) growth_[wall[v]] -= x[(v + 1) % 3].cross(x[(v + 2) % 3]) / 6;
     }
-    for (std::size_t c = 0; c < corners_.size(); ++c) add_carried(corners_[c], pressure_ * growth_[c], force);
+    for (std::size_t c = 0; c < corners_.size(); ++c) corners_[c].add_force(pressure_ * growth_[c], force);
     return -pressure_ * (volume - rest_volume_);
 }
 

@@ -1,11 +1,11 @@
 #include "skeleton/runtime/solver/solver.h"
 
 #include <Eigen/Eigenvalues>
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
+#include "skeleton/blocks/tangent_shift.h"
 #include "skeleton/model/state.h"
 #include "skeleton/model/turning_curvature.h"
 
@@ -19,24 +19,13 @@ constexpr double slow = 0.8;
 // Factors that cost as much as so many solutions are dear: old ones are kept in equilibria too, whose corrections are
 // large.
 constexpr double expensive = 10;
-
-Eigen::Map<const Vec3> place(const double* rows, int sphere) {
-    return Eigen::Map<const Vec3>(rows + row_length * sphere);
-}
-Eigen::Map<const Vec3> turning(const double* rows, int sphere) {
-    return Eigen::Map<const Vec3>(rows + row_length * sphere + 4);
-}
-Eigen::Quaterniond orientation(const double* rows, int sphere) {
-    return Eigen::Quaterniond(Eigen::Map<const Eigen::Vector4d>(rows + row_length * sphere + 4));
-}
-Mat3 turned_by(const double* rows, int sphere) { return orientation(rows, sphere).toRotationMatrix(); }
-
-Eigen::Quaterniond turn_of(const Vec3& w) {
-    const double half = 0.5 * w.norm();
-    const double sinc = half > 1e-9 ? std::sin(half) / half : 1.0;
-    const Vec3 v = 0.5 * sinc * w;
-    return {std::cos(half), v.x(), v.y(), v.z()};
-}
+// Steps end where the tangent tells too little: at so many radians of a sphere, at this share of a link's length by
+// which its ends part. Choices: longer ones fail more often in slender bodies, shorter ones take more of them.
+constexpr double most_turn = 0.5, most_parting = 0.5;
+constexpr double tiny = 1e-7;      // of the mean link length: Newton's method has arrived, slopes tell no more
+constexpr int most_halvings = 12;  // a share of 1/4096: where that is not enough, another direction is due
+// Of the slope at the start: on the way up again behind the minimum, and on the way down a cliff.
+constexpr double most_slope_left = 0.5, most_steepening = 10;
 
 }  // namespace
 
@@ -79,20 +68,21 @@ Solver::Solver(ForceField& field, int contacts, Rig& rig) : field_(field), rig_(
 void Solver::predict(const Step& step, const double* start, const double* velocity, double* pose) {
     const double share = step.h / (1 + step.alpha * step.h);
     for (const int i : free_) {
-        const Eigen::Quaterniond q = turn_of(share * turning(velocity, i)) * orientation(start, i);
-        x_predicted_[i] = place(start, i) + share * place(velocity, i);
+        const Eigen::Quaterniond q = skeleton::quaternion_of(share * turns_of(velocity, i)) * orientation_of(start, i);
+        x_predicted_[i] = moves_of(start, i) + share * moves_of(velocity, i);
         R_predicted_[i] = q.toRotationMatrix();
         if (!step.extrapolate) continue;
-        Eigen::Map<Vec3>(pose + row_length * i) = x_predicted_[i];
+        moves_of(pose, i) = x_predicted_[i];
         Eigen::Map<Eigen::Vector4d>(pose + row_length * i + 4) = q.coeffs().normalized();
     }
 }
 
 void Solver::set_rates(const Step& step, const double* start, const double* pose) {
     for (const int i : free_) {
-        const Mat3 turn = turned_by(pose, i) * turned_by(start, i).transpose();
-        Eigen::Map<Vec3> v(velocity_.data() + row_length * i), w(velocity_.data() + row_length * i + 4);
-        v = (place(pose, i) - place(start, i)) / step.h;
+        const Mat3 turn =
+            orientation_of(pose, i).toRotationMatrix() * orientation_of(start, i).toRotationMatrix().transpose();
+        Eigen::Map<Vec3> v = moves_of(velocity_.data(), i), w = turns_of(velocity_.data(), i);
+        v = (moves_of(pose, i) - moves_of(start, i)) / step.h;
         w = skeleton::rotation_vector(turn) / step.h;
     }
 }
@@ -110,20 +100,17 @@ void Solver::balance(const Step& step, const std::vector<ContactState*>& contact
     for (ContactState* contact : contacts) {
         if (!contact->acts()) continue;
         contact->at.place(pose);
-        contact->at.pull_back(contact->effective_force(), [&](int sphere, const Vec3& force, const Vec3& torque) {
-            Eigen::Map<Vec3>(force_.data() + row_length * sphere) += force;
-            Eigen::Map<Vec3>(force_.data() + row_length * sphere + 4) += torque;
-        });
+        contact->at.add_force(contact->effective_force(), force_.data());
     }
     rig_.add_forces(pose, force_.data());
     const double by = step.h > 0 ? (1 + step.alpha * step.h) / (step.h * step.h) : 0;
     for (std::size_t f = 0; f < free_.size(); ++f) {
         const int i = free_[f];
         auto own = net.segment<6>(static_cast<Eigen::Index>(6 * f));
-        own << place(force_.data(), i), turning(force_.data(), i);
+        own << moves_of(force_.data(), i), turns_of(force_.data(), i);
         if (by == 0) continue;
-        own.head<3>() -= by * field_.model().spheres[i].mass * (place(pose, i) - x_predicted_[i]);
-        const Mat3 u = turned_by(pose, i) * axes_[i], to = R_predicted_[i] * axes_[i];
+        own.head<3>() -= by * field_.model().spheres[i].mass * (moves_of(pose, i) - x_predicted_[i]);
+        const Mat3 u = orientation_of(pose, i).toRotationMatrix() * axes_[i], to = R_predicted_[i] * axes_[i];
         for (int j = 0; j < 3; ++j) own.tail<3>() += by * spread_[i][j] * u.col(j).cross(to.col(j));
     }
 }
@@ -150,15 +137,15 @@ bool Solver::factor(const Step& step, const double* pose, double& shift) {
         const int i = free_[f];
         ForceField::Block inertia = ForceField::Block::Zero();
         inertia.topLeftCorner<3, 3>().diagonal().setConstant(by * field_.model().spheres[i].mass);
-        const Mat3 u = turned_by(pose, i) * axes_[i], to = R_predicted_[i] * axes_[i];
+        const Mat3 u = orientation_of(pose, i).toRotationMatrix() * axes_[i], to = R_predicted_[i] * axes_[i];
         for (int j = 0; j < 3; ++j) {
             inertia.bottomRightCorner<3, 3>() -= by * spread_[i][j] * skeleton::turning_curvature(to.col(j), u.col(j));
         }
         matrix_.add_diagonal(static_cast<int>(f), inertia);
     }
     while (matrix_.factor(shift, metric_)) {
-        shift = std::max(10 * shift, 1e-4 * stiffest_);
-        if (!(shift < 1e8 * stiffest_)) return false;
+        shift = skeleton::larger_shift(shift, stiffest_);
+        if (!skeleton::can_shift(shift, stiffest_)) return false;
     }
     factored_ = true;
     bfgs_.forget();
@@ -194,16 +181,16 @@ double Solver::step_limit(const double* from) const {
     double times_too_long = 1;
     for (std::size_t f = 0; f < free_.size(); ++f) {
         times_too_long =
-            std::max(times_too_long, direction_.segment<3>(static_cast<Eigen::Index>(6 * f + 3)).norm() / 0.5);
+            std::max(times_too_long, direction_.segment<3>(static_cast<Eigen::Index>(6 * f + 3)).norm() / most_turn);
     }
     for (const skeleton::Link& link : field_.model().links) {
         const Eigen::Matrix<double, 6, 1> own = direction_of(link.b), near = direction_of(link.a);
         Vec3 apart = own.head<3>() - near.head<3>();
         if (!branches_.empty()) {
-            const Vec3 arm = place(from, link.b) - place(from, link.a);
+            const Vec3 arm = moves_of(from, link.b) - moves_of(from, link.a);
             apart = skeleton::Branches::stretch(arm, apart, (own.tail<3>() + near.tail<3>()) / 2);
         }
-        times_too_long = std::max(times_too_long, apart.norm() / (0.5 * link.length));
+        times_too_long = std::max(times_too_long, apart.norm() / (most_parting * link.length));
     }
     return 1 / times_too_long;
 }
@@ -217,18 +204,18 @@ void Solver::move(const double* from, double share, double* to) const {
     for (std::size_t f = 0; f < free_.size(); ++f) {
         const int i = free_[f];
         const auto step = direction_.segment<6>(static_cast<Eigen::Index>(6 * f));
-        const Eigen::Quaterniond turned = turn_of(share * step.tail<3>()) * orientation(from, i);
-        Eigen::Map<Vec3> x(to + row_length * i);
+        const Eigen::Quaterniond turned = skeleton::quaternion_of(share * step.tail<3>()) * orientation_of(from, i);
+        Eigen::Map<Vec3> x = moves_of(to, i);
         Eigen::Map<Eigen::Vector4d> q(to + row_length * i + 4);
-        x = place(from, i) + share * step.head<3>();
+        x = moves_of(from, i) + share * step.head<3>();
         q = turned.coeffs().normalized();
     }
     for (const auto& [sphere, near] : branches_.tree_edges()) {
         const Eigen::Matrix<double, 6, 1> own = direction_of(sphere), inner = direction_of(near);
-        const Vec3 arm = place(from, sphere) - place(from, near);
-        Eigen::Map<Vec3>(to + row_length * sphere) =
-            place(to, near) + skeleton::Branches::carried(arm, own.head<3>() - inner.head<3>(),
-                                                          (own.tail<3>() + inner.tail<3>()) / 2, share);
+        const Vec3 arm = moves_of(from, sphere) - moves_of(from, near);
+        moves_of(to, sphere) =
+            moves_of(to, near) + skeleton::Branches::carried(arm, own.head<3>() - inner.head<3>(),
+                                                             (own.tail<3>() + inner.tail<3>()) / 2, share);
     }
 }
 
@@ -271,19 +258,19 @@ Solver::Report Solver::solve(const Step& step, const std::vector<ContactState*>&
 
         // The slope of the potential along the step is to fall by half at least, or go on falling, but not off a cliff.
         const double slope = std::abs(net_.dot(direction_));
-        const bool small = size <= 1e-7 * length_;
+        const bool small = size <= tiny * length_;
         double share = 2 * step_limit(pose.data());
         bool falls = false;
-        for (int halving = 0; halving < 12 && !falls; ++halving) {
+        for (int halving = 0; halving < most_halvings && !falls; ++halving) {
             share /= 2;
             move(pose.data(), share, trial_.data());
             balance(step, contacts, start, trial_.data(), there_);
             const double there = there_.dot(direction_);
-            falls = small || (there >= -0.5 * slope && there <= 10 * slope);
+            falls = small || (there >= -most_slope_left * slope && there <= most_steepening * slope);
         }
         if (!falls) {
-            if (fresh) shift = std::max(10 * shift, 1e-4 * stiffest_);
-            if (!(shift < 1e8 * stiffest_)) return report;
+            if (fresh) shift = skeleton::larger_shift(shift, stiffest_);
+            if (!skeleton::can_shift(shift, stiffest_)) return report;
             due = true;
             continue;
         }
@@ -303,64 +290,9 @@ Solver::Report Solver::solve(const Step& step, const std::vector<ContactState*>&
         before_last = fresh ? never : last;
         last = size;
         due = !step.reuse || shift > 0;
-        shift = shift > 1e-3 * stiffest_ ? shift / 10 : 0;
+        shift = skeleton::smaller_shift(shift, stiffest_);
     }
     return report;
-}
-
-Solver::Vector Solver::curvature_times(const std::vector<ForceField::Block>& K, const Vector& v) const {
-    Vector sum = Vector::Zero(v.size());
-    for (std::size_t p = 0; p < K.size(); ++p) {
-        const auto [a, b] = field_.pairs()[p];
-        const Eigen::Index i = 6L * block_of_[a], j = 6L * block_of_[b];
-        if (i < 0 || j < 0) continue;
-        sum.segment<6>(i) += K[p] * v.segment<6>(j);
-        if (a != b) sum.segment<6>(j) += K[p].transpose() * v.segment<6>(i);
-    }
-    return sum;
-}
-
-Solver::Vector Solver::mass_times(const double* pose, const Vector& v, bool inverse) const {
-    Vector product = v;
-    for (std::size_t f = 0; f < free_.size(); ++f) {
-        const int i = free_[f];
-        const skeleton::Sphere& sphere = field_.model().spheres[i];
-        const Mat3 R = turned_by(pose, i), inertia = R * sphere.inertia * R.transpose();
-        auto own = product.segment<6>(static_cast<Eigen::Index>(6 * f));
-        own.head<3>() *= inverse ? 1 / sphere.mass : sphere.mass;
-        own.tail<3>() = inverse ? Vec3(inertia.inverse() * own.tail<3>()) : Vec3(inertia * own.tail<3>());
-    }
-    return product;
-}
-
-double Solver::stiffest_mode(const double* pose) {
-    const std::vector<ForceField::Block> K = field_.curvature(pose);
-    Vector v(net_.size());
-    for (Eigen::Index i = 0; i < v.size(); ++i) v[i] = std::sin(1.0 + static_cast<double>(i));
-    double square = 0;
-    for (int iteration = 0; iteration < 200; ++iteration) {  // the power method
-        v.normalize();
-        v = mass_times(pose, curvature_times(K, v), true);
-        square = v.norm();
-    }
-    return std::sqrt(square);
-}
-
-double Solver::softest_mode(const double* pose) {
-    assemble(1, pose);
-    factored_ = false;
-    forget_contacts();
-    if (net_.size() == 0 || matrix_.factor(0, metric_)) return 0;
-    Vector v(net_.size());
-    for (Eigen::Index i = 0; i < v.size(); ++i) v[i] = std::sin(1.0 + static_cast<double>(i));
-    double inverse_square = 0;
-    for (int iteration = 0; iteration < 60; ++iteration) {  // inverse iteration
-        v.normalize();
-        v = mass_times(pose, v, false);
-        matrix_.solve(v.data());
-        inverse_square = v.norm();
-    }
-    return 1 / std::sqrt(inverse_square);
 }
 
 }  // namespace palpate::runtime

@@ -5,8 +5,7 @@
 #include <algorithm>
 
 #include "mesh/errors.h"
-#include "skeleton/model/attach.h"
-#include "skeleton/runtime/kernels/tables.h"
+#include "skeleton/model/attachment/attach.h"
 
 namespace palpate::runtime {
 
@@ -65,11 +64,7 @@ void Tendons::add_forces(const double* pose, double* force) {
         place(tendon, pose);
         if (tendon.tension == 0) continue;
         for (std::size_t k = 0; k < tendon.points.size(); ++k) {
-            tendon.points[k].pull_back(-tendon.tension * lengthening(tendon, k),
-                                       [&](int sphere, const Vec3& f, const Vec3& t) {
-                                           Eigen::Map<Vec3>(force + row_length * sphere) += f;
-                                           Eigen::Map<Vec3>(force + row_length * sphere + 4) += t;
-                                       });
+            tendon.points[k].add_force(-tendon.tension * lengthening(tendon, k), force);
         }
     }
 }

@@ -6,13 +6,10 @@
 
 #include "mesh/errors.h"
 #include "skeleton/effects/point_sets.h"
-#include "skeleton/runtime/kernels/tables.h"
 
 namespace palpate::runtime {
 
 namespace {
-
-Vec3 place_of(const double* pose, int sphere) { return Eigen::Map<const Vec3>(pose + row_length * sphere); }
 
 /// How far apart the ends of unit quaternions are, up to their sign: half the angle of a small turn between them.
 double half_turn(const double* a, const double* b) {
@@ -22,6 +19,7 @@ double half_turn(const double* a, const double* b) {
 
 }  // namespace
 
+// A wider margin is looked up less often and holds more vertices, which each evaluation visits.
 double Tools::Tool::margin() const { return 0.25 * shape->radius(); }
 
 double Tools::Tool::moved() const { return (at - known_at).norm() + extent * (turn - known_turn).norm(); }
@@ -73,7 +71,7 @@ void Tools::look_up(Tool& tool, const double* pose) {
     tool.near.clear();
     for (std::size_t s = 0; s < carried_.size(); ++s) {
         const double within = tool.extent + tool.margin() + stretched * carried_[s].reach;
-        if ((place_of(pose, static_cast<int>(s)) - tool.at).squaredNorm() > within * within) continue;
+        if ((moves_of(pose, static_cast<int>(s)) - tool.at).squaredNorm() > within * within) continue;
         for (const int v : carried_[s].vertices) {
             skin_[v].place(pose);
             if (tool.gap(skin_[v].x()).value < tool.margin()) tool.near.push_back(v);
@@ -117,10 +115,7 @@ void Tools::add_forces(const double* pose, double* force) {
     keep_known(pose);
     for (Tool& tool : tools_) {
         for_each_touch(tool, pose, [&](const RuntimePoint& point, const fem::Gap& gap, double stiffness) {
-            point.pull_back(-stiffness * gap.value * gap.normal, [&](int sphere, const Vec3& f, const Vec3& t) {
-                Eigen::Map<Vec3>(force + row_length * sphere) += f;
-                Eigen::Map<Vec3>(force + row_length * sphere + 4) += t;
-            });
+            point.add_force(-stiffness * gap.value * gap.normal, force);
         });
     }
 }

@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "fem/rig/rigid_shape.h"
-#include "skeleton/runtime/body.h"
 #include "skeleton/runtime/tools/stiff_rows.h"
+#include "skeleton/runtime/tools/tool_load.h"
 
 namespace palpate::runtime {
 

@@ -4,7 +4,7 @@
 #include <numeric>
 #include <random>
 
-#include "skeleton/model/attach.h"
+#include "skeleton/model/attachment/attach.h"
 #include "skeleton/statics/equilibrium.h"
 #include "skeleton/statics/statics.h"
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "pipeline/case/subject.h"
+#include "pipeline/case/subject/subject.h"
 
 namespace palpate::bench {
 

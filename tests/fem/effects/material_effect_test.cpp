@@ -3,6 +3,7 @@
 #include <Eigen/LU>
 #include <cmath>
 
+#include "fem/effects/local/stiffness_map.h"
 #include "fem/effects/material/anisotropy.h"
 #include "fem/effects/material/inclusion.h"
 #include "fem/effects/material/prestress.h"
@@ -46,6 +47,30 @@ TEST(MaterialEffect, TermsAreDerivatives) {
         EXPECT_LT((differences(stress, F, 1e-5) - terms.second).norm(), 1e-8 * terms.second.norm());
         EXPECT_GT(terms.first.norm(), 0.05);
     }
+}
+
+TEST(StiffnessMap, HasTheVarianceOfItsAmplitudesEverywhere) {
+    Points places(3, 3);
+    places << 0, 0, 0, 10, 0, 0, 0, 7, 2;
+    for (const double length : {2.0, 8.0, 50.0}) {
+        const StiffnessMap map(places, Eigen::Vector3d(0.3, -0.4, 0.9), length);
+        // In between, next to a place, and so far off that all kernels underflow.
+        for (const Vec3& X : {Vec3(4, 2, 1), Vec3(0.1, 0, 0), Vec3(1e4, 0, 0)}) {
+            EXPECT_NEAR(map.weights(X).norm(), 1, 1e-12);
+            EXPECT_NEAR(std::log(map.stiffness(X)), map.centred_weights(X).dot(Eigen::Vector3d(0.3, -0.4, 0.9)), 1e-12);
+        }
+    }
+}
+
+TEST(StiffnessMap, AveragesToOneOverItsPlaces) {
+    Points places(2, 3);
+    places << 0, 0, 0, 10, 0, 0;
+    const StiffnessMap map(places, Eigen::Vector2d(1, -0.2), 4);
+    EXPECT_NEAR(map.log_stiffness({0, 0, 0}) + map.log_stiffness({10, 0, 0}), 0, 1e-12);
+    // Kernels of 1 and e = exp(-10^2 / (2 4^2)), over their norm: half of (1 - e) (1 + 0.2) / sqrt(1 + e^2) is on each
+    // side.
+    const double e = std::exp(-3.125);
+    EXPECT_NEAR(map.log_stiffness({0, 0, 0}), 0.6 * (1 - e) / std::hypot(1, e), 1e-12);
 }
 
 TEST(MaterialEffect, TurnsWithTheBody) {

@@ -25,7 +25,8 @@ std::vector<HiddenCase> hidden_cases() {
     return {{"stiffening", numbers({1, 0}), 0.2},
             {"anisotropy", numbers({1.5, 0.48, 0.6, 0.64}), 0.2},
             {"inclusion", numbers({27, 5, 5, std::log(6.7), std::log(4)}), 0.1},
-            {"contact", numbers({0, 0, 1, -0.5, std::log(0.5)}), 0.03},
+            // So near that several places touch it: of a plane that the tip alone meets nothing tells the tilt.
+            {"contact", numbers({0, 0, 1, -0.2, std::log(0.5)}), 0.03},
             {"pressure", numbers({0.03}), 0.03, 4},
             {"prestress", numbers({0.05, -0.03, 0.02, 0.03, -0.02, 0.01}), 0.03},
             {"swelling", numbers({0.02}), 0.03},
@@ -100,6 +101,10 @@ TEST_P(HiddenEffect, LeftOutOfTheCatalogueIsNotExplained) {
     if (GetParam().effect == "viscosity" || GetParam().effect == "clock" || GetParam().effect == "swelling") {
         for (const std::string& alias : found.explanation)
             EXPECT_THAT(effect_->description().confused_with, Contains(alias));
+        return;
+    }
+    if (GetParam().effect == "inclusion") {  // a field of stiffness has a ball in it, if need be
+        EXPECT_THAT(found.explanation, ElementsAre("map"));
         return;
     }
     EXPECT_EQ(found.verdict, Verdict::unexplained);

@@ -1,4 +1,4 @@
-#include "identify/diagnosis/ladder.h"
+#include "identify/diagnosis/ladder/ladder.h"
 #include "identify/diagnosis/rigged_skeleton.h"
 #include "tests/identify/diagnosed.h"
 

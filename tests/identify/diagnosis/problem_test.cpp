@@ -35,6 +35,16 @@ LoadState read(int probe, double time, std::vector<mesh::Contact> contacts) {
     return state;
 }
 
+TEST(LoadSizes, AddUpWithinAKindAsFarAsTheyAreTold) {
+    Action action;
+    action.contacts = {push, stronger};
+    action.motions = {{.tool = 0, .translation = Vec3(3, missing, 4)}};
+    const LoadSizes sizes = sizes_of(action);
+    EXPECT_EQ(sizes.force, 3);
+    EXPECT_EQ(sizes.way, 5);
+    EXPECT_EQ(sizes.setting, 0);
+}
+
 TEST(Problem, HasARowForEachMeasuredCoordinate) {
     LoadState state{.probe = 3, .contacts = {push}};
     state.readings = {at(1, Vec3(1.5, missing, 0.2)), at(-1, Vec3(9, 9, 9)), at(2, Vec3::Constant(missing)),

@@ -20,12 +20,13 @@ namespace {
 using testing::HasSubstr;
 
 /// Names that users may rely on.
-const std::set<std::string> promised{
-    "gravity",       "stiffening",     "anisotropy", "inclusion", "volume",       "torsion",
-    "shear",         "contact",        "pressure",   "prestress", "swelling",     "compliant-support",
-    "viscosity",     "plasticity",     "damage",     "friction",  "misalignment", "force-gain",
-    "slip",          "actuation-gain", "clock",      "outliers",  "local-force",  "local-springs",
-    "local-swelling"};
+const std::set<std::string> promised{"gravity",        "stiffening", "anisotropy",  "inclusion",
+                                     "volume",         "torsion",    "shear",       "contact",
+                                     "pressure",       "prestress",  "swelling",    "compliant-support",
+                                     "viscosity",      "plasticity", "damage",      "friction",
+                                     "misalignment",   "force-gain", "slip",        "actuation-gain",
+                                     "clock",          "outliers",   "local-force", "local-springs",
+                                     "local-swelling", "map"};
 const std::set<std::string> probe_kinds{"load", "orientation", "pressure", "dwell", "unload", "repeat", "fiducials"};
 
 class EveryEffect : public testing::TestWithParam<std::shared_ptr<const EffectHypothesis>> {
@@ -432,7 +433,7 @@ TEST(Catalogue, EachEffectDrawsFromTheStreamThatItAlwaysDid) {  // digits of a s
         {"anisotropy", 8}, {"viscosity", 9},         {"plasticity", 10}, {"inclusion", 11},
         {"contact", 12},   {"misalignment", 13},     {"force-gain", 14}, {"outliers", 15},
         {"clock", 16},     {"swelling", 17},         {"damage", 18},     {"friction", 19},
-        {"slip", 20},      {"actuation-gain", 21}};
+        {"slip", 20},      {"actuation-gain", 21},   {"map", 22}};
     for (const auto& [name, stream] : streams) EXPECT_EQ(find_effect(name)->stream(), stream) << name;
 }
 

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "identify/effects/measurement/gains.h"
+
 namespace palpate::identify {
 namespace {
 
@@ -39,6 +41,15 @@ TEST(NumberInWords, HasItsStandardDeviationWhereItIsKnown) {
     EXPECT_EQ(number_in_words(record, 0, covariance, 100), "24.0 ± 2.0");
     EXPECT_EQ(number_in_words(record, 0, covariance, -100), "-24.0 ± 2.0");
     EXPECT_EQ(number_in_words(record, 1, covariance), "3.1 ± 0.5");
+}
+
+TEST(GainRange, IsOfTheLeastAndTheMost) {
+    const skeleton::EffectRecord record{"force-gain", {{"probe1", 1.2, "1"}, {"probe2", 0.8, "1"}, {"probe3", 1, "1"}}};
+    const GainRange range = gain_range(record, {});
+    EXPECT_EQ(range.least.name, "probe2");
+    EXPECT_EQ(range.least.in_words, number_in_words(record, 1, {}));
+    EXPECT_EQ(range.most.name, "probe1");
+    EXPECT_EQ(range.most.in_words, number_in_words(record, 0, {}));
 }
 
 }  // namespace

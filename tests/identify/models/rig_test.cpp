@@ -4,8 +4,8 @@
 
 #include <random>
 
-#include "identify/models/reference_body.h"
-#include "identify/models/skeleton_body.h"
+#include "identify/models/reference/reference_body.h"
+#include "identify/models/skeleton/skeleton_body.h"
 #include "mesh/errors.h"
 #include "tests/identify/small_body.h"
 #include "tests/messages.h"

@@ -6,7 +6,7 @@
 
 #include "identify/motion/damping.h"
 #include "identify/motion/ringing.h"
-#include "skeleton/model/attach.h"
+#include "skeleton/model/attachment/attach.h"
 #include "skeleton/runtime/body.h"
 #include "skeleton/statics/equilibrium.h"
 #include "tests/identify/lattice.h"
@@ -123,12 +123,13 @@ TEST(Damping, OfEachModeIsFoundFromAReleasedBody) {
         const DampedMode& mode = found.modes[i];
         const double exact = ratio_at(truth, mode.frequency);
         EXPECT_TRUE(mode.ratio.informed);
-        EXPECT_NEAR(mode.ratio.q50, exact, 0.05 * exact);
-        EXPECT_NEAR(mode.measured.q50, mode.frequency, 0.02 * mode.frequency);
+        // Noise of 0.01 mm in 5400 coordinates, of an amplitude of 0.3 mm, leaves a thousandth.
+        EXPECT_NEAR(mode.ratio.q50, exact, 4e-3 * exact);
+        EXPECT_NEAR(mode.measured.q50, mode.frequency, 3e-4 * mode.frequency);
     }
-    EXPECT_LT(found.rms, 0.1 * found.displacement);
+    EXPECT_NEAR(found.rms, 0.01, 0.1 * 0.01);  // the noise, of which modes that are left out add a twentieth
     EXPECT_NEAR(ratio_at(model.damping.value(), found.modes[0].frequency), ratio_at(truth, found.modes[0].frequency),
-                0.1 * ratio_at(truth, found.modes[0].frequency));
+                0.03 * ratio_at(truth, found.modes[0].frequency));
 }
 
 TEST(Damping, ByMassIsToldFromDampingByStiffness) {
@@ -139,7 +140,7 @@ TEST(Damping, ByMassIsToldFromDampingByStiffness) {
         const MeasurementSet set = released(model, {.damping = truth});
         const DampingResult found = identify_damping(model, set).value();
         EXPECT_EQ(found.law, by_mass ? DampingLaw::mass : DampingLaw::stiffness);
-        EXPECT_NEAR(by_mass ? found.damping.alpha / truth.alpha : found.damping.beta / truth.beta, 1, 0.15);
+        EXPECT_NEAR(by_mass ? found.damping.alpha / truth.alpha : found.damping.beta / truth.beta, 1, 0.06);
         EXPECT_EQ(by_mass ? found.damping.beta : found.damping.alpha, 0);
     }
 }

@@ -10,10 +10,7 @@ namespace palpate::identify {
 namespace {
 
 TEST(Trc, HoldsMarkersAndTimes) {
-    const TemporaryFolder folder;
-    const auto recordings = read_recordings(folder.write("run.trc", trc_sample));
-    ASSERT_EQ(recordings.size(), 1u);
-    const Recording& run = recordings[0];
+    const Recording run = only_recording("run.trc", trc_sample);
     EXPECT_EQ(run.format, "TRC, motion capture");
     ASSERT_EQ(run.points.size(), 2u);
     EXPECT_EQ(run.points[1].name, "Tip");
@@ -40,10 +37,7 @@ TEST(Trc, SaysWhereItIsBroken) {
 }
 
 TEST(Motive, TakesMarkersAndLeavesBodiesOut) {
-    const TemporaryFolder folder;
-    const auto recordings = read_recordings(folder.write("take.csv", motive_sample));
-    ASSERT_EQ(recordings.size(), 1u);
-    const Recording& take = recordings[0];
+    const Recording take = only_recording("take.csv", motive_sample);
     EXPECT_EQ(take.format, "OptiTrack Motive, CSV");
     ASSERT_EQ(take.points.size(), 2u);
     EXPECT_EQ(take.points[0].name, "Plate:Marker1");

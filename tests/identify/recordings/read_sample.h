@@ -15,6 +15,14 @@ inline Recording read_sample(const std::string& content, const FileMap& map = {}
     return read_recordings(folder.write("run.csv", content), map).at(0);
 }
 
+/// That of a file that holds this and no other.
+inline Recording only_recording(const std::string& name, const std::string& content) {
+    const TemporaryFolder folder;
+    const std::vector<Recording> recordings = read_recordings(folder.write(name, content));
+    EXPECT_EQ(recordings.size(), 1U);
+    return recordings.at(0);
+}
+
 /// What is said of a file that holds this; "": it is read.
 inline std::string refusal_of(const std::string& content, const FileMap& map = {}) {
     return message_of([&] { read_sample(content, map); });

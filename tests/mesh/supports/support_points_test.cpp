@@ -56,7 +56,7 @@ TEST(SupportPoints, HoldTheirPatchWhateverTheirDistance) {
         EXPECT_THAT(made.notes, ElementsAre(HasSubstr("are joined"))) << spacing;
         EXPECT_THAT(made.warnings, IsEmpty()) << spacing;
         // the end face, and of the four sides half a millimetre
-        EXPECT_NEAR(held_parts(made.regions, bar(), 0.1)[0].area, 400 + 4 * 20 * 0.5, 10) << spacing;
+        EXPECT_NEAR(held_parts(made.regions, bar(), 0.1)[0].area, 400 + 4 * 20 * 0.5, 1) << spacing;
     }
     EXPECT_LT(held({PointsRegion{on_the_end(4), 0.5}}), 10);  // point by point
 }

@@ -16,22 +16,13 @@
 
 #include "mesh/text/atomic_file.h"
 #include "tests/temporary_folder.h"
+#include "tests/wait.h"
 
 namespace palpate::mesh {
 namespace {
 
 using namespace std::chrono_literals;
 using End = ChildResult::End;
-
-/// Waits until it holds, for ten seconds at most.
-template <typename Condition>
-bool comes_true(const Condition& condition) {
-    for (int i = 0; i < 1000; ++i) {
-        if (condition()) return true;
-        std::this_thread::sleep_for(10ms);
-    }
-    return false;
-}
 
 TEST(ChildProcess, Answers) {
     const std::string long_answer(3'000'000, 'x');  // more than a pipe holds
@@ -100,6 +91,7 @@ TEST(ChildProcess, EndsWithItsParent) {
     const TemporaryFolder folder;
     const std::string told = folder / "child";
     const pid_t parent = fork();
+    ASSERT_GE(parent, 0);
     if (parent == 0) {
         run_in_child(
             [&] {

@@ -1,8 +1,8 @@
 // What a second mesh says of a reference's error, against what a much finer one says.
 
 #include "pipeline/analysis/accuracy.h"
-#include "pipeline/body/subject_body.h"
 #include "pipeline/case/settings/overrides.h"
+#include "pipeline/case/subject/subject_body.h"
 
 #include <gtest/gtest.h>
 
@@ -10,7 +10,7 @@
 #include "fem/interpolation/interpolation.h"
 #include "mesh/formats/surface/read_surface.h"
 #include "pipeline/body/body.h"
-#include "pipeline/case/read_case.h"
+#include "pipeline/case/settings/read_case.h"
 #include "pipeline/synthesis/probing/probing.h"
 #include "tests/temporary_folder.h"
 
@@ -62,20 +62,21 @@ struct AccuracyOfAReference : ::testing::Test {
     const TemporaryFolder folder;
 };
 
-TEST_F(AccuracyOfAReference, IsWithinAFactorOfThreeOfTheTruth) {
+// Where the error falls more slowly with the edge than is assumed, the estimate is too low: half of the truth with
+// these quadratic elements, three quarters with linear ones. Another mesher's meshes move either share.
+
+TEST_F(AccuracyOfAReference, IsAboutHalfOfTheTruth) {
     const auto [estimated, truth] = errors();
-    EXPECT_GT(estimated, truth / 3);
-    EXPECT_LT(estimated, truth * 3);
-    EXPECT_LT(truth, 0.03);
+    EXPECT_NEAR(estimated / truth, 0.46, 0.1);
+    EXPECT_LT(truth, 0.022);
 }
 
 TEST_F(AccuracyOfAReference, TellsLinearElementsFromQuadraticOnes) {
     const double quadratic = errors().first;
     linear_elements = true;
     const auto [estimated, truth] = errors();
-    EXPECT_GT(estimated, 5 * quadratic);
-    EXPECT_GT(estimated, truth / 3);
-    EXPECT_LT(estimated, truth * 3);
+    EXPECT_NEAR(estimated / quadratic, 21, 2);
+    EXPECT_NEAR(estimated / truth, 0.76, 0.1);
 }
 
 TEST_F(AccuracyOfAReference, IsNotGuessedForAMeshThatIsGiven) {

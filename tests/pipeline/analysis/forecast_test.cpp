@@ -1,4 +1,4 @@
-#include "pipeline/analysis/forecast.h"
+#include "pipeline/analysis/forecast/forecast.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -11,11 +11,11 @@
 #include "identify/measurements/twin.h"
 #include "mesh/errors.h"
 #include "mesh/text/atomic_file.h"
+#include "pipeline/analysis/particles.h"
 #include "pipeline/analysis/quality/probed_body.h"
 #include "pipeline/body/body.h"
-#include "pipeline/body/subject_body.h"
-#include "pipeline/output/csv/particles.h"
-#include "pipeline/output/identification.h"
+#include "pipeline/case/subject/subject_body.h"
+#include "pipeline/output/results/identification.h"
 #include "samples/lattice.h"
 #include "skeleton/construction/build.h"
 #include "skeleton/statics/equilibrium.h"

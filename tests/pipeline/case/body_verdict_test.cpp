@@ -7,7 +7,7 @@
 
 #include "mesh/errors.h"
 #include "mesh/formats/surface/read_surface.h"
-#include "pipeline/case/subject.h"
+#include "pipeline/case/subject/subject.h"
 #include "pipeline/command_line/commands.h"
 #include "tests/messages.h"
 #include "tests/temporary_folder.h"

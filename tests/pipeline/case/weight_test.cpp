@@ -1,6 +1,6 @@
 // What a set is read as before anything is fitted: its weight as the load, tetrahedra of its own.
 
-#include "pipeline/case/weight.h"
+#include "pipeline/case/subject/weight.h"
 
 #include <gtest/gtest.h>
 

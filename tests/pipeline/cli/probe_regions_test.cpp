@@ -12,7 +12,7 @@
 #include "mesh/formats/vtk/vtk_files.h"
 #include "mesh/text/atomic_file.h"
 #include "pipeline/body/reference_body.h"
-#include "pipeline/case/read_case.h"
+#include "pipeline/case/settings/read_case.h"
 #include "pipeline/command_line/commands.h"
 #include "tests/messages.h"
 #include "tests/temporary_folder.h"

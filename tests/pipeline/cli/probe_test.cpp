@@ -187,7 +187,7 @@ std::string effect_name(const ::testing::TestParamInfo<const char*>& info) {
 }
 INSTANTIATE_TEST_SUITE_P(Probe, EachEffect,
                          ::testing::Values("gravity", "compliant-support", "stiffening", "anisotropy", "inclusion",
-                                           "contact", "prestress", "viscosity", "plasticity", "damage", "volume",
+                                           "contact", "prestress", "viscosity", "plasticity", "damage", "volume", "map",
                                            "misalignment", "force-gain", "outliers"),
                          effect_name);
 

@@ -23,6 +23,7 @@
 #include "tests/identify/lattice.h"
 #include "tests/messages.h"
 #include "tests/temporary_folder.h"
+#include "tests/wait.h"
 
 namespace palpate::pipeline {
 namespace {
@@ -71,8 +72,7 @@ struct Rig {
     }
     /// By "live", which has then read what is there.
     void wait_until_followed(const std::stop_token& gone) const {
-        const fs::path cloud = folder / "live/cloud.json";
-        while (!fs::exists(cloud) && !gone.stop_requested()) std::this_thread::sleep_for(std::chrono::milliseconds(10));
+        comes_true([&] { return fs::exists(folder / "live/cloud.json") || gone.stop_requested(); });
     }
     commands::FollowOptions options(const char* output) const {
         commands::FollowOptions how{folder / "model.json", folder / "set", folder / output, false, 2, {}, {}};
@@ -184,8 +184,7 @@ TEST(Follow, AnswersTheProgramsThatConnectToItsSocket) {
     std::vector<nlohmann::json> first, second;
     {
         const std::jthread other([&](const std::stop_token& gone) {
-            while (!fs::exists(options.socket) && !gone.stop_requested())
-                std::this_thread::sleep_for(std::chrono::milliseconds(10));
+            comes_true([&] { return fs::exists(options.socket) || gone.stop_requested(); });
             first = lines_of(answer_to(json_line(rig.set, rig.set.states[6]) + json_line(rig.set, rig.set.states[7]),
                                        options.socket));
             second = lines_of(answer_to("no JSON\n" + json_line(rig.set, rig.set.states[8]), options.socket));
@@ -227,12 +226,22 @@ TEST(UnixSocket, StandsInForOneThatWasLeftAndForNothingElse) {
     EXPECT_NO_THROW(unix_socket(folder / "rig.sock"));
 }
 
+/// The next states, so many at least, as they become whole.
+std::vector<LoadState> next_states(SetTail& tail, std::size_t count) {
+    std::vector<LoadState> states;
+    EXPECT_TRUE(comes_true([&] {
+        const SetTail::News news = tail.poll();
+        states.insert(states.end(), news.states.begin(), news.states.end());
+        return states.size() >= count;
+    }));
+    return states;
+}
+
 TEST(SetTail, GivesEachStateOnceAndWhole) {
     const Rig rig;
     SetTail tail(rig.folder / "set");
     EXPECT_EQ(tail.poll().states.size(), 5);  // the last one may go on
-    std::this_thread::sleep_for(std::chrono::milliseconds(300));
-    EXPECT_EQ(tail.poll().states.size(), 1);
+    EXPECT_EQ(next_states(tail, 1).size(), 1);
     EXPECT_EQ(tail.poll().states.size(), 0);
     // half a row is none
     std::ofstream(rig.folder / "set/positions.csv", std::ios::app) << "8,1,";
@@ -246,12 +255,7 @@ TEST(SetTail, ReadsWhatTheSetsReaderReads) {
     SetTail tail(rig.folder / "set");
     tail.poll();
     rig.append(6, 8);
-    std::this_thread::sleep_for(std::chrono::milliseconds(300));
-    const SetTail::News first = tail.poll();
-    std::this_thread::sleep_for(std::chrono::milliseconds(300));
-    const SetTail::News news = tail.poll();
-    std::vector<LoadState> states = first.states;
-    states.insert(states.end(), news.states.begin(), news.states.end());
+    const std::vector<LoadState> states = next_states(tail, 3);
     ASSERT_EQ(states.size(), 3);
     const identify::MeasurementSet whole = identify::read_measurement_set(rig.folder / "set");
     for (std::size_t i = 0; i < 3; ++i) {

@@ -46,6 +46,7 @@ TEST(FindingsJson, TellsWhatCanBeDrawn) {
     ASSERT_EQ(found.size(), 5U);
     EXPECT_EQ(found[0]["kind"], "arrow");
     EXPECT_EQ(found[0]["vector"], json({0.0, -90.0, -9200.0}));
+    EXPECT_EQ(found[0]["undetermined"], json::array({{{"axis", {1, 0, 0}}, {"value", 4700.0}, {"sd", 4200.0}}}));
     EXPECT_EQ(found[0]["words"], "Gravity is missing: 9.2 m/s^2 along -z.");
     EXPECT_EQ(found[1]["kind"], "ball");
     EXPECT_EQ(found[1]["center"], json({1.0, 2.0, 3.0}));
@@ -112,6 +113,28 @@ TEST(FindingsFile, DrawsEachWhereItIs) {
     const Points swapped = points_of(drawing, 4);
     EXPECT_NEAR(swapped.col(1).maxCoeff(), 9, 0.01 * size);
     EXPECT_EQ(drawing.data.cells[1].values.maxCoeff(), 5);
+}
+
+/// A component that is not determined is a line through the arrow's tip, a standard deviation long either way.
+TEST(FindingsFile, DrawsHowFarAComponentIsNotDetermined) {
+    const TemporaryFolder scratch;
+    skeleton::Model model = samples::make_lattice("cube", {3, 3, 2}, 1);
+    model.effects = {{"gravity", {{"gx", 1000, "mm/s^2"}, {"gy", 0, "mm/s^2"}, {"gz", -9000, "mm/s^2"}}}};
+    const json diagnosis = {{"ranking",
+                             {{{"effect", "gravity"},
+                               {"parameters",
+                                {{"gx", {{"value", 1000.0}, {"sd", 4000.0}}},
+                                 {"gy", {{"value", 0.0}, {"sd", 100.0}}},
+                                 {"gz", {{"value", -9000.0}, {"sd", 100.0}}}}}}}},
+                            {"explanation", {"gravity"}}};
+    write_findings(scratch.path() / "findings.vtp", model, {}, diagnosis);
+    const Points drawn = points_of(mesh::read_poly_data(scratch.path() / "findings.vtp"), 0);
+    const Points& skin = model.surface.vertices;
+    const Vec3 low = skin.colwise().minCoeff().transpose(), high = skin.colwise().maxCoeff().transpose();
+    const double size = (high - low).maxCoeff(), middle = (low[0] + high[0]) / 2, scale = 0.25 * size / 9000;
+    const double tolerance = 1e-5 * size;  // the file's numbers are floats
+    EXPECT_NEAR(drawn.col(0).minCoeff(), middle - 3000 * scale, tolerance);
+    EXPECT_NEAR(drawn.col(0).maxCoeff(), middle + 5000 * scale, tolerance);
 }
 
 /// Nothing of an earlier run stays where nothing is found now.

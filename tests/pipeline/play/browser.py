@@ -1,20 +1,49 @@
-"""Chromium without a window, driven through a pipe: what the tests of pages share."""
+"""Chromium without a window, driven through a pipe, and checks that are counted: what the tests of pages share.
+
+A test is called with PALPATE SOURCE_FOLDER [PICTURES]; importing this ends it with 77 (skipped) where there is no Chromium.
+Screenshots go to PICTURES.
+"""
 import base64
 import json
 import os
+import pathlib
 import shutil
 import subprocess
+import sys
 import time
 
 chromium = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
+if not chromium:
+    print("skipped: there is no Chromium")
+    sys.exit(77)
+
+program = sys.argv[1]
+pictures = pathlib.Path(sys.argv[3]) if len(sys.argv) > 3 else None
+failures = []
+PATIENCE = 60  # [s] for what takes a second or two: only a page that hangs takes as long
+
+
+def expect(holds, what):
+    if not holds:
+        failures.append(what)
+
+
+def end():
+    for failure in failures:
+        print("FAILED", failure)
+    sys.exit(1 if failures else 0)
+
+
+def palpate(*arguments):
+    return subprocess.run([program, *map(str, arguments), "-q"], check=True, capture_output=True, text=True).stdout
 
 
 class Browser:
     """Chromium, told what to do through a pipe in its own protocol."""
 
-    def __init__(self, profile, scripted, pictures=None):
-        """`scripted`: the page's global whose value, once there, scripts call `p`; `pictures`: where screenshots go."""
-        self.scripted, self.pictures = scripted, pictures
+    def __init__(self, profile, scripted):
+        """`scripted`: the page's global whose value, once there, scripts call `p`."""
+        self.scripted = scripted
         to_browser, self.write_end = os.pipe()
         self.read_end, from_browser = os.pipe()
 
@@ -73,10 +102,24 @@ class Browser:
         self.call("Emulation.setDeviceMetricsOverride", width=width, height=height, deviceScaleFactor=1, mobile=mobile)
         self.call("Page.navigate", url="about:blank")
         self.call("Page.navigate", url=address)
-        for _ in range(200):
-            if self.call("Runtime.evaluate", expression=f"typeof {self.scripted} !== 'undefined'")["result"].get("value"):
-                break
+        last = time.monotonic() + PATIENCE
+        while not self.call("Runtime.evaluate", expression=f"typeof {self.scripted} !== 'undefined'")["result"].get("value"):
+            if time.monotonic() > last:
+                raise RuntimeError(f"{address} has no {self.scripted} after {PATIENCE} s")
             time.sleep(0.05)
+
+    def wait(self, condition):
+        """Until it holds of `p`, asked at each frame."""
+        self.run(f"""
+          const last = performance.now() + {1000 * PATIENCE};
+          while (!({condition})) {{
+            if (performance.now() > last) throw new Error({json.dumps(f"after {PATIENCE} s it is not so: {condition}")});
+            await new Promise(requestAnimationFrame);
+          }}""")
+
+    def frame(self):
+        """The page's next frame."""
+        self.run("await new Promise(requestAnimationFrame);")
 
     def mouse(self, kind, x, y, buttons=1):
         self.call("Input.dispatchMouseEvent", type=kind, x=x, y=y, button="left", buttons=buttons, clickCount=1)
@@ -89,9 +132,14 @@ class Browser:
             self.call("Input.dispatchKeyEvent", type=kind, key=key, code=key)
 
     def picture(self, name):
-        if self.pictures:
+        if pictures:
             data = self.call("Page.captureScreenshot", format="png")["data"]
-            (self.pictures / f"{name}.png").write_bytes(base64.b64decode(data))
+            (pictures / f"{name}.png").write_bytes(base64.b64decode(data))
+
+    def unnamed_controls(self):
+        return self.run("""
+          return [...document.querySelectorAll('select, input, button, textarea')].filter((c) => c.offsetParent !== null &&
+            !(c.labels?.length || c.getAttribute('aria-label') || c.textContent)).map((c) => c.id);""")
 
     def errors(self):
         told = []

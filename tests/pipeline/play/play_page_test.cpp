@@ -127,6 +127,35 @@ TEST(InTheHand, ShapeIsTheEquilibriumThatSimulateFinds) {
     EXPECT_LT((touched.places(model.skin) - expected).cwiseAbs().maxCoeff(), 1e-6);
 }
 
+/// Beside what finite elements tell of it, where the model has another number.
+TEST(InTheHand, SaysHowWellAnEffectIsKnown) {
+    const TemporaryFolder scratch;
+    skeleton::Model model = lattice_in_the_hand();
+    model.effects = {{"gravity", {{"gx", 0, "mm/s^2"}, {"gy", 12, "mm/s^2"}, {"gz", -9790, "mm/s^2"}}},
+                     {"compliant-support", {{"stiffness", 2, "N/mm"}, {"turning", 1, "1"}}}};
+    std::filesystem::create_directories(scratch / "run/identify");
+    std::filesystem::create_directories(scratch / "run/diagnose");
+    skeleton::write_model(scratch / "run/identify/model.json", model);
+    mesh::write_text(scratch / "run/run.json", "{}");
+    const auto numbers = [&] {
+        const nlohmann::json effects =
+            nlohmann::json::parse(play_data(scratch / "run", {}).content.dump())["models"][0]["effects"];
+        return std::pair(effects[0]["numbers"], effects[1]["numbers"]);
+    };
+    EXPECT_EQ(numbers().first[2], "gz = -9790 mm/s^2") << "nothing was diagnosed";
+    const nlohmann::json diagnosis = {{"explanation", {"gravity"}},
+                                      {"ranking",
+                                       {{{"effect", "gravity"},
+                                         {"parameters",
+                                          {{"gx", {{"value", 0.0}, {"sd", nullptr}}},
+                                           {"gy", {{"value", 40.0}, {"sd", 30.0}}},
+                                           {"gz", {{"value", -9790.0}, {"sd", 20.0}}}}}}}}};
+    mesh::write_text(scratch / "run/diagnose/diagnosis.json", diagnosis.dump());
+    EXPECT_EQ(numbers().first, nlohmann::json({"gx = 0 mm/s^2", "gy = 12 mm/s^2 (40 ± 30 in finite elements)",
+                                               "gz = -9790 ± 20 mm/s^2"}));
+    EXPECT_EQ(numbers().second[0], "stiffness = 2 N/mm") << "of this one nothing was";
+}
+
 TEST(InTheHand, WritesOnePageThatNeedsNoNetwork) {
     const TemporaryFolder scratch;
     skeleton::write_model(scratch / "model.json", lattice_in_the_hand());

@@ -33,8 +33,10 @@ class RobotLoop(unittest.TestCase):
         self.addCleanup(self.server.stderr.close)
         self.addCleanup(self.server.wait)
         self.addCleanup(self.server.kill)
-        while not os.path.exists(self.socket) and self.server.poll() is None:
+        last = time.monotonic() + 60
+        while not os.path.exists(self.socket) and self.server.poll() is None and time.monotonic() < last:
             time.sleep(0.01)
+        self.assertTrue(os.path.exists(self.socket), "the server does not listen")
 
     def hand(self):
         hand = Hand(self.socket, TIP)
@@ -48,18 +50,25 @@ class RobotLoop(unittest.TestCase):
         self.assertFalse(os.path.exists(self.socket))
         return told
 
+    def held(self, hand, target, steps):
+        """Skin and force after a hand has been held at `target` for so many of the server's steps."""
+        skin, force = hand.go(target)
+        last = hand.tick + steps
+        while hand.tick < last:
+            time.sleep(1e-3)  # a step; a question more often than that learns nothing
+            skin, force = hand.go(target)
+        return np.array(skin), np.array(force)
+
     def settled(self, hand):
-        """Skin and force once a hand has been held still for long."""
+        """Skin and force once they no longer change."""
         target = hand.start + WAY
         last = np.full(3, np.inf)
-        for _ in range(600):  # of 100 turns: a minute at 1 kHz
-            for _ in range(100):
-                skin, force = map(np.array, hand.go(target))
-                time.sleep(1e-3)
+        for _ in range(600):  # a minute at 1 kHz
+            skin, force = self.held(hand, target, 100)
             if np.abs(force - last).max() < 1e-5 * np.abs(force).max():
-                break
+                return skin, force
             last = force
-        return skin, force
+        self.fail(f"the force still changes, from {last} to {force} N")
 
     def test_forces_are_the_model_s(self):
         hand = self.hand()
@@ -89,15 +98,12 @@ class RobotLoop(unittest.TestCase):
 
     def test_a_silent_hand_is_let_go(self):
         first, second = self.hand(), self.hand()
-        for _ in range(50):
-            pressed, _ = second.go(second.start + WAY)
-            time.sleep(1e-3)
+        pressed, _ = self.held(second, second.start + WAY, 50)
         second.close()
-        way = np.linalg.norm(np.subtract(pressed, first.start))
-        for _ in range(3000):
-            skin, _ = first.go(first.start)
-            time.sleep(1e-3)
-            if np.linalg.norm(np.subtract(skin, first.start)) < 0.05 * way:
+        way = np.linalg.norm(pressed - first.start)
+        for _ in range(300):  # 3 s; it is let go after half a second
+            skin, _ = self.held(first, first.start, 10)
+            if np.linalg.norm(skin - first.start) < 0.05 * way:
                 break
         else:
             self.fail(f"the skin stays at {skin}, it was at {first.start}")

@@ -30,12 +30,15 @@ class Threads(unittest.TestCase):
 
         counter = threading.Thread(target=count)
         counter.start()
-        began, before = time.monotonic(), counted[0]
-        while time.monotonic() - began < 0.2:  # long enough to be counted in
+        self.addCleanup(counter.join)
+        self.addCleanup(done.set)
+        last, most = time.monotonic() + 60, 0
+        while most < 5 and time.monotonic() < last:
+            before = counted[0]
             identified()
-        done.set()
-        counter.join()
-        self.assertGreater(counted[0] - before, 10)
+            most = max(most, counted[0] - before)
+        # a fit that keeps the lock lets the other thread go on before it and after it, not within it
+        self.assertGreaterEqual(most, 5)
 
     def test_several_work_at_once(self):
         alone = [identified(seed) for seed in (1, 2, 3)]
@@ -70,9 +73,11 @@ class Threads(unittest.TestCase):
     def test_a_body_is_for_one_thread(self):
         body, refused = palpate.Body(model()), []
 
+        last = time.monotonic() + 60
+
         def step():
             try:
-                for _ in range(300):
+                while not refused and time.monotonic() < last:
                     body.step(1e-3)
             except RuntimeError as error:
                 refused.append(str(error))
@@ -82,7 +87,8 @@ class Threads(unittest.TestCase):
             stepper.start()
         for stepper in steppers:
             stepper.join()
-        self.assertTrue(all("in use by another thread" in text for text in refused))
+        self.assertTrue(refused, "two threads never met in one step")
+        self.assertTrue(all("in use by another thread" in text for text in refused), refused)
         body.step(1e-3)  # as before
 
     def test_objects_are_shared(self):

@@ -7,10 +7,10 @@
 
 #include "mesh/errors.h"
 #include "mesh/text/atomic_file.h"
-#include "pipeline/case/read_case.h"
+#include "pipeline/case/settings/read_case.h"
 #include "pipeline/command_line/commands.h"
 #include "pipeline/run/expectation.h"
-#include "pipeline/run/model_and_set.h"
+#include "pipeline/run/inputs/model_and_set.h"
 #include "skeleton/model/io/model_io.h"
 #include "tests/messages.h"
 #include "tests/pipeline/heavy_beam.h"

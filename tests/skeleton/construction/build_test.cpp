@@ -12,7 +12,7 @@
 
 #include "mesh/errors.h"
 #include "mesh/geometry/surface_tree.h"
-#include "skeleton/model/attach.h"
+#include "skeleton/model/attachment/attach.h"
 #include "skeleton/statics/equilibrium.h"
 
 namespace palpate::skeleton {
@@ -153,15 +153,15 @@ TEST(BuildSkeleton, ALimbIsAChainAPlateALayerALumpIsFilled) {
     const Built chain = build(limb(), {.spheres = 15});
     EXPECT_EQ(loops(chain.model), 0);
     for (const Sphere& s : chain.model.spheres) {
-        // On the axis within a tenth of the half width: what is left of the jagged cells.
-        EXPECT_LT((s.center - Vec3(s.center.x(), 8, 8)).norm(), 0.8);
+        // On the axis, by symmetry; jagged cells leave 0.02 mm of 8.
+        EXPECT_LT((s.center - Vec3(s.center.x(), 8, 8)).norm(), 0.03);
     }
     EXPECT_GE(free_spheres(built_limb().model), 10);
     EXPECT_LE(free_spheres(built_limb().model), 30);
 
     const Built& layer = built_plate();
-    EXPECT_NEAR(free_spheres(layer.model), 60, 12);
-    for (const Sphere& s : layer.model.spheres) EXPECT_NEAR(s.center.z(), 3, 0.5);
+    EXPECT_NEAR(free_spheres(layer.model), 60, 3);  // a tie that rounding decides takes or gives a few
+    for (const Sphere& s : layer.model.spheres) EXPECT_NEAR(s.center.z(), 3, 0.15);  // jagged cells leave 0.12 mm
 
     const Built& filled = built_lump();
     EXPECT_GE(free_spheres(filled.model), 120);
@@ -186,11 +186,12 @@ TEST(BuildSkeleton, MassAndInertiaAddUpToTheBodys) {
     }
     const double expected = material.density * lump_size.prod();
     EXPECT_NEAR(mass, expected, 1e-12 * expected);
-    // Spheres do not stand exactly in the middle of their cells, those on the support least.
-    EXPECT_LT((first / mass - lump_size / 2).norm(), 0.02 * lump_size.norm());
+    // Spheres do not stand exactly in the middle of their cells, those on the support least: 0.12 mm in the mean, 2 %
+    // of the moments of inertia.
+    EXPECT_LT((first / mass - lump_size / 2).norm(), 0.15);
     const Vec3 squares = lump_size.cwiseAbs2();
     const Vec3 moments = expected / 12 * (squares.sum() * Vec3::Ones() - squares);
-    for (int k = 0; k < 3; ++k) EXPECT_NEAR(inertia(k, k), moments(k), 0.1 * moments(k));
+    for (int k = 0; k < 3; ++k) EXPECT_NEAR(inertia(k, k), moments(k), 0.02 * moments(k));
 }
 
 TEST(BuildSkeleton, LinksOfABarStandForItsSection) {
@@ -198,10 +199,10 @@ TEST(BuildSkeleton, LinksOfABarStandForItsSection) {
     const Model model = build(limb(), {.spheres = 12, .links = LinkKind::burion2008}).model;
     ASSERT_EQ(model.links.size(), 12u);
     for (const Link& link : model.links) {
-        // Exact but for spheres that are not quite on the axis.
-        EXPECT_NEAR(link.stiffness(0) * link.length / material.young, 256, 2.56);
-        EXPECT_NEAR(link.stiffness(1) * link.length / (2 * material.young), 16. * 16 * 16 * 16 / 12, 0.1 * 5461);
-        EXPECT_NEAR(link.gyration, 16 / std::sqrt(12), 0.05 * 16);
+        // Exact but for spheres that are 0.02 mm from the axis: a share of 1e-4, to first order.
+        EXPECT_NEAR(link.stiffness(0) * link.length / material.young, 256, 1e-4 * 256);
+        EXPECT_NEAR(link.stiffness(1) * link.length / (2 * material.young), 16. * 16 * 16 * 16 / 12, 1e-4 * 5461);
+        EXPECT_NEAR(link.gyration, 16 / std::sqrt(12), 1e-4 * 16);
     }
 }
 
@@ -209,13 +210,13 @@ TEST(BuildSkeleton, AnUncalibratedChainBendsLikeABeam) {
     const fem::Material material;
     const double length = 160, I = std::pow(16., 4) / 12;
     const double euler = 1e-3 * std::pow(length, 3) / (3 * material.young * I);
-    // Chains of more than ten links are within 1 / 10^2 of the continuous beam; sections add a per cent or two.
-    EXPECT_NEAR(sag(build(limb(), {.spheres = 14}).model, Vec3(160, 8, 8)) / euler, 1, 0.03);
-    EXPECT_NEAR(sag(built_limb().model, Vec3(160, 8, 8)) / euler, 1, 0.03);
+    // Chains of more than ten links are within 1 / 10^2 of the continuous beam.
+    EXPECT_NEAR(sag(build(limb(), {.spheres = 14}).model, Vec3(160, 8, 8)) / euler, 1, 0.01);
+    EXPECT_NEAR(sag(built_limb().model, Vec3(160, 8, 8)) / euler, 1, 0.01);
 }
 
 /// A thick limb's square end gets spheres of its own for its corners. Pushed at a corner, the end face stays a face:
-/// its vertices lie within a tenth of the deflection round where the face's mean motion and turn put them.
+/// its vertices lie within a fiftieth of the deflection round where the face's mean motion and turn put them.
 TEST(BuildSkeleton, AnEndPushedAtItsCornerKeepsItsShape) {
     const Built built = build(block(Vec3(100, 30, 30), {20, 6, 6}), {.coverage = 3});
     ASSERT_GT(loops(built.model), 0) << "corners without spheres of their own test nothing";
@@ -236,26 +237,24 @@ TEST(BuildSkeleton, AnEndPushedAtItsCornerKeepsItsShape) {
     const Points rigid =
         (rest * motion.topLeftCorner<3, 3>().transpose()).rowwise() + motion.topRightCorner<3, 1>().transpose();
     const double deflection = (moved - rest).rowwise().norm().mean();
-    EXPECT_GT(deflection, 1);
-    EXPECT_LT((moved - rigid).rowwise().norm().maxCoeff(), 0.1 * deflection);
+    EXPECT_NEAR(deflection, 1.8, 0.1);  // what an uncalibrated skeleton makes of Euler's 2 mm
+    EXPECT_LT((moved - rigid).rowwise().norm().maxCoeff(), 0.02 * deflection);
 }
 
-TEST(BuildSkeleton, AnUncalibratedLumpBendsLikeABeamWithinAFactorOfTwo) {
+TEST(BuildSkeleton, AnUncalibratedLumpBendsLikeABeam) {
     const fem::Material material;
     const double area = 1600, I = area * area / 12;
     const double timoshenko =
         1e-3 * (std::pow(60., 3) / (3 * material.young * I) + 60 / (5. / 6 * material.shear_modulus() * area));
     const double ratio = sag(built_lump().model, Vec3(60, 20, 20)) / timoshenko;
-    EXPECT_GT(ratio, 0.5);
-    EXPECT_LT(ratio, 2) << ratio;
+    EXPECT_NEAR(ratio, 1, 0.05);  // a lump of 60 x 40 x 40 mm is hardly a beam: 0.96
 }
 
-TEST(BuildSkeleton, AnUncalibratedPlateBendsLikeAStripWithinAFactorOfTwo) {
+TEST(BuildSkeleton, AnUncalibratedPlateBendsLikeAStrip) {
     const fem::Material material;
     const double euler = 1e-3 * std::pow(100., 3) / (3 * material.young * 80 * std::pow(6., 3) / 12);
     const double ratio = sag(built_plate().model, Vec3(100, 40, 3)) / euler;
-    EXPECT_GT(ratio, 0.5);
-    EXPECT_LT(ratio, 2) << ratio;
+    EXPECT_NEAR(ratio, 1.11, 0.03);  // the force acts at one point of the width
 }
 
 /// A bracket that is bolted to a wall by all of the back of its upright, x = 0: no depth of it is held, and every
@@ -282,11 +281,9 @@ TEST(BuildSkeleton, APlateThatIsHeldByItsFaceBearsWhatGrowsOutOfIt) {
         return 1e-3 * (std::pow(54., 3) / (3 * material.young * I) + 54 / (5. / 6 * material.shear_modulus() * area));
     };
     const double down = sag(model, Vec3(60, 15, 3)) / beam(30, 6);
-    EXPECT_GT(down, 0.5);
-    EXPECT_LT(down, 2) << down;
+    EXPECT_NEAR(down, 1.42, 0.05);  // the arm's root gives, which the beam's clamp does not
     const double aside = give(model, Vec3(60, 15, 3), Vec3::UnitY()) / beam(6, 30);
-    EXPECT_GT(aside, 0.5);
-    EXPECT_LT(aside, 2) << aside;
+    EXPECT_NEAR(aside, 1.50, 0.05);
 }
 
 TEST(BuildSkeleton, CoversTheSurfaceByDefault) {
@@ -327,9 +324,9 @@ TEST(BuildSkeleton, ASymmetricLumpGetsAnEvenFilling) {
         if (!s.held) mean += s.center / free_spheres(model);
     }
     // In the middle across; a little beyond it along, where no held spheres fill the place.
-    EXPECT_NEAR(mean.y(), 20, 0.8);
-    EXPECT_NEAR(mean.z(), 20, 0.8);
-    EXPECT_NEAR(mean.x(), 32, 2);
+    EXPECT_NEAR(mean.y(), 20, 0.15);  // jagged cells leave 0.1 mm
+    EXPECT_NEAR(mean.z(), 20, 0.15);
+    EXPECT_NEAR(mean.x(), 33, 0.3);
 }
 
 TEST(BuildSkeleton, ATurnedAndMovedBodyGetsAsManySpheres) {
@@ -341,7 +338,7 @@ TEST(BuildSkeleton, ATurnedAndMovedBodyGetsAsManySpheres) {
         const std::vector<mesh::Region> support{mesh::PlaneRegion{shift, R.col(0), 0.1}};
         // Only the covering spheres may differ: the longest side of the box is another one.
         const int upright = free_spheres(build(body, {.coverage = 6}).model);
-        EXPECT_NEAR(free_spheres(build(turned, {.coverage = 6}, support).model), upright, 0.1 * upright + 1);
+        EXPECT_NEAR(free_spheres(build(turned, {.coverage = 6}, support).model), upright, 1);
     }
 }
 

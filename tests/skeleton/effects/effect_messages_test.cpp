@@ -26,7 +26,7 @@ TEST(EffectMessages, EveryFaultIsNamed) {
     EXPECT_EQ(
         complaint({"gravitty", {}})
             .rfind("effect 'gravitty' is not known (did you mean 'gravity'?); known are 'gravity', "
-                   "'compliant-support', 'stiffening', 'anisotropy', 'inclusion', 'contact', 'pressure', "
+                   "'compliant-support', 'stiffening', 'anisotropy', 'inclusion', 'map', 'contact', 'pressure', "
                    "'prestress', 'swelling', 'viscosity', 'plasticity', 'damage', 'friction', 'volume', 'local-force', "
                    "'local-springs', 'local-swelling', 'torsion', 'shear', ",
                    0),
@@ -60,6 +60,12 @@ TEST(EffectMessages, WhatDoesNotGoTogetherIsNamed) {
     EXPECT_EQ(complaint({"inclusion", {cx, cy, cz, ratio}}), either);
     EXPECT_EQ(complaint({"inclusion", {cx, cy, cz, hx, ratio}}), either);
     EXPECT_EQ(complaint({"inclusion", {cx, cy, cz, radius, hx, ratio}}), either);
+    const fem::EffectParameter length{"length", 8, "mm"}, a1{"a1", 0.5, ""}, x1{"x1", 5, ""}, y1{"y1", 0, ""};
+    EXPECT_EQ(complaint({"map", {length}}),
+              "effect 'map': it has no places: x1, y1, z1 [mm] and a1, and so on, must be given");
+    EXPECT_EQ(complaint({"map", {length, x1, y1, a1}}), "effect 'map': 'z1' [mm] is missing, of the place of a1");
+    EXPECT_EQ(complaint({"map", {length, x1, y1, {"z1", 0, ""}, a1, {"a3", 1, ""}}}),
+              "effect 'map': 'a3' is given, but a2 is not: places are numbered from 1 without gaps");
     EXPECT_EQ(complaint({"anisotropy", {{"k", 1, "1"}, {"nx", 0, "1"}, {"ny", 0, "1"}, {"nz", 0, "1"}}}),
               "effect 'anisotropy': nx, ny and nz are all 0, but must give a direction");
     EXPECT_EQ(complaint({"anisotropy", {{"k", 1, ""}, {"nx", 1, ""}, {"ny", 0, ""}, {"nz", 0, ""}, {"k2", 1, ""}}}),

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <thread>
 
 #include "skeleton/effects/link_effects.h"
@@ -23,6 +24,16 @@ const std::vector<EffectRecord> all_effects{
     {"anisotropy", {{"k", 2, "1"}, {"nx", 2, "1"}, {"ny", 0, "1"}, {"nz", 0, "1"}}},
     {"inclusion", {{"cx", 10, "mm"}, {"cy", 0, "mm"}, {"cz", 0, "mm"}, {"radius", 5, "mm"}, {"ratio", 3, "1"}}},
     {"contact", {{"nx", 0, "1"}, {"ny", 0, "1"}, {"nz", 2, "1"}, {"offset", -3, "mm"}, {"stiffness", 0.1, "N/mm^3"}}},
+    {"map",
+     {{"length", 8, "mm"},
+      {"x1", 5, "mm"},
+      {"y1", 0, "mm"},
+      {"z1", 0, "mm"},
+      {"a1", 0.5, "1"},
+      {"x2", 25, "mm"},
+      {"y2", 0, "mm"},
+      {"z2", 0, "mm"},
+      {"a2", -0.5, "1"}}},
     {"pressure", {{"pressure", 0.01, "MPa"}}},
     {"prestress",
      {{"sxx", 0.1, "1"}, {"syy", 0.2, "1"}, {"szz", 0, "1"}, {"sxy", 0.3, "1"}, {"syz", 0, "1"}, {"sxz", 0, "1"}}},
@@ -47,6 +58,10 @@ const std::vector<EffectRecord> all_effects{
     {"shear", {{"shear", 0.5, "1"}}},
 };
 
+const EffectRecord& effect_of_list(const std::string& name) {
+    return *std::ranges::find(all_effects, name, &EffectRecord::name);
+}
+
 TEST(KnownEffects, AreAllThatABodyMayHave) {
     for (const EffectRecord& effect : all_effects) {
         EXPECT_TRUE(is_body_effect(effect.name));
@@ -59,7 +74,7 @@ TEST(KnownEffects, AreAllThatABodyMayHave) {
 TEST(KnownEffects, TellTheirNumbers) {
     const fem::Effects physics = physics_of(all_effects);
     EXPECT_EQ(physics.points.size(), 5u);    // gravity, support, contact, a force and springs in one place
-    EXPECT_EQ(physics.material.size(), 4u);  // stiffening, anisotropy, inclusion, prestress
+    EXPECT_EQ(physics.material.size(), 5u);  // stiffening, anisotropy, inclusion, map, prestress
     EXPECT_EQ(physics.pressure, 0.01);
     EXPECT_EQ(physics.growth.everywhere, -0.02);
     EXPECT_DOUBLE_EQ(physics.growth.at({10, 5, 0}), -0.02 + 0.3 * std::exp(-0.5));
@@ -78,14 +93,15 @@ TEST(KnownEffects, TellTheirNumbers) {
     };
     Mat3 F = Mat3::Identity();
     F(0, 1) = 0.2;  // E_xy = 0.1, E_yy = 0.02
-    EXPECT_NEAR(w(all_effects[7], F), 0.3 * 2 * 0.1 + 0.2 * 0.02, 1e-15);
+    EXPECT_NEAR(w(effect_of_list("prestress"), F), 0.3 * 2 * 0.1 + 0.2 * 0.02, 1e-15);
     F = Vec3(1.2, 1, 1).asDiagonal();
-    EXPECT_NEAR(w(all_effects[3], F), 0.5 * 2 * 0.22 * 0.22, 1e-15);  // the direction's length does not matter
-    EXPECT_DOUBLE_EQ(make_physics(all_effects[4]).material[0]->stiffness({10, 1, 0}), 3);
+    EXPECT_NEAR(w(effect_of_list("anisotropy"), F), 0.5 * 2 * 0.22 * 0.22,
+                1e-15);  // the direction's length does not matter
+    EXPECT_DOUBLE_EQ(make_physics(effect_of_list("inclusion")).material[0]->stiffness({10, 1, 0}), 3);
 }
 
 TEST(KnownEffects, HaveSecondForms) {
-    EffectRecord two = all_effects[3];
+    EffectRecord two = effect_of_list("anisotropy");
     for (const EffectParameter& more :
          std::initializer_list<EffectParameter>{{"k2", 1, "1"}, {"n2x", 0, "1"}, {"n2y", 1, "1"}, {"n2z", 0, "1"}})
         two.parameters.push_back(more);
@@ -108,7 +124,7 @@ TEST(KnownEffects, HaveSecondForms) {
 TEST(VolumeEffect, IsPlayedByNoLink) {
     const Model model = make_chain(3);
     const Load load = force_at(model, 3, {0.1, 0.1, 0});
-    EXPECT_EQ(equilibrium(with_effects(model, {all_effects[10]}), load).step, equilibrium(model, load).step);
+    EXPECT_EQ(equilibrium(with_effects(model, {effect_of_list("volume")}), load).step, equilibrium(model, load).step);
 }
 
 // --- A user's own -------------------------------------------------------------------------------------------------

@@ -3,22 +3,21 @@
 #include <gtest/gtest.h>
 
 #include "skeleton/statics/equilibrium.h"
-#include "tests/skeleton/test_models.h"
+#include "tests/skeleton/links/link_ends.h"
 
 namespace palpate::skeleton {
 namespace {
 
 using testing::random_vector;
 
-// The ends of a full link, and where they are.
-struct FullEnds {
+struct FullEnds : testing::LinkEnds {
     LinkSection section;
     double length = 12;
     Vec3 X_a = Vec3(3, -2, 5), X_b = Vec3(11, 2, -3);
-    Vec3 x_a = X_a, x_b = X_b;
-    Mat3 R_a = Mat3::Identity(), R_b = Mat3::Identity();
 
     FullEnds() {
+        x_a = X_a;
+        x_b = X_b;
         const Vec3 along = (X_b - X_a).normalized(), across = along.unitOrthogonal();
         section.at = 0.6 * X_a + 0.4 * X_b + 1.5 * across;
         section.axes << along.transpose(), across.transpose(), along.cross(across).transpose();
@@ -27,21 +26,14 @@ struct FullEnds {
     LinkTerms terms() const { return full_link_terms(link(), true); }
     FullEnds moved(const Vec12& step) const {
         FullEnds next = *this;
-        next.x_a += step.segment<3>(0);
-        next.R_a = rotation(step.segment<3>(3)) * R_a;
-        next.x_b += step.segment<3>(6);
-        next.R_b = rotation(step.segment<3>(9)) * R_b;
+        next.step(step);
         return next;
     }
 };
 
 FullEnds random_full_ends(std::mt19937_64& engine) {
     FullEnds ends;
-    const Mat3 common = rotation(random_vector(engine, 3));
-    ends.x_a = random_vector(engine, 30);
-    ends.x_b = ends.x_a + common * (ends.X_b - ends.X_a) + random_vector(engine, 4);
-    ends.R_a = rotation(random_vector(engine, 1)) * common;
-    ends.R_b = rotation(random_vector(engine, 1)) * common;
+    ends.strain(ends.X_b - ends.X_a, engine);
     return ends;
 }
 
@@ -57,10 +49,7 @@ TEST(FullLink, RigidMotionChangesNothing) {
         const Mat3 R = rotation(random_vector(engine, 3));
         const Vec3 shift = random_vector(engine, 50);
         FullEnds moved = ends;
-        moved.x_a = R * ends.x_a + shift;
-        moved.x_b = R * ends.x_b + shift;
-        moved.R_a = R * ends.R_a;
-        moved.R_b = R * ends.R_b;
+        moved.move(R, shift);
         EXPECT_LT((moved.link().strains() - ends.link().strains()).norm(), 1e-12);
     }
 }

@@ -5,43 +5,31 @@
 #include <numbers>
 
 #include "mesh/errors.h"
-#include "tests/skeleton/test_models.h"
+#include "tests/skeleton/links/link_ends.h"
 
 namespace palpate::skeleton {
 namespace {
 
 using testing::random_vector;
 
-// The ends of a link, and where they are.
-struct Ends {
+struct Ends : testing::LinkEnds {
     double length = 12;
     Vec3 direction = Vec3::UnitX();
-    Vec3 x_a = Vec3::Zero(), x_b = Vec3::Zero();
-    Mat3 R_a = Mat3::Identity(), R_b = Mat3::Identity();
 
     LinkTerms terms(bool with_hessian = false) const {
         return link_terms(length, direction, x_a, R_a, x_b, R_b, with_hessian);
     }
     Ends moved(const Vec12& step) const {
         Ends next = *this;
-        next.x_a += step.segment<3>(0);
-        next.R_a = rotation(step.segment<3>(3)) * R_a;
-        next.x_b += step.segment<3>(6);
-        next.R_b = rotation(step.segment<3>(9)) * R_b;
+        next.step(step);
         return next;
     }
 };
 
-// Both ends turned by up to 1 rad about each axis from a common, arbitrary rotation, and moved by a third of the
-// length.
 Ends random_ends(std::mt19937_64& engine) {
     Ends ends;
     ends.direction = random_vector(engine, 1).normalized();
-    const Mat3 common = rotation(random_vector(engine, 3));
-    ends.x_a = random_vector(engine, 30);
-    ends.x_b = ends.x_a + common * ends.direction * ends.length + random_vector(engine, 4);
-    ends.R_a = rotation(random_vector(engine, 1)) * common;
-    ends.R_b = rotation(random_vector(engine, 1)) * common;
+    ends.strain(ends.length * ends.direction, engine);
     return ends;
 }
 
@@ -68,10 +56,7 @@ TEST(LinkEnergy, RigidMotionChangesNothing) {
         const Mat3 R = rotation(random_vector(engine, 3));
         const Vec3 shift = random_vector(engine, 50);
         Ends moved = ends;
-        moved.x_a = R * ends.x_a + shift;
-        moved.x_b = R * ends.x_b + shift;
-        moved.R_a = R * ends.R_a;
-        moved.R_b = R * ends.R_b;
+        moved.move(R, shift);
         // Rounding of coordinates of 100 mm in squares of some 10.
         EXPECT_LT((moved.terms().energy - ends.terms().energy).norm(), 1e-11);
     }

@@ -56,7 +56,7 @@ TEST(PressureEffect, ActsInTheCavityThatItIsToldOf) {
                  second = Cavities(two, right).rest_volume();
     EXPECT_NEAR(second, Cavities(one).rest_volume(), 1e-12 * whole);  // rounding
     EXPECT_NEAR(first + second, whole, 1e-12 * whole);
-    EXPECT_LT(first, 0.2 * second);  // an eighth, as of half the radius
+    EXPECT_NEAR(first, second / 8, 1e-12 * whole);  // of half the radius
 }
 
 TEST(PressureEffect, ExertsNoNetForceNorTorque) {

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "mesh/errors.h"
-#include "skeleton/model/carried_point.h"
+#include "skeleton/model/attachment/carried_point.h"
 #include "skeleton/model/growth.h"
 #include "skeleton/runtime/body.h"
 #include "skeleton/statics/equilibrium.h"

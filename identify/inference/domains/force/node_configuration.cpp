@@ -9,7 +9,7 @@
 #include "fem/interpolation/interpolation.h"
 #include "identify/loading/loads.h"
 #include "mesh/errors.h"
-#include "skeleton/model/attach.h"
+#include "skeleton/model/attachment/attach.h"
 
 namespace palpate::identify {
 namespace {
@@ -32,7 +32,7 @@ void place_sphere(const skeleton::Model& model, int sphere, const Points& x, con
 
 /// The sphere that a marker hangs on alone, or -1.
 int only_sphere(const skeleton::Attachment& at) {
-    constexpr double rounding = 1e-9;
+    constexpr double rounding = 1e-9;  // of weights that add up to 1
     const auto whole = std::ranges::find_if(at.shares, [](const auto& share) { return share.weight > 1 - rounding; });
     return whole != at.shares.end() ? whole->sphere : -1;
 }

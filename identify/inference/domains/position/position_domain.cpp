@@ -6,8 +6,10 @@
 #include <numbers>
 #include <numeric>
 
-#include "identify/loading/load_history.h"
+#include "identify/loading/history/load_history.h"
 #include "identify/numerics/parallel.h"
+#include "identify/numerics/summaries.h"
+#include "mesh/numbers/median.h"
 #include "skeleton/effects/placed_effects.h"
 #include "skeleton/loads/dent.h"
 #include "skeleton/statics/equilibrium.h"
@@ -19,15 +21,7 @@ namespace {
 constexpr double readings_per_state = 6;  // that a state's coordinates count as, of the model error
 constexpr double noise_sd = 3;            // of chi^2, up to which what is left is noise
 
-double median(std::vector<double> values) {
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
-}
-
 double square(double x) { return x * x; }
-
-double noise_of(double sigma) { return std::isnan(sigma) ? 0 : sigma; }
 
 std::shared_ptr<const skeleton::Model> with_law(const skeleton::Model& model, skeleton::EquilibriumLaw law) {
     auto copy = std::make_shared<skeleton::Model>(model);
@@ -53,7 +47,7 @@ PositionDomain::PositionDomain(const skeleton::Model& model, skeleton::Equilibri
     goes_as_inverse_ = !effects_have_stiffness(*model_);
     std::vector<double> displacements(states_.size());
     std::ranges::transform(states_, displacements.begin(), &StateReadings::displacement);
-    typical_displacement_ = median(displacements);
+    typical_displacement_ = mesh::upper_median(std::move(displacements));
     set_model_error(0.03);
 }
 
@@ -117,7 +111,8 @@ double PositionDomain::squared_scale(int s) const {
 
 double PositionDomain::squared_noise(int s) const {
     const Eigen::VectorXd& noise = states_[s].noise;
-    return noise.unaryExpr(&noise_of).squaredNorm() / static_cast<double>(noise.size());
+    return noise.unaryExpr([](double sigma) { return known_part(sigma); }).squaredNorm() /
+           static_cast<double>(noise.size());
 }
 
 void PositionDomain::set_model_error(double rel) {
@@ -129,7 +124,7 @@ void PositionDomain::set_model_error(double rel) {
         const double model_variance = share * square(rel) * squared_scale(s);
         Eigen::VectorXd weights = Eigen::VectorXd::Zero(3 * state.rest.rows());
         for (Eigen::Index i = 0; i < state.rest.rows(); ++i) {
-            const double variance = square(noise_of(state.noise[i])) + model_variance;
+            const double variance = square(known_part(state.noise[i])) + model_variance;
             for (int c = 0; c < 3; ++c) {
                 if (std::isnan(state.measured(i, c))) continue;
                 weights[3 * i + c] = 1 / variance;
@@ -152,7 +147,7 @@ double PositionDomain::estimate_model_error(const Prediction& prediction) const 
         squares.push_back(std::max(0.0, left - noise) / squared_scale(s));
     }
     if (chi_squared < coordinates() + noise_sd * std::sqrt(2.0 * coordinates())) return 0;
-    return std::sqrt(median(squares) / 0.89);
+    return std::sqrt(mesh::upper_median(squares) / 0.89);
 }
 
 Prediction PositionDomain::predict_linear(const Eigen::VectorXd& k) const {
@@ -264,7 +259,7 @@ bool PositionDomain::fit_dents(const Eigen::VectorXd& theta, Prediction& predict
         g += weighted.transpose() * error;
     }
     if (H.isZero(0)) return false;
-    H.diagonal().array() += square(median(moduli));
+    H.diagonal().array() += square(mesh::upper_median(moduli));
     const Eigen::Matrix<double, 6, 1> found = H.ldlt().solve(g);
     for (int s = 0; s < static_cast<int>(states_.size()); ++s) {
         const Points more = dented(s, found - dent_);

@@ -3,7 +3,7 @@
 #include <memory>
 #include <vector>
 
-#include "identify/inference/domains/position/linear/strains.h"
+#include "identify/inference/domains/position/links/strains.h"
 #include "identify/inference/domains/position/rest_law.h"
 #include "identify/inference/domains/position/slopes.h"
 #include "identify/inference/domains/position/solver_pool.h"

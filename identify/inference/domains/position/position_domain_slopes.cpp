@@ -1,7 +1,7 @@
 #include <optional>
 
 #include "identify/inference/domains/position/position_domain.h"
-#include "identify/loading/load_history.h"
+#include "identify/loading/history/load_history.h"
 #include "identify/numerics/parallel.h"
 
 namespace palpate::identify {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "fem/linear_algebra/cholesky/cholesky.h"
-#include "identify/inference/domains/position/link_signatures.h"
+#include "identify/inference/domains/position/links/link_signatures.h"
 #include "skeleton/statics/matrices/block_structure.h"
 
 namespace palpate::identify {

@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-#include "identify/inference/domains/position/link_signatures.h"
+#include "identify/inference/domains/position/links/link_signatures.h"
 
 namespace palpate::identify {
 

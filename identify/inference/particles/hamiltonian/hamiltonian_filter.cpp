@@ -14,8 +14,9 @@
 namespace palpate::identify {
 namespace {
 
-constexpr double first_angle = 0.2;  // of a step: good for curvatures up to a hundred times those of q
-constexpr double least_angle = 0.005, largest_angle = 0.8;
+constexpr double first_angle = 0.2;                // of a step: good for curvatures up to a hundred times those of q
+constexpr double least_angle = 0.005;              // 314 steps to a quarter turn: the density must jump
+constexpr double largest_angle = 0.8;              // two steps to a quarter turn
 constexpr double wanted_acceptance = 0.8;          // the best where a step costs much more than a momentum
 constexpr double acceptable = 0.5;                 // while settling
 constexpr int draws_per_chain = 4;                 // of q, that tell its evidence

@@ -80,7 +80,7 @@ struct FineLag {
 /// Newton's steps on the mean square, by differences over a fraction of the sampling. @param within how far from the
 /// beginning the lag may be [s]
 FineLag refine_lag(const Signal& motion, const Signal& force, double lag, double step, double within) {
-    constexpr int most_steps = 30;
+    constexpr int most_steps = 30;  // a bound: the lag is within a few samples when this begins
     const double first = lag;
     const auto mean_square = [&](double at) {
         const ParabolaFit fit = fit_parabola(motion, force, at);

@@ -1,60 +1,18 @@
+#include "identify/recordings/assembly/clocks/merge_recordings.h"
+
 #include <fmt/format.h>
 
-#include <Eigen/Dense>
 #include <algorithm>
-#include <cmath>
 #include <map>
-#include <set>
 
+#include "identify/recordings/assembly/clocks/common_column.h"
 #include "identify/recordings/assembly/clocks/lag.h"
-#include "identify/recordings/assembly/clocks/probe_recording.h"
 #include "identify/recordings/assembly/clocks/triggers.h"
 #include "mesh/errors.h"
 #include "mesh/text/words.h"
 
 namespace palpate::identify {
 namespace {
-
-/// Mean of some points along an axis, frame by frame.
-Eigen::VectorXd mean_along(const ProbeRecording& probe, const std::vector<std::string>& names, const Vec3& axis) {
-    Eigen::VectorXd sum = Eigen::VectorXd::Zero(probe.times.size());
-    for (const std::string& name : names) {
-        Eigen::Matrix3Xd at = probe.point(name)->at;
-        if (probe.is_planar) at.row(2).setZero();
-        sum += at.transpose() * axis;
-    }
-    return sum / static_cast<double>(names.size());
-}
-
-/// The map's quantities that this probe's points tell, beginning with 0.
-void add_quantities(const ImportMap& map, ProbeRecording& probe) {
-    for (const MappedQuantity& quantity : map.quantities) {
-        const auto is_there = [&](const std::string& name) { return probe.point(name) != nullptr; };
-        if (!std::ranges::all_of(quantity.points, is_there) || !std::ranges::all_of(quantity.minus, is_there)) continue;
-        Eigen::VectorXd values = mean_along(probe, quantity.points, quantity.along);
-        if (!quantity.minus.empty()) values -= mean_along(probe, quantity.minus, quantity.along);
-        const Signal told = without_gaps({probe.times, values});
-        if (told.values.size() > 0) values.array() -= told.values[0];
-        probe.channels.push_back({quantity.name, "mm", {probe.times, values}});
-    }
-}
-
-/// The direction in which all points move most, and where they are along it: the leading principal component.
-Signal leading_motion(const ProbeRecording& probe) {
-    const auto frames = probe.times.size();
-    Eigen::MatrixXd X(3 * std::ssize(probe.points), frames);
-    for (std::size_t p = 0; p < probe.points.size(); ++p)
-        X.middleRows(3 * static_cast<Eigen::Index>(p), 3) = probe.points[p].at;
-    for (auto row : X.rowwise()) {
-        const Signal told = without_gaps({probe.times, row.transpose()});
-        const double mean = told.values.size() > 0 ? told.values.mean() : 0;
-        row = row.array().isFinite().select(row.array() - mean, 0).matrix().eval();
-    }
-    Eigen::VectorXd v = X.colwise().norm().transpose();
-    v.array() -= v.mean();
-    for (int step = 0; step < 100 && v.norm() > 0; ++step) v = (X.transpose() * (X * v)).normalized();
-    return {probe.times, v};
-}
 
 const RecordedChannel* channel_of(const std::vector<Recording>& recordings, const std::string& name,
                                   const Recording*& of) {
@@ -86,7 +44,7 @@ std::vector<double> trigger_times(const std::vector<Recording>& recordings, cons
 /// Merges the files of one probe.
 class ProbeMerge {
 public:
-    ProbeMerge(const ImportMap& map, int number, ImportReport& report) : map_(map), report_(report) {
+    ProbeMerge(const ImportMap& map, int number, std::vector<ClockReport>& clocks) : map_(map), clocks_(clocks) {
         probe_.probe = number;
     }
 
@@ -175,7 +133,7 @@ private:
     }
 
     void add_frame_by_frame(const FileRecordings& file) {
-        report_.clocks.push_back({file.name, "frame by frame, as both have no clock and as many frames", probe_.probe});
+        clocks_.push_back({file.name, "frame by frame, as both have no clock and as many frames", probe_.probe});
         add(file, [](double t) { return t; });
     }
 
@@ -193,7 +151,7 @@ private:
     }
 
     void add_by_fit(const FileRecordings& file, const ClockFit& clock, const std::string& how) {
-        report_.clocks.push_back({file.name, how, probe_.probe, clock.offset, clock.rate, clock.sd});
+        clocks_.push_back({file.name, how, probe_.probe, clock.offset, clock.rate, clock.sd});
         add(file, [&](double t) { return clock.offset + clock.rate * t; });
     }
 
@@ -280,91 +238,37 @@ private:
                 fmt::format("{}: the common column {} is not in {}. Each file of a probe needs it, or a "
                             "quantity of its points (quantities).",
                             file.name, mesh::cited(name), own.values.size() < 2 ? reference_->name : file.name));
-        check_monotone(own, reference_->name);
-        check_monotone(other, file.name);
-        const Signal rising = monotone(own), told = monotone(other);
-        // times here as a function of the common value; values that stand still are taken at their middle
-        const Signal inverse = inverted(rising);
-        const Signal by_time{told.times, told.values.unaryExpr([&](double v) { return value_at(inverse, v); })};
-        const Signal known = without_gaps(by_time);
-        if (known.times.size() < 2)
-            throw InvalidInput(
-                fmt::format("{}: '{}' goes from {:.4g} to {:.4g} here and from {:.4g} to {:.4g} in {}: they "
-                            "have nothing in common. Are the units the same?",
-                            file.name, name, other.values.minCoeff(), other.values.maxCoeff(), own.values.minCoeff(),
-                            own.values.maxCoeff(), reference_->name));
-        report_.clocks.push_back({file.name, fmt::format("by the common column '{}'", name), probe_.probe});
+        const Signal clock = clock_by_common(name, {reference_->name, own}, {file.name, other});
+        clocks_.push_back({file.name, fmt::format("by the common column '{}'", name), probe_.probe});
         FileRecordings rest = file;
         for (Recording& recording : rest.recordings)
             std::erase_if(recording.channels, [&](const RecordedChannel& channel) { return channel.name == name; });
-        add(rest, [&](double t) { return value_at(known, t); });
-    }
-
-    void check_monotone(const Signal& signal, const std::string& file) const {
-        constexpr double off = 0.02;  // of the range, rms: what is left is no noise of a sensor
-        const Signal fit = monotone(signal);
-        const double range = signal.values.maxCoeff() - signal.values.minCoeff();
-        const double rms =
-            std::sqrt((fit.values - signal.values).squaredNorm() / static_cast<double>(signal.values.size()));
-        if (rms > off * range)
-            throw InvalidInput(
-                fmt::format("{}: the common column '{}' goes up and down, and its values tell no times. "
-                            "Merge by clock: {{lag: auto}}.",
-                            file, map_.clock.channel));
-    }
-
-    /// @pre monotone
-    static Signal inverted(const Signal& signal) {
-        std::vector<double> values, times;
-        const bool falls = signal.values[signal.values.size() - 1] < signal.values[0];
-        for (Eigen::Index begin = 0; begin < signal.values.size();) {
-            Eigen::Index end = begin;
-            while (end < signal.values.size() && signal.values[end] == signal.values[begin]) ++end;
-            values.push_back(signal.values[begin]);
-            times.push_back((signal.times[begin] + signal.times[end - 1]) / 2);
-            begin = end;
-        }
-        if (falls) {
-            std::ranges::reverse(values);
-            std::ranges::reverse(times);
-        }
-        return {Eigen::Map<Eigen::VectorXd>(values.data(), std::ssize(values)),
-                Eigen::Map<Eigen::VectorXd>(times.data(), std::ssize(times))};
+        add(rest, [&](double t) { return value_at(clock, t); });
     }
 
     void from_zero() {
         const double first = probe_.times[0];
         probe_.times.array() -= first;
         for (NamedSignal& channel : probe_.channels) channel.signal.times.array() -= first;
-        for (ClockReport& clock : report_.clocks)
+        for (ClockReport& clock : clocks_)
             if (clock.probe == probe_.probe) clock.offset -= first;
     }
 
     const ImportMap& map_;
-    ImportReport& report_;
+    std::vector<ClockReport>& clocks_;
     FileRecordings* reference_ = nullptr;
     ProbeRecording probe_;
 };
 
 }  // namespace
 
-const NamedSignal* ProbeRecording::channel(const std::string& name) const {
-    const auto found = std::ranges::find(channels, name, &NamedSignal::name);
-    return found == channels.end() ? nullptr : &*found;
-}
-
-const RecordedPoint* ProbeRecording::point(const std::string& name) const {
-    const auto found = std::ranges::find(points, name, &RecordedPoint::name);
-    return found == points.end() ? nullptr : &*found;
-}
-
 std::vector<ProbeRecording> merge_recordings(const ImportMap& map, std::vector<FileRecordings> files,
-                                             ImportReport& report) {
+                                             std::vector<ClockReport>& clocks) {
     std::map<int, std::vector<FileRecordings*>> of_probe;
     for (FileRecordings& file : files) of_probe[file.mapped->probe].push_back(&file);
     std::vector<ProbeRecording> probes;
     probes.reserve(of_probe.size());
-    for (auto& [number, of] : of_probe) probes.push_back(ProbeMerge(map, number, report).merged(of));
+    for (auto& [number, of] : of_probe) probes.push_back(ProbeMerge(map, number, clocks).merged(of));
     return probes;
 }
 

@@ -4,18 +4,10 @@
 #include <vector>
 
 #include "identify/recordings/assembly/clocks/signal.h"
-#include "identify/recordings/assembly/import_report.h"
 #include "identify/recordings/assembly/map/import_map.h"
 #include "identify/recordings/recording.h"
 
 namespace palpate::identify {
-
-/// What one file of the map holds.
-struct FileRecordings {
-    const MappedFile* mapped = nullptr;
-    std::string name;  // of the file
-    std::vector<Recording> recordings;
-};
 
 struct NamedSignal {
     std::string name, unit;
@@ -38,12 +30,10 @@ struct ProbeRecording {
     const RecordedPoint* point(const std::string& name) const;
 };
 
-/// Puts the files of each probe on one clock, in the order of the probes.
-///
-/// Recordings of one file share its clock. Files without any, as many frames as the first has, share its frames. Others
-/// come by the map's rule: by the edges of a trigger, by a common column, which rises or falls on both sides, or by the
-/// lag at which force and motion agree best. @throws InvalidInput where that is not clear, naming the file.
-std::vector<ProbeRecording> merge_recordings(const ImportMap& map, std::vector<FileRecordings> files,
-                                             ImportReport& report);
+/// Adds the map's quantities that this probe's points tell, beginning with 0.
+void add_quantities(const ImportMap& map, ProbeRecording& probe);
+
+/// The direction in which all points move most, and where they are along it: the leading principal component.
+Signal leading_motion(const ProbeRecording& probe);
 
 }  // namespace palpate::identify

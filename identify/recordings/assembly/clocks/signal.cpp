@@ -5,15 +5,12 @@
 #include <limits>
 #include <vector>
 
+#include "mesh/numbers/median.h"
+
 namespace palpate::identify {
 namespace {
 
-double median(std::vector<double> values) {
-    if (values.empty()) return 0;
-    const auto middle = values.begin() + std::ssize(values) / 2;
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
-}
+double median(std::vector<double> values) { return values.empty() ? 0 : mesh::upper_median(std::move(values)); }
 
 /// Runs of the rising fit: mean and length of each.
 std::vector<std::pair<double, Eigen::Index>> rising_runs(const Eigen::VectorXd& values) {

@@ -12,6 +12,7 @@
 #include "mesh/errors.h"
 #include "mesh/geometry/sampling.h"
 #include "mesh/geometry/surface_tree.h"
+#include "mesh/numbers/median.h"
 
 namespace palpate::identify {
 namespace {
@@ -20,6 +21,8 @@ using Vector6 = Eigen::Matrix<double, 6, 1>;
 using Matrix6 = Eigen::Matrix<double, 6, 6>;
 
 constexpr int most_points = 150;  // of the search; all of them count at the end
+// The search is a choice of cost: turns that are spread evenly, of which the best after a few steps are followed to the
+// end. More take longer; less miss the pose of a body that looks alike from several sides.
 constexpr int even_turns = 72, kept_poses = 8;
 constexpr int search_steps = 12, last_steps = 60;
 constexpr double cut = 3;              // medians of the distance, beyond which a point pulls no more
@@ -98,10 +101,8 @@ public:
     double size() const { return size_; }
 
 private:
-    static double median_of(Eigen::VectorXd values) {
-        const auto middle = values.begin() + values.size() / 2;
-        std::nth_element(values.begin(), middle, values.end());
-        return *middle;
+    static double median_of(const Eigen::VectorXd& values) {
+        return mesh::upper_median(std::vector(values.begin(), values.end()));
     }
 
     mesh::SurfaceTree tree_;

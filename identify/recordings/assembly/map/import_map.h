@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "identify/measurements/measurement_set.h"
-#include "identify/recordings/assembly/states/plateaus.h"
+#include "identify/recordings/assembly/map/plateau_options.h"
 #include "identify/recordings/files/file_map.h"
 
 namespace palpate::identify {

@@ -125,7 +125,7 @@ MappedUse read_reaction(const YamlFields& entry, const SetUnits& units, const Me
     use.target = target_of(entry, "tool", set.tools);
     read_axis(entry, use);
     read_channel(entry, units, use.is_about ? units.moment : units.force, use);
-    constexpr double along_axis = 1e-6;
+    constexpr double along_axis = 1e-6;  // rounding of a direction that was typed and normalised
     if (use.axis.cwiseAbs().maxCoeff() < 1 - along_axis)
         throw InvalidInput(
             fmt::format("{}: [{:.3g}] is oblique, and a set tells reactions along its frame's axes. Turn the "

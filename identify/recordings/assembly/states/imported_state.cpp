@@ -6,13 +6,15 @@
 #include <cmath>
 #include <limits>
 
+#include "identify/numerics/summaries.h"
 #include "mesh/errors.h"
+#include "mesh/numbers/median.h"
 
 namespace palpate::identify {
 namespace {
 
-constexpr double little = 0.05;  // of what all probes show: this one shows hardly any motion
-constexpr std::size_t most_states = 5000;
+constexpr double little = 0.05;            // of what all probes show: this one shows hardly any motion
+constexpr std::size_t most_states = 5000;  // equilibria that an identification may take: a choice of cost
 
 /// All coordinates that were ever seen, a row each.
 Eigen::MatrixXd coordinates(const std::vector<RecordedPoint>& points, Eigen::Index frames) {
@@ -176,13 +178,11 @@ void moderate_sigmas(std::vector<SteadyPoint>& points) {
     for (const SteadyPoint& point : points)
         if (point.sigma > 0) variances.push_back(point.sigma * point.sigma);
     if (variances.empty()) return;
-    const auto middle = variances.begin() + std::ssize(variances) / 2;
-    std::ranges::nth_element(variances, middle);
+    const double typical = mesh::upper_median(std::move(variances));
     for (SteadyPoint& point : points) {
         if (point.samples == 0) continue;
-        const double own = std::isnan(point.sigma) ? 0 : point.sigma * point.sigma,
-                     freedom = std::max(0, point.samples - 2);
-        point.sigma = std::sqrt(std::max(own, (freedom * own + shared * *middle) / (freedom + shared)));
+        const double own = known_part(point.sigma * point.sigma), freedom = std::max(0, point.samples - 2);
+        point.sigma = std::sqrt(std::max(own, (freedom * own + shared * typical) / (freedom + shared)));
     }
 }
 

@@ -158,14 +158,6 @@ Plateau trimmed(Plateau plateau, const std::vector<SignalGroup>& groups, double 
 
 }  // namespace
 
-void PlateauOptions::validate() const {
-    if (!(shortest >= 0 && shortest < 1e6))
-        throw InvalidInput(
-            fmt::format("plateaus.shortest: {} s is no length of a plateau; give one above 0", shortest));
-    if (!(still > 0 && still < 1))
-        throw InvalidInput(fmt::format("plateaus.still: {} is no share of the range; it lies between 0 and 1", still));
-}
-
 std::vector<Plateau> find_plateaus(const Eigen::VectorXd& times, const std::vector<SignalGroup>& groups,
                                    const PlateauOptions& options) {
     const auto frames = times.size();

@@ -4,6 +4,8 @@
 #include <optional>
 #include <vector>
 
+#include "identify/recordings/assembly/map/plateau_options.h"
+
 namespace palpate::identify {
 
 /// Signals of one kind on one clock: the coordinates of all points, or one channel.
@@ -12,18 +14,6 @@ struct SignalGroup {
     // How far the group moves altogether, rms over its signals. None: in these frames. A recording that shows little of
     // what its siblings show is given theirs.
     std::optional<double> range = {};
-};
-
-struct PlateauOptions {
-    double shortest = 0;  // [s]; 0: ten frames, 0.3 s at least, a fifth of the recording at most
-    // What changes by less over the shortest plateau stands still, as a share of the range. 5 %: a body that creeps
-    // keeps creeping for hours, by less each time as long; what loads it does so within a blink. What is left stands in
-    // sigma.
-    double still = 0.05;
-    std::optional<double> within = {};  // the same as a change of the first group [its unit], in place of the share
-
-    /// @throws InvalidInput naming what is out of its range
-    void validate() const;
 };
 
 /// Frames [first, last) in which nothing moves.

@@ -12,10 +12,10 @@
 namespace palpate::identify {
 namespace {
 
-constexpr double suspect = 0.25;      // of the way to the nearest neighbour
-constexpr double clearly_less = 0.5;  // of the squares
-constexpr Eigen::Index blink = 5;     // frames
-constexpr std::size_t most_tracks = 100;
+constexpr double suspect = 0.25;          // of the way to the nearest neighbour
+constexpr double clearly_less = 0.5;      // of the squares
+constexpr Eigen::Index blink = 5;         // frames
+constexpr std::size_t most_tracks = 100;  // a choice of cost: tracks are compared in pairs, frame by frame
 
 /// Where each track was last, and how far it may have gone since without suspicion.
 class Tracks {

@@ -9,7 +9,7 @@
 namespace palpate::identify {
 
 C3dBytes::C3dBytes(const std::string& bytes, const std::filesystem::path& file) : bytes_(bytes), file_(file) {
-    constexpr std::size_t block = 512;
+    constexpr std::size_t block = 512;   // [bytes], of the format
     constexpr int first_processor = 83;  // intel is 84
     parameters_at_ = block * (static_cast<std::size_t>(byte(0)) - 1);
     if (byte(0) == 0)

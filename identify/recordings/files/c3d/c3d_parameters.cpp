@@ -62,7 +62,7 @@ C3dParameters::C3dParameters(const C3dBytes& bytes) {
     std::vector<std::pair<int, std::pair<std::string, C3dParameter>>> found;
     std::size_t at = bytes.parameters_at() + 4;
     // How long the section is stands before it, in blocks; in some files the last record's offset leads out of it.
-    constexpr std::size_t block = 512;
+    constexpr std::size_t block = 512;  // [bytes], of the format
     const auto blocks = static_cast<std::size_t>(bytes.byte(bytes.parameters_at() + 2));
     const std::size_t end = blocks > 0 ? bytes.parameters_at() + blocks * block : bytes.size();
     while (true) {

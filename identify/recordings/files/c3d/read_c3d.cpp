@@ -38,7 +38,7 @@ struct C3dLayout {
 double announced_frames(const C3dBytes& bytes, const C3dParameters& parameters) {
     const auto& first = parameters.numbers("TRIAL:ACTUAL_START_FIELD");
     const auto& last = parameters.numbers("TRIAL:ACTUAL_END_FIELD");
-    constexpr double half = 65536;
+    constexpr double half = 65536;  // 2^16: words of 16 bits
     const auto joined = [](const std::vector<double>& words) {
         const auto word = [](double value) { return value < 0 ? value + half : value; };
         return word(words[0]) + half * word(words[1]);
@@ -52,7 +52,7 @@ double announced_frames(const C3dBytes& bytes, const C3dParameters& parameters) 
 }
 
 C3dLayout layout_of(const C3dBytes& bytes, const C3dParameters& parameters) {
-    constexpr double most_points = 65535;
+    constexpr double most_points = 65535;  // a word of 16 bits
     const auto checked = [&](const char* name, double value, double least, double most) {
         if (!(value >= least && value <= most) || value != std::floor(value))
             throw InvalidInput(
@@ -97,7 +97,7 @@ C3dLayout layout_of(const C3dBytes& bytes, const C3dParameters& parameters) {
         throw InvalidInput(fmt::format("{}: holds neither points nor analogs.", bytes.name()));
     layout.frames = checked("the number of frames", announced_frames(bytes, parameters), 1, 1e9);
     const std::size_t held = layout.at < bytes.size() ? (bytes.size() - layout.at) / layout.frame_size() : 0;
-    constexpr std::size_t most_in_header = 65535;
+    constexpr std::size_t most_in_header = 65535;                                       // a word of 16 bits
     if (layout.frames == most_in_header && held > layout.frames) layout.frames = held;  // it tells no more
     if (held < layout.frames)
         throw InvalidInput(
@@ -212,7 +212,7 @@ std::vector<RecordedEvent> read_events(const C3dBytes& bytes, const C3dParameter
         events.push_back({(has_context ? contexts[e] + " " : "") + labels[e], 60 * times[2 * e] + times[2 * e + 1]});
     }
     constexpr std::size_t key_at = 298, count_at = 300, times_at = 304, labels_at = 396;  // [bytes]
-    constexpr int key = 12345, most = 18;
+    constexpr int key = 12345, most = 18;  // of the format: what marks labels of four letters, and events of a header
     if (!events.empty() || bytes.word(key_at) != key) return events;
     for (std::size_t e = 0; e < static_cast<std::size_t>(std::min(bytes.word(count_at), most)); ++e)
         events.push_back({std::string(trimmed(bytes.text(labels_at + 4 * e, 4))),

@@ -7,6 +7,7 @@
 #include <set>
 
 #include "identify/recordings/files/conversion.h"
+#include "identify/recordings/files/mocap/frame_times.h"
 #include "identify/recordings/files/mocap/mocap_files.h"
 #include "identify/recordings/files/text/number_rows.h"
 #include "mesh/errors.h"
@@ -129,13 +130,7 @@ Recording read_motive(const TextFile& text, const FileMap& map) {
         throw InvalidInput(fmt::format(
             "{}: holds no markers, but {}. Export the take again, with markers.", file,
             markers.left_out.empty() ? "no column at all" : fmt::format("{}", fmt::join(markers.left_out, ", "))));
-    if (map.rate) {
-        set_rate(*map.rate, rows.values.rows(), 0, recording);
-    } else {
-        const NumberColumn time{.name = "Time", .unit = "s", .values = rows.values.col(1), .texts = {}};
-        set_times(
-            time, map, [&](Eigen::Index r) { return text.where(rows.lines[static_cast<std::size_t>(r)]); }, recording);
-    }
+    set_frame_times(text, rows, map, recording);
     if (has_bodies_alone)
         recording.notes.emplace_back("no markers: points are the pivots of rigid bodies, whose turns are left out");
     for (const std::string& type : markers.left_out)

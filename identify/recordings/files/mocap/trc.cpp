@@ -5,6 +5,7 @@
 #include <map>
 
 #include "identify/recordings/files/conversion.h"
+#include "identify/recordings/files/mocap/frame_times.h"
 #include "identify/recordings/files/mocap/mocap_files.h"
 #include "identify/recordings/files/text/number_rows.h"
 #include "mesh/errors.h"
@@ -75,13 +76,7 @@ Recording read_trc(const TextFile& text, const FileMap& map) {
         drop_partly_seen(point.at);
         recording.points.push_back(std::move(point));
     }
-    if (map.rate) {
-        set_rate(*map.rate, rows.values.rows(), 0, recording);
-    } else {
-        const NumberColumn time{.name = "Time", .unit = "s", .values = rows.values.col(1), .texts = {}};
-        set_times(
-            time, map, [&](Eigen::Index r) { return text.where(rows.lines[static_cast<std::size_t>(r)]); }, recording);
-    }
+    set_frame_times(text, rows, map, recording);
     if (const auto told = mesh::parse_integer(setting("numframes")); told && *told != rows.values.rows())
         recording.notes.push_back(fmt::format("line 3 tells {} frames, {} are there", *told, rows.values.rows()));
     name_points(map, file, recording);

@@ -60,7 +60,7 @@ bool holds_month(const std::string& word) {
 
 /// What spreadsheets make of numbers: "12.05.2024", "2024-05-12", "12/5", "12-May", "May 12", "12:30".
 bool looks_like_date(const std::string& word) {
-    constexpr std::size_t longest = 30;
+    constexpr std::size_t longest = 30;  // characters: "Wednesday, 12 September 2024" has 28
     if (word.size() > longest || std::ranges::none_of(word, is_digit)) return false;
     std::size_t separators = 0;
     bool is_digits_only = true;
@@ -84,7 +84,7 @@ struct ClockParts {
 };
 
 std::optional<ClockParts> clock_parts(std::string_view cell) {
-    constexpr std::size_t most = 7;
+    constexpr std::size_t most = 7;  // numbers before the last one, a bound: year to minute are five
     ClockParts parts;
     while (!cell.empty() && parts.whole.size() < most) {
         const std::size_t end = std::min(cell.find_first_not_of("0123456789"), cell.size());
@@ -117,7 +117,7 @@ std::optional<ClockParts> clock_parts(std::string_view cell) {
 
 /// Seconds from 1970 to a day; none where there is no such day.
 std::optional<double> seconds_to_day(int year, int month, int day) {
-    constexpr int first_year = 1900, last_year = 2200;
+    constexpr int first_year = 1900, last_year = 2200;  // wider than any recording's; a year beyond is a slip
     const std::chrono::year_month_day date(std::chrono::year(std::clamp(year, first_year, last_year)),
                                            std::chrono::month(static_cast<unsigned>(std::clamp(month, 0, 13))),
                                            std::chrono::day(static_cast<unsigned>(std::clamp(day, 0, 32))));
@@ -182,7 +182,7 @@ CellValue value_of(std::string_view cell, const Dialect& dialect) {
         const std::string plain = plain_number(cell, dialect);
         if (const auto value = plain.empty() ? std::nullopt : mesh::parse_number(plain)) return {Kind::number, *value};
     }
-    constexpr std::size_t longest_word = 40;
+    constexpr std::size_t longest_word = 40;  // characters, longer than any word for what is missing
     if (cell.size() > longest_word) return {Kind::text, 0};
     const std::string word = lower_case(cell);
     if (is_missing_word(word)) return {Kind::missing, 0};

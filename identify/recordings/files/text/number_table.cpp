@@ -140,7 +140,7 @@ int column_of(const NumberTable& table, const std::string& column, const std::st
         throw InvalidInput(
             fmt::format("{}: there is no column {}; 1 to {} are allowed.", file, *number, table.columns.size()));
     }
-    constexpr std::size_t most_names = 20;
+    constexpr std::size_t most_names = 20;  // in a message
     if (names.size() > most_names) names.resize(most_names);
     throw InvalidInput(fmt::format("{}: no column is named {}{}. {}", file, mesh::cited(column),
                                    mesh::suggestion(column, names),

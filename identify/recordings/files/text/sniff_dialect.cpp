@@ -12,7 +12,7 @@ using Lines = std::vector<std::string_view>;
 
 /// Enough of them to tell a habit, from all parts of the file.
 Lines sample_of(const Lines& lines) {
-    constexpr std::size_t most = 4000;
+    constexpr std::size_t most = 4000;  // lines, which are read within milliseconds
     const std::size_t step = 1 + lines.size() / most;
     Lines sample;
     for (std::size_t i = 0; i < lines.size(); i += step) sample.push_back(lines[i]);
@@ -33,7 +33,7 @@ bool is_grouped(std::string_view cell, char separator) {
 }
 
 void weigh(std::string_view cell, SignEvidence& evidence) {
-    constexpr std::size_t longest_number = 40;
+    constexpr std::size_t longest_number = 40;  // characters: 17 digits, sign, exponent and blanks are fewer
     const bool is_numeric = cell.size() <= longest_number && cell.find_first_not_of("0123456789+-.,eE' ") == cell.npos;
     if (!is_numeric) return;
     const auto commas = std::ranges::count(cell, ','), points = std::ranges::count(cell, '.');

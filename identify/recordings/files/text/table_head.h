@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "identify/recordings/files/text/number_table.h"
+#include "identify/recordings/files/text/decoding/text_file.h"
 #include "mesh/errors.h"
 
 namespace palpate::identify {

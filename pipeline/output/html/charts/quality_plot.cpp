@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "pipeline/output/html/escape.h"
-#include "pipeline/output/quality.h"
+#include "pipeline/output/results/quality.h"
 
 namespace palpate::pipeline {
 namespace {

@@ -114,7 +114,8 @@ std::string effects_table(const json& preflight) {
                                        : "–") +
             "<td class=\"words\">" + words_of_effect(one) + "</td></tr>";
     }
-    return "<div class=\"wide\"><table class=\"cards\"><thead><tr><th>effect</th><th>could be named</th><th>from</th>"
+    return "<div class=\"wide\" tabindex=\"0\"><table class=\"cards\"><thead><tr><th>effect</th><th>could be "
+           "named</th><th>from</th>"
            "<th>of its prior</th><th>trace, rms</th><th>in σ</th><th class=\"words\">in "
            "words</th></tr></thead><tbody>" +
            rows + "</tbody></table></div>";
@@ -199,7 +200,7 @@ std::string experiments_section(const json& preflight) {
     return "<h2 id=\"next\">What the next hour in the lab should bring</h2><p>Each was added to the set with readings "
            "of all "
            "markers, as noisy as the set's, and the effects were judged again; the best comes first.</p><div "
-           "class=\"wide\">"
+           "class=\"wide\" tabindex=\"0\">"
            "<table class=\"cards\"><thead><tr><th class=\"words\">do</th><th>states</th><th class=\"words\">it "
            "brings</th></tr></thead><tbody>" +
            rows + "</tbody></table></div>";

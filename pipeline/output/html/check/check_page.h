@@ -4,7 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <string_view>
 
-#include "pipeline/case/subject.h"
+#include "pipeline/case/subject/subject.h"
 
 namespace palpate::pipeline {
 

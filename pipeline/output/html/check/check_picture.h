@@ -2,7 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "pipeline/case/subject.h"
+#include "pipeline/case/subject/subject.h"
 
 namespace palpate::pipeline {
 

@@ -24,9 +24,8 @@ function startCheck() {
     at('no-view').hidden = false;
     return;
   }
-  const largest = (values) => values.reduce((a, b) => Math.max(a, b), 0);
-  const strongest = largest(states.flatMap((s) => s.loads.map((l) => Math.hypot(...l.slice(3))))) || 1;
-  const furthest = largest(states.map((s) => largest(Array.from({length: s.moved.length / 3}, (_, i) => norm3(s.moved, i) || 0))));
+  const strongest = largestOf(states.flatMap((s) => s.loads.map((l) => Math.hypot(...l.slice(3))))) || 1;
+  const furthest = largestOf(states.map((s) => largestOf(Array.from({length: s.moved.length / 3}, (_, i) => norm3(s.moved, i) || 0))));
 
   const colours = ['supports', ...(data.parts.length ? ['how well its stiffness would be determined'] : []), 'one colour'];
   const fill = (select, texts) => select.replaceChildren(...texts.map((t, i) => new Option(t, i)));
@@ -54,7 +53,7 @@ function startCheck() {
   const colourOfVertex = new Float32Array(points.length);
   function colourSkin() {
     const by = colours[+at('colour').value], sds = data.parts.map((p) => p.sd);
-    const high = largest(sds) || 1;
+    const high = largestOf(sds) || 1;
     for (let v = 0; v < points.length / 3; ++v) {
       const part = data.surface.part[v];
       colourOfVertex.set(by === 'supports' ? bodyColour : by === 'one colour' || part === undefined ? unknownColour
@@ -73,7 +72,6 @@ function startCheck() {
   const isDark = matchMedia('(prefers-color-scheme: dark)');
   let shown = Math.max(0, states.findIndex((s) => s.loads.length || s.motions.length)), playing = 0, drawn = {glyphs: []};
   isDark.addEventListener('change', () => requestDraw());
-  const ball = (c, radius, colour) => ({start: [c[0], c[1], c[2] - radius], end: [c[0], c[1], c[2] + radius], radius, colour});
 
   function draw() {
     const area = at('canvas').getBoundingClientRect(), dots = Math.min(devicePixelRatio || 1, 2);
@@ -85,7 +83,7 @@ function startCheck() {
     const radius = Math.min(0.009, 0.12 / Math.sqrt(count + 1)) * size;
     const isOdd = (m) => markers.odd.includes(m) || (state && state.odd.includes(m));
     if (at('show-markers').checked) {
-      scene.glyphs('ball', Array.from({length: count}, (_, m) => ball(point3(markers.rest, m), isOdd(m) ? 1.7 * radius : radius, isOdd(m) ? foundColour : ink)));
+      scene.glyphs('ball', Array.from({length: count}, (_, m) => ballAt(point3(markers.rest, m), isOdd(m) ? 1.7 * radius : radius, isOdd(m) ? foundColour : ink)));
     }
     for (let m = 0; m < count; ++m) drawn.glyphs.push({at: point3(markers.rest, m), text: `marker ${markers.names[m]}${isOdd(m) ? ', looks off' : ''}`});
     if (state && at('show-positions').checked) {
@@ -96,7 +94,7 @@ function startCheck() {
         const start = point3(markers.rest, m), end = start.map((v, i) => v + magnify * moved[i]);
         const length = Math.hypot(...moved) * magnify;
         if (length > 0.006 * size) arrows.push({start, end, radius: Math.min(0.35 * radius, 0.06 * length), colour: isOdd(m) ? foundColour : ink});
-        else balls.push(ball(end, 0.6 * radius, ink));
+        else balls.push(ballAt(end, 0.6 * radius, ink));
       }
       scene.glyphs('arrow', arrows);
       scene.glyphs('ball', balls);
@@ -118,7 +116,7 @@ function startCheck() {
         drawn.glyphs.push({at: tool.at, text: tool.name});
         if (tool.radius > 0) scene.glyphs(tool.flat ? 'tube' : 'ball', [tool.flat
           ? {start: tool.at, end: tool.at.map((v, i) => v - 0.03 * size * tool.axis[i]), radius: tool.radius, colour: toolColour}
-          : ball(tool.at, tool.radius, toolColour)], 0.35);
+          : ballAt(tool.at, tool.radius, toolColour)], 0.35);
       }
     }
     if (at('show-edges').checked) scene.wires(points, wireColour);
@@ -144,19 +142,8 @@ function startCheck() {
   at('state').addEventListener('change', () => show(+at('state').value));
   at('frame').addEventListener('input', () => show(+at('frame').value));
   at('play').addEventListener('click', () => play(!playing));
-  steer(at('canvas'), camera, {draw: requestDraw, move: (by) => show(shown + by), play: () => play(!playing), hint: (x, y) => {
-    let best = 14, found = null;
-    for (const glyph of drawn.glyphs) {
-      const [px, py] = camera.project(glyph.at, at('canvas').clientWidth, at('canvas').clientHeight);
-      const distance = Math.hypot(px - x, py - y);
-      if (distance < best) { best = distance; found = glyph; }
-    }
-    at('hint').hidden = !found;
-    if (!found) return;
-    at('hint').textContent = found.text;
-    at('hint').style.left = `${Math.min(x + 12, at('canvas').clientWidth - 150)}px`;
-    at('hint').style.top = `${y + 12}px`;
-  }});
+  steer(at('canvas'), camera, {draw: requestDraw, move: (by) => show(shown + by), play: () => play(!playing),
+    hint: (x, y) => tellNearest(at('hint'), camera, drawn.glyphs, at('canvas'), x, y)});
   new ResizeObserver(requestDraw).observe(at('canvas'));
   colourSkin();
   requestDraw();

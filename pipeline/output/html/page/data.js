@@ -16,6 +16,10 @@ function readRun(json) {
   run.surface = {points: decoded(run.surface.points), triangles: decoded(run.surface.triangles)};
   run.spheres = {centers: decoded(run.spheres.centers), radii: decoded(run.spheres.radii), held: run.spheres.held};
   run.links = decoded(run.links);
+  for (const tool of run.tools) {
+    if (tool.surface) tool.surface = {points: decoded(tool.surface.points), triangles: decoded(tool.surface.triangles)};
+    tool.patch = decoded(tool.patch);
+  }
   for (const state of run.states) state.measured = decoded(state.measured);
   for (const step of run.steps) {
     for (const quantity of step.quantities) quantity.values = decoded(quantity.values);
@@ -30,6 +34,8 @@ function readRun(json) {
 
 const norm3 = (a, i) => Math.hypot(a[3 * i], a[3 * i + 1], a[3 * i + 2]);
 const point3 = (a, i) => [a[3 * i], a[3 * i + 1], a[3 * i + 2]];
+const lengthsOf = (vectors) => Array.from({length: vectors.length / 3}, (_, i) => norm3(vectors, i));
+const largestOf = (values) => values.reduce((a, b) => Math.max(a, b), 0);
 
 /// Rms over measured coordinates and largest length of a state's errors [mm].
 function errorsOf(markers) {

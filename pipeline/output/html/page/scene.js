@@ -1,4 +1,4 @@
-// A small WebGL 2 renderer: one coloured surface, its edges, and glyphs (balls, tubes, arrows) between two points each.
+// A small WebGL 2 renderer: coloured surfaces, their edges, and glyphs (balls, tubes, discs, arrows) between two points each.
 'use strict';
 
 const surfaceVertexShader = `#version 300 es
@@ -31,8 +31,8 @@ in vec3 seen, tint;
 uniform float opacity, shading;
 out vec4 shown;
 void main() {
-  vec3 normal = normalize(cross(dFdx(seen), dFdy(seen)));
-  float light = mix(1., .45 + .55 * abs(dot(normal, normalize(seen))), shading);
+  vec3 normal = normalize(cross(dFdx(seen), dFdy(seen)));  // of a line it may be no number
+  float light = shading > 0. ? .45 + .55 * abs(dot(normal, normalize(seen))) : 1.;
   shown = vec4(tint * light * opacity, opacity);
 }`;
 
@@ -71,8 +71,12 @@ const arc = (steps) => Array.from({length: steps + 1}, (_, i) => {
 const glyphShapes = {
   ball: turned(arc(10), 18),
   tube: turned([[0, 0], [1, 0], [1, 1], [0, 1]], 10),
+  disc: turned([[0, 0], [1, 0], [1, 1], [0, 1]], 48),
   arrow: turned([[0, 0], [1, 0], [1, 0.72], [2.6, 0.72], [0, 1]], 10),
 };
+
+const ballAt = (center, radius, colour) => ({
+  start: [center[0], center[1], center[2] - radius], end: [center[0], center[1], center[2] + radius], radius, colour});
 
 function edgesOf(triangles) {
   const seen = new Set(), edges = [];
@@ -85,7 +89,7 @@ function edgesOf(triangles) {
 }
 
 class Scene {
-  /// `triangles` of the surface. Throws where the browser has no WebGL 2.
+  /// `triangles` of the body's surface. Throws where the browser has no WebGL 2.
   constructor(canvas, triangles) {
     // Kept after drawing, so that the page prints what is shown.
     const gl = canvas.getContext('webgl2', {antialias: true, preserveDrawingBuffer: true});
@@ -93,14 +97,14 @@ class Scene {
     this.gl = gl;
     this.surfaceProgram = programOf(gl, surfaceVertexShader);
     this.glyphProgram = programOf(gl, glyphVertexShader);
-    this.triangles = this.indices(new Uint32Array(triangles));
-    this.edges = this.indices(edgesOf(triangles));
+    this.body = this.mesh(triangles);
     this.shapes = {};
     for (const [name, shape] of Object.entries(glyphShapes)) {
       this.shapes[name] = {points: this.buffer(shape.points), triangles: this.indices(shape.triangles)};
     }
     this.scratch = {};
     gl.enable(gl.DEPTH_TEST);
+    gl.depthFunc(gl.LEQUAL);  // a patch that is drawn on the surface shows
     gl.blendFunc(gl.ONE, gl.ONE_MINUS_SRC_ALPHA);
   }
   buffer(data) {
@@ -114,6 +118,10 @@ class Scene {
     gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, buffer);
     gl.bufferData(gl.ELEMENT_ARRAY_BUFFER, data, gl.STATIC_DRAW);
     return {buffer, count: data.length};
+  }
+  /// Triangles that can be drawn, once for all.
+  mesh(triangles) {
+    return {triangles: this.indices(new Uint32Array(triangles)), edges: this.indices(edgesOf(triangles))};
   }
   attribute(program, name, size, divisor, data, buffer) {
     const gl = this.gl, at = gl.getAttribLocation(program, name);
@@ -153,26 +161,33 @@ class Scene {
     gl.depthMask(true);
     gl.disable(gl.BLEND);
   }
-  /// points, colours: three numbers a vertex.
-  surface(points, colours, opacity) {
+  /// points: three numbers a vertex; colours: likewise, or one for all.
+  vertices(points, colours) {
+    const gl = this.gl, program = this.surfaceProgram, at = gl.getAttribLocation(program, 'colour');
+    this.attribute(program, 'position', 3, 0, points);
+    if (colours.length === 3) {
+      gl.disableVertexAttribArray(at);
+      gl.vertexAttrib3fv(at, colours);
+    } else {
+      this.attribute(program, 'colour', 3, 0, colours);
+    }
+  }
+  surface(points, colours, opacity, mesh = this.body) {
     const gl = this.gl;
     if (opacity <= 0 || points.length === 0) return;
     this.use(this.surfaceProgram, opacity, 1);
-    this.attribute(this.surfaceProgram, 'position', 3, 0, points);
-    this.attribute(this.surfaceProgram, 'colour', 3, 0, colours);
-    gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, this.triangles.buffer);
-    this.blended(opacity, () => gl.drawElements(gl.TRIANGLES, this.triangles.count, gl.UNSIGNED_INT, 0));
+    this.vertices(points, colours);
+    gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, mesh.triangles.buffer);
+    this.blended(opacity, () => gl.drawElements(gl.TRIANGLES, mesh.triangles.count, gl.UNSIGNED_INT, 0));
   }
-  wires(points, colour) {
-    const gl = this.gl, program = this.surfaceProgram, at = gl.getAttribLocation(program, 'colour');
-    this.use(program, 1, 0);
-    this.attribute(program, 'position', 3, 0, points);
-    gl.disableVertexAttribArray(at);
-    gl.vertexAttrib3fv(at, colour);
-    gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, this.edges.buffer);
-    gl.drawElements(gl.LINES, this.edges.count, gl.UNSIGNED_INT, 0);
+  wires(points, colour, mesh = this.body) {
+    const gl = this.gl;
+    this.use(this.surfaceProgram, 1, 0);
+    this.vertices(points, colour);
+    gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, mesh.edges.buffer);
+    gl.drawElements(gl.LINES, mesh.edges.count, gl.UNSIGNED_INT, 0);
   }
-  /// glyphs: [{start, end, radius, colour, colourEnd}]; shape: 'ball', 'tube' or 'arrow'.
+  /// glyphs: [{start, end, radius, colour, colourEnd}]; shape: 'ball', 'tube', 'disc' or 'arrow'.
   glyphs(shape, glyphs, opacity = 1) {
     if (glyphs.length === 0) return;
     const gl = this.gl, program = this.glyphProgram, {points, triangles} = this.shapes[shape];

@@ -62,3 +62,20 @@ function steer(canvas, camera, does) {
     does.draw();
   });
 }
+
+/// Tells what lies nearest to the pointer, of glyphs {at, text}, and gives it; null where nothing does.
+function tellNearest(box, camera, glyphs, canvas, x, y) {
+  let best = 14, found = null;  // pixels
+  for (const glyph of glyphs) {
+    const [px, py] = camera.project(glyph.at, canvas.clientWidth, canvas.clientHeight);
+    const distance = Math.hypot(px - x, py - y);
+    if (distance < best) { best = distance; found = glyph; }
+  }
+  box.hidden = !found;
+  if (found) {
+    box.textContent = found.text;
+    box.style.left = `${Math.min(x + 12, canvas.clientWidth - 150)}px`;
+    box.style.top = `${y + 12}px`;
+  }
+  return found;
+}

@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "mesh/text/atomic_file.h"
+#include "pipeline/case/json_file.h"
 #include "pipeline/output/damping.h"
 #include "pipeline/output/html/charts/charts.h"
 #include "pipeline/output/html/escape.h"
@@ -61,7 +62,8 @@ std::string mode_table(const json& modes) {
                             mode["ratio"]["informed"].get<bool>() ? " ●" : "", mode["played_ratio"].get<double>(),
                             100 * mode["share"].get<double>());
     }
-    return "<div class=\"wide\"><table><tr><th>model [Hz]</th><th>measured [Hz]</th><th>damping ratio</th>"
+    return "<div class=\"wide\" tabindex=\"0\"><table><tr><th>model [Hz]</th><th>measured [Hz]</th><th>damping "
+           "ratio</th>"
            "<th>as played</th><th>share of the motion</th></tr>" +
            rows + "</table></div>";
 }
@@ -70,7 +72,7 @@ std::string mode_table(const json& modes) {
 
 std::string damping_section(const std::filesystem::path& folder) {
     if (!std::filesystem::exists(folder / "damping.csv")) return {};
-    const json damping = read_json(folder / "identify.json")["damping"];
+    const json damping = json_of_file(folder / "identify.json")["damping"];
     std::string html = fmt::format(
         "<h2 id=\"damping\">Damping</h2><p>The slowest vibration that was seen has a damping ratio of {}; "
         "{}. "

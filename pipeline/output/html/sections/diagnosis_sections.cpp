@@ -9,8 +9,8 @@
 #include "mesh/text/words.h"
 #include "pipeline/output/html/charts/charts.h"
 #include "pipeline/output/html/escape.h"
-#include "pipeline/output/ladder.h"
-#include "pipeline/output/text/comparison.h"
+#include "pipeline/output/results/ladder.h"
+#include "pipeline/output/text/comparison/comparison.h"
 #include "pipeline/output/text/errors.h"
 #include "pipeline/output/text/words.h"
 
@@ -113,7 +113,7 @@ std::string ranking_table(const json& diagnosis) {
                 named_cell("normalised", c["whitened_rms"].is_number() ? number(c["whitened_rms"]) : "") +
                 "<td class=\"words\">" + candidate_words(c, is_claimed, baseline_rms, why_not) + "</td></tr>";
     }
-    return "<div class=\"wide\"><table class=\"cards\"><thead><tr><th>effect</th><th>ln Bayes "
+    return "<div class=\"wide\" tabindex=\"0\"><table class=\"cards\"><thead><tr><th>effect</th><th>ln Bayes "
            "factor</th><th>probability</th>"
            "<th>rms error</th><th>held out</th><th>normalised</th><th class=\"words\">outcome</th>"
            "</tr></thead><tbody>" +

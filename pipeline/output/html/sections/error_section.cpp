@@ -11,9 +11,9 @@
 #include "pipeline/output/html/charts/charts.h"
 #include "pipeline/output/html/charts/picture.h"
 #include "pipeline/output/html/escape.h"
-#include "pipeline/output/text/comparison.h"
+#include "pipeline/output/text/comparison/comparison.h"
+#include "pipeline/output/text/comparison/worst.h"
 #include "pipeline/output/text/words.h"
-#include "pipeline/output/text/worst.h"
 
 namespace palpate::pipeline {
 namespace {

@@ -7,6 +7,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
+#include "identify/numerics/summaries.h"
 #include "pipeline/output/html/charts/charts.h"
 #include "pipeline/output/html/charts/svg.h"
 #include "pipeline/output/html/escape.h"
@@ -27,7 +28,8 @@ std::pair<double, double> prior_interval(const identify::PosteriorRow& row, Prio
         return {row.prior_mean - reach, row.prior_mean + reach};
     }
     const double variance = std::log1p(std::pow(row.prior_sd / row.prior_mean, 2));  // of the logarithm
-    const double middle = std::log(row.prior_mean) - variance / 2, reach = 1.96 * std::sqrt(variance);
+    const double middle = std::log(row.prior_mean) - variance / 2;
+    const double reach = identify::sds_of_95_percent * std::sqrt(variance);
     return {std::exp(middle - reach), std::exp(middle + reach)};
 }
 

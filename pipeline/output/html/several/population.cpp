@@ -10,7 +10,7 @@
 #include "pipeline/output/html/escape.h"
 #include "pipeline/output/html/page/page_parts.h"
 #include "pipeline/output/html/page_frame.h"
-#include "pipeline/output/text/population.h"
+#include "pipeline/output/text/comparison/population.h"
 
 namespace palpate::pipeline {
 namespace {

@@ -12,7 +12,7 @@
 #include "pipeline/output/html/escape.h"
 #include "pipeline/output/html/page/page_parts.h"
 #include "pipeline/output/html/page_frame.h"
-#include "pipeline/output/text/runs.h"
+#include "pipeline/output/text/comparison/runs.h"
 
 namespace palpate::pipeline {
 namespace {
@@ -29,7 +29,9 @@ std::string heading(const json& runs, const char* first) {
     return row + "</tr>";
 }
 
-std::string in_table(const std::string& rows) { return "<div class=\"wide\"><table>" + rows + "</table></div>"; }
+std::string in_table(const std::string& rows) {
+    return "<div class=\"wide\" tabindex=\"0\"><table>" + rows + "</table></div>";
+}
 
 /// One column a run, one row a number: the best run is marked.
 std::string overview(const json& runs) {

@@ -10,8 +10,8 @@
 #include "mesh/formats/read_body.h"
 #include "mesh/formats/surface/surface_formats.h"
 #include "mesh/formats/yaml/yaml_fields.h"
-#include "pipeline/case/read_case.h"
-#include "pipeline/case/subject.h"
+#include "pipeline/case/settings/read_case.h"
+#include "pipeline/case/subject/subject.h"
 #include "pipeline/output/text/describe/describe_rig.h"
 #include "pipeline/output/text/words.h"
 

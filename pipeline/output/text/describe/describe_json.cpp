@@ -7,9 +7,9 @@
 #include <sstream>
 
 #include "mesh/errors.h"
-#include "mesh/text/atomic_file.h"
-#include "pipeline/output/ladder.h"
-#include "pipeline/output/text/comparison.h"
+#include "pipeline/case/json_file.h"
+#include "pipeline/output/results/ladder.h"
+#include "pipeline/output/text/comparison/comparison.h"
 #include "pipeline/output/text/describe/describe.h"
 #include "pipeline/output/text/diagnosis.h"
 #include "pipeline/output/text/words.h"
@@ -20,14 +20,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using nlohmann::json;
-
-json parsed(const fs::path& file) {
-    try {
-        return json::parse(mesh::read_text(file));
-    } catch (const json::exception& e) {
-        throw InvalidInput(fmt::format("{}: is no JSON: {}", file.string(), e.what()));
-    }
-}
 
 Description describe_model(const fs::path& file) {
     const skeleton::Model model = skeleton::read_model(file);
@@ -54,22 +46,24 @@ Description describe_model(const fs::path& file) {
 }
 
 Description describe_comparison(const fs::path& file) {
-    return {.kind = "a comparison of a model with measurements", .lines = {compare_in_words(parsed(file))}, .next = {}};
+    return {.kind = "a comparison of a model with measurements",
+            .lines = {compare_in_words(json_of_file(file))},
+            .next = {}};
 }
 
 Description describe_diagnosis(const fs::path& file) {
-    return {.kind = "a diagnosis: what a model lacks", .lines = {diagnosis_in_words(parsed(file))}, .next = {}};
+    return {.kind = "a diagnosis: what a model lacks", .lines = {diagnosis_in_words(json_of_file(file))}, .next = {}};
 }
 
 Description describe_ladder(const fs::path& file) {
     return {.kind = "a ladder: the error before and after effects were added",
-            .lines = {ladder_in_words(parsed(file))},
+            .lines = {ladder_in_words(json_of_file(file))},
             .next = "palpate info " + (file.parent_path() / "model.json").string()};
 }
 
 Description describe_quality(const fs::path& file) {
     Description description{.kind = "errors of skeletons over their number of spheres", .lines = {}, .next = {}};
-    for (const json& step : parsed(file)["rungs"]) {
+    for (const json& step : json_of_file(file)["rungs"]) {
         description.lines.push_back(fmt::format("{} spheres: {:.2f} % rms", step["spheres"].get<int>(),
                                                 100 * step["error"]["rms"].get<double>()));
     }
@@ -85,7 +79,7 @@ Description describe_json(const fs::path& file) {
         {"palpate-diagnosis/1", describe_diagnosis},
         {"palpate-ladder/1", describe_ladder},
         {"palpate-quality/1", describe_quality}};
-    const json content = parsed(file);
+    const json content = json_of_file(file);
     if (content.is_object() && content.value("program", "") == "palpate") return describe_run(file.parent_path());
     const std::string format = content.is_object() ? content.value("format", "") : "";
     const auto found = kinds.find(format);
@@ -103,17 +97,18 @@ namespace {
 
 /// What was found, as the run itself told it: of a model that effects were added to, the one that came of it.
 std::vector<std::string> findings_of_run(const fs::path& folder) {
-    const json ladder = fs::exists(folder / "improve/ladder.json") ? parsed(folder / "improve/ladder.json") : json();
+    const json ladder =
+        fs::exists(folder / "improve/ladder.json") ? json_of_file(folder / "improve/ladder.json") : json();
     const auto added = ladder.is_null() ? std::vector<std::string>{}
                                         : ladder["steps"].back()["effects"].get<std::vector<std::string>>();
     std::vector<std::string> lines;
     if (fs::exists(folder / "diagnose/diagnosis.json"))
-        lines.push_back(diagnosis_in_words(parsed(folder / "diagnose/diagnosis.json")));
+        lines.push_back(diagnosis_in_words(json_of_file(folder / "diagnose/diagnosis.json")));
     if (!added.empty() && fs::exists(folder / "improve/compare.json"))
-        lines.push_back(compare_in_words(parsed(folder / "improve/compare.json"),
+        lines.push_back(compare_in_words(json_of_file(folder / "improve/compare.json"),
                                          fmt::format("The model with {}, fitted to all probes,", listed(added))));
     else if (fs::exists(folder / "compare/compare.json"))
-        lines.push_back(compare_in_words(parsed(folder / "compare/compare.json")));
+        lines.push_back(compare_in_words(json_of_file(folder / "compare/compare.json")));
     if (!ladder.is_null()) lines.push_back(ladder_in_words(ladder));
     return lines;
 }
@@ -121,7 +116,7 @@ std::vector<std::string> findings_of_run(const fs::path& folder) {
 }  // namespace
 
 Description describe_run(const fs::path& folder) {
-    const json record = parsed(folder / "run.json");
+    const json record = json_of_file(folder / "run.json");
     Description description{.kind = "a run folder, made by palpate " + record.value("version", ""),
                             .lines = findings_of_run(folder),
                             .next = {}};

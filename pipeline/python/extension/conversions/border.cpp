@@ -3,7 +3,7 @@
 #include <utility>
 
 #include "mesh/system/child_process.h"
-#include "pipeline/cli/shell/system_limits.h"
+#include "pipeline/command_line/terminal/system_limits.h"
 
 namespace palpate::python {
 

@@ -125,8 +125,8 @@ TEST(DamagedBar, FollowsItsClosedFormInSmallStrain) {
     for (const MaterialLaw law : laws) {
         const PulledBar bar(law, rubber, {.damage = damage}, 1e-6);
         const auto strain = [&](const Eigen::VectorXd& u) { return bar.stretch(u).x() - 1; };
-        // Strains are up to 2e-3: the laws part by that share of them or some times it.
-        const auto expect = [&](double found, double theory) { EXPECT_NEAR(found, theory, 1e-2 * theory); };
+        // Strains are up to 2e-3: the laws part by 1.5 times that share of them.
+        const auto expect = [&](double found, double theory) { EXPECT_NEAR(found, theory, 3.2e-3 * theory); };
         const Eigen::VectorXd u = bar.at(peak);
         expect(strain(u), peak / rubber.young);
         const auto after = bar.body.state_after(u, bar.setting, nullptr);
@@ -177,7 +177,7 @@ TEST(DamagedBar, LosesWorkOverACycleAndOnlyOnce) {
         const double theory = damage.share * m * rubber.shear_modulus() *
                               (x * std::erf(x) + std::expm1(-x * x) * std::numbers::inv_sqrtpi);
         EXPECT_GT(lost, 1e-4);
-        EXPECT_NEAR(lost, theory, 0.01 * theory);  // trapezia
+        EXPECT_NEAR(lost, theory, 0.003 * theory);  // trapezia
         // Beyond the greatest strain so far it goes on along the first curve.
         const double further = bar.stretch(bar.at(1.3 * peak, state.get(), &u)).x();
         EXPECT_NEAR(further, elastic.stretch(elastic.at(1.3 * peak)).x(), 1e-6);

@@ -224,12 +224,11 @@ TEST(Plasticity, BeamBentFarFindsItsBalanceAndComesBackBent) {
     };
     const Eigen::VectorXd u = body.equilibrium(setting, f).u;
     EXPECT_LT(unbalanced(u, f, nullptr), 1e-8 * f.norm());  // Newton's tolerance
-    EXPECT_LT(beam.tip(u).z(), -10);                        // half its length
+    EXPECT_NEAR(beam.tip(u).z(), -15.1, 0.1);               // three quarters of its length; no theory knows it
     const auto state = body.state_after(u, setting, nullptr);
     const BodyEquilibrium released = body.equilibrium(setting, none, {}, &u, state.get());
     EXPECT_LT(unbalanced(released.u, none, state.get()), 1e-6 * f.norm());  // its tolerance is by residual stress
-    EXPECT_LT(beam.tip(released.u).z(), -2);
-    EXPECT_GT(beam.tip(released.u).z(), 0.9 * beam.tip(u).z());
+    EXPECT_NEAR(beam.tip(released.u).z(), -10.2, 0.1);                      // it springs back by a third
     // From a neighbour's answer it takes few steps.
     BodySetting stiffer = setting;
     stiffer.material.young *= 1.02;

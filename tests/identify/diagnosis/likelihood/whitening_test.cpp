@@ -75,7 +75,7 @@ TEST(Whitening, FindsTheMostProbableNuisances) {
 TEST(Whitening, SplitsChiSquaredIntoResidualAndStrain) {
     const Example e;
     const Whitening V = e.whitening();
-    const double chi2 = e.d.dot(V.apply(e.d).col(0));
+    const double chi2 = V.chi_square(e.d);
     EXPECT_NEAR(chi2, V.residual(e.d).squaredNorm() + V.nuisances(e.d).squaredNorm(), rounding * chi2);
 }
 
@@ -202,6 +202,21 @@ TEST(LeaveOut, WhitensErrorsOfTheRightModelToOne) {
     }
     // Each group's sum is chi^2 of 8; groups hang together, at most as if they were one: sd sqrt(2 * 5 / 8000).
     EXPECT_NEAR(sum / (draws * N), 1, 4 * std::sqrt(2.0 * 5 / (draws * N)));  // 4 sigma
+}
+
+TEST(OneSidedEvidence, IsThatOfHalfThePriorFarFromZero) {
+    // d ~ N(x, 1) with x ~ N(0, tau^2): ln BF = d^2 tau^2 / (1 + tau^2) / 2 - ln(1 + tau^2) / 2. With x > 0 alone it is
+    // that and ln(2 Phi(mean / sd)) of the posterior, by d = 5 sigmas ln 2 to 1e-6.
+    const double d = 5, tau = 10, share = tau * tau / (1 + tau * tau);
+    const double symmetric = 0.5 * d * d * share - 0.5 * std::log1p(tau * tau);
+    const double mean = share * d, sd = std::sqrt(share);
+    const double exact = symmetric + std::log(std::erfc(-mean / sd / std::sqrt(2.0)));
+    EXPECT_NEAR(one_sided_evidence(symmetric, mean), exact, 1e-6);
+}
+
+TEST(OneSidedEvidence, RefusesWhatIsBelowZero) {
+    EXPECT_LT(one_sided_evidence(1000, -1e-3), -40);
+    EXPECT_TRUE(std::isfinite(one_sided_evidence(1000, -1)));
 }
 
 }  // namespace

@@ -5,7 +5,7 @@
 
 #include "identify/diagnosis/diagnose.h"
 #include "identify/diagnosis/locate/reading_adjoints.h"
-#include "identify/diagnosis/locate/source_evidence.h"
+#include "identify/diagnosis/locate/sources/source_evidence.h"
 #include "identify/effects/catalogue.h"
 #include "tests/identify/diagnosed.h"
 

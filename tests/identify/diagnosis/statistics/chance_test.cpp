@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "identify/diagnosis/statistics/held_out.h"
+#include "identify/diagnosis/statistics/largest_noise.h"
 #include "identify/numerics/random.h"
 
 // How far right explanations err by chance.

@@ -1,5 +1,7 @@
 #include "identify/diagnosis/verdict/next_probe.h"
 
+#include "identify/diagnosis/verdict/further_loads.h"
+#include "identify/diagnosis/verdict/probe_kinds.h"
 #include "identify/diagnosis/verdict/trials.h"
 #include "tests/identify/diagnosed.h"
 
@@ -127,10 +129,25 @@ TEST_F(NextProbes, TrialsAreOfAllKinds) {
     for (const std::string kind : {"load", "repeat", "dwell", "unload", "orientation", "fiducials"}) {
         EXPECT_TRUE(std::ranges::any_of(all, [&](const CandidateProbe& t) { return t.probe.kind == kind; })) << kind;
     }
+    for (const CandidateProbe& trial : all) {
+        EXPECT_THAT(probe_kinds::all, testing::Contains(testing::StrEq(trial.probe.kind)));
+        EXPECT_FALSE(trial.asks.empty());
+    }
     // no load of one's own to go by
     const std::vector<CandidateProbe> bare =
         candidate_probes(*model_, make_problem(body_.set({LoadState{.probe = 0}}), sigma));
     for (const CandidateProbe& trial : bare) EXPECT_THAT(trial.probe.kind, testing::AnyOf("orientation", "fiducials"));
+}
+
+TEST(DwellTimes, AreADecadeLaterThanEverAndAtOnce) {
+    EXPECT_EQ(dwell_times(60).late, 600);
+    EXPECT_DOUBLE_EQ(dwell_times(60).soon, 0.6);
+    EXPECT_EQ(dwell_times(0).late, 100);
+}
+
+TEST(RoomOfATurnedBody, TurnsTheOtherWay) {
+    // What was up for the room is along y for a body that is turned by a right angle about x.
+    EXPECT_LT((room_of_turned(Vec3::UnitX(), 90) * Vec3::UnitZ() - Vec3::UnitY()).norm(), 1e-15);  // rounding
 }
 
 TEST_F(NextProbes, AGravityThatIsKnownTurnsWithTheRoom) {

@@ -7,8 +7,9 @@
 
 #include "identify/inference/priors/log_normal_prior.h"
 #include "identify/inference/problem/identify_options.h"
+#include "identify/inference/problem/inform.h"
 #include "identify/inference/problem/parameters.h"
-#include "identify/models/skeleton_body.h"
+#include "identify/models/skeleton/skeleton_body.h"
 #include "tests/identify/lattice.h"
 #include "tests/messages.h"
 

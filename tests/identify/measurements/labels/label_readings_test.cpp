@@ -55,8 +55,9 @@ TEST(LabelReadings, ReadingsFindTheirMarkers) {
         options.scope = Scope::uniform;
         options.particles = 50;
         const IdentifyResult result = identify(marked.model, bare, options);
-        EXPECT_NEAR(result.posterior[0].mean, 1.2, 0.012);  // the noise of 0.02 mm leaves some tenths of a per cent
-        EXPECT_NEAR(result.posterior[1].mean, 400, 8);
+        // the noise of 0.02 mm leaves some tenths of a per cent
+        EXPECT_NEAR(result.posterior[0].mean, 1.2, 0.003 * 1.2);
+        EXPECT_NEAR(result.posterior[1].mean, 400, 0.003 * 400);
         EXPECT_TRUE(std::ranges::any_of(
             result.notes, [](const std::string& note) { return note.find("were given the marker") != note.npos; }));
     }

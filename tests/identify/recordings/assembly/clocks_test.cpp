@@ -6,8 +6,10 @@
 #include <functional>
 
 #include "identify/numerics/random.h"
+#include "identify/recordings/assembly/clocks/common_column.h"
 #include "identify/recordings/assembly/clocks/lag.h"
 #include "identify/recordings/assembly/clocks/triggers.h"
+#include "tests/messages.h"
 
 namespace palpate::identify {
 namespace {
@@ -108,6 +110,28 @@ TEST(Signals, ThatRiseWithNoiseAreMadeMonotone) {
     EXPECT_NEAR((rising.values - noisy.values).mean(), 0, 1e-12);  // pooling keeps the sum
     const Signal falling = monotone({noisy.times, -noisy.values});
     EXPECT_NEAR((falling.values + rising.values).norm(), 0, 1e-12);
+}
+
+TEST(CommonColumn, TakesTimesToThoseAtWhichTheReferenceShowsTheSame) {
+    const Signal rising{Eigen::Vector3d(0, 1, 2), Eigen::Vector3d(0, 10, 20)},
+        falling{Eigen::Vector3d(0, 1, 2), Eigen::Vector3d(20, 10, 0)},
+        other{Eigen::Vector3d(100, 101, 102), Eigen::Vector3d(5, 10, 15)};
+    const Signal clock = clock_by_common("stroke", {"a.csv", rising}, {"b.csv", other});
+    EXPECT_LT((clock.times - other.times).norm(), 1e-12);
+    EXPECT_LT((clock.values - Eigen::Vector3d(0.5, 1, 1.5)).norm(), 1e-12);
+    const Signal back = clock_by_common("stroke", {"a.csv", falling}, {"b.csv", other});
+    EXPECT_LT((back.values - Eigen::Vector3d(1.5, 1, 0.5)).norm(), 1e-12);
+}
+
+TEST(CommonColumn, RefusesWhatTurnsBackOrHasNoValuesInCommon) {
+    const Signal rising{Eigen::Vector3d(0, 1, 2), Eigen::Vector3d(0, 10, 20)},
+        turning{Eigen::Vector3d(0, 1, 2), Eigen::Vector3d(0, 20, 0)},
+        beyond{Eigen::Vector3d(0, 1, 2), Eigen::Vector3d(30, 40, 50)};
+    const auto refusal = [&](const Signal& other) {
+        return message_of([&] { clock_by_common("stroke", {"a.csv", rising}, {"b.csv", other}); });
+    };
+    EXPECT_TRUE(says(refusal(turning), {"b.csv", "'stroke' goes up and down", "lag: auto"}));
+    EXPECT_TRUE(says(refusal(beyond), {"b.csv", "from 30 to 50 here and from 0 to 20 in a.csv", "nothing in common"}));
 }
 
 }  // namespace

@@ -54,11 +54,9 @@ TEST_F(RigOfABar, IsReadBackAsItWasWritten) {
 }
 
 TEST_F(RigOfABar, IsMergedByATrigger) {
-    std::string text = map();
-    text.replace(text.find("{lag: auto}"), 11, "{trigger: sync}");
-    text.replace(text.find("{file: points.csv,"), 18, "{file: points.csv, channels: [{column: sync, name: sync}],");
-    text.replace(text.find("name: load, unit: N}"), 20, "name: load, unit: N}, {column: \"3\", name: sync, unit: V}");
-    folder.write("map.yaml", text);
+    change({{"{lag: auto}", "{trigger: sync}"},
+            {"{file: points.csv,", "{file: points.csv, channels: [{column: sync, name: sync}],"},
+            {"name: load, unit: N}", "name: load, unit: N}, {column: \"3\", name: sync, unit: V}"}});
     const ImportedSet got = imported();
     ASSERT_EQ(got.report.clocks.size(), 1U);
     const ClockReport& clock = got.report.clocks[0];
@@ -69,11 +67,9 @@ TEST_F(RigOfABar, IsMergedByATrigger) {
 }
 
 TEST_F(RigOfABar, IsMergedByACommonColumn) {
-    std::string text = map();
-    text.replace(text.find("{lag: auto}"), 11, "{common: count}");
-    text.replace(text.find("{file: points.csv,"), 18, "{file: points.csv, channels: [{column: count, name: count}],");
-    text.replace(text.find("name: load, unit: N}"), 20, "name: load, unit: N}, {column: \"4\", name: count}");
-    folder.write("map.yaml", text);
+    change({{"{lag: auto}", "{common: count}"},
+            {"{file: points.csv,", "{file: points.csv, channels: [{column: count, name: count}],"},
+            {"name: load, unit: N}", "name: load, unit: N}, {column: \"4\", name: count}"}});
     const ImportedSet got = imported();
     EXPECT_TRUE(says(got.report.clocks[0].how, {"common column 'count'"}));
     EXPECT_NEAR(got.set.states[1].contacts[0].force.z(), -1, 0.005);

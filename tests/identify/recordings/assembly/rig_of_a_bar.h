@@ -4,7 +4,9 @@
 
 #include <Eigen/Geometry>
 #include <cmath>
+#include <initializer_list>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "identify/numerics/random.h"
@@ -117,12 +119,17 @@ struct RigOfABar : ::testing::Test {
         std::string message = message_of<InvalidInput>([&] { imported(); });
         return message.empty() ? "" : message;
     }
-    void change(const std::string& piece, const std::string& by) const {
+    /// Pieces of the map and what stands there instead.
+    void change(std::initializer_list<std::pair<std::string, std::string>> pieces) const {
         std::string text = map();
-        const auto at = text.find(piece);
-        ASSERT_NE(at, std::string::npos) << piece;
-        folder.write("map.yaml", text.replace(at, piece.size(), by));
+        for (const auto& [piece, by] : pieces) {
+            const auto at = text.find(piece);
+            ASSERT_NE(at, std::string::npos) << piece;
+            text.replace(at, piece.size(), by);
+        }
+        folder.write("map.yaml", text);
     }
+    void change(const std::string& piece, const std::string& by) const { change({{piece, by}}); }
     static std::string all_notes(const ImportedSet& imported) {
         std::string text;
         for (const std::string& note : imported.report.notes) text += note + "\n";

@@ -81,7 +81,7 @@ TEST_F(ReadCad, IgesIsSewnTogether) {
     const BodyFile body = read_body(folder / "block.igs");
     EXPECT_TRUE(says(body.notes[0], {"7 faces", "no solid", "sewn"}));
     const RepairResult repaired = repair_surface(body.surface);
-    EXPECT_NEAR(repaired.volume, bored_volume, 0.01 * bored_volume);
+    EXPECT_NEAR(repaired.volume, bored_volume, 251 * 0.0005 * 45.8);  // by chords, as above
     EXPECT_FALSE(repaired.wrapped);
 }
 

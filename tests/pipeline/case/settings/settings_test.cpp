@@ -10,13 +10,13 @@
 #include <set>
 
 #include "mesh/errors.h"
-#include "mesh/formats/surface/read_surface.h"
 #include "mesh/formats/surface/surface_formats.h"
 #include "mesh/text/atomic_file.h"
-#include "pipeline/case/read_case.h"
 #include "pipeline/case/settings/overrides.h"
+#include "pipeline/case/settings/read_case.h"
 #include "pipeline/command_line/commands.h"
 #include "tests/messages.h"
+#include "tests/pipeline/output/html/beam_run.h"
 #include "tests/places.h"
 #include "tests/temporary_folder.h"
 
@@ -95,13 +95,7 @@ TEST(Settings, MakeTheirStageRunAgain) {
 /// A run's cache, end to end: the links' kind was forgotten there once.
 TEST(Settings, OfLinksMakeTheSkeletonAnew) {
     const TemporaryFolder scratch;
-    mesh::write_surface(scratch / "beam.stl", mesh::make_box({0, 0, 0}, {100, 20, 20}, {10, 2, 2}));
-    commands::RunOptions options{.input = scratch / "beam.stl", .output = scratch / "run", .overrides = {}};
-    options.overrides.set("volume.edge_length", 12);
-    options.overrides.set("skeleton.spheres", 8);
-    options.overrides.set("probing.probes", 5);
-    options.overrides.set("identify.particles", 40);
-    options.overrides.set("identify.parameters", "uniform");
+    commands::RunOptions options = beam_options(scratch.path(), scratch / "run");
     commands::run(options, {});
     EXPECT_THAT(mesh::read_text(scratch / "run/identify/posterior.csv"), HasSubstr("shear"));
     options.overrides.set("skeleton.links", "burion2008");

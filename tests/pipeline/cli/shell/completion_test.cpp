@@ -8,10 +8,10 @@
 #include "mesh/formats/surface/surface_formats.h"
 #include "mesh/text/atomic_file.h"
 #include "mesh/topology/check_surface.h"
-#include "pipeline/case/read_case.h"
-#include "pipeline/command_line/command_tree.h"
+#include "pipeline/case/settings/read_case.h"
 #include "pipeline/command_line/commands.h"
-#include "pipeline/command_line/tree.h"
+#include "pipeline/command_line/tree/command_tree.h"
+#include "pipeline/command_line/tree/tree.h"
 #include "pipeline/output/text/describe/describe.h"
 #include "tests/temporary_folder.h"
 

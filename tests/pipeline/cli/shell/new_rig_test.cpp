@@ -159,7 +159,7 @@ TEST_F(RigSets, ATensileTestRuns) {
     EXPECT_EQ(outcome.json["diagnosis"]["verdict"], "adequate");
     // Its rounded numbers are those of a strip of 0.5 MPa; play and compliance of 2 % each blur it by some 3 %.
     EXPECT_NEAR(outcome.json["compare"]["baseline"]["young_mpa"].get<double>(), 0.5, 0.03);
-    EXPECT_LT(outcome.json["compare"]["error"]["relative"].get<double>(), 0.2);  // of a coarse skeleton
+    EXPECT_LT(outcome.json["compare"]["error"]["relative"].get<double>(), 0.11);  // a coarse skeleton's 9.5 %
     for (const char* file : {"identify/posterior.csv", "compare/markers.pvd", "improve/ladder.json", "report.html"})
         EXPECT_TRUE(std::filesystem::exists(scratch / "run" / file)) << file;
 }

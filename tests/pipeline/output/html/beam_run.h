@@ -8,8 +8,9 @@
 
 namespace palpate::pipeline {
 
-/// A small beam, probed six times.
+/// A small beam, written to a folder and probed six times.
 inline commands::RunOptions beam_options(const std::filesystem::path& from, const std::filesystem::path& to) {
+    mesh::write_surface(from / "beam.stl", mesh::make_box({0, 0, 0}, {100, 20, 20}, {10, 2, 2}));
     commands::RunOptions options{.input = from / "beam.stl", .output = to, .overrides = {}};
     options.overrides.set("volume.edge_length", 14);
     options.overrides.set("skeleton.spheres", 6);
@@ -23,7 +24,6 @@ inline commands::RunOptions beam_options(const std::filesystem::path& from, cons
 inline const std::filesystem::path& beam_run() {
     static const TemporaryFolder scratch;
     static const std::filesystem::path run = [] {
-        mesh::write_surface(scratch / "beam.stl", mesh::make_box({0, 0, 0}, {100, 20, 20}, {10, 2, 2}));
         commands::run(beam_options(scratch.path(), scratch / "run"), {});
         return scratch / "run";
     }();

@@ -156,57 +156,6 @@ TEST(ViewData, NamesStiffnessesInWords) {
                                                 "shear stiffness, 2nd plane", "bending stiffness, relative sd"}));
 }
 
-/// Tools as the set has them, their measured forces, and what compare.json says of the model's.
-TEST(ViewData, HoldsToolsWithTheirForces) {
-    const TemporaryFolder scratch;
-    std::filesystem::copy(beam_run(), scratch / "run", std::filesystem::copy_options::recursive);
-    const json before = data_of(scratch / "run");
-    const int probe = before["states"][0]["probe"];
-    const double time = before["states"][0]["time"];
-    EXPECT_TRUE(before["states"][0]["tools"].empty());
-    EXPECT_TRUE(before["steps"][0]["forces_rms"].is_null());
-
-    std::filesystem::create_directory(scratch / "set");
-    mesh::write_surface(scratch / "set/rest.stl", mesh::make_box({0, 0, 0}, {100, 20, 20}, {10, 2, 2}));
-    scratch.write("set/set.yaml",
-                  "format: palpate-measurements/2\n"
-                  "units: {length: mm, force: N, time: s, angle: rad}\n"
-                  "rest_surface: rest.stl\n"
-                  "supports: [{box: {min: [-1, -1, -1], max: [0.1, 21, 21]}}]\n"
-                  "tools:\n"
-                  "  - {name: ball, shape: {sphere: {radius: 4}}, at: [50, 10, 25], contact: frictionless}\n"
-                  "  - {name: punch, shape: {flat: {radius: 3}}, at: [70, 10, 20], contact: bonded}\n"
-                  "noise: {reaction: 0.01}\n");
-    const std::string state = fmt::format("{},{},", probe, time);
-    scratch.write("set/motions.csv", "probe,time,tool,x,y,z,rx,ry,rz\n" + state + "ball,0,0,-2,0,0,0\n" + state +
-                                         "punch,,0,0,0,1.5707963267948966,0\n");
-    scratch.write("set/reactions.csv", "probe,time,tool,fx,fy,fz\n" + state + "ball,,,-0.1\n");
-    scratch.write("run/case.yaml", "measurements: '" + (scratch / "set").string() + "'\n");
-
-    json compare = json::parse(mesh::read_text(scratch / "run/compare/compare.json"));
-    compare["error"]["reactions"]["rms_n"] = 0.02;
-    compare["tool_forces"] = json::array(
-        {{{"probe", probe}, {"time", time}, {"tool", "ball"}, {"modelled_n", {0.0, 0.0, -0.08}}, {"error_n", 0.02}}});
-    const json data = view_data(scratch / "run", json::object(), compare, nullptr, nullptr, {});
-    const json& tools = data["states"][0]["tools"];
-    ASSERT_EQ(tools.size(), 2U);
-    EXPECT_EQ(tools[0], (json{{"name", "ball"},
-                              {"at", {50.0, 10.0, 23.0}},
-                              {"radius", 4.0},
-                              {"axis", nullptr},
-                              {"measured", {nullptr, nullptr, -0.1}}}));
-    EXPECT_TRUE(tools[1]["at"].is_null()) << "free along x";
-    EXPECT_NEAR(tools[1]["axis"][0].get<double>(), -1, 1e-12) << "turned from -z about y, to round-off";
-    EXPECT_TRUE(tools[1]["measured"].is_null());
-    EXPECT_EQ(data["steps"][0]["states"][0]["tool_forces"],
-              json::array({{{"name", "ball"}, {"modelled", {0.0, 0.0, -0.08}}}}));
-    EXPECT_EQ(data["steps"][0]["forces_rms"], 0.02);
-
-    scratch.write("run/case.yaml", "measurements: '" + (scratch / "gone").string() + "'\n");
-    EXPECT_TRUE(
-        view_data(scratch / "run", json::object(), compare, nullptr, nullptr, {})["states"][0]["tools"].empty());
-}
-
 /// Where not all states fit, those with the largest errors are kept.
 TEST(ViewData, KeepsTheWorstStatesWithinItsBudget) {
     const json whole = data_of(beam_run()), small = data_of(beam_run(), 1);

@@ -1,4 +1,4 @@
-#include "pipeline/output/text/printed_units.h"
+#include "pipeline/command_line/terminal/printed_units.h"
 
 #include <gtest/gtest.h>
 

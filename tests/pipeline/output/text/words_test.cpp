@@ -3,12 +3,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "pipeline/output/ladder.h"
-#include "pipeline/output/text/comparison.h"
+#include "pipeline/output/results/ladder.h"
+#include "pipeline/output/text/comparison/comparison.h"
+#include "pipeline/output/text/comparison/worst.h"
 #include "pipeline/output/text/diagnosis.h"
 #include "pipeline/output/text/errors.h"
 #include "pipeline/output/text/words.h"
-#include "pipeline/output/text/worst.h"
 
 namespace palpate::pipeline {
 namespace {

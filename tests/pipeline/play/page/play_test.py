@@ -1,8 +1,7 @@
 """The model in the hand, in a browser: a drag by the mouse, forces that balance, the shape that `palpate simulate` finds,
 switches that change the error as the ladder says, keys, links, phones; and nothing is logged as an error.
 
-play_test.py PALPATE SOURCE_FOLDER [PICTURES]; ends with 77 (skipped) where there is no Chromium. Screenshots before, during
-and after a drag go to PICTURES.
+play_test.py PALPATE SOURCE_FOLDER [PICTURES]: see browser.py.
 """
 import base64
 import json
@@ -13,30 +12,12 @@ import struct
 import subprocess
 import sys
 import tempfile
-import time
 import urllib.error
 import urllib.request
 import zlib
 
 sys.path.insert(0, str(pathlib.Path(__file__).parents[1]))
-from browser import Browser, chromium  # noqa: E402
-
-if not chromium:
-    print("skipped: there is no Chromium")
-    sys.exit(77)
-
-program = sys.argv[1]
-pictures = pathlib.Path(sys.argv[3]) if len(sys.argv) > 3 else None
-failures = []
-
-
-def expect(holds, what):
-    if not holds:
-        failures.append(what)
-
-
-def palpate(*arguments):
-    return subprocess.run([program, *map(str, arguments), "-q"], check=True, capture_output=True, text=True).stdout
+from browser import Browser, end, expect, failures, palpate, program  # noqa: E402
 
 
 class PlayerBrowser(Browser):
@@ -48,7 +29,8 @@ class PlayerBrowser(Browser):
 
     def still(self):
         """Waits until the body stands still."""
-        self.run("p.quiet = 0; for (let i = 0; i < 800 && p.moving; ++i) await new Promise((r) => setTimeout(r, 25));")
+        self.run("p.wake();")
+        self.wait("!p.moving")
 
 
 def displacement_in(file):
@@ -88,7 +70,7 @@ def drag(browser, name, by):
     browser.mouse("mousePressed", x, y)
     for i in range(1, 13):
         browser.mouse("mouseMoved", x + by[0] * i / 12, y + by[1] * i / 12)
-        time.sleep(0.03)
+        browser.frame()
     browser.still()
     browser.picture(f"{name}-during")
     return x + by[0], y + by[1]
@@ -109,14 +91,8 @@ def shape_as_simulated(browser, model, scratch):
 
 
 def wait_for_verdict(browser):
-    browser.run("for (let i = 0; i < 400 && !p.verdict.whole && !p.verdict.trouble; ++i) await new Promise((r) => setTimeout(r, 25));")
+    browser.wait("p.verdict.whole || p.verdict.trouble")
     return browser.run("return {rms: p.verdict.rms, all: p.verdict.allRms, heldOut: p.verdict.heldOutRms, trouble: p.verdict.trouble};")
-
-
-def lacks_names(browser):
-    return browser.run("""
-      return [...document.querySelectorAll('select, input, button')].filter((c) => c.offsetParent !== null &&
-        !(c.labels?.length || c.getAttribute('aria-label') || c.textContent)).map((c) => c.id);""")
 
 
 def check_model(browser, run, page, scratch):
@@ -164,8 +140,7 @@ def check_model(browser, run, page, scratch):
     browser.still()
     strength = browser.run("return p.feel()?.strength ?? 0;")
     expect(strength > 1e-6, "keys do not pull")
-    browser.run("for (let i = 0; i < 400 && !p.at('spoken').textContent.includes('newton'); ++i) await new Promise((r) => setTimeout(r, 25));")
-    expect("newton" in browser.run("return p.at('spoken').textContent;"), "the force is not spoken")
+    browser.wait("p.at('spoken').textContent.includes('newton')")
     link = browser.run("return p.link();")
     browser.key("Escape")
     expect(browser.run("return p.touches.length") == 0, "Escape does not let go")
@@ -176,7 +151,8 @@ def check_model(browser, run, page, scratch):
     after = browser.run("p.settle(); return [p.camera.distance, p.numerics.at(p.hand.touch).force];")
     expect(abs(before[0] - after[0]) < 1e-3 * before[0], "the link loses the view")
     expect(abs(sum(f * f for f in after[1]) ** 0.5 - strength) < 0.05 * strength + 1e-9, "the link loses the pull")
-    expect(not lacks_names(browser), f"controls without a name: {lacks_names(browser)}")
+    unnamed = browser.unnamed_controls()
+    expect(not unnamed, f"controls without a name: {unnamed}")
 
 
 def check_ball(browser, page):
@@ -294,9 +270,7 @@ def check_fingers(browser):
     browser.touch("touchStart", (x, y))
     for i in range(1, 9):
         browser.touch("touchMove", (x - 4 * i, y + 5 * i))
-        time.sleep(0.03)
-    force = browser.run("return p.hand && Math.hypot(...p.numerics.at(p.hand.touch).force);")
-    expect(force and force > 0, f"a finger pulls with {force} N")
+    browser.wait("p.hand && length3(p.numerics.at(p.hand.touch).force) > 0")
     expect(browser.run("return [...document.querySelectorAll('#readout b')].every((b) => b.scrollWidth <= b.clientWidth);"),
            "a number does not fit its frame")
     browser.picture("phone-pulled")
@@ -364,7 +338,7 @@ with tempfile.TemporaryDirectory() as folder:
     palpate("run", at / "slow", "-o", at / "crept", "--parameters", "uniform", "--particles", 40, "--edge-length", 10)
     palpate("play", at / "crept", "-o", at / "crept.html")
     check_server(at / "measured")
-    browser = PlayerBrowser(at / "profile", "player", pictures)
+    browser = PlayerBrowser(at / "profile", "player")
     try:
         check_model(browser, at / "measured", page, at)
         check_ball(browser, page)
@@ -377,6 +351,4 @@ with tempfile.TemporaryDirectory() as folder:
     finally:
         browser.close()
 
-for failure in failures:
-    print("FAILED", failure)
-sys.exit(1 if failures else 0)
+end()

@@ -1,34 +1,16 @@
 """A body that is set up by mouse: what is clicked is what the files say, palpate reads them, and nothing is logged as an
 error.
 
-pick_test.py PALPATE SOURCE_FOLDER [PICTURES]; ends with 77 (skipped) where there is no Chromium.
+pick_test.py PALPATE SOURCE_FOLDER [PICTURES]: see browser.py.
 """
 import csv
 import json
 import pathlib
-import subprocess
 import sys
 import tempfile
 
 sys.path.insert(0, str(pathlib.Path(__file__).parents[1]))
-from browser import Browser, chromium  # noqa: E402
-
-if not chromium:
-    print("skipped: there is no Chromium")
-    sys.exit(77)
-
-program = sys.argv[1]
-pictures = pathlib.Path(sys.argv[3]) if len(sys.argv) > 3 else None
-failures = []
-
-
-def expect(holds, what):
-    if not holds:
-        failures.append(what)
-
-
-def palpate(*arguments):
-    return subprocess.run([program, *map(str, arguments), "-q"], check=True, capture_output=True, text=True).stdout
+from browser import Browser, end, expect, failures, palpate  # noqa: E402
 
 
 def choose(browser, mode):
@@ -165,7 +147,7 @@ with tempfile.TemporaryDirectory() as folder:
     palpate("new", at / "case")
     body = at / "case/body.stl"
     palpate("probe", at / "case/case.yaml", "-o", at / "measured", "--probes", 3, "--edge-length", 10)
-    browser = Browser(at / "profile", "picker", pictures)
+    browser = Browser(at / "profile", "picker")
     try:
         check_new_body(browser, body, at)
         check_set(browser, at / "measured", at)
@@ -173,13 +155,10 @@ with tempfile.TemporaryDirectory() as folder:
         width = browser.run("return document.documentElement.scrollWidth;")
         expect(width <= 390, f"the page is {width} px wide in 390")
         browser.picture("pick-phone")
-        unnamed = browser.run("""return [...document.querySelectorAll('select, input, button, textarea')].filter((c) =>
-          c.offsetParent !== null && !(c.labels?.length || c.getAttribute('aria-label') || c.textContent)).map((c) => c.id);""")
+        unnamed = browser.unnamed_controls()
         expect(not unnamed, f"controls without a name: {unnamed}")
         failures.extend(f"the console says {error}" for error in browser.errors())
     finally:
         browser.close()
 
-for failure in failures:
-    print("FAILED", failure)
-sys.exit(1 if failures else 0)
+end()

@@ -7,10 +7,8 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <chrono>
 #include <cstdlib>
 #include <random>
-#include <thread>
 
 #include "mesh/formats/surface/read_surface.h"
 #include "mesh/text/atomic_file.h"
@@ -19,12 +17,12 @@
 #include "tests/messages.h"
 #include "tests/places.h"
 #include "tests/temporary_folder.h"
+#include "tests/wait.h"
 
 namespace palpate::pipeline {
 namespace {
 
 namespace fs = std::filesystem;
-using std::chrono::milliseconds;
 
 /// What the system grants a process: a resource of `setrlimit` and how much of it.
 struct Grant {
@@ -91,8 +89,8 @@ bool has_ended(pid_t child) {
 
 /// Waits until the child has added so many files to the folder, or has ended.
 void wait_for_files(pid_t child, const fs::path& folder, std::size_t files) {
-    for (const std::size_t before = files_now(folder); !has_ended(child) && files_now(folder) < before + files;)
-        std::this_thread::sleep_for(milliseconds(1));
+    const std::size_t before = files_now(folder);
+    EXPECT_TRUE(comes_true([&] { return has_ended(child) || files_now(folder) >= before + files; }));
 }
 
 TEST(Resume, AKilledRunEndsAsOneThatRanThrough) {

@@ -146,7 +146,8 @@ TEST(PlacementOfSpheres, ChainsAreSymmetric) {
     for (const char* name : {"bar", "tee", "wye"}) {
         const Shape body = shape(name);
         const Placed placed = place(name);
-        for (int k : {1, 2}) EXPECT_LT(asymmetry(placed.model, body.mirrors.col(k), Vec3::Zero()), 0.33) << name;
+        // 0.14 is the worst: cells are not mirrored
+        for (int k : {1, 2}) EXPECT_LT(asymmetry(placed.model, body.mirrors.col(k), Vec3::Zero()), 0.15) << name;
     }
 }
 

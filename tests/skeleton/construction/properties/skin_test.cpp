@@ -66,8 +66,8 @@ TEST(MakeSkin, GetsThinnerWhereItIsPulled) {
     for (Eigen::Index v = 0; v < moved.rows(); ++v) {
         const Vec3 X = pulled.surface.vertices.row(v);
         if (std::abs(X.x() - 80) > 25 || X.y() < 15.9) continue;
-        EXPECT_NEAR(moved(v, 1), -inward, 0.15 * inward);
-        EXPECT_NEAR(moved(v, 0), strain * X.x(), 0.05 * strain * 160);
+        EXPECT_NEAR(moved(v, 1), -inward, 0.012 * inward);  // shares of spheres beside it take 1 %
+        EXPECT_NEAR(moved(v, 0), strain * X.x(), 1e-3 * strain * 160);
         ++seen;
     }
     EXPECT_GT(seen, 20);
@@ -95,7 +95,7 @@ TEST(MakeSkin, TwistsWithoutPinching) {
     for (Eigen::Index v = 0; v < twisted.rows(); ++v) {
         const Vec3 X = bar_limb().surface.vertices.row(v);
         const double before = std::hypot(X.y() - 8, X.z() - 8), after = twisted.row(v).tail<2>().norm();
-        EXPECT_NEAR(after, before, 0.05 * 16) << X.transpose();
+        EXPECT_NEAR(after, before, 0.05) << X.transpose();  // of a half thickness of 8 mm
     }
 }
 

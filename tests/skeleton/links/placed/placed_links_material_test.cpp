@@ -171,7 +171,7 @@ TEST(StiffeningBar, IsThePlainOneInSmallStrain) {
         const Load part = force_at(bar, 3, share * Vec3(1, 0, 0));
         return (equilibrium_of(bar, effects, part).step - equilibrium_of(bar, {}, part).step).norm();
     };
-    EXPECT_NEAR(difference(0.2) / difference(0.1), 8, 0.5);  // of third order
+    EXPECT_NEAR(difference(0.2) / difference(0.1), 8, 0.08);  // of third order; the fifth takes 0.06
 }
 
 TEST(StiffeningBar, StiffensInBending) {

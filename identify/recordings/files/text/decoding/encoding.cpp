@@ -79,7 +79,7 @@ std::string with_own_line_ends(const std::string& text) {
 
 /// Of UTF-16 without a mark: text of the West has a zero in every other byte. 0: it is none.
 char utf16_order(std::string_view bytes) {
-    constexpr std::size_t looked_at = 512;
+    constexpr std::size_t looked_at = 512;  // bytes of the head: some lines
     std::array<std::size_t, 2> zeros{};
     const std::size_t size = std::min(bytes.size(), looked_at) / 2 * 2;
     for (std::size_t i = 0; i < size; ++i)
@@ -94,7 +94,7 @@ char utf16_order(std::string_view bytes) {
 
 /// Bytes that no text has, but binary files soon.
 bool is_binary(std::string_view bytes) {
-    constexpr std::size_t looked_at = 4096;
+    constexpr std::size_t looked_at = 4096;  // bytes of the head: a choice
     return bytes.substr(0, looked_at).find('\0') != std::string_view::npos;
 }
 

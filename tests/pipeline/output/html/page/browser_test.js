@@ -2,21 +2,23 @@
 (async () => {
   const failures = [], expect = (holds, what) => { if (!holds) failures.push(what); };
   const at = (id) => document.getElementById(id);
-  const settled = () => new Promise((resolve) => setTimeout(resolve, 400));  // longer than a transition
-  // The page draws at once before it is printed, and after: no waiting for frames, which headless browsers skip.
+  // The page draws at once before it is printed, and after: no waiting for frames, which headless browsers skip; nor for
+  // transitions, which a reader who wants little motion does not get.
   const drawn = () => { for (const when of ['beforeprint', 'afterprint']) dispatchEvent(new Event(when)); };
   const canvas = at('canvas'), picture = () => { drawn(); return canvas.toDataURL(); };
-  const choose = async (id, value, event) => {
+  const choose = (id, value, event) => {
     at(id)[at(id).type === 'checkbox' ? 'checked' : 'value'] = value;
     at(id).dispatchEvent(new Event(event, {bubbles: true}));
-    await settled(); drawn();
+    drawn();
   };
-  const press = async (key, more = {}) => {
+  const press = (key, more = {}) => {
     canvas.dispatchEvent(new KeyboardEvent('keydown', {key, bubbles: true, ...more}));
-    await settled(); drawn();
+    drawn();
   };
   try {
-    await settled(); drawn();
+    if (document.readyState !== 'complete') await new Promise((resolve) => addEventListener('load', resolve));
+    expect(matchMedia('(prefers-reduced-motion: reduce)').matches, 'the browser is not asked for little motion');
+    drawn();
     // something is drawn: neither white nor of one colour
     const flat = document.createElement('canvas');
     flat.width = canvas.width; flat.height = canvas.height;
@@ -38,53 +40,59 @@
     const keys = [...at('key').children].filter((item) => !item.hidden).map((item) => getComputedStyle(item.firstChild).backgroundColor);
     expect(keys.length > 1 && new Set(keys).size === keys.length, `the key has the colours ${keys.join(', ')}`);
 
+    // a tool that is moved is said to be drawn, or not to be
+    if (isOffered('show-tools')) {
+      const key = at('key-tool').textContent;
+      expect(/grips/.test(key) && /not drawn.*scan/.test(key), `the key says of tools: ${key}`);
+    }
+
     // every control changes the picture or says why not
     let before = picture();
     const changes = (what) => { const now = picture(); expect(now !== before, `${what} changes nothing`); before = now; };
     const other = at('state').value === '0' ? '1' : String(+at('state').value - 1), told = at('told').textContent;
-    await choose('state', other, 'change'); changes('another probe');
+    choose('state', other, 'change'); changes('another probe');
     expect(at('told').textContent !== told, 'the words stay the same for another probe');
-    for (let i = 1; i < at('colour').options.length; ++i) { await choose('colour', String(i), 'input'); }
+    for (let i = 1; i < at('colour').options.length; ++i) { choose('colour', String(i), 'input'); }
     changes('colouring by stiffness');
-    await choose('colour', '0', 'input'); before = picture();
+    choose('colour', '0', 'input'); before = picture();
     expect(at('what').textContent.includes('['), 'the legend has no unit');
-    for (const id of ['show-spheres', 'show-links', 'show-markers', 'show-tools'].filter(isOffered)) { await choose(id, false, 'input'); changes(id); }
-    await choose('opacity', '1', 'input'); changes('the opacity of the skin');
-    await choose('magnify', '3', 'input');
+    for (const id of ['show-spheres', 'show-links', 'show-markers', 'show-tools'].filter(isOffered)) { choose(id, false, 'input'); changes(id); }
+    choose('opacity', '1', 'input'); changes('the opacity of the skin');
+    choose('magnify', '3', 'input');
     if (last > 0) {
-      await choose('step', '0', 'change');
+      choose('step', '0', 'change');
       expect(at('told').textContent.includes('Model: nothing added'), 'the step is not told');
       expect(at('found').textContent.startsWith('Not in this model: '), 'what the step lacks is not told');
-      await choose('opacity', '0.35', 'input'); before = picture();
+      choose('opacity', '0.35', 'input'); before = picture();
       const isDrawn = /Gravity/.test(at('found').textContent);  // what has no place is said alone
-      await choose('show-findings', false, 'input');
+      choose('show-findings', false, 'input');
       expect(at('found').hidden, 'what was found cannot be hidden');
       if (isDrawn) changes('what was found, in the first step,');
       dispatchEvent(new Event('beforeprint'));
       expect(at('told').textContent.includes('Model: with'), 'another step than the last is printed');
       drawn();
       expect(at('told').textContent.includes('Model: nothing added'), 'printing changes the step');
-      await choose('step', String(last), 'change');
+      choose('step', String(last), 'change');
       expect(at('told').textContent.includes('Model: with'), 'the step is not told');
     }
     before = picture();
-    await press('ArrowLeft'); changes('an arrow key');
-    await press('+'); changes('plus');
-    await press('ArrowUp', {shiftKey: true}); changes('shift and an arrow key');
+    press('ArrowLeft'); changes('an arrow key');
+    press('+'); changes('plus');
+    press('ArrowUp', {shiftKey: true}); changes('shift and an arrow key');
     const slider = at('frame').value;
-    await press('.'); expect(at('frame').value !== slider, 'a full stop goes to no other state');
-    await press(' '); expect(at('play').getAttribute('aria-pressed') === 'true', 'the space bar does not play');
-    await press(' ');
+    press('.'); expect(at('frame').value !== slider, 'a full stop goes to no other state');
+    press(' '); expect(at('play').getAttribute('aria-pressed') === 'true', 'the space bar does not play');
+    press(' ');
     // how a marker moves: along another axis the curve is another one, and a click shows a state
     const plot = at('series-plot'), curve = () => plot.querySelector('polyline').getAttribute('points');
     if (!at('series').hidden) {
       expect(plot.querySelectorAll('polyline').length === at('step').options.length, 'not each model has a curve');
       const inAll = curve();
-      await choose('series-axis', '2', 'change');
+      choose('series-axis', '2', 'change');
       expect(curve() !== inAll, 'the curve is the same along z as in magnitude');
       const shown = at('state').value, dots = plot.querySelectorAll('circle');
       dots[dots.length - 1 === +shown ? 0 : dots.length - 1].dispatchEvent(new MouseEvent('click', {bubbles: true}));
-      await settled(); drawn();
+      drawn();
       expect(at('state').value !== shown, 'a click on a measured point shows no other state');
       expect(/measured .* mm/.test(at('series-told').textContent), 'the motion is not told');
     }

@@ -3,11 +3,13 @@
 browser_test.py PALPATE SOURCE_FOLDER [PICTURES]; ends with 77 (skipped) where there is no Chromium. Screenshots at laptop
 and phone widths go to PICTURES.
 """
+import base64
 import json
 import os
 import pathlib
 import re
 import shutil
+import struct
 import subprocess
 import sys
 import tempfile
@@ -28,7 +30,7 @@ def palpate(*arguments):
 
 def browse(page, width, height, profile, *what):
     command = [chromium, "--headless=new", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--hide-scrollbars",
-               "--enable-logging=stderr", f"--user-data-dir={profile}", f"--window-size={width},{height}",
+               "--enable-logging=stderr", "--force-prefers-reduced-motion", f"--user-data-dir={profile}", f"--window-size={width},{height}",
                "--host-resolver-rules=MAP * ~NOTFOUND", *what, page.as_uri()]
     if os.geteuid() == 0:
         command.insert(1, "--no-sandbox")  # Chromium's sandbox does not start as root
@@ -55,18 +57,34 @@ def check(report, scratch, name):
             browse(report.resolve(), width, 5200 if width > 1000 else 9000, profile, "--virtual-time-budget=4000", f"--screenshot={picture}")
 
 
+def packed(kind, numbers):
+    return {"type": kind, "data": base64.b64encode(struct.pack(f"<{len(numbers)}{'f' if kind == 'f32' else 'i'}", *numbers)).decode()}
+
+
 def forces_alone(report, page):
-    """A report as of a set in which a ball and a punch were pressed in and their forces read, but no marker."""
+    """A report as of a set in which a ball, a punch and a mesh were pressed in, a grip was moved, and their forces read,
+    but no marker."""
     text = report.read_text()
     at, end = re.search(r'<script id="run-data" type="application/json">(.*?)</script>', text, re.S).span(1)
     data = json.loads(text[at:end])
     nothing = {"type": "f32", "data": ""}
+    corners = [50, 10, 25, 45, 5, 35, 55, 5, 35, 50, 15, 35]
+    plain = {"surface": None, "patch": None, "triangles_left_out": 0}
+    data["tools"] = [{**plain, "name": "ball", "origin": [50, 10, 22]}, {**plain, "name": "punch", "origin": [80, 10, 19]},
+                     {**plain, "name": "wedge", "origin": [50, 10, 30],
+                      "surface": {"points": packed("f32", corners), "triangles": packed("i32", [0, 2, 1, 0, 3, 2, 0, 1, 3, 1, 2, 3])}},
+                     {**plain, "name": "grip", "origin": [5, 10, 10], "patch": {**data["surface"]["triangles"]}},
+                     {**plain, "name": "scan", "origin": [0, 0, 0], "triangles_left_out": 90000}]
+    still = {"turned": [0, 0, 0], "radius": None, "axis": None, "measured": None}
     for number, state in enumerate(data["states"]):
         force = [0, 0, -0.1 * number]
         state["loads"] = []
-        state["tools"] = [{"name": "ball", "at": [50, 10, 22], "radius": 5, "axis": None, "measured": force},
-                          {"name": "punch", "at": [80, 10, 19], "radius": 4, "axis": [0, 0, -1], "measured": None},
-                          {"name": "grip", "at": None, "radius": None, "axis": None, "measured": [None, 0.01, None]}]
+        state["tools"] = [{**still, "name": "ball", "at": [50, 10, 22], "moved": [0, 0, 0], "radius": 5, "measured": force},
+                          {**still, "name": "punch", "at": [80, 10, 19], "moved": [0, 0, 0], "radius": 4, "axis": [0, 0, -1]},
+                          {**still, "name": "wedge", "at": [50, 10, 30 - number], "moved": [0, 0, -number], "turned": [0, 0.1 * number, 0],
+                           "measured": [0, 0, -0.2]},
+                          {**still, "name": "grip", "at": None, "moved": [None, 1, 0], "measured": [None, 0.01, None]},
+                          {**still, "name": "scan", "at": [0, 0, 0], "moved": [0, 0, 0]}]
         for step in data["steps"]:
             step["forces_rms"] = 0.02
             answer = step["states"][number]

@@ -4,11 +4,11 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
-#include "mesh/formats/surface/read_surface.h"
 #include "mesh/text/atomic_file.h"
+#include "pipeline/case/json_file.h"
 #include "pipeline/command_line/commands.h"
-#include "pipeline/output/json/runs.h"
-#include "pipeline/output/text/runs.h"
+#include "pipeline/output/text/comparison/runs.h"
+#include "pipeline/run/several/runs.h"
 #include "tests/messages.h"
 #include "tests/pipeline/output/html/beam_run.h"
 #include "tests/temporary_folder.h"
@@ -23,7 +23,6 @@ using ::testing::Not;
 
 TEST(RunsSideBySide, TellWhatDiffersAndWhichIsBest) {
     const TemporaryFolder scratch;
-    mesh::write_surface(scratch / "beam.stl", mesh::make_box({0, 0, 0}, {100, 20, 20}, {10, 2, 2}));
     commands::RunOptions finer = beam_options(scratch.path(), scratch / "finer");
     finer.overrides.set("skeleton.spheres", 9);
     commands::run(finer, {});
@@ -37,8 +36,8 @@ TEST(RunsSideBySide, TellWhatDiffersAndWhichIsBest) {
     for (const json& one : told["settings"]) settings[one["setting"]] = one["values"];
     EXPECT_EQ(settings.at("skeleton.spheres"), (std::vector<std::string>{"6", "9"}));
     EXPECT_FALSE(settings.contains("probing.probes"));
-    const json first = read_json(beam_run() / "compare/compare.json"),
-               second = read_json(scratch / "finer/compare/compare.json");
+    const json first = json_of_file(beam_run() / "compare/compare.json"),
+               second = json_of_file(scratch / "finer/compare/compare.json");
     ASSERT_EQ(told["states"].size(), first["probes"].size());
     for (std::size_t s = 0; s < told["states"].size(); ++s)
         EXPECT_EQ(told["states"][s]["rms_mm"], (json{first["probes"][s]["rms_mm"], second["probes"][s]["rms_mm"]}));
