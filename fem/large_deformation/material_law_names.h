@@ -36,6 +36,7 @@ inline std::optional<MaterialLaw> material_law(std::string_view name) {
 /// Names in files, by the laws' numbers.
 inline std::vector<std::string> material_law_choices() {
     std::vector<std::string> names;
+    names.reserve(material_law_names.size());
     for (const MaterialLawName& each : material_law_names) names.emplace_back(each.in_files);
     return names;
 }

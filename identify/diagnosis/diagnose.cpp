@@ -176,7 +176,7 @@ private:
     /// is softer or stiffer, alike in all states, than a force or a fault of the readings.
     void seek_last_resorts() {
         const bool has_any = std::ranges::any_of(effects_, [](const auto& effect) { return effect->is_last_resort(); });
-        if (!has_any || leaves_only_noise(leading(), options_)) return;
+        if (!has_any || leaves_only_noise(baseline(), options_) || search_->has_claim()) return;
         const auto left = locate_missing(model_, result_.problem, leading(), options_.refit.threads);
         if (!left || left->kind != SourceKind::stiffness) return;
         const SourceTerm& likeliest = left->likeliest();

@@ -145,6 +145,12 @@ public:
     virtual bool is_last_resort() const { return false; }
     /// Is that number fitted? Others only tell what it is of, as where something lies.
     virtual bool is_fitted(Eigen::Index /*number*/) const { return true; }
+    /// d ln stiffness of the body's pieces / d its numbers (pieces x numbers), where that is all that they alter: the
+    /// forces of all then take one pass over the body. None: they are differences of two passes for each number.
+    virtual std::optional<Eigen::MatrixXd> piece_slopes(const BodyModel& /*model*/,
+                                                        const Eigen::VectorXd& /*values*/) const {
+        return std::nullopt;
+    }
     /// How many of its first `numbers` are.
     Eigen::Index count_fitted(Eigen::Index numbers) const {
         Eigen::Index count = 0;

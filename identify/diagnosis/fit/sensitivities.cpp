@@ -37,6 +37,10 @@ AtOnce effect_at_once(const BodyModel& model, const Problem& problem, const Expl
     const auto tools = std::ssize(forward.actions[k].motions);
     AtOnce result{Eigen::MatrixXd::Zero(model.dofs(), values.size()), Eigen::MatrixXd::Zero(6 * tools, values.size())};
     ModelSetting setting = explanation.setting();
+    if (const auto slopes = explanation.effects[effect]->piece_slopes(model, values)) {
+        result.forces = model.piece_force(q, setting, forward.actions[k], *slopes);
+        return result;
+    }
     const bool enforced = explanation.effects[effect]->enforce(values, setting);
     for (Eigen::Index j = 0; j < values.size(); ++j) {
         if (!explanation.effects[effect]->is_fitted(j)) continue;

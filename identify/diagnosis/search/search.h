@@ -29,6 +29,8 @@ public:
 
     std::vector<Candidate> ranking() const;  // by evidence, most first
     const std::vector<FittedExplanation>& tried() const { return tried_; }
+    /// Does one of them explain the readings, with nothing to be said against it?
+    bool has_claim() const;
     /// By evidence; none where nothing was fitted.
     const FittedExplanation* leader() const;
 
@@ -49,7 +51,6 @@ private:
     std::optional<FittedExplanation> carry_over(const FittedExplanation& single, int law) const;
     bool extend(std::size_t from, int most);
     bool claims(const FittedExplanation& explained) const;
-    bool has_claim() const;
     bool could_explain_anything(const Refit& base, const EffectHypothesis& effect) const;
     bool residual_is_small() const;
     bool is_confused_with_leader(const EffectHypothesis& other) const;

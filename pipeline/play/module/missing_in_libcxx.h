@@ -48,10 +48,18 @@ constexpr auto max_element(R&& r, C c = {}, P p = {}) {
     return std::max_element(std::begin(r), std::end(r),
                             [&](auto&& a, auto&& b) { return std::invoke(c, std::invoke(p, a), std::invoke(p, b)); });
 }
+template <class R>
+constexpr auto max(R&& r) {
+    return *std::max_element(std::begin(r), std::end(r));
+}
 template <class R, class C = less, class P = identity>
 constexpr auto min_element(R&& r, C c = {}, P p = {}) {
     return std::min_element(std::begin(r), std::end(r),
                             [&](auto&& a, auto&& b) { return std::invoke(c, std::invoke(p, a), std::invoke(p, b)); });
+}
+template <class R, class I>
+constexpr void nth_element(R&& r, I nth) {
+    std::nth_element(std::begin(r), nth, std::end(r));
 }
 template <class R, class C = less, class P = identity>
 constexpr void sort(R&& r, C c = {}, P p = {}) {

@@ -79,6 +79,33 @@ TEST_F(TwoLumps, OneLumpIsAnInclusion) {
     for (const Candidate& one : found.ranking) EXPECT_NE(one.effect->name(), "map");
 }
 
+TEST(StiffnessMapEffect, KnowsTheSlopesOfItsField) {
+    const SmallBody body;
+    const auto model = body.reference();
+    const auto map = find_effect("map");
+    const auto numbers = map->numbers(*model, make_problem(body.set(SmallBody::probes()), 1));
+    const Eigen::VectorXd values = example(*map, numbers);
+    const auto at = [&](const Eigen::VectorXd& x) {
+        ModelSetting setting;
+        map->enforce(x, setting);
+        Eigen::VectorXd of_pieces(model->pieces().rows());
+        for (Eigen::Index p = 0; p < of_pieces.size(); ++p)
+            of_pieces[p] = std::log(setting.effects.material[0]->stiffness(model->pieces().row(p)));
+        return of_pieces;
+    };
+    const Eigen::MatrixXd slopes = map->piece_slopes(*model, values).value();
+    constexpr double h = 1e-5;  // truncation h^2, rounding 1e-16 / h
+    for (Eigen::Index j = 0; j < values.size(); ++j) {
+        const Eigen::VectorXd step = h * Eigen::VectorXd::Unit(values.size(), j);
+        const Eigen::VectorXd expected = (at(values + step) - at(values - step)) / (2 * h);
+        if (!map->is_fitted(j)) {
+            EXPECT_TRUE(slopes.col(j).isZero(0));
+            continue;
+        }
+        EXPECT_LT((slopes.col(j) - expected).cwiseAbs().maxCoeff(), 1e-7) << numbers[static_cast<std::size_t>(j)].name;
+    }
+}
+
 TEST(StiffnessMapEffect, TellsPartsThatDifferByMoreThanIsKnown) {
     const auto map = find_effect("map");
     skeleton::EffectRecord record{"map", {{"length", 5, "mm"}}};

@@ -101,6 +101,16 @@ public:
         return plan;
     }
 
+    std::string objection(const Problem& problem, const Eigen::VectorXd& values) const override {
+        const auto& markers = problem.rest.topRows(problem.markers);
+        const Eigen::RowVector3d extent = markers.colwise().maxCoeff() - markers.colwise().minCoeff();
+        const double radius = std::exp(values[3]);
+        if (2 * radius <= extent.maxCoeff()) return {};
+        return fmt::format(
+            "its ball, of radius {:.3g} mm, is larger than the body: stiffness varies from one end of it to the other",
+            radius);
+    }
+
     std::string sentence(const skeleton::EffectRecord& record) const override { return sentence_with(record, {}); }
 
     std::string sentence_with(const skeleton::EffectRecord& record, const Eigen::MatrixXd& covariance) const override {

@@ -15,8 +15,8 @@
 namespace palpate::identify {
 namespace {
 
-// A field finer than the readings resolve is left to its prior. Each place costs a force signature in every state.
-constexpr int places = 30;
+// A field finer than the readings resolve is left to its prior. Each place costs a right-hand side in every state.
+constexpr int places = fem::most_places;
 constexpr double fixed_sd = 1e-6;  // [mm], of places: they are where they are
 
 /// The distance of a place to the nearest other one, in the mean.
@@ -33,7 +33,19 @@ double spacing_of(const Points& at) {
 
 Points places_in(const BodyModel& model) {
     const Points& pieces = model.pieces();
-    return pieces(mesh::farthest_points(pieces, std::min(places, fem::most_places)), Eigen::all);
+    return pieces(mesh::farthest_points(pieces, places), Eigen::all);
+}
+
+/// The map of a fit's numbers, its kernels so much longer. @param more of ln length
+fem::StiffnessMap map_of(const Eigen::VectorXd& values, double more = 0) {
+    const Eigen::Index count = values.size() / numbers_of_map_place;
+    Points at(count, 3);
+    Eigen::VectorXd amplitudes(count);
+    for (Eigen::Index i = 0; i < count; ++i) {
+        at.row(i) = values.segment<3>(1 + numbers_of_map_place * i).transpose();
+        amplitudes[i] = values[numbers_of_map_place * (i + 1)];
+    }
+    return {std::move(at), std::move(amplitudes), std::exp(values[0] + more)};
 }
 
 /// Stiffness that varies over the body, wherever it does.
@@ -84,16 +96,24 @@ public:
     }
 
     bool enforce(const Eigen::VectorXd& values, ModelSetting& setting) const override {
-        const Eigen::Index count = values.size() / numbers_of_map_place;
-        Points at(count, 3);
-        Eigen::VectorXd amplitudes(count);
-        for (Eigen::Index i = 0; i < count; ++i) {
-            at.row(i) = values.segment<3>(1 + numbers_of_map_place * i).transpose();
-            amplitudes[i] = values[numbers_of_map_place * (i + 1)];
-        }
-        setting.effects.material.push_back(
-            std::make_shared<fem::StiffnessMap>(std::move(at), std::move(amplitudes), std::exp(values[0])));
+        setting.effects.material.push_back(std::make_shared<fem::StiffnessMap>(map_of(values)));
         return true;
+    }
+
+    std::optional<Eigen::MatrixXd> piece_slopes(const BodyModel& model, const Eigen::VectorXd& values) const override {
+        constexpr double h = 1e-4;  // of ln length: the field is smooth in it
+        const fem::StiffnessMap map = map_of(values);
+        const fem::StiffnessMap longer = map_of(values, h), shorter = map_of(values, -h);
+        const Points& pieces = model.pieces();
+        Eigen::MatrixXd slopes = Eigen::MatrixXd::Zero(pieces.rows(), values.size());
+        for (Eigen::Index p = 0; p < pieces.rows(); ++p) {
+            const Vec3 X = pieces.row(p);
+            const Eigen::VectorXd of_amplitudes = map.centred_weights(X);
+            slopes(p, 0) = (longer.log_stiffness(X) - shorter.log_stiffness(X)) / (2 * h);
+            for (Eigen::Index i = 0; i < of_amplitudes.size(); ++i)
+                slopes(p, numbers_of_map_place * (i + 1)) = of_amplitudes[i];
+        }
+        return slopes;
     }
 
     std::string sentence(const skeleton::EffectRecord& record) const override { return sentence_with(record, {}); }
