@@ -80,7 +80,10 @@ TEST_F(TwoLumps, OneLumpIsAnInclusion) {
 }
 
 TEST(StiffnessMapEffect, KnowsTheSlopesOfItsField) {
-    const SmallBody body;
+    SmallBody body;
+    // Pieces enough for slopes of pieces, of which a bar of five cells has none.
+    EXPECT_FALSE(find_effect("map")->piece_slopes(*body.reference(), Eigen::VectorXd::Zero(161)));
+    body.mesh = mesh::to_quadratic(mesh::make_bar(Vec3::Zero(), Vec3(40, 10, 10), {14, 4, 4}));
     const auto model = body.reference();
     const auto map = find_effect("map");
     const auto numbers = map->numbers(*model, make_problem(body.set(SmallBody::probes()), 1));

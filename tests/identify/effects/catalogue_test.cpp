@@ -416,6 +416,21 @@ TEST(Catalogue, RefusesARowWhoseHalvesDiffer) {
     EXPECT_EQ(skeleton::find_known_effect("storm"), nullptr);
 }
 
+TEST(InclusionEffect, IsNoBallLargerThanTheBody) {
+    const SmallBody body;  // of 40 mm
+    const auto inclusion = find_effect("inclusion");
+    Problem problem = make_problem(body.set(SmallBody::probes()), 1);
+    const auto objection = [&](double radius) {
+        Eigen::VectorXd values(5);
+        values << 20, 5, 5, std::log(radius), 0.5;
+        return inclusion->objection(problem, values);
+    };
+    EXPECT_EQ(objection(15), "");
+    EXPECT_THAT(objection(30), HasSubstr("of radius 30 mm, is larger than the body"));
+    problem.markers = 0;  // forces alone were read
+    EXPECT_EQ(objection(30), "");
+}
+
 TEST(Catalogue, KnowsAllWhosePhysicsIsKnown) {
     for (const std::string& name : fem::EffectRegistry::instance().names())
         EXPECT_NE(effect_named(name), nullptr) << name;

@@ -102,6 +102,7 @@ public:
     }
 
     std::string objection(const Problem& problem, const Eigen::VectorXd& values) const override {
+        if (problem.markers < 2) return {};  // how large the body is shows in where its markers are
         const auto& markers = problem.rest.topRows(problem.markers);
         const Eigen::RowVector3d extent = markers.colwise().maxCoeff() - markers.colwise().minCoeff();
         const double radius = std::exp(values[3]);

@@ -102,7 +102,11 @@ public:
 
     std::optional<Eigen::MatrixXd> piece_slopes(const BodyModel& model, const Eigen::VectorXd& values) const override {
         constexpr double h = 1e-4;  // of ln length: the field is smooth in it
+        // Of even pieces: a field that varies within one has other slopes. Sixteen a place are two and a half from one
+        // place to the next.
+        constexpr Eigen::Index least_pieces = 16;
         const fem::StiffnessMap map = map_of(values);
+        if (model.pieces().rows() < least_pieces * map.places().rows()) return std::nullopt;
         const fem::StiffnessMap longer = map_of(values, h), shorter = map_of(values, -h);
         const Points& pieces = model.pieces();
         Eigen::MatrixXd slopes = Eigen::MatrixXd::Zero(pieces.rows(), values.size());
