@@ -6,7 +6,7 @@ namespace {
 // What bars of 100,000 and 300,000 nodes took on two cores, loads in eights (tests/bench/fem/RESULTS.md).
 constexpr double products_per_second = 4.8e10;
 constexpr double multigrid_of_a_node = 2.5e-5;  // [s]
-constexpr double load_on_a_node = 5e-6;         // [s]
+constexpr double load_on_a_node = 5e-6;         // [s]; 7e-6 before products prefetched, of which 0.68 is left
 constexpr double worthwhile = 0.4;              // of a factor's time: other meshes take more iterations
 
 /// Multiplications of a factorisation.

@@ -71,9 +71,9 @@ void add_parts(const skeleton::EffectRecord& effect, const std::string& words, j
     const identify::StiffnessEstimate map(effect);
     const std::vector<identify::StiffnessPart> parts = map.parts();
     if (parts.empty()) findings.push_back({{"effect", effect.name}, {"words", words}, {"kind", "words"}});
-    for (const identify::StiffnessPart& part : parts)
+    for (const identify::StiffnessPart& part : parts)  // the sentence is of all of them, and stands once
         findings.push_back({{"effect", effect.name},
-                            {"words", words},
+                            {"words", &part == &parts.front() ? words : fmt::format("Map: {:.2g} times.", part.ratio)},
                             {"kind", "ball"},
                             {"center", {part.centre.x(), part.centre.y(), part.centre.z()}},
                             {"radius", map.length()}});

@@ -23,7 +23,7 @@ PALPATE_INLINE void put(double* y, double sum, Join join) {
 }
 
 /// Asks for the values that rows to come need: a row's panel is R short streams, which end before the processor has
-/// made them out. A page ahead is some hundred cycles of work; asking beyond the end does nothing.
+/// made them out. A page ahead is a choice (tests/bench/fem/RESULTS.md); asking beyond the end does nothing.
 template <std::size_t bytes>
 PALPATE_INLINE void ahead(const void* now) {
     constexpr std::size_t line = 64, page = 4096;

@@ -166,7 +166,7 @@ public:
             }
             return result;
         };
-        // A standard deviation of ln stiffness of a factor of e is a liver with tumours, beyond a factor of 5 is none.
+        // Design choice: up to a factor of 5 (1 sd). More can be specified.
         const double most = std::log(5.0);
         const double contrast = specified.value("contrast", 1);
         const bool is_specified = specified.has("contrast");

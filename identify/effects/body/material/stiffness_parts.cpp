@@ -33,7 +33,7 @@ double StiffnessEstimate::sd(const Vec3& X) const {
 }
 
 std::vector<StiffnessPart> StiffnessEstimate::parts() const {
-    const double least = std::log(1.25);  // less is no part to a hand that presses there
+    const double least = std::log(1.25);  // design choice: smaller differences are not listed
     constexpr double deviations = 2;
     const Points& at = map_.places();
     std::vector<double> log_ratio, sds;
