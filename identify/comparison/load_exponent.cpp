@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "mesh/numbers/median.h"
+
 namespace palpate::identify {
 namespace {
 
@@ -14,11 +16,6 @@ constexpr double least_ratio = 1.2;           // between the largest load and th
 struct LogPoint {
     double load, error;  // natural logarithms
 };
-
-double median(std::vector<double> values) {
-    std::ranges::sort(values);
-    return values[values.size() / 2];
-}
 
 double beyond_noise(const ErrorUnderLoad& state, double floor) {
     return std::sqrt(std::max(state.rms * state.rms - state.noise * state.noise, floor * floor));
@@ -80,9 +77,10 @@ std::optional<LoadExponent> load_exponent(const std::vector<ErrorUnderLoad>& sta
     if (loaded.empty()) return std::nullopt;
 
     const std::vector<double> loads = collect(loaded, [](const ErrorUnderLoad& state) { return state.load; });
-    const double typical_load = median(loads);
-    const double typical_error = median(collect(loaded, [](const ErrorUnderLoad& state) { return state.rms; }));
-    const double noise_floor = median(collect(states, noise_left));
+    const double typical_load = mesh::upper_median(loads);
+    const double typical_error =
+        mesh::upper_median(collect(loaded, [](const ErrorUnderLoad& state) { return state.rms; }));
+    const double noise_floor = mesh::upper_median(collect(states, noise_left));
     const double floor = noise_floor > 0 ? noise_floor : unknown_noise_floor * typical_error;
     if (typical_error <= floor) return std::nullopt;
 

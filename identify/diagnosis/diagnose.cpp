@@ -82,8 +82,8 @@ public:
         note_mesh_error();
         if (options_.refit.magnitude == MagnitudeUse::alternative && result_.best().has_known_magnitude)
             result_.notes.emplace_back(
-                "Gravity has the earth's magnitude, 9.81 m/s², as the evidence prefers that to a free one; '--gravity "
-                "unknown' leaves it free.");
+                "Gravity was fitted with the earth's magnitude, 9.81 m/s² over all its components, as the evidence "
+                "prefers that to a free magnitude; '--gravity unknown' leaves it free.");
         if (std::string note = note_of_correction(result_.problem); !note.empty())
             result_.notes.push_back(std::move(note));
         return std::move(result_);
@@ -175,7 +175,8 @@ private:
     /// What no named effect explains may be the stiffness of single parts: where what is left is likelier a place that
     /// is softer or stiffer, alike in all states, than a force or a fault of the readings.
     void seek_last_resorts() {
-        const bool has_any = std::ranges::any_of(effects_, [](const auto& effect) { return effect->is_last_resort(); });
+        const bool has_any = std::ranges::any_of(
+            effects_, [](const auto& effect) { return effect->is_last_resort() || effect->may_repeat(); });
         if (!has_any || leaves_only_noise(baseline(), options_) || search_->has_claim()) return;
         const auto left = locate_missing(model_, result_.problem, leading(), options_.refit.threads);
         if (!left || left->kind != SourceKind::stiffness) return;

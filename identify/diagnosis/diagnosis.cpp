@@ -41,16 +41,23 @@ Eigen::MatrixXd wider(const Eigen::MatrixXd& one, const Eigen::MatrixXd& other) 
 
 }  // namespace
 
+std::vector<std::string> FittedExplanation::names() const {
+    std::vector<std::string> result;
+    result.reserve(effects.size());
+    for (const auto& effect : effects) result.push_back(effect->name());
+    return result;
+}
+
 bool FittedExplanation::has(const std::string& name) const {
     return std::ranges::any_of(effects, [&](const auto& effect) { return effect->name() == name; });
 }
 
-EffectEstimate FittedExplanation::estimate(const std::string& name) const {
+EffectEstimate FittedExplanation::estimate(const std::string& name, int which) const {
     const Explanation& all = fit.explanation;
     Eigen::Index at = all.theta.size();
     for (std::size_t e = 0; e < all.effects.size(); ++e) {
         const Eigen::VectorXd& v = all.values[e];
-        if (all.effects[e]->name() != name) {
+        if (all.effects[e]->name() != name || which-- > 0) {
             at += v.size();
             continue;
         }

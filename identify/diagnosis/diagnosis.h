@@ -38,9 +38,10 @@ struct FittedExplanation {
     HeldOut held_out = {};
     std::string objection = {};  // reason why it is not claimed despite its evidence; empty: no objection
 
+    std::vector<std::string> names() const;
     bool has(const std::string& name) const;
-    /// The numbers of one of its effects.
-    EffectEstimate estimate(const std::string& name) const;
+    /// The numbers of one of its effects. @param which of those of this name, in the order of the fit
+    EffectEstimate estimate(const std::string& name, int which = 0) const;
 };
 
 /// One effect by itself.

@@ -143,6 +143,12 @@ public:
     /// Is it so general that it is asked only where no other effect explains the readings, and what is left is of the
     /// body's stiffness?
     virtual bool is_last_resort() const { return false; }
+    /// May a body have several of it, told apart by where they lie?
+    virtual bool may_repeat() const { return false; }
+    /// Are two of it, with these numbers, different ones? Else they may be one of a shape of its own. @pre may_repeat()
+    virtual bool lie_apart(const Eigen::VectorXd& /*one*/, const Eigen::VectorXd& /*other*/) const { return true; }
+    /// Does a number mean the same on another specimen? Amplitudes at places that only this body has do not.
+    virtual bool is_comparable(const std::string& /*number*/) const { return true; }
     /// Is that number fitted? Others only tell what it is of, as where something lies.
     virtual bool is_fitted(Eigen::Index /*number*/) const { return true; }
     /// d ln stiffness of the body's pieces / d its numbers (pieces x numbers), where that is all that they alter: the

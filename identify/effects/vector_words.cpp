@@ -30,12 +30,17 @@ std::string line_in_words(const Vec3& line) {
 
 }  // namespace
 
+std::string components_in_words(const Vec3& unit) {
+    const Vec3 rounded = (100 * unit).array().round() / 100 + 0.0;  // -0 + 0 is 0: no "-0.00"
+    return fmt::format("({:.2f}, {:.2f}, {:.2f})", rounded.x(), rounded.y(), rounded.z());
+}
+
 std::string direction_in_words(const Vec3& direction) {
     const Vec3 unit = direction.normalized();
     for (int axis = 0; axis < 3; ++axis) {
         if (std::abs(unit[axis]) > near_axis) return fmt::format("{}{}", unit[axis] < 0 ? '-' : '+', "xyz"[axis]);
     }
-    return fmt::format("({:.2f}, {:.2f}, {:.2f})", unit.x(), unit.y(), unit.z());
+    return components_in_words(unit);
 }
 
 std::string number_in_words(const skeleton::EffectRecord& record, std::size_t number, const Eigen::MatrixXd& covariance,

@@ -8,6 +8,9 @@
 
 namespace palpate::identify {
 
+/// The components of a unit vector: "(0.46, 0.00, -0.89)".
+std::string components_in_words(const Vec3& unit);
+
 /// A direction in words: "-z" where it lies within ten degrees of an axis, else "(0.46, -0.01, -0.89)".
 std::string direction_in_words(const Vec3& direction);
 

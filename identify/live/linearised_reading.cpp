@@ -4,6 +4,8 @@
 #include <boost/math/special_functions/gamma.hpp>
 #include <cmath>
 
+#include "identify/numerics/summaries.h"
+
 namespace palpate::identify {
 namespace {
 
@@ -29,8 +31,8 @@ LinearisedReading linearise(const PositionDomain& domain, const Calibration& cal
     const double of_model = Eigen::numext::abs2(calibration.model_error) * domain.squared_scale(0);
     local.variance.setZero(local.d.size());
     for (Eigen::Index i = 0; i < local.d.size(); ++i) {
-        const double noise = state.noise[i / 3];
-        local.variance[i] = jacobian.weights(0)[i] * ((std::isnan(noise) ? 0 : Eigen::numext::abs2(noise)) + of_model);
+        const double noise = known_part(state.noise[i / 3]);
+        local.variance[i] = jacobian.weights(0)[i] * (Eigen::numext::abs2(noise) + of_model);
     }
     return local;
 }

@@ -5,6 +5,9 @@
 #include <functional>
 #include <numeric>
 #include <unsupported/Eigen/NonLinearOptimization>
+#include <vector>
+
+#include "mesh/numbers/median.h"
 
 namespace palpate::identify {
 namespace {
@@ -19,9 +22,7 @@ double spacing(const Ringdown& ringdown) {
     std::vector<double> gaps(static_cast<std::size_t>(ringdown.times.size()));
     std::adjacent_difference(ringdown.times.begin(), ringdown.times.end(), gaps.begin());
     if (gaps.size() < 2) return 1e-3;
-    const auto middle = gaps.begin() + 1 + static_cast<std::ptrdiff_t>((gaps.size() - 1) / 2);
-    std::nth_element(gaps.begin() + 1, middle, gaps.end());
-    return *middle;
+    return mesh::upper_median(std::vector(gaps.begin() + 1, gaps.end()));  // the first is a time, not a difference
 }
 
 /// Errors of a fit and prior as Eigen's Levenberg-Marquardt takes them.

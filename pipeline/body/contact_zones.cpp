@@ -4,15 +4,16 @@
 #include <algorithm>
 #include <cmath>
 
+#include "identify/numerics/summaries.h"
+
 namespace palpate::pipeline {
 namespace {
 
 /// Where a tool stands, in the part of its motion that is told.
 Eigen::Isometry3d pose_of(const mesh::Tool& tool, const mesh::ToolMotion& motion) {
-    const auto told = [](const Vec3& v) -> Vec3 { return v.array().isNaN().select(0, v); };
-    const Vec3 turn = told(motion.rotation);
+    const Vec3 turn = identify::known_part(motion.rotation);
     Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
-    pose.translate(tool.origin + told(motion.translation));
+    pose.translate(tool.origin + identify::known_part(motion.translation));
     if (turn.norm() > 0) pose.rotate(Eigen::AngleAxisd(turn.norm(), turn.normalized()));
     pose.translate(-tool.origin);
     return pose;

@@ -23,8 +23,10 @@ Diagnosed diagnose(const ModelAndSet& given, const DiagnoseCommandOptions& optio
     const identify::Diagnosis found = identify::diagnose(*body, given.set, how, Console::progress());
     const std::string field = options.output.empty() ? "" : write_missing_series(options.output, given.set, found);
     const auto* solid = dynamic_cast<const identify::ReferenceBody*>(body.get());
-    if (solid && !options.output.empty()) write_stiffness_map(options.output, solid->body().mesh(), found);
-    return {to_json(found, *body, given.set, field), found.explanation, found.notes};
+    Diagnosed diagnosed{to_json(found, *body, given.set, field), found.explanation, found.notes};
+    if (solid && !options.output.empty() && write_stiffness_map(options.output, solid->body().mesh(), given.set, found))
+        diagnosed.regions = options.output / map_regions;
+    return diagnosed;
 }
 
 Outcome diagnose(const DiagnoseCommandOptions& options, const Common& common) {
@@ -44,6 +46,9 @@ Outcome diagnose(const DiagnoseCommandOptions& options, const Common& common) {
         outcome.text += fmt::format("Next: palpate improve {} {}", options.model.string(), options.set.string());
         for (const std::string& effect : found.explanation) outcome.text += " --add " + effect;
         outcome.text += options.body == "skeleton" ? " --body skeleton -o improved\n" : " -o improved\n";
+        if (!found.regions.empty())
+            outcome.text += fmt::format("Or, with the map's parts as regions: palpate run {} -o with-regions\n",
+                                        found.regions.string());
     } else if (outcome.json["verdict"] == "ambiguous") {
         outcome.text += "Next: add that probe to the set, and diagnose again\n";
     } else if (outcome.json["verdict"] == "unexplained" && outcome.json["where"].is_object() &&

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "identify/recordings/assembly/import_set.h"
+#include "identify/recordings/assembly/map/import_map.h"
 #include "identify/recordings/describe.h"
 #include "identify/recordings/files/draft_map.h"
 #include "identify/recordings/files/read_recordings.h"
@@ -63,15 +64,42 @@ std::string number_of(std::size_t count, const char* thing) {
     return fmt::format("{} {}{}", count, thing, count == 1 ? "" : "s");
 }
 
-/// What is in the files, and a map of them.
+/// A file to describe, and what is told of it.
+struct ToldFile {
+    fs::path file;
+    identify::FileMap how;
+};
+
+/// The files of the command line, of a folder those that the map names in it, with what map and options tell of them.
+std::vector<ToldFile> told_files(const ImportCommandOptions& options) {
+    std::vector<identify::MappedFile> mapped;
+    if (!options.map.empty()) mapped = identify::read_mapped_files(options.map);
+    std::vector<ToldFile> files;
+    for (const fs::path& file : options.files) {
+        const std::size_t before = files.size();
+        for (const identify::MappedFile& entry : mapped) {
+            if (fs::is_directory(file)) {
+                const bool is_series = entry.how.series || entry.file.find('*') != std::string::npos;
+                if (is_series || fs::exists(file / entry.file)) files.push_back({file / entry.file, entry.how});
+            } else if (identify::names_file(entry, file.filename().string())) {
+                files.push_back({file, entry.how});
+                files.back().how.series = false;  // this frame of it
+            }
+        }
+        if (files.size() == before) files.push_back({file, {}});
+    }
+    for (ToldFile& told : files)
+        if (!options.unit.empty()) told.how.unit = options.unit;
+    return files;
+}
+
+/// What is in the files, and a map of them, unless there is one.
 Outcome describe_files(const ImportCommandOptions& options, const Common& common) {
     if (!options.output.empty()) refuse_to_overwrite(options.output, common.force);
     Outcome outcome;
     std::string entries;
     outcome.json = {{"recordings", nlohmann::json::array()}};
-    for (const fs::path& file : options.files) {
-        identify::FileMap how;
-        how.unit = options.unit;
+    for (const auto& [file, how] : told_files(options)) {
         std::vector<identify::Recording> recordings;
         try {
             recordings = identify::read_recordings(file, how);
@@ -95,14 +123,14 @@ Outcome describe_files(const ImportCommandOptions& options, const Common& common
                                                   {"events", recording.events.size()},
                                                   {"notes", recording.notes}});
         }
-        std::string entry = identify::draft_map(file, recordings);
+        std::string entry = identify::draft_map(file, recordings, how);
         const std::string head = "files:\n";
         entries += entry.starts_with(head) ? entry.substr(head.size()) : entry;
     }
     const std::string map = std::string(map_head) + "files:\n" + entries + map_tail;
     outcome.json["map"] = map;
     if (options.output.empty()) {
-        outcome.text += "\nA map to edit (-o map.yaml writes it):\n\n" + map;
+        if (options.map.empty()) outcome.text += "\nA map to edit (-o map.yaml writes it):\n\n" + map;
     } else {
         mesh::write_text(options.output, map);
         outcome.text += fmt::format("Written: {}. Edit it, then palpate import {} --map {} -o SET\n",
@@ -206,14 +234,16 @@ Outcome import(const ImportCommandOptions& options, const Common& common) {
 namespace palpate::pipeline {
 
 void Subcommands::add_import(CLI::App& app) {
-    auto* sub = subcommand(app, "import", "A measurement set out of a rig's own files.",
-                           "  palpate import run.c3d --describe                     # what is in it\n"
-                           "  palpate import run.c3d load.csv --describe -o map.yaml    # a map to edit\n"
-                           "  palpate import run.c3d load.csv --map map.yaml -o set     # points, forces and the mesh "
-                           "in one frame, on one "
-                           "clock\n"
-                           "  palpate import recordings/ --map map.yaml --states every=0.5s --register icp -o set\n",
-                           [this] { return commands::import(importing, common); });
+    auto* sub =
+        subcommand(app, "import", "A measurement set out of a rig's own files.",
+                   "  palpate import run.c3d --describe                     # what is in it\n"
+                   "  palpate import run.c3d load.csv --describe -o map.yaml    # a map to edit\n"
+                   "  palpate import run.csv --describe --map map.yaml      # the same, in the units that a map tells\n"
+                   "  palpate import run.c3d load.csv --map map.yaml -o set     # points, forces and the mesh "
+                   "in one frame, on one "
+                   "clock\n"
+                   "  palpate import recordings/ --map map.yaml --states every=0.5s --register icp -o set\n",
+                   [this] { return commands::import(importing, common); });
     sub->add_option(
            "FILE", importing.files,
            "What the rig wrote, or folders of it: C3D, TRC, Motive, Vicon, testing machines, image correlation, "

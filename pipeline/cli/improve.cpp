@@ -156,7 +156,8 @@ Outcome improve(const ImproveCommandOptions& options, const Common& common) {
     outcome.json = to_json(ladder);
     outcome.json["model"] = (output / "model.json").string();
     outcome.text = ladder_in_words(outcome.json);
-    outcome.text += compare_in_words(final_comparison(ladder, *body), "The result, fitted to all probes,") + "\n";
+    outcome.text +=
+        compare_in_words(final_comparison(ladder, *body), "The real-time model, fitted to all probes,") + "\n";
     for (const std::string& note : ladder.notes) outcome.text += "  " + note + "\n";
     outcome.text +=
         fmt::format("Model: {}\nParaView: {}\n", (output / "model.json").string(), (output / "ladder.pvd").string());

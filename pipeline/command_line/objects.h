@@ -39,6 +39,8 @@ Compared compare(const ModelAndSet& given, const CompareOptions& options, const 
 struct Diagnosed {
     nlohmann::json json;  // diagnosis.json
     std::vector<std::string> explanation, notes;
+    std::filesystem::path regions =
+        {};  // folder of the set with the parts of a map as regions; empty: none was written
 };
 Diagnosed diagnose(const ModelAndSet& given, const DiagnoseCommandOptions& options, const Common& common);
 

@@ -9,6 +9,7 @@
 #include "identify/effects/body/material/stiffness_parts.h"
 #include "identify/effects/catalogue.h"
 #include "identify/effects/vector_words.h"
+#include "pipeline/output/json/ranking_row.h"
 
 namespace palpate::pipeline {
 namespace {
@@ -26,12 +27,6 @@ bool has(const skeleton::EffectRecord& effect, const std::string& name) {
 
 json vector(const skeleton::EffectRecord& effect, const std::array<const char*, 3>& names) {
     return {number(effect, names[0]), number(effect, names[1]), number(effect, names[2])};
-}
-
-const json* candidate_of(const json& diagnosis, const std::string& effect) {
-    if (diagnosis.is_null()) return nullptr;
-    const auto found = std::ranges::find_if(diagnosis["ranking"], [&](const json& c) { return c["effect"] == effect; });
-    return found == diagnosis["ranking"].end() ? nullptr : &*found;
 }
 
 /// Takes out of a finding's vector the components that the readings do not determine, by the bounds of vector_words.h.
@@ -86,7 +81,7 @@ json findings_json(const std::vector<skeleton::EffectRecord>& effects, const jso
         force{"fx", "fy", "fz"};
     json findings = json::array();
     for (const skeleton::EffectRecord& effect : effects) {
-        const json* candidate = candidate_of(diagnosis, effect.name);
+        const json* candidate = ranking_row(diagnosis, effects, effect);
         if (effect.name == "map" && !effect.parameters.empty()) {
             add_parts(effect, words_of(effect, candidate), findings);
             continue;

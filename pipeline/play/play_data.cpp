@@ -19,6 +19,7 @@
 #include "pipeline/case/subject/subject.h"
 #include "pipeline/output/findings.h"
 #include "pipeline/output/html/run_files.h"
+#include "pipeline/output/json/ranking_row.h"
 #include "pipeline/output/text/words.h"
 #include "pipeline/play/touch/set_text.h"
 #include "skeleton/model/io/model_io.h"
@@ -173,14 +174,6 @@ json exchanged_in(const json& diagnosis, const std::optional<identify::Measureme
     return result;
 }
 
-/// What was diagnosed of a number of an effect: its {value, sd, unit}, or null.
-json diagnosed_number(const json& diagnosis, const std::string& effect, const std::string& number) {
-    if (diagnosis.is_null()) return {};
-    for (const json& candidate : diagnosis["ranking"])
-        if (candidate["effect"] == effect) return candidate["parameters"].value(number, json());
-    return {};
-}
-
 /// "gz = -9790 ± 20 mm/s^2". The standard deviation is of finite elements' number: where the model was given another
 /// one, by a fit of its own, that number and its deviation stand beside it.
 std::string effect_number_in_words(const skeleton::EffectParameter& number, const json& diagnosed) {
@@ -194,14 +187,16 @@ std::string effect_number_in_words(const skeleton::EffectParameter& number, cons
     return fmt::format("{} = {:.4g}{} ({} in finite elements)", number.name, number.value, unit, known);
 }
 
-/// What the page says of an effect: its meaning, and its numbers.
-ordered_json effect_json(const skeleton::EffectRecord& effect, const json& diagnosis) {
+/// What the page says of an effect: its meaning, and its numbers. @param row of the diagnosis's ranking, or nullptr
+ordered_json effect_json(const skeleton::EffectRecord& effect, const json* row) {
     const auto known = identify::effect_named(effect.name);
+    constexpr std::size_t most_numbers = 10;  // of a ball, or a support; a map has hundreds, which its sentence sums up
     std::vector<std::string> numbers;
     numbers.reserve(effect.parameters.size());
-    for (const skeleton::EffectParameter& parameter : effect.parameters) {
-        numbers.push_back(effect_number_in_words(parameter, diagnosed_number(diagnosis, effect.name, parameter.name)));
-    }
+    for (const skeleton::EffectParameter& parameter : effect.parameters)
+        numbers.push_back(
+            effect_number_in_words(parameter, row ? (*row)["parameters"].value(parameter.name, json()) : json()));
+    if (known && numbers.size() > most_numbers) numbers = {known->sentence(effect)};
     return {{"name", effect.name},      {"meaning", known ? known->description().meaning : ""},
             {"numbers", numbers},       {"fault", is_of_measurement(effect)},
             {"creeps", creeps(effect)}, {"played", is_played(effect)}};
@@ -256,7 +251,7 @@ PlayData play_data(const fs::path& input, const fs::path& set_folder) {
         one["findings"] = findings_json(model.effects, diagnosis);
         one["effects"] = ordered_json::array();
         for (const skeleton::EffectRecord& effect : model.effects)
-            one["effects"].push_back(effect_json(effect, diagnosis));
+            one["effects"].push_back(effect_json(effect, ranking_row(diagnosis, model.effects, effect)));
         if (set) one["sets"] = corrected_sets(model, *set, sets);
         one["text"] = first.is_null() ? text : difference(first, text);
         if (first.is_null()) first = std::move(text);

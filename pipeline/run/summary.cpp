@@ -42,9 +42,9 @@ std::string findings(const RunResults& results) {
     if (!results.ladder.is_null()) text += ladder_in_words(results.ladder);
     if (!results.improved.is_null()) {
         const auto added = results.ladder["steps"].back()["effects"].get<std::vector<std::string>>();
-        text +=
-            compare_in_words(results.improved, fmt::format("The model with {}, fitted to all probes,", listed(added))) +
-            "\n" + worst_table(results.improved);
+        text += compare_in_words(results.improved,
+                                 fmt::format("The real-time model with {}, fitted to all probes,", listed(added))) +
+                "\n" + worst_table(results.improved);
     }
     return text;
 }

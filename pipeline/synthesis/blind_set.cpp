@@ -4,11 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "identify/effects/catalogue.h"
 #include "mesh/errors.h"
 #include "pipeline/synthesis/loading/load_sequence.h"
 #include "pipeline/synthesis/loading/reading_faults.h"
+#include "pipeline/synthesis/rig/tool_forces.h"
 
 namespace palpate::pipeline {
 namespace {
@@ -16,11 +18,11 @@ namespace {
 constexpr double default_noise = 0.02;  // of the rms displacement, where something is hidden
 constexpr double visible = 5;           // sigmas that an effect changes the readings by, at least
 
-std::vector<std::string> names_of(const std::vector<EffectSpec>& specs) {
+/// "gravity, friction".
+std::string names_of(const std::vector<EffectSpec>& specs) {
     std::vector<std::string> names;
-    names.reserve(specs.size());
-    for (const EffectSpec& spec : specs) names.push_back(spec.effect);
-    return names;
+    std::ranges::transform(specs, std::back_inserter(names), &EffectSpec::effect);
+    return fmt::format("{}", fmt::join(names, ", "));
 }
 
 /// Three digits, as somebody would tell it; never more.
@@ -28,24 +30,6 @@ double rounded_down(double noise) {
     if (noise <= 0) return 0;
     const double unit = std::pow(10, std::floor(std::log10(noise)) - 2);
     return std::stod(fmt::format("{:.3g}", std::floor(noise / unit) * unit));
-}
-
-/// How much what is hidden changes forces of tools [N]: rows that are NaN do not count.
-Strength strength_in_forces(const std::vector<Points>& bare, const std::vector<Points>& hidden) {
-    std::vector<Points> before, changes;
-    double overlap = 0, squares = 0;
-    for (std::size_t row = 0; row < bare.size(); ++row) {
-        if (!hidden[row].allFinite()) continue;
-        before.push_back(bare[row]);
-        changes.emplace_back(hidden[row] - bare[row]);
-        overlap += bare[row].cwiseProduct(changes.back()).sum();
-        squares += bare[row].squaredNorm();
-    }
-    Strength strength{.displacement = rms(before), .change = rms(changes)};
-    const double scaling = squares > 0 ? overlap / squares : 0;
-    for (std::size_t row = 0; row < before.size(); ++row) changes[row] -= scaling * before[row];
-    strength.beyond = rms(changes);
-    return strength;
 }
 
 class BlindSetMaker {
@@ -141,17 +125,12 @@ private:
 
     bool reads_forces_alone() const { return !options_.rig.markers; }
 
-    std::vector<skeleton::EffectRecord> effects() const {
-        std::vector<skeleton::EffectRecord> all;
-        all.reserve(blind_set_.hidden.size());
-        for (const HiddenEffect& hidden : blind_set_.hidden) all.push_back(hidden.effect);
-        return all;
-    }
-
     /// All effects in force. A probe that finds no equilibrium then presses less, three times at most.
     void play_together() {
         constexpr int attempts = 4;
-        conditions_ = true_conditions(specimen_, effects());
+        std::vector<skeleton::EffectRecord> effects;
+        std::ranges::transform(blind_set_.hidden, std::back_inserter(effects), &HiddenEffect::effect);
+        conditions_ = true_conditions(specimen_, effects);
         // What yields gives way for good: to seek long is in vain.
         SimulationOptions options = play_;
         options.is_patient = !conditions_.setting.effects.plasticity;
@@ -160,8 +139,8 @@ private:
                 // From the bare paths, not from trials: told again, the same effects give the same digits.
                 paths_ = simulate(specimen_, conditions_, plan_.histories, options, &plan_.baseline);
             } catch (const SolverFailure& failure) {
-                throw SolverFailure(fmt::format("with {} the body has no equilibrium: {}",
-                                                fmt::join(names_of(specs_), ", "), failure.what()));
+                throw SolverFailure(
+                    fmt::format("with {} the body has no equilibrium: {}", names_of(specs_), failure.what()));
             }
             std::vector<char> failed;
             failed.reserve(paths_.size());
@@ -169,7 +148,7 @@ private:
             if (failed.front()) {
                 throw SolverFailure(fmt::format(
                     "with {} in it the body finds no equilibrium though nothing touches it; hide less of it",
-                    fmt::join(names_of(specs_), ", ")));
+                    names_of(specs_)));
             }
             if (std::ranges::count(failed, 1) == 0) return;
             if (attempt + 1 < attempts) {
@@ -206,7 +185,7 @@ private:
             for (std::size_t row = 0; row < plan_.histories[c].rows.size(); ++row, ++s) {
                 identify::LoadState state = plan_.histories[c].state(row);
                 state.readings = read_markers(state, hidden[s], faults(), seed_);
-                state.reactions = reactions_of(conditions_, plan_.histories[c], row, paths_[c][row]);
+                state.reactions = reactions_of(specimen_, conditions_, plan_.histories[c], row, paths_[c][row]);
                 set.states.push_back(std::move(state));
                 blind_set_.configurations.push_back(paths_[c][row]);
             }
@@ -223,6 +202,9 @@ private:
 
     /// How much each effect, and all together, change the forces of tools.
     void compare_forces() {
+        const auto felt = [&](const TrueConditions& conditions, const std::vector<EquilibriumPath>& paths) {
+            return forces_of_tools(specimen_, conditions, plan_.histories, paths);
+        };
         const std::vector<Points> bare = felt({.setting = specimen_.setting}, plan_.baseline);
         for (HiddenEffect& hidden : blind_set_.hidden) {
             const TrueConditions alone = true_conditions(specimen_, {hidden.effect});
@@ -234,46 +216,11 @@ private:
         blind_set_.strength = strength_in_forces(bare, felt(conditions_, paths_));
     }
 
-    /// Forces of the tools, a row of the histories after the other (tools x 3) [N]; NaN where there is no path.
-    std::vector<Points> felt(const TrueConditions& conditions, const std::vector<EquilibriumPath>& paths) const {
-        std::vector<Points> result;
-        for (std::size_t c = 0; c < plan_.histories.size(); ++c) {
-            for (std::size_t row = 0; row < plan_.histories[c].rows.size(); ++row) {
-                if (paths[c].empty()) {
-                    result.emplace_back(Points::Constant(1, 3, identify::missing));
-                    continue;
-                }
-                const auto readings = reactions_of(conditions, plan_.histories[c], row, paths[c][row]);
-                Points& forces = result.emplace_back(std::ssize(readings), 3);
-                for (std::size_t r = 0; r < readings.size(); ++r)
-                    forces.row(static_cast<Eigen::Index>(r)) = readings[r].force.transpose();
-            }
-        }
-        return result;
-    }
-
     /// As nothing but the tool's load cell reads.
     static void leave_markers_out(identify::MeasurementSet& set) {
         set.markers.clear();
         set.position_noise.reset();
         for (identify::LoadState& state : set.states) state.readings.clear();
-    }
-
-    /// Without noise.
-    std::vector<identify::ReactionReading> reactions_of(const TrueConditions& conditions,
-                                                        const ProbeLoadHistory& history, std::size_t row,
-                                                        const Eigen::VectorXd& q) const {
-        identify::Action action;
-        action.motions = history.motions(history.lagged_force(row, conditions.lag, {}));
-        if (action.motions.empty()) return {};
-        const Eigen::VectorXd all = specimen_.model->reactions(q, conditions.setting, conditions.act(action));
-        std::vector<identify::ReactionReading> readings;
-        readings.reserve(action.motions.size());
-        for (std::size_t m = 0; m < action.motions.size(); ++m) {
-            readings.push_back(
-                {.tool = action.motions[m].tool, .force = all.segment<3>(6 * static_cast<Eigen::Index>(m))});
-        }
-        return readings;
     }
 
     /// Adds the load cell's noise.

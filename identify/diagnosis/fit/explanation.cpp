@@ -83,6 +83,12 @@ Points channels_of(const BodyModel& model, const Problem& problem, const ModelSe
     return channels;
 }
 
+std::shared_ptr<const Tangent> tangent_of(const BodyModel& model, const ModelSetting& setting,
+                                          const ForwardSolution& forward, int k) {
+    const auto make = [&] { return model.tangent(forward.q[k], setting, forward.actions[k]); };
+    return forward.tangents ? forward.tangents->get(k, make) : make();
+}
+
 bool has_equilibrium(const BodyModel& model, const ModelSetting& setting, const Action& action) {
     try {
         model.equilibrium(setting, action);

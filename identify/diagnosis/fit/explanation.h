@@ -50,6 +50,10 @@ ForwardSolution solve_forward(const BodyModel& model, const Problem& problem, co
                               int threads, const std::vector<Eigen::VectorXd>* start = nullptr,
                               const TangentCache* guides = nullptr);
 
+/// The factored tangent of a solution in action k: the one that is there, else a new one.
+std::shared_ptr<const Tangent> tangent_of(const BodyModel& model, const ModelSetting& setting,
+                                          const ForwardSolution& forward, int k);
+
 /// Does the body bear an action, from rest?
 bool has_equilibrium(const BodyModel& model, const ModelSetting& setting, const Action& action);
 

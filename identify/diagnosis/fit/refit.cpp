@@ -8,6 +8,7 @@
 #include "identify/diagnosis/fit/priors/fit_priors.h"
 #include "identify/diagnosis/fit/priors/known_magnitude.h"
 #include "identify/diagnosis/fit/scatter.h"
+#include "identify/diagnosis/likelihood/reading_weights.h"
 #include "mesh/errors.h"
 
 namespace palpate::identify {

@@ -123,7 +123,11 @@ private:
     Diagnosis explain(const MeasurementSet& set, const std::vector<std::string>& effects) const {
         DiagnoseOptions options = options_.diagnose;
         options.screen = false;
-        for (const std::string& name : effects) options.known.push_back(start_of(name));
+        for (std::size_t e = 0; e < effects.size(); ++e) {
+            const auto before =
+                std::ranges::count(effects.begin(), effects.begin() + static_cast<std::ptrdiff_t>(e), effects[e]);
+            options.known.push_back(start_of(effects[e], static_cast<int>(before)));
+        }
         if (!set_readings_aside(effects)) options.without.push_back(effect_of_single_readings()->name());
         const bool has_residual = options_.residual && options_.residual->fit &&
                                   std::ranges::find(effects, options_.residual->effect.name) != effects.end();
@@ -139,17 +143,19 @@ private:
         return diagnose(body_, set, options);
     }
 
-    skeleton::EffectRecord start_of(const std::string& name) const {
+    /// @param which of those of this name
+    skeleton::EffectRecord start_of(const std::string& name, int which) const {
         if (diagnosis_) {
+            int next = which;
             for (const Candidate& candidate : diagnosis_->ranking) {
-                if (candidate.effect->name() == name && !candidate.estimate.effect.name.empty()) {
-                    return candidate.estimate.effect;
-                }
+                if (candidate.effect->name() != name || candidate.estimate.effect.name.empty()) continue;
+                if (next-- == 0) return candidate.estimate.effect;
             }
         }
         if (options_.residual && options_.residual->effect.name == name) return options_.residual->effect;
-        const auto told = std::ranges::find(options_.start, name, &skeleton::EffectRecord::name);
-        return told == options_.start.end() ? skeleton::EffectRecord{name, {}} : *told;
+        for (const skeleton::EffectRecord& told : options_.start)
+            if (told.name == name && which-- == 0) return told;
+        return {name, {}};
     }
 
     void add_step(const std::vector<std::string>& effects) {

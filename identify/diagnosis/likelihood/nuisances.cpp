@@ -5,8 +5,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 #include <map>
+#include <optional>
 
 #include "identify/diagnosis/likelihood/tool_nuisances.h"
 #include "identify/diagnosis/likelihood/tool_prints.h"
@@ -119,66 +119,6 @@ Eigen::MatrixXd clamp_sectors(const BodyModel& model, int most) {
     return W;
 }
 
-double squared_distance(const Points& points, const Vec3& x, Eigen::Index& nearest) {
-    return (points.rowwise() - x.transpose()).rowwise().squaredNorm().minCoeff(&nearest);
-}
-
-/// How closely each marker lies to what is held.
-class Border {
-public:
-    Border(const BodyModel& model, const Points& markers) {
-        const Points& support = model.support_points();
-        double sum = 0;
-        int count = 0;
-        for (Eigen::Index p = 0; p < model.pieces().rows() && support.rows() > 0; ++p) {
-            if (!model.pieces_at_support()[static_cast<std::size_t>(p)]) continue;
-            Eigen::Index nearest = 0;
-            sum += std::sqrt(squared_distance(support, model.pieces().row(p), nearest));
-            ++count;
-        }
-        closeness_ = Eigen::VectorXd::Zero(markers.rows());
-        skin_.assign(static_cast<std::size_t>(markers.rows()), 0);
-        if (!(sum > 0)) return;
-        const double reach = 2 * sum / count;
-        for (Eigen::Index m = 0; m < markers.rows(); ++m) {
-            Eigen::Index held = 0;
-            closeness_[m] = std::exp(-squared_distance(support, markers.row(m), held) / (reach * reach));
-            squared_distance(model.skin(), support.row(held), skin_[static_cast<std::size_t>(m)]);
-        }
-    }
-
-    double closeness(int marker) const { return closeness_[marker]; }  // 1: on the support, 0: far from it
-    Eigen::Index skin_point(int marker) const { return skin_[static_cast<std::size_t>(marker)]; }  // held next to it
-
-private:
-    Eigen::VectorXd closeness_;
-    std::vector<Eigen::Index> skin_;
-};
-
-/// The contacts that dent the body in each action: its own and those of tools, and where it yields, the strongest at
-/// each place before.
-std::vector<std::vector<mesh::Contact>> contacts_that_dent(const BodyModel& model, const Problem& problem,
-                                                           const ModelSetting& setting, const ForwardSolution& forward,
-                                                           bool yields) {
-    std::vector<std::vector<mesh::Contact>> dents;
-    dents.reserve(forward.actions.size());
-    for (int k = 0; k < static_cast<int>(forward.actions.size()); ++k) {
-        dents.push_back(forward.actions[k].contacts);
-        std::ranges::transform(tool_prints(model, problem, setting, forward, k), std::back_inserter(dents.back()),
-                               &ToolPrint::contact);
-        if (!yields || problem.before(k) < 0) continue;
-        for (const mesh::Contact& earlier : dents[problem.before(k)]) {
-            const auto same = std::ranges::find(dents.back(), earlier.point, &mesh::Contact::point);
-            if (same == dents.back().end()) {
-                dents.back().push_back(earlier);
-            } else if (earlier.force.norm() > same->force.norm()) {
-                *same = earlier;
-            }
-        }
-    }
-    return dents;
-}
-
 /// Adds nuisances of one prior sd; columns over sigma (N x c).
 void add(const std::vector<std::string>& names, const Eigen::MatrixXd& columns, double sd, Nuisances& nuisances) {
     const Eigen::Index more = columns.cols();
@@ -187,15 +127,6 @@ void add(const std::vector<std::string>& names, const Eigen::MatrixXd& columns, 
     nuisances.precisions.conservativeResize(nuisances.precisions.size() + more);
     nuisances.precisions.tail(more).setConstant(1 / (sd * sd));
     nuisances.names.insert(nuisances.names.end(), names.begin(), names.end());
-}
-
-/// What an even pressure, over Young's modulus, indents a half-space by plastic flow, over what it does elastically:
-/// it yields first, by Tresca's criterion, where the largest shear is a third of the pressure [Johnson, Contact
-/// mechanics, 3.4], and beyond that gives way as much more as its hardening is below its elastic stiffness.
-double plastic_indentation(const fem::Plasticity& plasticity, double pressure) {
-    constexpr double least_hardening = 0.01;  // what flows is confined by the elastic body round it
-    const double first = 1.5 * plasticity.yield;
-    return std::max(0.0, pressure / first - 1) / std::max(plasticity.hardening, least_hardening);
 }
 
 /// What a tool feels next to a support: each time by a gain of its own.
@@ -292,40 +223,6 @@ Nuisances make_nuisances(const BodyModel& model, const Problem& problem, const E
     add_gains_at_support(model, problem, setting, forward, options.gain_at_support, result);
     add_errors_of_mesh(model, problem, options.discretisation, result);
     return result;
-}
-
-Eigen::VectorXd reading_weights(const BodyModel& model, const Problem& problem, const Explanation& explanation,
-                                const ForwardSolution& forward, const NuisanceOptions& options) {
-    const ModelSetting setting = explanation.setting();
-    const double E = model.young(setting);
-    constexpr double nu = 0.45;
-    const double flow = setting.effects.plasticity ? options.flow : 0;
-    const Border border(model, problem.rest.topRows(problem.markers));
-    const std::vector<std::vector<mesh::Contact>> dents =
-        contacts_that_dent(model, problem, setting, forward, problem.by_stage && flow > 0);
-    std::vector<Points> skin;  // what it moved by, in each action
-    for (const Eigen::VectorXd& q : forward.q) skin.push_back(model.skin_positions(q, setting) - model.skin());
-    Eigen::VectorXd variance = Eigen::VectorXd::Ones(problem.rows());  // in sigma^2
-    for (Eigen::Index n = 0; n < problem.rows(); ++n) {
-        if (!problem.is_position(n)) continue;
-        const int marker = problem.channel(n);
-        const Vec3 moved = forward.channels[problem.action[n]].row(marker) - problem.rest.row(marker);
-        const Vec3 base = skin[problem.action[n]].row(border.skin_point(marker));
-        variance[n] += std::pow(flow * moved.norm() / problem.sigma[n], 2);
-        variance[n] +=
-            std::pow(options.ragged * border.closeness(marker) * (moved - base).norm() / problem.sigma[n], 2);
-        for (const mesh::Contact& contact : dents[problem.action[n]]) {
-            const double r = effective_radius(model, contact), F = contact.force.norm();
-            const double d = (problem.rest.row(marker).transpose() - contact.point).norm();
-            double U = F * (1 - nu * nu) / (2 * E * r);
-            const double p = F / (M_PI * r * r);
-            if (model.is_nonlinear(setting)) U *= 1 + p / E;
-            if (setting.effects.plasticity) U *= 1 + plastic_indentation(*setting.effects.plasticity, p / E);
-            const double near = std::min(1.0, std::pow(1.2 * r / std::max(d, 1e-9), 2));
-            variance[n] += std::pow(options.dent * U * near / problem.sigma[n], 2);
-        }
-    }
-    return variance.cwiseSqrt().cwiseInverse();
 }
 
 }  // namespace palpate::identify

@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+#include "identify/effects/vector_words.h"
+
 namespace palpate::identify {
 namespace {
 
@@ -45,8 +47,7 @@ std::string place_in_words(const MissingSource& source, const SourceTerm& term) 
 std::string vector_in_short(const MissingSource& source, const SourceTerm& term, const char* unit) {
     const Vec3 v = term.mean.head<3>();
     const double sd = std::sqrt(source.direction.dot(term.covariance.topLeftCorner<3, 3>() * source.direction));
-    return fmt::format("{} {} towards ({:.2f}, {:.2f}, {:.2f})", with_sd(v.norm(), sd), unit, source.direction.x(),
-                       source.direction.y(), source.direction.z());
+    return fmt::format("{} {} towards {}", with_sd(v.norm(), sd), unit, components_in_words(source.direction));
 }
 
 }  // namespace
@@ -136,10 +137,9 @@ std::string MissingSource::sentence() const {
                                is_everywhere ? "" : " at the most, growing " + law);
         }
         case SourceForm::fibres:
-            return fmt::format(
-                "The material is {} along ({:.2f}, {:.2f}, {:.2f}) than across, by {} of the shear modulus, {}.",
-                value > 0 ? "stiffer" : "softer", term.axis.x(), term.axis.y(), term.axis.z(),
-                with_sd(std::abs(value), sd), law);
+            return fmt::format("The material is {} along {} than across, by {} of the shear modulus, {}.",
+                               value > 0 ? "stiffer" : "softer", components_in_words(term.axis),
+                               with_sd(std::abs(value), sd), law);
         case SourceForm::set:
             return fmt::format(
                 "The material keeps part of the shape that earlier loads gave it, as if up to {:.2g} of each still "

@@ -263,8 +263,7 @@ bool Search::was_tried(const std::vector<std::string>& names) const {
         return std::ranges::is_permutation(rejected, names);
     };
     return std::ranges::any_of(rejected_, same) || std::ranges::any_of(tried_, [&](const FittedExplanation& one) {
-               return one.effects.size() == names.size() &&
-                      std::ranges::all_of(names, [&](const std::string& name) { return one.has(name); });
+               return std::ranges::is_permutation(one.names(), names);
            });
 }
 

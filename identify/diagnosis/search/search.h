@@ -22,7 +22,9 @@ public:
 
     void single_effects();
     void put_together();  // @pre single_effects
-    void last_resorts();  // the effects that are, where the others explain too little; @pre single_effects
+    /// Where single effects and several together explain too little: further ones of a kind that may repeat, and the
+    /// effects that are last resorts. @pre single_effects
+    void last_resorts();
     /// Fits once more, from where they stand, to a problem whose readings were corrected: the explanations with at
     /// least half the leader's evidence; the others are reassessed. @pre the baselines were
     void refit_tried(const Problem& corrected);
@@ -55,6 +57,9 @@ private:
     bool residual_is_small() const;
     bool is_confused_with_leader(const EffectHypothesis& other) const;
     void drop_and_swap();
+    void repeat(std::size_t from);
+    void drop_one_of_a_kind(std::size_t from);
+    void seek_last_resort(const std::shared_ptr<const EffectHypothesis>& effect);
     const Problem& problem_for(const Explanation& explanation) const;
     std::size_t index_of_leader() const;
     std::vector<std::size_t> by_evidence() const;  // places in tried_, most first

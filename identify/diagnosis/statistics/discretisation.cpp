@@ -103,8 +103,8 @@ public:
 
     /// (N) [mm]
     Eigen::VectorXd in_rows() const {
-        Eigen::VectorXd result = Eigen::VectorXd::Zero(problem_.rows());
-        if (problem_.discretisation.size() > 0) result = problem_.discretisation;
+        Eigen::VectorXd result = problem_.discretisation;
+        if (result.size() == 0) result.setZero(problem_.rows());
         for (Eigen::Index n = 0; n < problem_.rows(); ++n) {
             const auto& own = seen_[problem_.action[n]];
             if (!own) continue;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "identify/diagnosis/likelihood/reading_weights.h"
 #include "identify/diagnosis/statistics/discretisation.h"
 #include "identify/numerics/load_reduction.h"
 #include "mesh/core/scaled_motion.h"

@@ -153,12 +153,20 @@ void assign_probabilities(std::vector<Candidate>& ranking) {
 }
 
 /// The explanation's effects, those first that say most by themselves; their numbers are those that they have together.
+/// Further ones of a kind get rows of their own in the ranking, behind the first.
 void name_effects(Diagnosis& diagnosis) {
-    for (Candidate& c : diagnosis.ranking) {
-        if (!diagnosis.explained->has(c.effect->name())) continue;
-        diagnosis.explanation.push_back(c.effect->name());
-        c.estimate = diagnosis.explained->estimate(c.effect->name());
+    const FittedExplanation& explained = *diagnosis.explained;
+    std::vector<Candidate> ranking;
+    for (const Candidate& c : diagnosis.ranking) {
+        const auto count = static_cast<int>(std::ranges::count(explained.effects, c.effect));
+        ranking.push_back(c);
+        for (int which = 0; which < count; ++which) {
+            if (which > 0) ranking.push_back(c);
+            diagnosis.explanation.push_back(c.effect->name());
+            ranking.back().estimate = explained.estimate(c.effect->name(), which);
+        }
     }
+    diagnosis.ranking = std::move(ranking);
 }
 
 }  // namespace

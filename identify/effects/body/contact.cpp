@@ -143,8 +143,9 @@ public:
 
     std::string sentence_with(const skeleton::EffectRecord& record, const Eigen::MatrixXd& covariance) const override {
         const auto& p = record.parameters;
-        return fmt::format("The body meets a plane with normal ({:.2f}, {:.2f}, {:.2f}) at {} mm along it.", p[0].value,
-                           p[1].value, p[2].value, number_in_words(record, 3, covariance));
+        return fmt::format("The body meets a plane with normal {} at {} mm along it.",
+                           components_in_words({p[0].value, p[1].value, p[2].value}),
+                           number_in_words(record, 3, covariance));
     }
 
     std::optional<std::uint64_t> stream() const override { return 12; }

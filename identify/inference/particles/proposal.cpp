@@ -94,6 +94,36 @@ double GaussianProposal::log_peak() const {
     return -log_root - 0.5 * P * std::log(2 * std::numbers::pi);
 }
 
+GaussianMixture::GaussianMixture(const std::vector<GaussianProposal>& parts) : parts_(parts) {
+    for (const GaussianProposal& part : parts) log_peaks_.push_back(part.log_peak());
+}
+
+Eigen::MatrixXd GaussianMixture::parameters(const Eigen::MatrixXd& z, const std::vector<int>& from) const {
+    Eigen::MatrixXd theta(z.rows(), z.cols());
+    for (int k = 0; k < modes(); ++k) {
+        std::vector<int> of_k;
+        for (int i = 0; i < static_cast<int>(from.size()); ++i) {
+            if (from[i] == k) of_k.push_back(i);
+        }
+        theta(Eigen::all, of_k) = parts_[k].parameters(z(Eigen::all, of_k));
+    }
+    return theta;
+}
+
+Eigen::VectorXd GaussianMixture::log_densities(const Eigen::VectorXd& theta, const Eigen::VectorXd& z, int from) const {
+    Eigen::VectorXd log_q(modes());
+    for (int k = 0; k < modes(); ++k) {
+        log_q[k] = log_peaks_[k] - (k == from ? z.squaredNorm() : parts_[k].whitened(theta).squaredNorm()) / 2;
+    }
+    return log_q;
+}
+
+double GaussianMixture::log_density(const Eigen::VectorXd& theta, const Eigen::VectorXd& z, int from) const {
+    const Eigen::VectorXd log_q = log_densities(theta, z, from);
+    const double largest = log_q.maxCoeff();
+    return largest + std::log((log_q.array() - largest).exp().mean());
+}
+
 GaussianProposal laplace_proposal(const FitResult& fit, const LogNormalPrior& prior) {
     return {fit.theta, prior, fit.spectrum, 1 + 1 / static_cast<double>(fit.theta.size())};
 }

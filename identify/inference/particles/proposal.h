@@ -1,5 +1,7 @@
 #pragma once
 
+#include <vector>
+
 #include "identify/inference/maximum/fit_map.h"
 
 namespace palpate::identify {
@@ -20,6 +22,26 @@ struct GaussianProposal {
     Eigen::MatrixXd gradients_by_z(const Eigen::MatrixXd& gradients) const;
     /// The density's logarithm where z = 0; it falls by |z|^2 / 2.
     double log_peak() const;
+};
+
+/// Equal parts of Gaussians, one a mode that is known. A place is told by theta and by z in the Gaussian `from`. Keeps
+/// a reference to the Gaussians.
+class GaussianMixture {
+public:
+    explicit GaussianMixture(const std::vector<GaussianProposal>& parts);
+
+    int modes() const { return static_cast<int>(parts_.size()); }
+    int dimension() const { return static_cast<int>(parts_.front().mean.size()); }
+    /// theta of each column of z (P x n), which are of the Gaussians `from` (n).
+    Eigen::MatrixXd parameters(const Eigen::MatrixXd& z, const std::vector<int>& from) const;
+    /// The logarithm of each Gaussian's density (modes).
+    Eigen::VectorXd log_densities(const Eigen::VectorXd& theta, const Eigen::VectorXd& z, int from) const;
+    /// The same of the mixture.
+    double log_density(const Eigen::VectorXd& theta, const Eigen::VectorXd& z, int from) const;
+
+private:
+    const std::vector<GaussianProposal>& parts_;
+    std::vector<double> log_peaks_;
 };
 
 /// Laplace's approximation at the fit, wider by 1 + 1 / P, so that the effective sample size stands it.

@@ -35,51 +35,16 @@ struct Cloud {
 
 class Filter {
 public:
-    Filter(const LogDensity& log_density, const std::vector<GaussianProposal>& proposals,
-           const TemperedOptions& options)
-        : log_density_(log_density), proposals_(proposals), options_(options) {
-        for (const GaussianProposal& q : proposals) log_peaks_.push_back(q.log_peak());
-    }
-
-    int modes() const { return static_cast<int>(proposals_.size()); }
-    int parameters() const { return static_cast<int>(proposals_.front().mean.size()); }
-
-    /// theta of each particle (P x N).
-    Eigen::MatrixXd theta_of(const Eigen::MatrixXd& z, const std::vector<int>& from) const {
-        Eigen::MatrixXd theta(z.rows(), z.cols());
-        for (int k = 0; k < modes(); ++k) {
-            std::vector<int> of_k;
-            for (int i = 0; i < static_cast<int>(from.size()); ++i) {
-                if (from[i] == k) of_k.push_back(i);
-            }
-            theta(Eigen::all, of_k) = proposals_[k].parameters(z(Eigen::all, of_k));
-        }
-        return theta;
-    }
-
-    /// ln q_k of each Gaussian at theta, which is z in that of `from` (modes).
-    Eigen::VectorXd log_proposals(const Eigen::VectorXd& theta, const Eigen::VectorXd& z, int from) const {
-        Eigen::VectorXd log_q(modes());
-        for (int k = 0; k < modes(); ++k) {
-            log_q[k] = log_peaks_[k] - (k == from ? z.squaredNorm() : proposals_[k].whitened(theta).squaredNorm()) / 2;
-        }
-        return log_q;
-    }
-
-    /// ln q of the mixture.
-    double log_proposal(const Eigen::VectorXd& theta, const Eigen::VectorXd& z, int from) const {
-        const Eigen::VectorXd log_q = log_proposals(theta, z, from);
-        const double largest = log_q.maxCoeff();
-        return largest + std::log((log_q.array() - largest).exp().mean());
-    }
+    Filter(const LogDensity& log_density, const GaussianMixture& q, const TemperedOptions& options)
+        : log_density_(log_density), q_(q), options_(options) {}
 
     /// ln pi - ln q of each particle.
     Eigen::VectorXd log_ratio(const Eigen::MatrixXd& z, const std::vector<int>& from) const {
-        const Eigen::MatrixXd theta = theta_of(z, from);
+        const Eigen::MatrixXd theta = q_.parameters(z, from);
         Eigen::VectorXd ratio(z.cols());
         for_each_in_parallel(static_cast<int>(z.cols()), options_.threads, [&](int i) {
             const double value = log_density_(theta.col(i));
-            ratio[i] = std::isfinite(value) ? value - log_proposal(theta.col(i), z.col(i), from[i])
+            ratio[i] = std::isfinite(value) ? value - q_.log_density(theta.col(i), z.col(i), from[i])
                                             : -std::numeric_limits<double>::infinity();
         });
         return ratio;
@@ -88,13 +53,13 @@ public:
     /// Adds N particles of q, as many of each Gaussian.
     void draw(Cloud& cloud) const {
         const int before = cloud.size(), count = options_.particles;
-        Eigen::MatrixXd z(parameters(), count);
+        Eigen::MatrixXd z(q_.dimension(), count);
         std::vector<int> from;
         for (int i = before; i < before + count; ++i) {
-            z.col(i - before) = RandomStream(options_.seed, 0, i).normals(parameters());
-            from.push_back(i % modes());
+            z.col(i - before) = RandomStream(options_.seed, 0, i).normals(q_.dimension());
+            from.push_back(i % q_.modes());
         }
-        cloud.z.conservativeResize(parameters(), before + count);
+        cloud.z.conservativeResize(q_.dimension(), before + count);
         cloud.z.rightCols(count) = z;
         cloud.log_ratio.conservativeResize(before + count);
         cloud.log_ratio.tail(count) = log_ratio(z, from);
@@ -131,14 +96,13 @@ public:
     }
 
     FilterStep record(const Cloud& cloud, double b, const Eigen::VectorXd& log_weights) const {
-        return {b, effective_samples(log_weights), theta_of(cloud.z, cloud.from).transpose(), log_weights};
+        return {b, effective_samples(log_weights), q_.parameters(cloud.z, cloud.from).transpose(), log_weights};
     }
 
 private:
     const LogDensity& log_density_;
-    const std::vector<GaussianProposal>& proposals_;
+    const GaussianMixture& q_;
     const TemperedOptions& options_;
-    std::vector<double> log_peaks_;  // ln q_k(mean)
 };
 
 void resample(Cloud& cloud, Eigen::VectorXd& log_weights, double u) {
@@ -276,7 +240,8 @@ bool temper(const Filter& filter, const TemperedOptions& options, Mover& mover, 
 
 TemperedResult tempered_filter(const LogDensity& log_density, const std::vector<GaussianProposal>& proposals,
                                const TemperedOptions& options, const Progress& progress) {
-    const Filter filter(log_density, proposals, options);
+    const GaussianMixture q(proposals);
+    const Filter filter(log_density, q, options);
     Mover mover(filter, options.moves);
 
     // particles of the proposal, b = 0
@@ -304,7 +269,7 @@ TemperedResult tempered_filter(const LogDensity& log_density, const std::vector<
             mover.once(cloud, 1);
             report(progress, "particles", static_cast<double>(i) / (2 * options.moves));
         }
-        result.log_evidence = filter.log_ratio(Eigen::MatrixXd::Zero(filter.parameters(), 1), {0})[0];
+        result.log_evidence = filter.log_ratio(Eigen::MatrixXd::Zero(q.dimension(), 1), {0})[0];
     }
 
     result.history.push_back(filter.record(cloud, 1, result.log_weights));
@@ -315,9 +280,9 @@ TemperedResult tempered_filter(const LogDensity& log_density, const std::vector<
     result.mode.resize(static_cast<std::size_t>(cloud.size()));
     for (int i = 0; i < cloud.size(); ++i) {
         const Eigen::VectorXd theta = result.particles.row(i);
-        result.log_density[i] = cloud.log_ratio[i] + filter.log_proposal(theta, cloud.z.col(i), cloud.from[i]);
+        result.log_density[i] = cloud.log_ratio[i] + q.log_density(theta, cloud.z.col(i), cloud.from[i]);
         Eigen::Index densest = 0;
-        filter.log_proposals(theta, cloud.z.col(i), cloud.from[i]).maxCoeff(&densest);
+        q.log_densities(theta, cloud.z.col(i), cloud.from[i]).maxCoeff(&densest);
         result.mode[i] = static_cast<int>(densest);
     }
     return result;

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <map>
 
+#include "identify/diagnosis/likelihood/reading_weights.h"
 #include "identify/diagnosis/search/screen.h"
 #include "identify/diagnosis/search/screen_plan.h"
 

@@ -14,6 +14,8 @@
 namespace palpate::identify {
 namespace {
 
+constexpr const char* unloaded_pose = "unload";  // as the file of a check names it
+
 bool is_driven(const LoadState& state) {
     return std::ranges::any_of(state.contacts, [](const auto& c) { return !c.force.isZero(0); }) ||
            !state.motions.empty() ||
@@ -65,7 +67,8 @@ public:
     }
 
     std::vector<Experiment> all() {
-        if (!has_unloaded_) add("unload", "Read all markers with nothing pressing, pulling or driving", {LoadState{}});
+        if (!has_unloaded_)
+            add(unloaded_pose, "Read all markers with nothing pressing, pulling or driving", {LoadState{}});
         add_turns();
         if (!own_.empty()) {
             add_levels();

@@ -11,9 +11,11 @@ namespace palpate::identify {
 
 /// More states for a set, as a rig could bring them within an hour.
 struct Experiment {
-    std::string kind;                    // unload, levels, repeat, orientation, load, dwell, release, pressure
-    std::string words;                   // what to do, as an order
-    std::vector<LoadState> states = {};  // without readings
+    /// unload (the unloaded pose), levels, repeat, orientation, load, dwell, release (a load taken off), pressure. Not
+    /// a diagnosis's `probe_kinds::unload`, which is "release" here.
+    std::string kind;
+    std::string words;                             // what to do, as an order
+    std::vector<LoadState> states = {};            // without readings
     std::vector<ProbeConditions> conditions = {};  // of each state
 };
 

@@ -7,17 +7,15 @@
 #include <cmath>
 #include <map>
 #include <optional>
-#include <set>
 
-#include "identify/measurements/rest_body.h"
+#include "identify/numerics/summaries.h"
+#include "identify/recordings/assembly/rest_markers.h"
 #include "mesh/errors.h"
-#include "mesh/text/words.h"
 
 namespace palpate::identify {
 namespace {
 
-constexpr double on_surface = 1e-3;  // of the longest side: nearer than a marker's base is thick
-constexpr double by_noise = 3;       // sd
+constexpr double by_noise = 3;  // sd
 
 /// A state's point in the mesh's frame; of points in a plane the third coordinate is NaN.
 Vec3 registered(const ProbeRecording& probe, const RigidMotion& frame, Vec3 at) {
@@ -35,7 +33,7 @@ public:
         : map_(map), probes_(probes), rest_(rest), frames_(frames), report_(report), set_(map.set) {}
 
     MeasurementSet filled() {
-        find_markers();
+        index_of_ = add_markers(map_, probes_, rest_, rest_frame(), set_, report_);
         std::size_t frame = 0;
         for (const ProbeStates& probe : probes_) {
             check_values(probe);
@@ -54,108 +52,6 @@ private:
             before += probe.states.size();
         }
         return frames_.of_state[before];
-    }
-
-    /// Points that are not of the body: fiducials, and what moves tools or measures.
-    std::set<std::string> others() const {
-        std::set<std::string> names;
-        for (const MappedPlace& place : map_.places)
-            if (!place.is_marker) names.insert(place.name);
-        for (const MappedUse& use : map_.uses) names.insert(use.points.begin(), use.points.end());
-        for (const MappedQuantity& quantity : map_.quantities) {
-            names.insert(quantity.points.begin(), quantity.points.end());
-            names.insert(quantity.minus.begin(), quantity.minus.end());
-        }
-        return names;
-    }
-
-    std::vector<std::string> marker_names() const {
-        std::vector<std::string> names;
-        if (map_.names_markers) {
-            for (const MappedPlace& place : map_.places)
-                if (place.is_marker) names.push_back(place.name);
-            return names;
-        }
-        const std::set<std::string> left_out = others();
-        for (const ProbeStates& probe : probes_)
-            for (const RecordedPoint& point : probe.probe->points)
-                if (!left_out.contains(point.name) && std::ranges::find(names, point.name) == names.end())
-                    names.push_back(point.name);
-        return names;
-    }
-
-    /// Whole numbers of their own stay; others are numbered from 1.
-    static std::vector<int> ids_of(const std::vector<std::string>& names) {
-        std::vector<int> ids;
-        for (const std::string& name : names) {
-            const auto number = mesh::parse_integer(name);
-            if (!number || *number < 0) break;
-            ids.push_back(*number);
-        }
-        if (ids.size() < names.size() || std::set<int>(ids.begin(), ids.end()).size() < ids.size()) {
-            ids.resize(names.size());
-            for (std::size_t i = 0; i < ids.size(); ++i) ids[i] = static_cast<int>(i) + 1;
-        }
-        return ids;
-    }
-
-    /// Where a marker rests, if it is known.
-    std::optional<Vec3> rest_place(const std::string& name) const {
-        const auto told = std::ranges::find(map_.places, name, &MappedPlace::name);
-        if (told != map_.places.end() && told->at) return told->at;
-        const auto point = std::ranges::find(rest_.probe->points, name, &RecordedPoint::name);
-        if (!map_.is_rest_seen || point == rest_.probe->points.end()) return std::nullopt;
-        Vec3 at = rest_.state.points[static_cast<std::size_t>(point - rest_.probe->points.begin())].at;
-        if (rest_.probe->is_planar) at.z() = 0;
-        if (!at.allFinite()) return std::nullopt;
-        return rest_frame()(at);
-    }
-
-    void find_markers() {
-        const std::vector<std::string> names = marker_names();
-        const std::vector<int> ids = ids_of(names);
-        const RestBody body(set_.rest_surface);
-        const double near = on_surface * body.box.longest_side();
-        std::string not_seen;
-        int standing_off = 0;
-        double highest = 0;
-        for (std::size_t i = 0; i < names.size(); ++i) {
-            const auto place = rest_place(names[i]);
-            if (!place) {
-                not_seen += fmt::format("{}{}", not_seen.empty() ? "" : ", ", mesh::cited(names[i]));
-                continue;
-            }
-            Marker marker{.id = ids[i], .rest = *place, .anchor = {}};
-            const auto told = std::ranges::find(map_.places, names[i], &MappedPlace::name);
-            const mesh::SurfacePoint on = body.tree.closest(*place);
-            if (told != map_.places.end() && told->attached)
-                marker.anchor = told->attached;
-            else if (on.distance > near && !(body.is_closed && body.tree.inside(*place)))
-                marker.anchor = on.position;
-            if (marker.anchor) {
-                ++standing_off;
-                highest = std::max(highest, (*place - *marker.anchor).norm());
-            }
-            index_of_[names[i]] = static_cast<int>(set_.markers.size());
-            set_.markers.push_back(marker);
-            report_.markers.push_back(names[i]);
-        }
-        if (!not_seen.empty())
-            report_.notes.push_back(
-                fmt::format("Left out, as nobody knows where they rest (no place 'at' in the map, and {}): "
-                            "{}.",
-                            map_.is_rest_seen ? "not seen in the first state" : "'rest: none'", not_seen));
-        if (!names.empty() && set_.markers.empty())
-            throw InvalidInput(fmt::format(
-                "{}: no point has a place at rest: {}, and no marker has one ('at'). Say 'rest: auto', or give "
-                "the markers their places.",
-                map_.file.filename().string(),
-                map_.is_rest_seen ? "the first state shows none" : "the map says 'rest: none'"));
-        if (standing_off > 0)
-            report_.notes.push_back(
-                fmt::format("{} of {} markers stand off the surface, by {:.3g} mm at most; each is tied to "
-                            "its nearest point (ax,ay,az).",
-                            standing_off, set_.markers.size(), highest));
     }
 
     /// Values that act where points have moved need a state in which they have not.
@@ -255,7 +151,7 @@ private:
         use.axis.cwiseAbs().maxCoeff(&axis);
         (use.is_about ? found->moment : found->force)[axis] = value.mean * (use.axis[axis] < 0 ? -1 : 1);
         if (!use.is_about && value.sigma > 0)
-            found->sigma = std::max({least_force_noise, value.sigma, std::isnan(found->sigma) ? 0 : found->sigma});
+            found->sigma = std::max({least_force_noise, value.sigma, known_part(found->sigma)});
     }
 
     /// Places of some points in a state, in the mesh's frame; of those in a plane with z 0.

@@ -37,11 +37,7 @@ void check_all_are_mapped(const ImportMap& map, const std::vector<fs::path>& fil
     for (const fs::path& file : files) {
         if (fs::is_directory(file)) continue;
         const std::string name = file.filename().string();
-        const auto is_named = [&](const MappedFile& mapped) {
-            const auto star = mapped.file.find('*');
-            if (star == std::string::npos) return fs::path(mapped.file).filename().string() == name;
-            return name.starts_with(mapped.file.substr(0, star)) && name.ends_with(mapped.file.substr(star + 1));
-        };
+        const auto is_named = [&](const MappedFile& mapped) { return names_file(mapped, name); };
         if (std::ranges::any_of(map.files, is_named)) continue;
         std::vector<std::string> names;
         names.reserve(map.files.size());

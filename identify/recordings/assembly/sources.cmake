@@ -3,6 +3,7 @@ set(assembly_sources
   assembly/import_report.cpp
   assembly/import_set.cpp
   assembly/register_states.cpp
+  assembly/rest_markers.cpp
   assembly/clocks/common_column.cpp
   assembly/clocks/lag.cpp
   assembly/clocks/merge_recordings.cpp

@@ -103,8 +103,11 @@ constexpr const char* further =
 
 }  // namespace
 
-std::string draft_map(const std::filesystem::path& file, const std::vector<Recording>& recordings) {
+std::string draft_map(const std::filesystem::path& file, const std::vector<Recording>& recordings,
+                      const FileMap& told) {
     std::string text = fmt::format("files:\n  - file: {}\n", quoted(file.filename().string()));
+    if (!told.unit.empty()) text += fmt::format("    unit: {}\n", told.unit);
+    if (told.pixel > 0) text += fmt::format("    pixel: {:g}\n", told.pixel);
     const bool is_table = recordings.empty() || recordings[0].format.starts_with("table") ||
                           recordings[0].format.starts_with("testing machine") ||
                           recordings[0].format.find("image correlation") != std::string::npos;

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "mesh/text/atomic_file.h"
+#include "pipeline/output/html/charts/svg.h"
 #include "pipeline/output/html/escape.h"
 #include "pipeline/output/html/page/page_parts.h"
 #include "pipeline/output/html/page_frame.h"
@@ -87,17 +88,27 @@ std::string with_spaces(std::string name) {
     return name;
 }
 
+/// The verdict, with the effects that it names.
+std::string verdict_tile(const json& diagnosis) {
+    const auto named = diagnosis["verdict"] == "missing-effect"
+                           ? diagnosis["explanation"].get<std::vector<std::string>>()
+                           : std::vector<std::string>{};
+    return tile(with_spaces(diagnosis["verdict"].get<std::string>()),
+                named.empty() ? "verdict" : "verdict: " + listed(named));
+}
+
 std::string tiles(const RunFiles& files) {
     const auto held =
         std::count_if(files.model.spheres.begin(), files.model.spheres.end(), [](auto& s) { return s.held; });
     const auto informed =
         std::count_if(files.posterior.begin(), files.posterior.end(), [](auto& r) { return r.informed; });
     std::string html = "<div class=\"tiles\">";
-    if (!files.diagnosis.is_null()) html += tile(with_spaces(files.diagnosis["verdict"].get<std::string>()), "verdict");
+    if (!files.diagnosis.is_null()) html += verdict_tile(files.diagnosis);
     return html + error_tiles(files) + material_tiles(files) +
            tile(fmt::format("{} + {}", files.model.spheres.size() - held, held), "spheres, free + held") +
            tile(std::to_string(files.model.links.size()), "links") +
-           tile(fmt::format("{} of {}", informed, files.posterior.size()), "stiffnesses constrained by the data") +
+           tile(fmt::format("{} of {}", informed, files.posterior.size()),
+                "stiffnesses constrained by the data" + (files.improved.is_object() ? ", " + with_what(files) : "")) +
            "</div>" +
            (reads_positions(files.compare)
                 ? "<p class=\"soft\">Rms errors are per coordinate; largest errors are distances.</p>"
@@ -106,6 +117,19 @@ std::string tiles(const RunFiles& files) {
 
 /// What a print-out of one page leaves out.
 std::string aside(const std::string& html) { return html.empty() ? "" : "<div class=\"aside\">" + html + "</div>"; }
+
+/// A figure of a stage, whose name may end in its unit: "volume 90 000 mm³".
+std::string figure_in_words(std::string name, const json& value) {
+    std::string unit;
+    for (const auto& [ending, printed] : {std::pair{"_mm3", " mm³"}, {"_mm", " mm"}, {"_n", " N"}}) {
+        if (!name.ends_with(ending)) continue;
+        name.resize(name.size() - std::string_view(ending).size());
+        unit = printed;
+    }
+    if (!value.is_number()) return with_spaces(name) + " " + value.get<std::string>();
+    const int digits = value.is_number_integer() ? 9 : 4;  // counts come in whole
+    return with_spaces(name) + " " + plain_number(value.get<double>(), digits) + unit;
+}
 
 std::string stage_table(const RunFiles& files) {
     std::string rows;
@@ -117,8 +141,7 @@ std::string stage_table(const RunFiles& files) {
         for (const auto& [key, value] : s["figures"].items()) {
             if (!value.is_number() && !value.is_string()) continue;
             figures += figures.empty() ? "" : ", ";
-            figures += with_spaces(key) + " " +
-                       (value.is_number() ? fmt::format("{:.4g}", value.get<double>()) : value.get<std::string>());
+            figures += figure_in_words(key, value);
         }
         rows += fmt::format("<tr><td>{}</td><td>{:.1f}</td><td>{:.0f}</td><td style=\"text-align:left\">{}</td></tr>",
                             stage, s["seconds"].get<double>(), s["peak_memory_mb"].get<double>(), escape(figures));

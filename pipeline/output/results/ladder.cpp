@@ -57,9 +57,11 @@ std::string error_in_words(const json& error) {
 
 std::string step_in_words(const json& step) {
     const auto effects = step["effects"].get<std::vector<std::string>>();
-    std::string text = (effects.empty() ? "Nothing added: " : "With " + listed(effects) + ": ") + error_in_words(step);
+    std::string text = effects.empty() ? "Nothing added: " : "With " + listed(effects) + ": ";
+    if (step["reference"].is_object()) text += "real-time model ";
+    text += error_in_words(step);
     if (step["reference"].is_object()) {
-        text += "; finite elements: " + error_in_words(step["reference"]);
+        text += "; finite-element model " + error_in_words(step["reference"]);
         if (step["reference"].contains("young_mpa")) text += ", " + material_in_words(step["reference"]);
     }
     return text + ".";

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "pipeline/output/json/ranking_row.h"
 #include "pipeline/output/text/errors.h"
 #include "pipeline/output/text/words.h"
 
@@ -10,11 +11,6 @@ namespace palpate::pipeline {
 namespace {
 
 using nlohmann::json;
-
-const json* find(const json& ranking, const std::string& effect) {
-    const auto found = std::ranges::find_if(ranking, [&](const json& c) { return c["effect"] == effect; });
-    return found == ranking.end() ? nullptr : &*found;
-}
 
 /// What an effect comes to here, or its name where that is not known. `alone`: with its probability against the other
 /// single ones, which says nothing of several together.
@@ -46,9 +42,9 @@ std::string why_closer_is_not_likelier(const json& first, const json& second) {
 std::string without_it(const json& diagnosis) {
     const json& baseline = diagnosis["baseline"];
     // A skeleton has no Young's modulus.
-    std::string text = fmt::format(" Without it the rms error of the {} is {}",
-                                   baseline.value("young_mpa", json()).is_number() ? "finite-element model" : "model",
-                                   rms_in_words(baseline));
+    std::string text = fmt::format(
+        " Without {} the rms error of the {} is {}", diagnosis["explanation"].size() > 1 ? "them" : "it",
+        baseline.value("young_mpa", json()).is_number() ? "finite-element model" : "model", rms_in_words(baseline));
     if (baseline.contains("load_exponent")) text += and_under_load(baseline["load_exponent"]);
     return text + ".";
 }
@@ -59,8 +55,9 @@ std::string forecast_words(const json& before, const json& after) {
     if (then.empty() || now.empty()) return {};
     const char* held_out = keys_of(before).held_out;
     const bool improves = after[held_out].get<double>() < before[held_out].get<double>();
-    return fmt::format(" Probes left out of the fit are predicted to within {} rms, without it to within {}{}.", now,
-                       then, improves ? "" : ": from so few probes the prediction does not improve");
+    return fmt::format(
+        " Probes left out of the fit one at a time are predicted to within {} rms, without it to within {}{}.", now,
+        then, improves ? "" : ": from so few probes the prediction does not improve");
 }
 
 /// What the stiffness comes to with the explanation, and was taken for without it.
@@ -73,8 +70,12 @@ std::string material_words(const json& diagnosis) {
 
 std::string drop_words(const json& diagnosis, const json& candidate) {
     if (!candidate["rms_mm"].is_number()) return {};
-    return fmt::format(" {} it lowers the error to {}, {}.", candidate["kind"] == "body" ? "Adding" : "Correcting for",
-                       rms_in_words(candidate), in_sigmas(candidate["whitened_rms"])) +
+    // A fit weighs what the noise and unknown contacts cover less, and may leave more there.
+    const char* rms = keys_of(candidate).fitted;
+    const bool falls = candidate[rms].get<double>() < diagnosis["baseline"].value(rms, 0.0);
+    return fmt::format(" {} it {} {}, {}.", candidate["kind"] == "body" ? "Adding" : "Correcting for",
+                       falls ? "lowers the error to" : "leaves an error of", rms_in_words(candidate),
+                       in_sigmas(candidate["whitened_rms"])) +
            forecast_words(diagnosis["baseline"], candidate) + material_words(diagnosis);
 }
 
@@ -92,15 +93,15 @@ std::string runner_up(const json& diagnosis) {
 std::string missing_effect(const json& diagnosis) {
     const auto names = diagnosis["explanation"].get<std::vector<std::string>>();
     std::string text = names.size() > 1 ? fmt::format("Missing together: {}.", listed(names)) : "";
-    for (const std::string& name : names) {
-        if (const json* candidate = find(diagnosis["ranking"], name)) {
+    for (auto name = names.begin(); name != names.end(); ++name) {
+        if (const json* candidate = ranking_row(diagnosis, *name, std::count(names.begin(), name, *name))) {
             if (!text.empty()) text += " ";
             text += sentence_of(*candidate, names.size() == 1);
         }
     }
     text += without_it(diagnosis);
     if (names.size() == 1) {
-        if (const json* candidate = find(diagnosis["ranking"], names.front())) {
+        if (const json* candidate = ranking_row(diagnosis, names.front())) {
             text += drop_words(diagnosis, *candidate) + runner_up(diagnosis);
         }
     }
@@ -178,8 +179,10 @@ std::string diagnosis_in_words(const json& diagnosis) {
                              : verdict == "ambiguous"    ? ambiguous(diagnosis)
                              : verdict == "unexplained"  ? unexplained(diagnosis)
                                                          : adequate(diagnosis);
-    return text + located(diagnosis) + if_it_explains_nothing(diagnosis["baseline"].value("relative", json())) +
-           next_probe(diagnosis["next_probe"]);
+    // An effect that is named explains what the baseline does not.
+    const json unexplained_share =
+        verdict == "missing-effect" ? json() : diagnosis["baseline"].value("relative", json());
+    return text + located(diagnosis) + if_it_explains_nothing(unexplained_share) + next_probe(diagnosis["next_probe"]);
 }
 
 }  // namespace palpate::pipeline

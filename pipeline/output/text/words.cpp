@@ -1,6 +1,8 @@
 #include "pipeline/output/text/words.h"
 
+#include <algorithm>
 #include <cctype>
+#include <cmath>
 
 #include "fem/large_deformation/material_law_names.h"
 #include "mesh/text/words.h"
@@ -40,7 +42,12 @@ std::string if_it_explains_nothing(const json& relative) {
 }
 
 std::string place(const json& at) {
-    return fmt::format("({:.3g}, {:.3g}, {:.3g})", at[0].get<double>(), at[1].get<double>(), at[2].get<double>());
+    constexpr double round_off = 1e-9;  // mm, N: of what is computed from numbers of a hundred
+    const auto component = [&](std::size_t axis) {
+        const double value = at[axis].get<double>();
+        return std::abs(value) < round_off ? 0 : value;
+    };
+    return fmt::format("({:.3g}, {:.3g}, {:.3g})", component(0), component(1), component(2));
 }
 
 std::string in_sigmas(const json& whitened_rms) {
@@ -91,10 +98,15 @@ std::string capitalised(std::string text) {
 }
 
 std::string listed(const std::vector<std::string>& names) {
-    std::string text;
-    for (std::size_t i = 0; i < names.size(); ++i) {
-        text += (i == 0 ? "" : i + 1 == names.size() ? " and " : ", ") + names[i];
+    std::vector<std::string> different;
+    for (auto name = names.begin(); name != names.end(); ++name) {
+        if (std::find(names.begin(), name, *name) != name) continue;
+        const auto count = std::ranges::count(names, *name);
+        different.push_back(count == 1 ? *name : fmt::format("{} ({})", *name, count));
     }
+    std::string text;
+    for (std::size_t i = 0; i < different.size(); ++i)
+        text += (i == 0 ? "" : i + 1 == different.size() ? " and " : ", ") + different[i];
     return text;
 }
 

@@ -40,7 +40,7 @@ std::string probability_in_words(double probability);
 /// With a capital at its beginning.
 std::string capitalised(std::string text);
 
-/// "gravity, misalignment and outliers"
+/// "gravity, inclusion (2) and outliers": what is repeated stands once, with its count.
 std::string listed(const std::vector<std::string>& names);
 
 /// Puts an aside before a sentence's colon, or before its full stop: "Gravity is missing (p = 1): 9.8 m/s^2."

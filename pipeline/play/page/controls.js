@@ -13,7 +13,7 @@ class HandledPlayer extends ToldPlayer {
     fill(at('probe'), [['none', -1], ...states.map((s, i) => [
       `${s.probe} at ${+s.time.toPrecision(4)} s${unloaded(s) ? ', unloaded' : ''}${this.judge.heldOut.has(s.probe) ? ', held out' : ''}`, i])]);
     fill(at('point'), [['none', -1], ...this.points.map((v, i) => [
-      `${i + 1} (${row3(this.rest, v).map((x) => +x.toPrecision(3)).join(', ')})`, i])]);
+      `${i + 1} (${row3(this.rest, v).map((x) => (Math.abs(x) < 1e-9 ? 0 : +x.toPrecision(3))).join(', ')})`, i])]);
     fill(at('colour'), [['displacement', 'displacement'], ...(states.length ? [['error', 'error']] : [])]);
     at('gradient').style.background = paletteGradient;
     at('radius').value = +(0.03 * this.size).toPrecision(1);

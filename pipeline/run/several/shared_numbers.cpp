@@ -6,6 +6,7 @@
 #include <cmath>
 #include <set>
 
+#include "identify/effects/catalogue.h"
 #include "mesh/errors.h"
 #include "pipeline/output/html/run_files.h"
 
@@ -128,9 +129,11 @@ void add_effects(const RunFiles& files, const std::string& run, Numbers& numbers
     const auto named = files.diagnosis["explanation"].get<std::vector<std::string>>();
     for (const json& candidate : files.diagnosis["ranking"]) {
         const std::string effect = candidate["effect"];
-        if (std::ranges::find(named, effect) == named.end()) continue;
+        if (std::ranges::count(named, effect) != 1) continue;  // of several, which is which nobody says
+        const auto known = identify::effect_named(effect);
         for (const auto& [parameter, told] : candidate["parameters"].items()) {
             if (!told["value"].is_number() || !told["sd"].is_number()) continue;
+            if (known && !known->is_comparable(parameter)) continue;
             numbers.add(effect + ":" + parameter, told["unit"], run, {told["value"], told["sd"]});
         }
     }

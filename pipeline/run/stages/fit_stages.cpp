@@ -57,7 +57,7 @@ void identification_stage(Job& job) {
         });
     job.model = skeleton::read_model(job.folder.path() / "identify/model.json");
     report_stage(job.folder, "identify", ran,
-                 fmt::format("{} parameters, {} of them informed by the measurements",
+                 fmt::format("{} parameters, {} of them constrained by the measurements",
                              job.folder.record()["stages"]["identify"]["figures"].value("parameters", 0),
                              job.folder.record()["stages"]["identify"]["figures"].value("informed", 0)));
 }
@@ -88,8 +88,8 @@ json comparison_stage(Job& job, RunDiagnosis& run_diagnosis) {
     const json& error = result["error"];
     report_stage(job.folder, "compare", ran,
                  result["probes"].empty() && error.contains("reactions")
-                     ? fmt::format("{:.3g} N rms", error["reactions"]["rms_n"].get<double>())
-                     : fmt::format("{:.3g} mm rms", error["rms_mm"].get<double>()));
+                     ? fmt::format("real-time model: {:.3g} N rms", error["reactions"]["rms_n"].get<double>())
+                     : fmt::format("real-time model: {:.3g} mm rms", error["rms_mm"].get<double>()));
     return result;
 }
 

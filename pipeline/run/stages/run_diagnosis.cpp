@@ -82,7 +82,7 @@ json RunDiagnosis::diagnose(const skeleton::Model& model) {
                 folder_.stage({"diagnose", settings(), subject_.files, {"skeleton"}, {"diagnose/diagnosis.json"}}, [&] {
                     const identify::Diagnosis& found = diagnosed(model);
                     const std::string field = write_missing_series(folder_.path() / "diagnose", set_, found);
-                    write_stiffness_map(folder_.path() / "diagnose", reference().body().mesh(), found);
+                    write_stiffness_map(folder_.path() / "diagnose", reference().body().mesh(), set_, found);
                     result = to_json(found, reference(), set_, field);
                     mesh::write_text(folder_.path() / "diagnose/diagnosis.json", result.dump(2) + "\n");
                     return json{{"verdict", result["verdict"]}};
@@ -139,9 +139,9 @@ json RunDiagnosis::improve(const skeleton::Model& model, const json& diagnosis) 
             Console::notice(fmt::format("with {}: {}", listed(effects), note.get<std::string>()));
     }
     report_stage(folder_, "improve", ran,
-                 steps.size() < 2
-                     ? (effects.empty() ? "nothing to add" : "nothing added")
-                     : fmt::format("{} to {} rms", rms_in_words(steps.front()), rms_in_words(steps.back())));
+                 steps.size() < 2 ? (effects.empty() ? "nothing to add" : "nothing added")
+                                  : fmt::format("real-time model: {} to {} rms", rms_in_words(steps.front()),
+                                                rms_in_words(steps.back())));
     return result;
 }
 

@@ -22,6 +22,12 @@ double rms(const Eigen::VectorXd& values) {
     return values.size() > 0 ? std::sqrt(values.squaredNorm() / static_cast<double>(values.size())) : 0;
 }
 
+Strength strength_from(const std::vector<Points>& amounts, const std::vector<Points>& changes) {
+    const Eigen::VectorXd u = stacked(amounts), change = stacked(changes);
+    const double scaling = u.squaredNorm() > 0 ? change.dot(u) / u.squaredNorm() : 0;
+    return {rms(u), rms(change), rms(change - scaling * u)};
+}
+
 }  // namespace
 
 double rms(const std::vector<Points>& readings) { return rms(stacked(readings)); }
@@ -36,9 +42,17 @@ Strength strength_of(const Specimen& specimen, const std::vector<Points>& baseli
         displacements.emplace_back(baseline[s] - rest);
         changes.emplace_back(hidden[s] - baseline[s]);
     }
-    const Eigen::VectorXd u = stacked(displacements), change = stacked(changes);
-    const double scaling = u.squaredNorm() > 0 ? change.dot(u) / u.squaredNorm() : 0;
-    return {rms(u), rms(change), rms(change - scaling * u)};
+    return strength_from(displacements, changes);
+}
+
+Strength strength_in_forces(const std::vector<Points>& bare, const std::vector<Points>& hidden) {
+    std::vector<Points> forces, changes;
+    for (std::size_t row = 0; row < bare.size(); ++row) {
+        if (!hidden[row].allFinite()) continue;
+        forces.push_back(bare[row]);
+        changes.emplace_back(hidden[row] - bare[row]);
+    }
+    return strength_from(forces, changes);
 }
 
 void Strength::add(double variance) {

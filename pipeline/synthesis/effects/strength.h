@@ -18,6 +18,9 @@ struct Strength {
 /// `baseline`, `hidden`: what is read, a row of the histories after the other; rows that are NaN do not count.
 Strength strength_of(const Specimen& specimen, const std::vector<Points>& baseline, const std::vector<Points>& hidden);
 
+/// The same of the forces of tools [N].
+Strength strength_in_forces(const std::vector<Points>& bare, const std::vector<Points>& hidden);
+
 /// rms over all coordinates [mm].
 double rms(const std::vector<Points>& readings);
 

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <map>
 
+#include "identify/effects/body/material/stiffness_parts.h"
 #include "tests/identify/diagnosed.h"
 
 // Stiffness that differs in several parts of the body: asked where no other effect explains the readings.
@@ -41,8 +42,30 @@ protected:
     }
 };
 
-TEST_F(TwoLumps, AreTheMapThatExplainsThem) {
+TEST_F(TwoLumps, AreTwoInclusions) {
     const Diagnosis found = diagnose(lumpy(), options());
+    EXPECT_EQ(found.verdict, Verdict::missing_effect);
+    ASSERT_THAT(found.explanation, ElementsAre("inclusion", "inclusion"));
+    // Each has a row of its own, with its own numbers.
+    std::vector<Vec3> centres;
+    std::vector<double> ratios;
+    for (const Candidate& row : found.ranking) {
+        if (row.effect->name() != "inclusion") continue;
+        centres.emplace_back(estimate(row, "cx"), estimate(row, "cy"), estimate(row, "cz"));
+        ratios.push_back(estimate(row, "ratio"));
+    }
+    ASSERT_EQ(centres.size(), 2);
+    const std::size_t stiff = ratios[0] > ratios[1] ? 0 : 1;
+    EXPECT_LT((centres[stiff] - stiff_at).norm(), 6);  // within the radius of each
+    EXPECT_LT((centres[1 - stiff] - soft_at).norm(), 6);
+    EXPECT_GT(ratios[stiff], 2);
+    EXPECT_LT(ratios[1 - stiff], 0.6);
+}
+
+TEST_F(TwoLumps, AreTheMapThatExplainsThem) {
+    DiagnoseOptions without = options();
+    without.without = {"inclusion"};
+    const Diagnosis found = diagnose(lumpy(), without);
     EXPECT_EQ(found.verdict, Verdict::missing_effect);
     ASSERT_THAT(found.explanation, ElementsAre("map"));
     const Candidate& map = candidate(found, "map");
@@ -58,7 +81,7 @@ TEST_F(TwoLumps, AreTheMapThatExplainsThem) {
 
 TEST_F(TwoLumps, LeftOutOfTheCatalogueTheyAreUnexplained) {
     DiagnoseOptions without = options();
-    without.without = {"map"};
+    without.without = {"map", "inclusion"};
     const Diagnosis found = diagnose(lumpy(), without);
     EXPECT_THAT(found.explanation, Not(Contains("map")));
     EXPECT_EQ(found.verdict, Verdict::unexplained);
@@ -109,16 +132,39 @@ TEST(StiffnessMapEffect, KnowsTheSlopesOfItsField) {
     }
 }
 
-TEST(StiffnessMapEffect, TellsPartsThatDifferByMoreThanIsKnown) {
-    const auto map = find_effect("map");
+/// Four places along x, 20 mm apart: four lengths, so that they hardly know of each other.
+skeleton::EffectRecord four_places(const std::vector<double>& amplitudes) {
     skeleton::EffectRecord record{"map", {{"length", 5, "mm"}}};
-    const std::vector<double> amplitudes{1.2, 0, 0, -1.2};
     for (int i = 0; i < 4; ++i) {
         record.parameters.push_back({"x" + std::to_string(i + 1), 20.0 * i, "mm"});
         record.parameters.push_back({"y" + std::to_string(i + 1), 0, "mm"});
         record.parameters.push_back({"z" + std::to_string(i + 1), 0, "mm"});
         record.parameters.push_back({"a" + std::to_string(i + 1), amplitudes[static_cast<std::size_t>(i)], "1"});
     }
+    return record;
+}
+
+TEST(StiffnessMapEffect, TellsTheElementsOfEachPart) {
+    const mesh::VolumeMesh bar = mesh::make_bar(Vec3(-10, -5, -5), Vec3(70, 5, 5), {32, 4, 4});
+    const std::vector<int> part_of = StiffnessEstimate(four_places({1.2, 0, 0, -1.2})).part_of_elements(bar);
+    ASSERT_EQ(std::ssize(part_of), bar.tetrahedra.rows());
+    for (Eigen::Index e = 0; e < bar.tetrahedra.rows(); ++e) {
+        double x = 0;
+        for (int corner = 0; corner < 4; ++corner) x += bar.nodes(bar.tetrahedra(e, corner), 0) / 4;
+        // k1 / sqrt(k1^2 + k2^2) = 1/2 where k2 / k1 = sqrt(3): at exp((x^2 - (20 - x)^2) / 50).
+        const double border = 10 + 50 * std::log(3) / 80;
+        EXPECT_EQ(part_of[static_cast<std::size_t>(e)], x <= border ? 0 : x >= 60 - border ? 1 : -1) << x;
+    }
+}
+
+TEST(StiffnessMapEffect, HasNoElementsWhereNothingStandsOut) {
+    const mesh::VolumeMesh bar = mesh::make_bar(Vec3(-10, -5, -5), Vec3(70, 5, 5), {8, 1, 1});
+    EXPECT_THAT(StiffnessEstimate(four_places({0.1, 0, 0, -0.1})).part_of_elements(bar), testing::Each(-1));
+}
+
+TEST(StiffnessMapEffect, TellsPartsThatDifferByMoreThanIsKnown) {
+    const auto map = find_effect("map");
+    const skeleton::EffectRecord record = four_places({1.2, 0, 0, -1.2});
     // Places four lengths apart hardly know of each other: e^1.2 = 3.32, and its inverse.
     EXPECT_EQ(map->sentence(record),
               "Stiffness varies over the body, over lengths of about 5 mm: (3.32) times its mean round (0, 0, 0) mm, "

@@ -34,6 +34,12 @@ TEST(VectorInWords, PoorlyKnownAllRoundIsNotTakenApart) {
     EXPECT_EQ(vector_in_words(Vec3::Zero(), Mat3::Zero(), 1, "mm"), "0 mm");
 }
 
+TEST(DirectionInWords, HasNoNegativeZero) {
+    EXPECT_EQ(direction_in_words({-0.001, 3, -4}), "(0.00, 0.60, -0.80)");
+    EXPECT_EQ(components_in_words({-0.0, -0.004, -1}), "(0.00, 0.00, -1.00)");
+    EXPECT_EQ(components_in_words({-0.006, 0, 1}), "(-0.01, 0.00, 1.00)");
+}
+
 TEST(NumberInWords, HasItsStandardDeviationWhereItIsKnown) {
     const skeleton::EffectRecord record{"viscosity", {{"creep", 0.24, "1"}, {"tau", 3.1, "s"}}};
     EXPECT_EQ(number_in_words(record, 0, {}, 100), "24");

@@ -10,7 +10,10 @@ namespace palpate::pipeline {
 namespace {
 
 using ::testing::AllOf;
+using ::testing::ContainsRegex;
 using ::testing::HasSubstr;
+using ::testing::Not;
+namespace fs = std::filesystem;
 
 struct ImportCommand : identify::RigOfABar {
     commands::Outcome run(commands::ImportCommandOptions options, const commands::Common& common = {}) const {
@@ -42,6 +45,24 @@ TEST_F(ImportCommand, DescribesFilesAndDraftsAMap) {
     EXPECT_THAT(
         message_of<IoError>([&] { run({.files = {}, .output = folder / "set", .map = folder / "draft.yaml"}); }),
         AllOf(HasSubstr("draft.yaml"), HasSubstr("no file 'body.stl'")));
+}
+
+/// The bar's points as in cm, its load as in kN, in a map that is not complete: there is no mesh yet.
+TEST_F(ImportCommand, DescribesInTheUnitsOfAMap) {
+    std::string text = map();
+    text.replace(text.find("mesh: bar.stl"), 13, "mesh: later.stl");
+    text.replace(text.find("file: points.csv,"), 17, "file: points.csv, unit: cm,");
+    text.replace(text.find("unit: N}"), 8, "unit: kN}");
+    const fs::path mapped = folder.write("units.yaml", text);
+    const auto described = [&](const fs::path& told, std::vector<fs::path> files = {}) {
+        return run({.files = std::move(files), .output = {}, .map = told, .describe = true});
+    };
+    EXPECT_THAT(described({}).text, AllOf(HasSubstr("in a box of 98.5 x "), ContainsRegex("load +N .* 2[.]0[0-9]+\n")));
+    const commands::Outcome outcome = described(mapped);
+    EXPECT_THAT(outcome.text, AllOf(HasSubstr("in a box of 985 x "), ContainsRegex("load +N .* 20[0-9][0-9]"),
+                                    Not(HasSubstr("supports:"))));
+    EXPECT_THAT(outcome.json["map"].get<std::string>(), HasSubstr("file: \"points.csv\"\n    unit: cm\n"));
+    EXPECT_EQ(described(mapped, {folder.path()}).text, outcome.text) << "of a folder, the files that the map names";
 }
 
 TEST_F(ImportCommand, WritesNothingWhereTheSetWouldNotBeTaken) {

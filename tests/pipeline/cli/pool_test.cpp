@@ -83,6 +83,45 @@ TEST_F(Pool, TellsTheMeanTheSpreadAndWhoIsUnlikeTheOthers) {
     EXPECT_THAT(message_of([&] { commands::pool({runs, *scratch_ / "beam.stl"}, {}); }), HasSubstr("beam.stl"));
 }
 
+/// Amplitudes of a map are of the places of one body; over how long a length stiffness varies compares.
+TEST_F(Pool, TakesOfAMapWhatSpecimensShare) {
+    const auto number = [](double value, double sd, const char* unit) {
+        return json{{"value", value}, {"sd", sd}, {"unit", unit}};
+    };
+    std::vector<fs::path> runs;
+    for (const double length : {30.0, 33.0, 31.0}) {
+        runs.push_back(specimen("m" + std::to_string(runs.size()), 0.3, 0.003));
+        const json map{
+            {"effect", "map"},
+            {"parameters",
+             {{"length", number(length, 1, "mm")}, {"x1", number(4, 1e-6, "mm")}, {"a1", number(0.5, 0.1, "1")}}}};
+        fs::create_directories(runs.back() / "diagnose");
+        mesh::write_text(runs.back() / "diagnose/diagnosis.json",
+                         json{{"explanation", {"map"}}, {"ranking", {map}}}.dump());
+    }
+    const commands::Outcome outcome = commands::pool({runs, *scratch_ / "maps"}, {});
+    std::vector<std::string> of_map;
+    for (const json& one : outcome.json["numbers"])
+        if (one["name"].get<std::string>().starts_with("map:")) of_map.push_back(one["name"]);
+    EXPECT_THAT(of_map, testing::ElementsAre("map:length"));
+}
+
+/// Of two inclusions in each specimen nobody says which are alike.
+TEST_F(Pool, TakesNoNumbersOfAnEffectThatIsThereTwice) {
+    const auto row = [](double x) {
+        return json{{"effect", "inclusion"}, {"parameters", {{"cx", {{"value", x}, {"sd", 1}, {"unit", "mm"}}}}}};
+    };
+    std::vector<fs::path> runs;
+    for (const double x : {30.0, 31.0}) {
+        runs.push_back(specimen("t" + std::to_string(runs.size()), 0.3, 0.003));
+        fs::create_directories(runs.back() / "diagnose");
+        mesh::write_text(runs.back() / "diagnose/diagnosis.json",
+                         json{{"explanation", {"inclusion", "inclusion"}}, {"ranking", {row(x), row(x + 40)}}}.dump());
+    }
+    for (const json& one : commands::pool({runs, *scratch_ / "twins"}, {}).json["numbers"])
+        EXPECT_FALSE(one["name"].get<std::string>().starts_with("inclusion")) << one;
+}
+
 TEST_F(Pool, TheNextSpecimenIsExpectedLikeTheOthers) {
     const fs::path population = *scratch_ / "three";
     commands::pool({{specimen("a", 0.27, 0.01), specimen("b", 0.3, 0.01), specimen("c", 0.33, 0.01)}, population}, {});

@@ -234,6 +234,11 @@ TEST_F(Probe, ToldNumbersAreTaken) {
     EXPECT_GE(effects[1]["parameters"]["cx"]["value"], 0);
 }
 
+TEST_F(Probe, RefusesAMapThatNoSolverResolves) {
+    for (const char* contrast : {"map:contrast=11", "map:contrast=0.05"})
+        EXPECT_TRUE(says(message({.hide = {contrast}}), {"contrast", "0.1 to 10", "million", "--region"}));
+}
+
 TEST_F(Probe, TheSetDoesNotTellWhatItHides) {
     hide({"gravity"});
     const std::string description = text("set/set.yaml");

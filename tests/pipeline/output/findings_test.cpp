@@ -60,6 +60,23 @@ TEST(FindingsJson, TellsWhatCanBeDrawn) {
     EXPECT_EQ(found[4]["effect"], "stiffening");
 }
 
+TEST(FindingsJson, TwoInclusionsHaveTheirOwnWords) {
+    const auto ball = [](double x) {
+        return skeleton::EffectRecord{
+            "inclusion", {{"cx", x, "mm"}, {"cy", 0, "mm"}, {"cz", 0, "mm"}, {"radius", 4, "mm"}, {"ratio", 8, "1"}}};
+    };
+    const auto row = [](const std::string& sentence) {
+        return json{{"effect", "inclusion"}, {"sentence", sentence}, {"parameters", json::object()}};
+    };
+    const json diagnosis = {{"ranking", {row("The first."), row("The second.")}}};
+    const json found = findings_json({ball(1), ball(2), ball(3)}, diagnosis);
+    ASSERT_EQ(found.size(), 3U);
+    EXPECT_EQ(found[0]["words"], "The first.");
+    EXPECT_EQ(found[1]["words"], "The second.");
+    EXPECT_EQ(found[1]["center"], json({2.0, 0.0, 0.0}));
+    EXPECT_THAT(found[2]["words"].get<std::string>(), HasSubstr("(3, 0, 0)")) << "of this one nothing was diagnosed";
+}
+
 /// Points of the triangles that are of a finding.
 Points points_of(const mesh::PolyData& drawing, int finding) {
     const Eigen::MatrixXd& findings = drawing.data.cells[0].values;

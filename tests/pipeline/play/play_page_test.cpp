@@ -156,6 +156,24 @@ TEST(InTheHand, SaysHowWellAnEffectIsKnown) {
     EXPECT_EQ(numbers().second[0], "stiffness = 2 N/mm") << "of this one nothing was";
 }
 
+/// Of the hundred and more numbers of a map its sentence tells what matters.
+TEST(InTheHand, SumsUpAMap) {
+    const TemporaryFolder scratch;
+    skeleton::Model model = lattice_in_the_hand();
+    skeleton::EffectRecord map{"map", {{"length", 5, "mm"}}};
+    for (int i = 1; i <= 4; ++i) {
+        for (const char* axis : {"x", "y", "z"})
+            map.parameters.push_back({axis + std::to_string(i), *axis == 'x' ? 20.0 * i : 0.0, "mm"});
+        map.parameters.push_back({"a" + std::to_string(i), i == 2 ? 1.2 : 0.0, "1"});
+    }
+    model.effects = {map};
+    skeleton::write_model(scratch / "model.json", model);
+    const nlohmann::json content = nlohmann::json::parse(play_data(scratch / "model.json", {}).content.dump());
+    const nlohmann::json numbers = content["models"][0]["effects"][0]["numbers"];
+    ASSERT_EQ(numbers.size(), 1U);
+    EXPECT_THAT(numbers[0].get<std::string>(), HasSubstr("times its mean round (40, 0, 0) mm"));
+}
+
 TEST(InTheHand, WritesOnePageThatNeedsNoNetwork) {
     const TemporaryFolder scratch;
     skeleton::write_model(scratch / "model.json", lattice_in_the_hand());

@@ -81,9 +81,9 @@ TEST_F(HeavyBeam, ErrsLessOnceGravityIsIn) {
 /// What was found stands first, and of the model that was discarded nothing.
 TEST_F(HeavyBeam, LeadsItsDescriptionWithTheVerdict) {
     const std::string text = commands::info({.file = path("run")}, {}).text;
-    EXPECT_LT(text.find("Gravity is missing"), text.find("The model with gravity, fitted to all probes,"));
+    EXPECT_LT(text.find("Gravity is missing"), text.find("The real-time model with gravity, fitted to all probes,"));
     EXPECT_LT(text.find("With gravity:"), text.find("skeleton  "));
-    EXPECT_THAT(text, testing::Not(HasSubstr("The model is off by")));
+    EXPECT_THAT(text, testing::Not(HasSubstr("The real-time model is off by")));
 }
 
 /// A rig's set has no forces that could be played: its model is touched by hand.
@@ -103,6 +103,7 @@ TEST_F(HeavyBeam, LeavesTheFilesThatItPromises) {
         EXPECT_TRUE(std::filesystem::exists(path("run") / file)) << file;
     }
     const std::string page = mesh::read_text(path("run/report.html"));
+    EXPECT_THAT(page, HasSubstr("<b>missing effect</b>verdict: gravity"));
     EXPECT_THAT(page, AllOf(HasSubstr("What is missing"), HasSubstr("Ladder"), HasSubstr("Error budget")));
 }
 

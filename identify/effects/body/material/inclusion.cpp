@@ -54,6 +54,10 @@ public:
     }
 
     bool is_like_mesh_error() const override { return true; }
+    bool may_repeat() const override { return true; }
+    bool lie_apart(const Eigen::VectorXd& one, const Eigen::VectorXd& other) const override {
+        return (one.head<3>() - other.head<3>()).norm() > std::exp(one[3]) + std::exp(other[3]);
+    }
 
     std::vector<EffectNumber> numbers(const BodyModel& model, const Problem&) const override {
         std::vector<EffectNumber> result = centre_numbers(model);

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "identify/numerics/summaries.h"
+
 namespace palpate::identify {
 namespace {
 
@@ -20,9 +22,8 @@ bool is_as_much(const Action& now, const Action& then) {
     const auto moved = [&](const mesh::ToolMotion& was) {
         return std::ranges::any_of(now.motions, [&](const mesh::ToolMotion& is) {
             // a coordinate that is free counts as 0
-            const auto known = [](const Vec3& v) -> Vec3 { return v.array().isNaN().select(Vec3::Zero(), v); };
-            return is.tool == was.tool && reaches(known(is.translation), known(was.translation)) &&
-                   reaches(known(is.rotation), known(was.rotation));
+            return is.tool == was.tool && reaches(known_part(is.translation), known_part(was.translation)) &&
+                   reaches(known_part(is.rotation), known_part(was.rotation));
         });
     };
     const auto driven = [&](const mesh::ActuatorSetting& was) {

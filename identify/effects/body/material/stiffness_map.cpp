@@ -9,6 +9,7 @@
 #include "identify/effects/body/material/stiffness_parts.h"
 #include "identify/effects/effect.h"
 #include "identify/effects/vector_words.h"
+#include "mesh/errors.h"
 #include "mesh/geometry/sampling.h"
 #include "mesh/text/words.h"
 
@@ -17,7 +18,8 @@ namespace {
 
 // A field finer than the readings resolve is left to its prior. Each place costs a right-hand side in every state.
 constexpr int places = fem::most_places;
-constexpr double fixed_sd = 1e-6;  // [mm], of places: they are where they are
+constexpr double most_contrast = 10;  // to hide: 10^6 between three standard deviations to either side
+constexpr double fixed_sd = 1e-6;     // [mm], of places: they are where they are
 
 /// The distance of a place to the nearest other one, in the mean.
 double spacing_of(const Points& at) {
@@ -70,6 +72,7 @@ public:
 
     bool is_last_resort() const override { return true; }
     bool is_like_mesh_error() const override { return true; }
+    bool is_comparable(const std::string& number) const override { return number == "length"; }
     bool is_fitted(Eigen::Index number) const override { return number == 0 || is_amplitude_of_map(number); }
 
     std::vector<EffectNumber> numbers(const BodyModel& model, const Problem&) const override {
@@ -130,9 +133,9 @@ public:
         if (parts.empty()) return text + ", nowhere by more than is known of it.";
         text += ": ";
         for (std::size_t p = 0; p < std::min(most, parts.size()); ++p) {
-            const auto& [centre, ratio, sd] = parts[p];
             text += fmt::format("{}({}) times its mean round ({:.3g}, {:.3g}, {:.3g}) mm", p == 0 ? "" : ", ",
-                                mesh::with_sd(ratio, sd), centre.x(), centre.y(), centre.z());
+                                mesh::with_sd(parts[p].ratio, parts[p].sd), parts[p].centre.x(), parts[p].centre.y(),
+                                parts[p].centre.z());
         }
         if (parts.size() > most) text += fmt::format(", and {} more", parts.size() - most);
         return text + ".";
@@ -170,6 +173,12 @@ public:
         const double most = std::log(5.0);
         const double contrast = specified.value("contrast", 1);
         const bool is_specified = specified.has("contrast");
+        if (is_specified && std::abs(std::log(contrast)) > std::log(most_contrast))
+            throw InvalidInput(fmt::format(
+                "effect 'map': a contrast of {:.4g} is outside {:.4g} to {:.4g}: stiffness would vary by more than a "
+                "factor of a million over the body, three standard deviations to either side, which has no equilibrium "
+                "that a solver finds. Give a smaller one, or regions of their own (--region).",
+                contrast, 1 / most_contrast, most_contrast));
         return {{.at = [=](double x) { return record(is_specified ? contrast : std::exp(x)); },
                  .start = 0.3,
                  .most = most,

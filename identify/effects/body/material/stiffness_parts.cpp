@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <iterator>
 #include <map>
 #include <string>
 
@@ -58,7 +59,7 @@ std::vector<StiffnessPart> StiffnessEstimate::parts() const {
             own.push_back(*next);
             open.erase(next);
         }
-        StiffnessPart part{.ratio = std::exp(log_ratio[own.front()])};
+        StiffnessPart part{.peak = at.row(own.front()).transpose(), .ratio = std::exp(log_ratio[own.front()])};
         part.sd = part.ratio * sds[own.front()];
         double weight = 0;
         for (const Eigen::Index i : own) {
@@ -69,6 +70,40 @@ std::vector<StiffnessPart> StiffnessEstimate::parts() const {
         parts.push_back(part);
     }
     return parts;
+}
+
+std::vector<int> StiffnessEstimate::part_of_elements(const mesh::VolumeMesh& body) const {
+    constexpr Eigen::Index corners = 4;
+    const Eigen::Index count = body.tetrahedra.rows();
+    Points centres = Points::Zero(count, 3);
+    std::vector<std::vector<Eigen::Index>> around(static_cast<std::size_t>(body.nodes.rows()));  // elements of a node
+    for (Eigen::Index e = 0; e < count; ++e) {
+        for (Eigen::Index c = 0; c < corners; ++c) {
+            centres.row(e) += body.nodes.row(body.tetrahedra(e, c)) / corners;
+            around[static_cast<std::size_t>(body.tetrahedra(e, c))].push_back(e);
+        }
+    }
+    std::vector<int> part_of(static_cast<std::size_t>(count), -1);
+    const std::vector<StiffnessPart> all = parts();
+    for (std::size_t p = 0; p < all.size(); ++p) {
+        const double half = std::log(all[p].ratio) / 2;
+        const auto is_open = [&](Eigen::Index e) {
+            return part_of[static_cast<std::size_t>(e)] < 0 && log_stiffness(centres.row(e)) / half >= 1;
+        };
+        Eigen::Index first = 0;
+        (centres.rowwise() - all[p].peak.transpose()).rowwise().squaredNorm().minCoeff(&first);
+        std::vector<Eigen::Index> border{first};
+        while (!border.empty()) {
+            const Eigen::Index e = border.back();
+            border.pop_back();
+            if (!is_open(e)) continue;
+            part_of[static_cast<std::size_t>(e)] = static_cast<int>(p);
+            for (Eigen::Index c = 0; c < corners; ++c)
+                std::ranges::copy_if(around[static_cast<std::size_t>(body.tetrahedra(e, c))],
+                                     std::back_inserter(border), is_open);
+        }
+    }
+    return part_of;
 }
 
 }  // namespace palpate::identify

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "fem/effects/local/stiffness_map.h"
+#include "mesh/core/volume_mesh.h"
 
 namespace palpate::identify {
 
@@ -13,7 +14,8 @@ constexpr bool is_amplitude_of_map(Eigen::Index number) { return number > 0 && n
 /// A part of the body that is stiffer, or softer, than the mean.
 struct StiffnessPart {
     Vec3 centre = Vec3::Zero();  // of the places that it takes in, by how much each differs [mm]
-    double ratio = 1, sd = 0;    // of its stiffness over the mean, where that differs most [-]
+    Vec3 peak = Vec3::Zero();    // where it differs most [mm]
+    double ratio = 1, sd = 0;    // of its stiffness over the mean, there [-]
 };
 
 /// A map as it was fitted, and how well it is known.
@@ -31,6 +33,10 @@ public:
     /// side of the mean, each within two lengths of another.
     std::vector<StiffnessPart> parts() const;
     double length() const { return map_.length(); }
+
+    /// The part that each element of a body is of, by its place in parts(); -1: of none. A part reaches round its peak
+    /// as far as ln stiffness differs by half as much or more.
+    std::vector<int> part_of_elements(const mesh::VolumeMesh& body) const;
 
 private:
     fem::StiffnessMap map_;

@@ -30,6 +30,9 @@ struct MappedFile {
     bool is_unordered = false;       // which point is which has to be found
 };
 
+/// Does an entry, which may be a pattern, name a file? @param name without its folder
+bool names_file(const MappedFile& entry, const std::string& name);
+
 /// A point whose place on the mesh is known, or that is a marker of the set.
 struct MappedPlace {
     std::string name;              // of the recorded point
@@ -124,6 +127,9 @@ struct ReadMapOptions {
     std::filesystem::path mesh = {};                  // in place of the map's; empty: the map's
     std::vector<std::filesystem::path> folders = {};  // where files may lie that the map names, beside its own
 };
+
+/// Its `files` alone: a map that is not complete has them, too. @throws IoError, InvalidInput as below.
+std::vector<MappedFile> read_mapped_files(const std::filesystem::path& map);
 
 /// @throws IoError, InvalidInput naming file, line, value, what is allowed and what to do.
 ImportMap read_import_map(const std::filesystem::path& file, const ReadMapOptions& options = {});

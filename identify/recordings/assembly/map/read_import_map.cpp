@@ -123,6 +123,14 @@ void read_rest(const YamlFields& yaml, ImportMap& map) {
             yaml.where("rest"), mesh::cited(rest)));
 }
 
+std::vector<MappedFile> read_files_of(const YamlFields& yaml) {
+    std::vector<MappedFile> files;
+    for (const YamlFields& entry : yaml.mappings("files")) files.push_back(read_mapped_file(entry));
+    if (files.empty())
+        throw InvalidInput(fmt::format("{}: the list is empty; name a file that the rig wrote.", yaml.where("files")));
+    return files;
+}
+
 /// The body at rest, of the map or of the command line.
 void read_mesh(const YamlFields& yaml, const ReadMapOptions& options, const SetUnits& units, ImportMap& map) {
     double unit = units.length;
@@ -198,6 +206,14 @@ void parse_register(const std::string& text, const std::string& where, const std
     }
 }
 
+bool names_file(const MappedFile& entry, const std::string& name) {
+    const auto star = entry.file.find('*');
+    if (star == std::string::npos) return fs::path(entry.file).filename().string() == name;
+    return name.starts_with(entry.file.substr(0, star)) && name.ends_with(entry.file.substr(star + 1));
+}
+
+std::vector<MappedFile> read_mapped_files(const fs::path& map) { return read_files_of(YamlFields::from_file(map)); }
+
 ImportMap read_import_map(const fs::path& file, const ReadMapOptions& given) {
     ReadMapOptions options = given;
     options.folders.insert(options.folders.begin(), file.parent_path());
@@ -212,9 +228,7 @@ ImportMap read_import_map(const fs::path& file, const ReadMapOptions& given) {
     read_tools(yaml, units, map.set);
     read_actuators(yaml, units, map.set);
 
-    for (const YamlFields& entry : yaml.mappings("files")) map.files.push_back(read_mapped_file(entry));
-    if (map.files.empty())
-        throw InvalidInput(fmt::format("{}: the list is empty; name a file that the rig wrote.", yaml.where("files")));
+    map.files = read_files_of(yaml);
     map.names_markers = yaml.has("markers");
     read_places(yaml, "markers", units.length, true, map);
     read_places(yaml, "fiducials", units.length, false, map);

@@ -6,7 +6,9 @@
 #include <cmath>
 #include <map>
 
+#include "mesh/text/words.h"
 #include "pipeline/output/html/packed_rows.h"
+#include "pipeline/output/html/view_tools.h"
 
 namespace palpate::pipeline {
 namespace {
@@ -46,22 +48,6 @@ json parts_of(const Points& vertices, const json& preflight) {
     return list;
 }
 
-json tools_json(const identify::MeasurementSet& set) {
-    json list = json::array();
-    for (const mesh::Tool& tool : set.tools) {
-        const auto* ball = std::get_if<mesh::SphereShape>(&tool.shape);
-        const auto* flat = std::get_if<mesh::FlatShape>(&tool.shape);
-        list.push_back({{"name", tool.name},
-                        {"at", place_json(tool.origin)},
-                        {"radius", ball   ? ball->radius
-                                   : flat ? flat->radius
-                                          : 0.0},
-                        {"flat", flat != nullptr},
-                        {"axis", place_json(flat ? flat->axis : Vec3(0, 0, -1))}});
-    }
-    return list;
-}
-
 json tendons_json(const identify::MeasurementSet& set) {
     json list = json::array();
     for (const mesh::Actuator& actuator : set.actuators) {
@@ -85,9 +71,8 @@ std::string words_of(const identify::MeasurementSet& set, const identify::LoadSt
     for (const identify::Actuation& one : state.actuations)
         add(fmt::format("{} at {:.3g}", set.actuators[static_cast<std::size_t>(one.actuator)].name, one.value));
     if (words.empty()) words = "no load is stated";
-    const std::size_t read = state.readings.size();
-    words += fmt::format("; {} marker{} read", read, read == 1 ? "" : "s");
-    if (!state.reactions.empty()) words += fmt::format(", {} reactions", state.reactions.size());
+    words += fmt::format("; {} read", mesh::count_of(std::ssize(state.readings), "marker"));
+    if (!state.reactions.empty()) words += ", " + mesh::count_of(std::ssize(state.reactions), "reaction");
     return words + ".";
 }
 
@@ -114,22 +99,16 @@ json picture_of_state(const identify::MeasurementSet& set, const identify::LoadS
         const Vec3 rest = set.markers[static_cast<std::size_t>(reading.marker)].rest;
         moved.row(reading.marker) = without_missing(reading.position - rest);
     }
-    json loads = json::array(), motions = json::array();
+    json loads = json::array();
     for (const mesh::Contact& contact : state.contacts) {
         if (contact.force.isZero(0)) continue;
         loads.push_back({contact.point.x(), contact.point.y(), contact.point.z(), contact.force.x(), contact.force.y(),
                          contact.force.z()});
     }
-    for (const mesh::ToolMotion& motion : state.motions) {
-        const mesh::Tool& tool = set.tools[static_cast<std::size_t>(motion.tool)];
-        motions.push_back({{"tool", tool.name},
-                           {"from", place_json(tool.origin)},
-                           {"to", place_json(tool.origin + without_missing(motion.translation))}});
-    }
     return {{"name", fmt::format("Probe {} at {:g} s", state.probe, state.time)},
             {"words", words_of(set, state)},
             {"loads", loads},
-            {"motions", motions},
+            {"tools", tools_in_state(set, {state.probe, state.time})},
             {"moved", packed("f32", flat<float>(moved))},
             {"odd", odd_markers(by_name, preflight, &state)}};
 }
@@ -164,7 +143,7 @@ json check_picture(const Subject& subject, const json& preflight) {
     }
     data["markers"]["rest"] = packed("f32", flat<float>(rest));
     data["markers"]["odd"] = odd_markers(by_name, preflight, nullptr);
-    data["tools"] = tools_json(set);
+    data["tools"] = tools_at_rest(set, vertices, subject.surface.triangles);
     data["tendons"] = tendons_json(set);
     for (const mesh::Tool& tool : set.tools) {
         const auto* grip = std::get_if<mesh::GripShape>(&tool.shape);

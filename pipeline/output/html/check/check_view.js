@@ -7,6 +7,12 @@ function readCheck(json) {
   const data = JSON.parse(json);
   for (const key of ['points', 'triangles']) data.surface[key] = decoded(data.surface[key]);
   data.markers.rest = decoded(data.markers.rest);
+  data.tools = decodedTools(data.tools);
+  // What is left free is drawn as it is at rest: before any fit nobody knows it.
+  for (const tool of data.states.flatMap((s) => s.tools)) {
+    for (const key of ['moved', 'turned']) tool[key] = tool[key].map((v) => v ?? 0);
+    tool.at ??= plus3(data.tools.find((t) => t.name === tool.name).origin, tool.moved);
+  }
   for (const state of data.states) state.moved = decoded(state.moved);
   return data;
 }
@@ -24,7 +30,8 @@ function startCheck() {
     at('no-view').hidden = false;
     return;
   }
-  const strongest = largestOf(states.flatMap((s) => s.loads.map((l) => Math.hypot(...l.slice(3))))) || 1;
+  const body = {rest: points, middle, size}, still = new Float32Array(points.length);
+  const tools = new Tools(scene, data, body), loads = new Loads(data, body, tools);
   const furthest = largestOf(states.map((s) => largestOf(Array.from({length: s.moved.length / 3}, (_, i) => norm3(s.moved, i) || 0))));
 
   const colours = ['supports', ...(data.parts.length ? ['how well its stiffness would be determined'] : []), 'one colour'];
@@ -35,19 +42,16 @@ function startCheck() {
   at('magnify').value = furthest > 0 && furthest < 0.03 * size ? +(0.1 * size / furthest).toPrecision(2) : 1;
   at('key-grip').hidden = !data.surface.gripped.length;
   at('key-tool').hidden = !data.tools.length && !data.tendons.length;
+  at('key-tool').lastChild.textContent = [...(data.tools.length ? [tools.words()] : []), ...(data.tendons.length ? ['tendon'] : [])].join('; ');
   at('key-odd').hidden = !markers.odd.length && !states.some((s) => s.odd.length);
 
-  /// A load's arrow: it ends at the body where it pushes, and begins there where it pulls.
-  const arrowOf = ([x, y, z, ...force]) => {
-    const length = 0.22 * size * Math.hypot(...force) / strongest, unit = force.map((f) => f / (Math.hypot(...force) || 1));
-    const tip = [x, y, z], pushes = unit.reduce((sum, u, i) => sum + u * (tip[i] - middle[i]), 0) < 0;
-    const other = tip.map((v, i) => v + (pushes ? -1 : 1) * length * unit[i]);
-    return pushes ? {start: other, end: tip} : {start: tip, end: other};
-  };
   const box = new Box().hold(points).hold(markers.rest);
-  for (const state of states) for (const load of state.loads) { const {start, end} = arrowOf(load); box.hold(start).hold(end); }
-  for (const tool of data.tools) box.hold(tool.at.map((v) => v - tool.radius)).hold(tool.at.map((v) => v + tool.radius));
-  for (const state of states) for (const move of state.motions) box.hold(move.to);
+  for (const state of states) {
+    const placed = loads.tools(state, still, +at('magnify').value);
+    tools.hold(box, placed);
+    box.hold(tools.gripped(placed));
+    for (const {start, end} of loads.arrows(state, placed, still)) box.hold(start).hold(end);
+  }
   const camera = new Camera(box, at('canvas').clientWidth / at('canvas').clientHeight || 1);
 
   const colourOfVertex = new Float32Array(points.length);
@@ -70,12 +74,12 @@ function startCheck() {
   }
 
   const isDark = matchMedia('(prefers-color-scheme: dark)');
-  let shown = Math.max(0, states.findIndex((s) => s.loads.length || s.motions.length)), playing = 0, drawn = {glyphs: []};
+  let onPaper = false, shown = Math.max(0, states.findIndex((s) => s.loads.length || s.tools.length)), playing = 0, drawn = {glyphs: []};
   isDark.addEventListener('change', () => requestDraw());
 
   function draw() {
     const area = at('canvas').getBoundingClientRect(), dots = Math.min(devicePixelRatio || 1, 2);
-    const dark = isDark.matches, ink = dark ? [0.9, 0.92, 0.94] : measuredColour;
+    const dark = isDark.matches && !onPaper, ink = dark ? [0.9, 0.92, 0.94] : measuredColour;
     scene.paper = dark ? [0.078, 0.094, 0.114] : [1, 1, 1];
     scene.begin(camera, Math.round(area.width * dots), Math.round(area.height * dots));
     drawn = {glyphs: []};
@@ -101,26 +105,21 @@ function startCheck() {
     }
     const all = at('show-all').checked;
     if (at('show-loads').checked || all) {
-      const acting = all ? states : state ? [state] : [];
-      scene.glyphs('arrow', acting.flatMap((s) => s.loads.map((load) => {
-        const arrow = arrowOf(load);
-        drawn.glyphs.push({at: load.slice(0, 3), text: `${Math.hypot(...load.slice(3)).toPrecision(3)} N, ${s.name}`});
-        return {...arrow, radius: 0.009 * size, colour: loadColour};
-      })));
-      scene.glyphs('arrow', acting.flatMap((s) => s.motions.map((m) => {
-        drawn.glyphs.push({at: m.to, text: `${m.tool} moved by ${Math.hypot(...m.to.map((v, i) => v - m.from[i])).toPrecision(3)} mm, ${s.name}`});
-        return {start: m.from, end: m.to, radius: 0.007 * size, colour: toolColour};
-      })).filter((m) => Math.hypot(...m.end.map((v, i) => v - m.start[i])) > 0.004 * size));
-      scene.glyphs('tube', data.tendons.flatMap((path) => path.slice(1).map((end, i) => ({start: path[i], end, radius: 0.005 * size, colour: toolColour}))));
-      for (const tool of data.tools) {
-        drawn.glyphs.push({at: tool.at, text: tool.name});
-        if (tool.radius > 0) scene.glyphs(tool.flat ? 'tube' : 'ball', [tool.flat
-          ? {start: tool.at, end: tool.at.map((v, i) => v - 0.03 * size * tool.axis[i]), radius: tool.radius, colour: toolColour}
-          : ballAt(tool.at, tool.radius, toolColour)], 0.35);
+      for (const s of all ? states : state ? [state] : []) {
+        const placed = loads.tools(s, still, magnify), skin = tools.gripped(placed);
+        scene.glyphs('arrow', loads.arrows(s, placed, still).map((arrow) => ({...arrow, radius: 0.009 * size, colour: loadColour})));
+        scene.glyphs('arrow', placed.flatMap((tool) => tools.motionArrows(tools.motion(tool, skin), toolColour)));
+        drawn.glyphs.push(...s.loads.map(({place, force}) => ({at: place, text: `${length3(force).toPrecision(3)} N, ${s.name}`})),
+          ...placed.map((t) => ({at: t.place, text: `${t.name} moved by ${short(length3(t.moved))} mm, ${s.name}`})));
       }
+      scene.glyphs('tube', data.tendons.flatMap((path) => path.slice(1).map((end, i) => ({start: path[i], end, radius: 0.005 * size, colour: toolColour}))));
     }
     if (at('show-edges').checked) scene.wires(points, wireColour);
     scene.surface(points, colourOfVertex, +at('opacity').value);
+    if (state && (at('show-loads').checked || all)) {
+      const placed = loads.tools(state, still, magnify);
+      tools.draw(placed, tools.gripped(placed), toolColour);
+    }
     at('told').textContent = state ? `${state.name}: ${state.words}` : 'The body at rest.';
     at('frame').value = at('state').value = shown;
   }
@@ -145,6 +144,8 @@ function startCheck() {
   steer(at('canvas'), camera, {draw: requestDraw, move: (by) => show(shown + by), play: () => play(!playing),
     hint: (x, y) => tellNearest(at('hint'), camera, drawn.glyphs, at('canvas'), x, y)});
   new ResizeObserver(requestDraw).observe(at('canvas'));
+  addEventListener('beforeprint', () => { onPaper = true; draw(); });
+  addEventListener('afterprint', () => { onPaper = false; draw(); });
   colourSkin();
   requestDraw();
 }

@@ -11,15 +11,18 @@ function decoded(array) {
   }
 }
 
+/// What the page carries of tools at rest.
+function decodedTools(tools) {
+  return tools.map((tool) => ({...tool, patch: decoded(tool.patch),
+    surface: tool.surface && {points: decoded(tool.surface.points), triangles: decoded(tool.surface.triangles)}}));
+}
+
 function readRun(json) {
   const run = JSON.parse(json);
   run.surface = {points: decoded(run.surface.points), triangles: decoded(run.surface.triangles)};
   run.spheres = {centers: decoded(run.spheres.centers), radii: decoded(run.spheres.radii), held: run.spheres.held};
   run.links = decoded(run.links);
-  for (const tool of run.tools) {
-    if (tool.surface) tool.surface = {points: decoded(tool.surface.points), triangles: decoded(tool.surface.triangles)};
-    tool.patch = decoded(tool.patch);
-  }
+  run.tools = decodedTools(run.tools);
   for (const state of run.states) state.measured = decoded(state.measured);
   for (const step of run.steps) {
     for (const quantity of step.quantities) quantity.values = decoded(quantity.values);

@@ -181,9 +181,10 @@ std::string held_out_line(const json& held_out, const json& states) {
     for (const json& probe : held_out) probes += (probes.empty() ? "" : ", ") + probe.dump();
     const bool in_turn = std::ranges::all_of(
         states, [&](const json& state) { return std::ranges::find(held_out, state["probe"]) != held_out.end(); });
-    return "<p class=\"soft\">Orange: cross-validation error" +
+    return "<p class=\"soft\">Blue: error on the probes that were fitted. Orange: cross-validation error" +
            (in_turn ? ", a third of the probes held out in turn" : " on probes " + probes + ", held out of each fit") +
-           ". <span class=\"aside\">The table above holds out one probe at a time.</span></p>";
+           ". <span class=\"aside\">The table above " + (in_turn ? "" : "is of fits to all probes, and ") +
+           "holds out one probe at a time.</span></p>";
 }
 
 }  // namespace
@@ -226,7 +227,8 @@ std::string budget_section(const json& compare, const json& improved) {
             std::pow(improved["error"]["rms_mm"].get<double>() / compare["error"]["rms_mm"].get<double>(), 2);
         html += "<p>Baseline:</p>" + shares_of(before, "Shares of the mean square error, baseline") +
                 fmt::format(
-                    "<p>With the missing effect added the mean square error falls to {:.2g} % of that, of which:</p>",
+                    "<p>With the missing effect added, the mean square error falls to {:.2g} % of the baseline's. Of "
+                    "this:</p>",
                     100 * left) +
                 shares_of(after, "Shares of the mean square error, effect added");
     } else {

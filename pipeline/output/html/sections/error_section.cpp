@@ -141,7 +141,8 @@ std::string error_section(const RunFiles& files) {
     std::string html = "<h2 id=\"errors\">Remaining error</h2>";
     if (files.improved.is_object()) {
         html += "<p>" +
-                escape(compare_in_words(files.improved, "The model " + with_what(files) + ", fitted to all probes,")) +
+                escape(compare_in_words(files.improved,
+                                        "The real-time model " + with_what(files) + ", fitted to all probes,")) +
                 "</p>" + worst_section(files.improved);
     } else {
         if (!files.diagnosis.is_null()) html += "<p>" + escape(compare_in_words(files.compare)) + "</p>";

@@ -89,10 +89,10 @@ std::string budget_words(const json& compare) {
     if (!budget.is_object() || !reads_positions(compare)) return {};
     constexpr double all = 0.9995;  // shown as 100.0 %
     const double noise = budget["noise"].get<double>();
-    if (noise >= all) return " The noise accounts for all of the mean square error.";
-    return fmt::format(" Of the mean square error {} is noise, {} the coarseness of the skeleton, {} unexplained.",
-                       percent(noise), percent(budget["reduction"].get<double>()),
-                       percent(budget["missing_physics"].get<double>()));
+    if (noise >= all) return " The noise accounts for all of the real-time model's mean square error.";
+    return fmt::format(
+        " Of the real-time model's mean square error {} is noise, {} the coarseness of the skeleton, {} unexplained.",
+        percent(noise), percent(budget["reduction"].get<double>()), percent(budget["missing_physics"].get<double>()));
 }
 
 /// The regions that noise does not explain, worst first.

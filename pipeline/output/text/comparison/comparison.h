@@ -9,6 +9,6 @@ namespace palpate::pipeline {
 bool reads_positions(const nlohmann::json& compare);
 
 /// What compare.json says, in sentences. @param model what the first one begins with
-std::string compare_in_words(const nlohmann::json& compare, const std::string& model = "The model");
+std::string compare_in_words(const nlohmann::json& compare, const std::string& model = "The real-time model");
 
 }  // namespace palpate::pipeline

@@ -46,7 +46,7 @@ std::string worst_positions(const json& compare) {
     const std::vector<json> markers = worst_of(compare["markers"], "rms_mm");
     if (probes.empty() || markers.empty()) return {};
     std::string text = fmt::format("  {:<24} {:>10} {:>10} {:>9}  {}\n", "Largest errors", "rms mm", "max mm",
-                                   "% moved", "load applied at");
+                                   "relative", "load applied at");
     for (const json& p : probes) {
         text +=
             fmt::format("  {:<24} {:>10.3g} {:>10.3g} {:>9}  {}\n",
@@ -73,7 +73,7 @@ std::string worst_forces(const json& compare) {
     const std::vector<json> forces = worst_of(compare.value("tool_forces", json::array()), "error_n");
     if (forces.empty()) return {};
     std::string text = fmt::format("  {:<24} {:>10} {:>10} {:>9}  {}\n", "Largest force errors", "error N", "read N",
-                                   "% of it", "tool at");
+                                   "relative", "tool at");
     for (const json& force : forces) {
         const double error = force["error_n"].get<double>(), read = length_of(force["measured_n"]);
         text += fmt::format("  {:<24} {:>10.3g} {:>10.3g} {:>9}  {}, {}\n",

@@ -79,7 +79,8 @@ Description describe_table(const fs::path& file) {
     if (kind->first != "parameter,link,") return description;
     const auto posterior = read_posterior(file);
     const auto informed = std::ranges::count_if(posterior, [](const auto& row) { return row.informed; });
-    description.lines.push_back(fmt::format("{} of {} are informed by the measurements", informed, posterior.size()));
+    description.lines.push_back(
+        fmt::format("{} of {} are constrained by the measurements", informed, posterior.size()));
     for (std::size_t i = 0; i < std::min<std::size_t>(posterior.size(), 8); ++i) {
         const auto& row = posterior[i];
         description.lines.push_back(fmt::format("{:<20} {:.4g} {} (95 %: {:.4g} to {:.4g})", row.parameter, row.q50,

@@ -105,8 +105,9 @@ std::vector<std::string> findings_of_run(const fs::path& folder) {
     if (fs::exists(folder / "diagnose/diagnosis.json"))
         lines.push_back(diagnosis_in_words(json_of_file(folder / "diagnose/diagnosis.json")));
     if (!added.empty() && fs::exists(folder / "improve/compare.json"))
-        lines.push_back(compare_in_words(json_of_file(folder / "improve/compare.json"),
-                                         fmt::format("The model with {}, fitted to all probes,", listed(added))));
+        lines.push_back(
+            compare_in_words(json_of_file(folder / "improve/compare.json"),
+                             fmt::format("The real-time model with {}, fitted to all probes,", listed(added))));
     else if (fs::exists(folder / "compare/compare.json"))
         lines.push_back(compare_in_words(json_of_file(folder / "compare/compare.json")));
     if (!ladder.is_null()) lines.push_back(ladder_in_words(ladder));

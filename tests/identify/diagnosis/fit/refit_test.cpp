@@ -3,6 +3,7 @@
 #include <map>
 
 #include "identify/diagnosis/fit/nearby.h"
+#include "identify/diagnosis/likelihood/reading_weights.h"
 #include "identify/diagnosis/search/baselines.h"
 #include "tests/identify/diagnosed.h"
 

@@ -130,6 +130,21 @@ TEST_F(LadderTest, EffectsComeOneByOne) {
     EXPECT_EQ(ladder.verdict, Verdict::adequate);
 }
 
+TEST_F(LadderTest, AnEffectThatIsThereTwiceIsAddedTwice) {
+    const auto ball = [](double x, double ratio) { return numbers({x, 5, 5, std::log(6), std::log(ratio)}); };
+    options_.start = {
+        {"inclusion", {{"cx", 33, "mm"}, {"cy", 5, "mm"}, {"cz", 5, "mm"}, {"radius", 6, "mm"}, {"ratio", 4, "1"}}},
+        {"inclusion", {{"cx", 20, "mm"}, {"cy", 5, "mm"}, {"cz", 5, "mm"}, {"radius", 6, "mm"}, {"ratio", 0.4, "1"}}}};
+    const Ladder ladder =
+        build_ladder(twin({{"inclusion", ball(34, 6)}, {"inclusion", ball(20, 1 / 3.0)}}), {"inclusion", "inclusion"});
+    ASSERT_EQ(ladder.steps.size(), 3u);
+    ASSERT_THAT(names_of(ladder.steps[2].effects), ElementsAre("inclusion", "inclusion"));
+    EXPECT_GT(ladder.steps[2].effects[0].parameters[4].value, 1);
+    EXPECT_LT(ladder.steps[2].effects[1].parameters[4].value, 1);
+    EXPECT_LT(ladder.steps[2].reference->rms_mm, ladder.steps[1].reference->rms_mm);
+    EXPECT_LT(ladder.steps[1].reference->rms_mm, ladder.steps[0].reference->rms_mm);
+}
+
 TEST_F(LadderTest, OutliersAreLeftOutOfTheMeasurements) {
     MeasurementSet set = twin({{"gravity", half_g_}});
     const std::vector<int> off{10, 47, 100, 155, 180};

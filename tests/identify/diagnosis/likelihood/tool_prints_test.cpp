@@ -1,6 +1,6 @@
 #include "identify/diagnosis/likelihood/tool_prints.h"
 
-#include "identify/diagnosis/likelihood/nuisances.h"
+#include "identify/diagnosis/likelihood/reading_weights.h"
 #include "identify/diagnosis/likelihood/tool_nuisances.h"
 #include "identify/effects/catalogue.h"
 #include "tests/identify/diagnosed.h"

@@ -34,6 +34,28 @@ TEST(GaussianProposal, HasTheCovarianceThatItSays) {
     EXPECT_EQ(proposal.parameters(Eigen::VectorXd::Zero(P)), proposal.mean);
 }
 
+TEST(GaussianMixture, HasTheSameDensityFromWhicheverGaussianAPlaceIsTold) {
+    constexpr int P = 3;
+    const auto at = [](double mean, double sd) {
+        return GaussianProposal{Eigen::VectorXd::Constant(P, mean),
+                                {Eigen::VectorXd::Zero(P), Eigen::VectorXd::Constant(P, sd), nullptr},
+                                {},
+                                1};
+    };
+    const std::vector<GaussianProposal> parts{at(-1, 0.5), at(2, 1.5)};
+    const GaussianMixture mixture(parts);
+    ASSERT_EQ(mixture.modes(), 2);
+    ASSERT_EQ(mixture.dimension(), P);
+
+    const Eigen::MatrixXd z = RandomStream(3, 0, 0).normals(P);
+    const Eigen::VectorXd theta = mixture.parameters(z, {0}).col(0);
+    EXPECT_EQ(theta, parts[0].parameters(z).col(0));
+    const double density = mixture.log_density(theta, z.col(0), 0);
+    EXPECT_NEAR(density, mixture.log_density(theta, parts[1].whitened(theta), 1), 1e-12);  // rounding
+    const Eigen::VectorXd each = mixture.log_densities(theta, z.col(0), 0);
+    EXPECT_NEAR(std::exp(density), each.array().exp().mean(), 1e-12);
+}
+
 /// A block whose links are stiff and soft at random, each to be found from what moves at its spheres.
 struct ManyLinks {
     skeleton::Model model = with_law(make_lattice({6, 4, 4}), skeleton::EquilibriumLaw::linear);

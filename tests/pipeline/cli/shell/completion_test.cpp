@@ -163,7 +163,7 @@ TEST(Info, TellsOfEachKindOfFile) {
     const auto table = scratch.write("posterior.csv",
                                      "parameter,link,unit,mean,sd,q025,q50,q975,prior_mean,prior_sd,informed\n"
                                      "elongation,,N/mm,2,0.1,1.8,2,2.2,3,1,1\n");
-    EXPECT_THAT(told(table), AllOf(HasSubstr("1 of 1 are informed"), HasSubstr("1.8 to 2.2")));
+    EXPECT_THAT(told(table), AllOf(HasSubstr("1 of 1 are constrained"), HasSubstr("1.8 to 2.2")));
     const auto ladder =
         scratch.write("ladder.json",
                       R"({"format": "palpate-ladder/1", "verdict": "adequate", "steps": [{"effects": [], "rms_mm": 1.5,

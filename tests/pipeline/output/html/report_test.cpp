@@ -65,6 +65,7 @@ TEST(ReportPage, HoldsEverySectionThatTheRunHasAndNoOther) {
     }
     EXPECT_THAT(page, AllOf(Not(HasSubstr("id=\"missing\"")), Not(HasSubstr("id=\"ladder\""))));
     EXPECT_THAT(page, HasSubstr("<a href=\"#stiffness\">Stiffness</a>"));
+    EXPECT_THAT(page, HasSubstr("volume 40\u202f000 mm³")) << "figures of stages have their units";
 }
 
 /// The run's file and the page's chart of it, where one kind of load acts; none where kinds cannot be compared.

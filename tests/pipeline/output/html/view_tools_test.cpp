@@ -9,6 +9,7 @@
 
 #include "mesh/formats/surface/read_surface.h"
 #include "mesh/text/atomic_file.h"
+#include "pipeline/output/html/check/check_picture.h"
 #include "pipeline/output/html/view_data.h"
 #include "pipeline/output/html/view_tools.h"
 #include "tests/pipeline/output/html/beam_run.h"
@@ -102,6 +103,29 @@ TEST(ViewTools, HoldsMeshesAndGrips) {
     EXPECT_EQ(tools[2]["triangles_left_out"], 0);
     // the last of ten slices: its end of 2 x 2 squares, and a ring of 4 x 2; two triangles each
     EXPECT_EQ(packed_numbers(tools[2]["patch"]), 3U * 2U * (4U + 8U));
+}
+
+/// The page of a check draws the tools of a set as a report does, of every kind.
+TEST(ViewTools, AreInThePictureOfACheck) {
+    const mesh::Surface body = mesh::make_box({0, 0, 0}, {100, 20, 20}, {10, 2, 2});
+    identify::MeasurementSet set;
+    set.rest_surface = body;
+    set.tools = {{.name = "ball", .shape = mesh::SphereShape{4}, .origin = {50, 10, 24}},
+                 {.name = "wedge", .shape = mesh::SurfaceShape{mesh::make_box({40, 5, 21}, {50, 15, 31}, {1, 1, 1})}},
+                 {.name = "grip", .shape = mesh::GripShape{{mesh::BoxRegion{{89, -1, -1}, {101, 21, 21}}}}}};
+    identify::LoadState state;
+    state.probe = 1;
+    state.motions = {{.tool = 1, .translation = {0, 0, -2}}, {.tool = 2, .translation = {identify::missing, 1, 0}}};
+    set.states = {state};
+    Subject subject;
+    subject.surface = body;
+    subject.set = set;
+    const json data = check_picture(subject, nullptr);
+    EXPECT_EQ(data["tools"], tools_at_rest(set, body.vertices, body.triangles));
+    EXPECT_FALSE(data["tools"][1]["surface"].is_null());
+    EXPECT_EQ(data["states"][0]["tools"], tools_in_state(set, {1, 0}));
+    EXPECT_EQ(data["states"][0]["tools"].size(), 2U);
+    EXPECT_EQ(data["surface"]["gripped"].size(), 8U + 9U) << "a ring of corners, and those of the end";
 }
 
 }  // namespace

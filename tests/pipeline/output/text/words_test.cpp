@@ -50,7 +50,9 @@ TEST(DiagnosisInWords, NamesTheEffectWithItsEvidence) {
         AllOf(HasSubstr("Gravity is missing (probability 0.98): 9.90 m/s^2"),
               HasSubstr("rms error of the model is 6.4 mm over all states, and it is there without any load, too."),
               HasSubstr("lowers the error to 0.9 mm, no more than noise"),
-              HasSubstr("Probes left out of the fit are predicted to within 0.92 mm rms, without it to within 6.6 mm."),
+              HasSubstr("Probes left out of the fit one at a time are predicted to within 0.92 mm rms, without it to "
+                        "within 6.6 "
+                        "mm."),
               HasSubstr("Runner-up: misalignment, less than a thousandth as likely."), Not(HasSubstr("10^"))));
 }
 
@@ -75,7 +77,7 @@ TEST(DiagnosisInWords, SaysWhyACloserFitIsNotTheAnswer) {
 TEST(DiagnosisInWords, NamesSeveralTogether) {
     EXPECT_THAT(diagnosis_in_words(diagnosis("missing-effect", {"gravity", "misalignment"})),
                 AllOf(HasSubstr("gravity and misalignment"), HasSubstr("Gravity is missing: 9.90"),
-                      HasSubstr("The readings are misaligned. Without it")));
+                      HasSubstr("The readings are misaligned. Without them")));
 }
 
 TEST(DiagnosisInWords, AmbiguousNamesBothAndTheProbeBetweenThem) {
@@ -163,6 +165,9 @@ TEST(CompareInWords, AnErrorBeyondTheDisplacementIsToldAsTimesOfIt) {
     EXPECT_THAT(diagnosis_in_words(d), Not(HasSubstr("explains nothing")));
     d["baseline"]["relative"] = 1.4;
     EXPECT_THAT(diagnosis_in_words(d), HasSubstr("explains nothing"));
+    json named = diagnosis("missing-effect", {"gravity"});
+    named["baseline"]["relative"] = 1.4;
+    EXPECT_THAT(diagnosis_in_words(named), Not(HasSubstr("explains nothing")));
 }
 
 TEST(CompareInWords, NeedsNoReference) {
@@ -191,8 +196,8 @@ TEST(LadderInWords, TellsEveryStepAndTheVerdict) {
         {"verdict", "adequate"}};
     EXPECT_THAT(ladder_in_words(ladder),
                 AllOf(HasSubstr("Nothing added: 6.4 mm rms (6.3 mm on held-out probes)."),
-                      HasSubstr("With gravity: 0.9 mm rms; finite elements: 0.8 mm rms (0.85 mm on held-out probes), "
-                                "E = 0.242 ± 0.012 MPa, ν = 0.499 (declared)."),
+                      HasSubstr("With gravity: real-time model 0.9 mm rms; finite-element model 0.8 mm rms (0.85 mm on "
+                                "held-out probes), E = 0.242 ± 0.012 MPa, ν = 0.499 (declared)."),
                       HasSubstr("The residual of the finite-element model is noise.")));
     json worse = ladder;
     worse["verdict"] = "missing-effect";
@@ -228,6 +233,11 @@ TEST(LadderInWords, TellsNoiseFromWhatContactsExplain) {
     on_links["noise_mm"] = 0.06;
     EXPECT_THAT(ladder_in_words(on_links),
                 AllOf(HasSubstr("off by more than the noise of 0.06 mm"), Not(HasSubstr("What is left is noise"))));
+}
+
+TEST(Words, APlaceHasNoRoundOff) {
+    EXPECT_EQ(pipeline::place({85.0, -7.0, 2.06e-14}), "(85, -7, 0)");
+    EXPECT_EQ(pipeline::place({-1e-12, 0.0, 1e-3}), "(0, 0, 0.001)");
 }
 
 TEST(Words, ACertaintyIsToldAsABound) {
@@ -301,6 +311,7 @@ TEST(Words, ListsReadAsInASentence) {
     EXPECT_EQ(listed({}), "");
     EXPECT_EQ(listed({"a"}), "a");
     EXPECT_EQ(listed({"a", "b", "c"}), "a, b and c");
+    EXPECT_EQ(listed({"a", "b", "a"}), "a (2) and b");
 }
 
 }  // namespace

@@ -17,7 +17,8 @@ class Loads {
     }
     for (const tool of tools) {
       tool.force = tool.measured?.map((f) => f ?? 0);
-      tool.pushes = tool.at && tool.force && this.pushes(tool.force, tool.at, this.vertexAt(tool.at));
+      // a grip's force begins where its motion ends
+      tool.pushes = tool.at && tool.force && !tool.grips && this.pushes(tool.force, tool.at, this.vertexAt(tool.at));
     }
   }
   vertexAt(place) { return this.rest.length ? nearestVertex(this.rest, place) : -1; }

@@ -30,7 +30,7 @@ function niceStep(range, parts) {
 
 /// A series as the inside of an SVG; `titles` name the states, `shown` is the one that the view shows.
 function seriesDrawing(series, run, titles, shown) {
-  const left = 56, right = 628, top = 10, bottom = 152;
+  const left = 76, right = 628, top = 10, bottom = 152;
   const values = [...series.measured, ...series.models.flatMap((m) => m.values.filter(Number.isFinite))];
   const low = Math.min(0, ...values), most = Math.max(0, ...values), step = niceStep(most - low || 1, 4);
   const floor = Math.floor(low / step) * step, ceiling = Math.ceil(most / step) * step || step;

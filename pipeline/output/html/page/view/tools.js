@@ -8,9 +8,7 @@ class Tools {
     Object.assign(this, {scene, rest, size, ofName: new Map(run.tools.map((tool) => [tool.name, tool]))});
     for (const tool of run.tools) {
       if (tool.surface) tool.mesh = scene.mesh(tool.surface.triangles);
-      if (!tool.patch) continue;
-      tool.mesh = scene.mesh(tool.patch);
-      tool.top = tool.patch.reduce((top, v) => (rest[3 * v + 2] > rest[3 * top + 2] ? v : top), tool.patch[0]);
+      if (tool.patch) tool.mesh = scene.mesh(tool.patch);
     }
     for (const one of run.states.flatMap((s) => s.tools)) {
       const tool = this.ofName.get(one.name);
@@ -28,6 +26,38 @@ class Tools {
     const {surface: {points}, origin} = this.ofName.get(name), result = new Float32Array(points.length);
     for (let p = 0; p < points.length / 3; ++p) result.set(plus3(place, turned3(minus3(point3(points, p), origin), turned)), 3 * p);
     return result;
+  }
+  /// The centre of what a grip holds, on the body with its vertices at `points`; the mean over the patch's area at rest,
+  /// so that it moves as a rigid patch does.
+  center(patch, points) {
+    let sum = [0, 0, 0], areas = 0;
+    for (let t = 0; t < patch.length; t += 3) {
+      const [a, b, c] = [0, 1, 2].map((k) => point3(this.rest, patch[t + k]));
+      const area = length3(cross3(minus3(b, a), minus3(c, a)));
+      for (let k = 0; k < 3; ++k) sum = plus3(sum, point3(points, patch[t + k]), area / 3);
+      areas += area;
+    }
+    return times3(sum, 1 / (areas || 1));
+  }
+  /// How a tool has moved from rest, as an arrow's ends: a grip by the centre of what it holds. `points`: the body's
+  /// vertices now.
+  motion(tool, points) {
+    const {patch, origin} = this.ofName.get(tool.name);
+    return tool.grips ? {start: this.center(patch, this.rest), end: this.center(patch, points)} : {start: origin, end: tool.place};
+  }
+  /// A motion's arrows: none where it is too short to be seen.
+  motionArrows({start, end}, colour) {
+    const length = length3(minus3(end, start));
+    return length > 0.004 * this.size ? [{start, end, radius: Math.min(0.009 * this.size, 0.1 * length), colour}] : [];
+  }
+  /// The body at rest, but for what grips hold: that is moved with them.
+  gripped(tools) {
+    const points = Float32Array.from(this.rest);
+    for (const {name, place, turned} of tools.filter((t) => t.grips)) {
+      const {patch, origin} = this.ofName.get(name);
+      for (const v of new Set(patch)) points.set(plus3(place, turned3(minus3(point3(this.rest, v), origin), turned)), 3 * v);
+    }
+    return points;
   }
   /// How far a tool reaches from its place along a force: to where it presses.
   reach(tool, force) {
@@ -47,11 +77,9 @@ class Tools {
   draw(tools, skin, colour) {
     const {scene, size} = this, drawn = tools.filter((t) => this.isDrawn(t));
     for (const tool of drawn) {
-      const {name, place, radius, axis} = tool, {mesh, top} = this.ofName.get(name) ?? {};
+      const {name, place, radius, axis} = tool, {mesh} = this.ofName.get(name) ?? {};
       if (tool.grips) {
-        // its motion by that of its topmost vertex, beside the arrow of its force
-        const start = point3(this.rest, top), end = point3(skin, top), length = length3(minus3(end, start));
-        if (length > 0.004 * size) scene.glyphs('arrow', [{start, end, radius: Math.min(0.009 * size, 0.1 * length), colour}]);
+        scene.glyphs('arrow', this.motionArrows(this.motion(tool, skin), colour));
         scene.surface(skin, colour, 0.45, mesh);
         scene.wires(skin, colour, mesh);
       } else if (!radius) {

@@ -42,8 +42,9 @@
 
     // a tool that is moved is said to be drawn, or not to be
     if (isOffered('show-tools')) {
-      const key = at('key-tool').textContent;
-      expect(/grips/.test(key) && /not drawn.*scan/.test(key), `the key says of tools: ${key}`);
+      const key = at('key-tool').textContent, {tools} = JSON.parse(at('run-data').textContent);
+      expect(tools.some((t) => t.patch) === /grips/.test(key), `the key says of grips: ${key}`);
+      for (const tool of tools) expect(Boolean(tool.triangles_left_out) === new RegExp(`not drawn.*${tool.name}`).test(key), `the key says of ${tool.name}: ${key}`);
     }
 
     // every control changes the picture or says why not
@@ -90,10 +91,12 @@
       const inAll = curve();
       choose('series-axis', '2', 'change');
       expect(curve() !== inAll, 'the curve is the same along z as in magnitude');
-      const shown = at('state').value, dots = plot.querySelectorAll('circle');
-      dots[dots.length - 1 === +shown ? 0 : dots.length - 1].dispatchEvent(new MouseEvent('click', {bubbles: true}));
+      // a state in which the marker was not read has no point: which one is another state, the point itself says
+      const shown = at('state').value, dot = [...plot.querySelectorAll('circle')].find((one) => one.dataset.state !== shown);
+      expect(dot, 'no other state has a measured point');
+      dot?.dispatchEvent(new MouseEvent('click', {bubbles: true}));
       drawn();
-      expect(at('state').value !== shown, 'a click on a measured point shows no other state');
+      expect(at('state').value === dot?.dataset.state, 'a click on a measured point does not show its state');
       expect(/measured .* mm/.test(at('series-told').textContent), 'the motion is not told');
     }
     // any number's density can be chosen, as by the keys of a list

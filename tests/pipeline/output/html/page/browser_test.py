@@ -1,4 +1,4 @@
-"""The report in a browser: it draws, every control works by mouse and keyboard, nothing is logged as an error.
+"""The report and the page of a check in a browser: they draw, every control works by mouse and keyboard, nothing is logged as an error.
 
 browser_test.py PALPATE SOURCE_FOLDER [PICTURES]; ends with 77 (skipped) where there is no Chromium. Screenshots at laptop
 and phone widths go to PICTURES.
@@ -20,7 +20,7 @@ if not chromium:
     sys.exit(77)
 
 program, source = sys.argv[1], pathlib.Path(sys.argv[2])
-test_script = (source / "tests/pipeline/output/html/page/browser_test.js").read_text()
+of_report, of_check = ((source / "tests/pipeline/output/html/page" / name).read_text() for name in ("browser_test.js", "check_page_test.js"))
 failures = []
 
 
@@ -37,7 +37,7 @@ def browse(page, width, height, profile, *what):
     return subprocess.run(command, capture_output=True, text=True, timeout=240)
 
 
-def check(report, scratch, name):
+def check(report, scratch, name, test_script=of_report):
     size = report.stat().st_size
     if size > 5_000_000:
         failures.append(f"{name}: {size} bytes are more than 5 MB")
@@ -106,6 +106,11 @@ with tempfile.TemporaryDirectory() as folder:
     palpate("run", at / "blind", "-o", at / "measured", "--parameters", "uniform", "--particles", 40, "--edge-length", 12)
     check(at / "measured/report.html", at, "measured")
     check(forces_alone(at / "measured/report.html", at / "forces.html"), at, "forces-alone")
+    palpate("new", "--rig", "tensile", at / "tensile")  # with a grip
+    palpate("check", at / "tensile", "-o", at / "check.html")
+    check(at / "check.html", at, "check", of_check)
+    palpate("run", at / "tensile", "-o", at / "gripped")
+    check(at / "gripped/report.html", at, "gripped")
 
 for failure in failures:
     print("FAILED", failure)
