@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <set>
+
 #include "identify/effects/catalogue.h"
 #include "mesh/text/atomic_file.h"
 #include "pipeline/command_line/flags.h"
@@ -44,7 +46,11 @@ Outcome diagnose(const DiagnoseCommandOptions& options, const Common& common) {
     }
     if (outcome.json["verdict"] == "missing-effect") {
         outcome.text += fmt::format("Next: palpate improve {} {}", options.model.string(), options.set.string());
-        for (const std::string& effect : found.explanation) outcome.text += " --add " + effect;
+        const std::set<std::string> different(found.explanation.begin(), found.explanation.end());
+        if (different.size() < found.explanation.size())
+            outcome.text += " --auto";  // finds several of one kind again: their names do not tell them apart
+        else
+            for (const std::string& effect : found.explanation) outcome.text += " --add " + effect;
         outcome.text += options.body == "skeleton" ? " --body skeleton -o improved\n" : " -o improved\n";
         if (!found.regions.empty())
             outcome.text += fmt::format("Or, with the map's parts as regions: palpate run {} -o with-regions\n",

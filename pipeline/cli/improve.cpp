@@ -79,6 +79,12 @@ std::vector<skeleton::EffectRecord> starts_of(const std::vector<std::string>& sp
         }
         starts.push_back({spec.effect, spec.given});
     }
+    for (const skeleton::EffectRecord& start : starts)
+        if (start.parameters.empty() && std::ranges::count(starts, start.name, &skeleton::EffectRecord::name) > 1)
+            throw InvalidInput(fmt::format(
+                "effect '{0}' is to be added several times, and nothing tells one from the other. Say where "
+                "each is ({1}), or use --auto, which finds them.",
+                start.name, fmt::join(identify::find_effect(start.name)->description().parameters, "; ")));
     return starts;
 }
 

@@ -78,7 +78,7 @@ void check_spec(const EffectSpec& spec) {
 }
 
 std::vector<EffectSampler> samplers_of(const Specimen& specimen, const Plan& plan, const EffectSpec& spec,
-                                       const LoadTiming& timing, std::uint64_t seed) {
+                                       const LoadTiming& timing, std::uint64_t seed, int which) {
     const auto effect = drawn_effect(spec.effect);
     if (!effect) return {sampler_of_own(spec)};
     // Each effect draws from a stream of its own, so that others beside it change nothing.
@@ -93,7 +93,7 @@ std::vector<EffectSampler> samplers_of(const Specimen& specimen, const Plan& pla
         .poisson = poisson,
         .dwell = timing.dwell,
         .baseline = plan.baseline,
-        .random = identify::RandomStream(seed, apart + *effect->stream(), 0),
+        .random = identify::RandomStream(seed, apart + *effect->stream(), static_cast<std::uint64_t>(which)),
     };
     return effect->samplers(context, {spec.effect, spec.given, effect->numbers_to_hide()});
 }

@@ -72,10 +72,11 @@ std::vector<EffectSpec> read_specs(const std::vector<std::string>& specs) {
     std::vector<EffectSpec> result;
     for (const std::string& text : specs) {
         EffectSpec spec = read_effect_spec(text);
-        if (std::ranges::find(result, spec.effect, &EffectSpec::effect) != result.end()) {
-            throw InvalidInput(
-                fmt::format("effect {} is to be hidden twice; once is allowed", mesh::cited(spec.effect)));
-        }
+        const auto effect = identify::effect_named(spec.effect);
+        const bool may_repeat = effect && effect->may_repeat();
+        if (!may_repeat && std::ranges::find(result, spec.effect, &EffectSpec::effect) != result.end())
+            throw InvalidInput(fmt::format("effect {} stands there twice; a body has it once. Leave one out.",
+                                           mesh::cited(spec.effect)));
         result.push_back(std::move(spec));
     }
     const auto none = std::ranges::find(result, no_effect, &EffectSpec::effect);

@@ -239,6 +239,18 @@ TEST_F(Probe, RefusesAMapThatNoSolverResolves) {
         EXPECT_TRUE(says(message({.hide = {contrast}}), {"contrast", "0.1 to 10", "million", "--region"}));
 }
 
+TEST_F(Probe, TwoInclusionsLieInTwoPlaces) {
+    hide({"inclusion:radius=8", "inclusion:radius=8"});
+    const json effects = truth()["effects"];
+    ASSERT_EQ(effects.size(), 2U);
+    const auto centre = [&](int which) {
+        const json& p = effects[which]["parameters"];
+        return Vec3(p["cx"]["value"], p["cy"]["value"], p["cz"]["value"]);
+    };
+    EXPECT_EQ(effects[1]["effect"], "inclusion");
+    EXPECT_GT((centre(0) - centre(1)).norm(), 1);
+}
+
 TEST_F(Probe, TheSetDoesNotTellWhatItHides) {
     hide({"gravity"});
     const std::string description = text("set/set.yaml");

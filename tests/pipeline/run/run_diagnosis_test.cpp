@@ -281,6 +281,15 @@ TEST(RunDiagnosis, RefusesADraftThatCannotBeNamedSoBeforeAnythingIsRead) {
                      {"gravity", "another name"}));
 }
 
+TEST(RunDiagnosis, SeveralOfAKindNeedTheirPlaces) {
+    const auto message = [](const std::vector<std::string>& add) {
+        return message_of<std::exception>(
+            [&] { commands::improve({.model = "m.json", .set = "set", .output = {}, .add = add}, {}); });
+    };
+    EXPECT_TRUE(says(message({"inclusion", "inclusion:cx=1"}), {"inclusion", "several times", "cx", "--auto"}));
+    EXPECT_FALSE(says(message({"inclusion:cx=30", "inclusion:cx=1"}), {"several times"}));
+}
+
 TEST(RunDiagnosis, TellsExpectationsThatAreNotMet) {
     Expectation expect;
     expect.verdict = "missing-effect";

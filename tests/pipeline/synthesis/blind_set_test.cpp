@@ -55,6 +55,7 @@ TEST(EffectSpec, RefusesWhatCannotBeMeant) {
     EXPECT_TRUE(says(message({"gravity:gz=1,gz=2"}), {"gz", "twice"}));
     EXPECT_TRUE(says(message({"gravity", "gravity:gz=2"}), {"gravity", "twice"}));
     EXPECT_TRUE(says(message({"none", "gravity"}), {"none", "alone"}));
+    EXPECT_NO_THROW(read_specs({"inclusion", "inclusion:ratio=3"})) << "a body may have several";
 }
 
 // --- what a probe does in time ---
