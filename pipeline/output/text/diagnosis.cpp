@@ -50,33 +50,33 @@ std::string without_it(const json& diagnosis) {
 }
 
 /// How each probe is forecast by a fit to the others, without the effect and with it.
-std::string forecast_words(const json& before, const json& after) {
+std::string forecast_words(const json& before, const json& after, const char* effects) {
     const std::string then = held_out_rms_in_words(before), now = held_out_rms_in_words(after);
     if (then.empty() || now.empty()) return {};
     const char* held_out = keys_of(before).held_out;
     const bool improves = after[held_out].get<double>() < before[held_out].get<double>();
     return fmt::format(
-        " Probes left out of the fit one at a time are predicted to within {} rms, without it to within {}{}.", now,
-        then, improves ? "" : ": from so few probes the prediction does not improve");
+        " Probes left out of the fit one at a time are predicted to within {} rms, without {} to within {}{}.", now,
+        effects, then, improves ? "" : ": from so few probes the prediction does not improve");
 }
 
 /// What the stiffness comes to with the explanation, and was taken for without it.
-std::string material_words(const json& diagnosis) {
+std::string material_words(const json& diagnosis, const char* effects) {
     const json explained = diagnosis.value("explained", json());
     if (!explained.is_object()) return {};
-    return fmt::format(" The fit gives {}; without it, {}.", material_in_words(explained),
+    return fmt::format(" The fit gives {}; without {}, {}.", material_in_words(explained), effects,
                        material_in_words(diagnosis["baseline"]));
 }
 
-std::string drop_words(const json& diagnosis, const json& candidate) {
-    if (!candidate["rms_mm"].is_number()) return {};
+/// What is left with the explanation, which is `what` done with `effects` ("it", "them"). @param fit their errors
+std::string drop_words(const json& diagnosis, const json& fit, const char* what, const char* effects) {
+    if (!fit.is_object() || !fit["rms_mm"].is_number()) return {};
     // A fit weighs what the noise and unknown contacts cover less, and may leave more there.
-    const char* rms = keys_of(candidate).fitted;
-    const bool falls = candidate[rms].get<double>() < diagnosis["baseline"].value(rms, 0.0);
-    return fmt::format(" {} it {} {}, {}.", candidate["kind"] == "body" ? "Adding" : "Correcting for",
-                       falls ? "lowers the error to" : "leaves an error of", rms_in_words(candidate),
-                       in_sigmas(candidate["whitened_rms"])) +
-           forecast_words(diagnosis["baseline"], candidate) + material_words(diagnosis);
+    const char* rms = keys_of(fit).fitted;
+    const bool falls = fit[rms].get<double>() < diagnosis["baseline"].value(rms, 0.0);
+    return fmt::format(" {} {} {}, {}.", what, falls ? "lowers the error to" : "leaves an error of", rms_in_words(fit),
+                       in_sigmas(fit["whitened_rms"])) +
+           forecast_words(diagnosis["baseline"], fit, effects) + material_words(diagnosis, effects);
 }
 
 std::string runner_up(const json& diagnosis) {
@@ -100,10 +100,11 @@ std::string missing_effect(const json& diagnosis) {
         }
     }
     text += without_it(diagnosis);
-    if (names.size() == 1) {
-        if (const json* candidate = ranking_row(diagnosis, names.front())) {
-            text += drop_words(diagnosis, *candidate) + runner_up(diagnosis);
-        }
+    if (names.size() > 1) {
+        text += drop_words(diagnosis, diagnosis.value("explained", json()), "Taking them into account", "them");
+    } else if (const json* candidate = ranking_row(diagnosis, names.front())) {
+        const char* what = (*candidate)["kind"] == "body" ? "Adding it" : "Correcting for it";
+        text += drop_words(diagnosis, *candidate, what, "it") + runner_up(diagnosis);
     }
     return text;
 }

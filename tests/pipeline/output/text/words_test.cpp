@@ -80,6 +80,26 @@ TEST(DiagnosisInWords, NamesSeveralTogether) {
                       HasSubstr("The readings are misaligned. Without them")));
 }
 
+TEST(DiagnosisInWords, SaysWhatSeveralTogetherLeave) {
+    json d = diagnosis("missing-effect", {"gravity", "misalignment"});
+    d["explained"] = {{"young_mpa", 0.2417}, {"young_sd_mpa", 0.012}, {"poisson", 0.452},       {"poisson_sd", 0.031},
+                      {"rms_mm", 0.85},      {"whitened_rms", 0.97},  {"held_out_rms_mm", 0.88}};
+    EXPECT_THAT(diagnosis_in_words(d),
+                AllOf(HasSubstr("Taking them into account lowers the error to 0.85 mm, no more than noise"),
+                      HasSubstr("predicted to within 0.88 mm rms, without them to within 6.6 mm."),
+                      HasSubstr("E = 0.242 ± 0.012 MPa"), Not(HasSubstr("Runner-up"))));
+    d["explained"]["rms_mm"] = 6.5;
+    EXPECT_THAT(diagnosis_in_words(d), HasSubstr("Taking them into account leaves an error of 6.5 mm"));
+}
+
+TEST(DiagnosisInWords, TwoOfAKindHaveTheirOwnSentences) {
+    json d = diagnosis("missing-effect", {"inclusion", "inclusion"});
+    d["ranking"] = {candidate("inclusion", 412, 1, "The first lump."),
+                    candidate("inclusion", 412, 1, "The second lump.")};
+    EXPECT_THAT(diagnosis_in_words(d),
+                HasSubstr("Missing together: inclusion (2). The first lump. The second lump. Without them"));
+}
+
 TEST(DiagnosisInWords, AmbiguousNamesBothAndTheProbeBetweenThem) {
     json d = diagnosis("ambiguous", {"gravity"});
     d["next_probe"] = {{"kind", "load"},
