@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
-#include <ranges>
 
 #include "identify/effects/catalogue.h"
 #include "mesh/errors.h"
@@ -86,10 +85,10 @@ private:
         for (std::size_t w = 0; w < specs_.size(); ++w) {
             report(progress_, "hiding " + specs_[w].effect,
                    static_cast<double>(w) / static_cast<double>(specs_.size()));
-            const auto before = specs_ | std::views::take(w) | std::views::transform(&EffectSpec::effect);
-            const auto which = static_cast<int>(std::ranges::count(before, specs_[w].effect));
+            const auto same = [&](const EffectSpec& spec) { return spec.effect == specs_[w].effect; };
+            const auto which = std::count_if(specs_.begin(), specs_.begin() + static_cast<std::ptrdiff_t>(w), same);
             const std::vector<EffectSampler> samplers =
-                samplers_of(specimen_, plan_, specs_[w], sequence_.timing, seed_, which);
+                samplers_of(specimen_, plan_, specs_[w], sequence_.timing, seed_, static_cast<int>(which));
             blind_set_.hidden.push_back(hide(specimen_, plan_, samplers, {.noise = blind_set_.noise}, play_));
             report(progress_, "hiding " + specs_[w].effect, 1);
             if (!reads_forces_alone()) blind_set_.noise = see_to_visibility(blind_set_.hidden.back(), blind_set_.noise);
