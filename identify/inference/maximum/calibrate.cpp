@@ -145,6 +145,18 @@ public:
         return found;
     }
 
+    /// A large model error may hold itself: readings weigh so little that a fit stays where it began, and the error
+    /// with it. The fit under half of that error, where it leaves as much less as a round has to. None: the error is
+    /// real.
+    std::optional<FitResult> fit_sharper(PositionDomain& domain, const LogNormalPrior& prior, const FitResult& coarse,
+                                         double model_error) {
+        domain.set_model_error(0.5 * model_error);
+        FitResult found = fit(domain, prior, coarse.theta, nearly);
+        if (model_error_after(domain, found) < falling * model_error) return found;
+        domain.set_model_error(model_error);
+        return std::nullopt;
+    }
+
     /// Puts the highest of a fit and those from other starts, where these are cheap, in its place; returns the rest.
     template <typename Starts>
     std::vector<FitResult> other_modes(const PositionDomain& domain, const LogNormalPrior& prior, FitResult& fit,
@@ -222,7 +234,15 @@ Calibration calibrate(const skeleton::Model& model, const std::vector<StateReadi
         // again with the model error that it left, as long as that falls
         for (int round = 1;; ++round) {
             report(progress, "finer fit", 0.4 + 0.6 * round / most_rounds);
-            const double before = std::exchange(model_error, std::min(model_error, model_error_after(domain, fit)));
+            double left = model_error_after(domain, fit);
+            if (round < most_rounds && left > falling * model_error) {
+                if (std::optional<FitResult> moved = calibrator.fit_sharper(domain, prior, fit, model_error)) {
+                    fit = std::move(*moved);
+                    Calibrator::fit_dents(domain, fit);
+                    left = model_error_after(domain, fit);
+                }
+            }
+            const double before = std::exchange(model_error, std::min(model_error, left));
             const bool last = round == most_rounds || model_error > falling * before;
             if (last) {
                 if (std::optional<FitResult> exact = calibrator.fit_to_the_noise(domain, prior, fit)) {
