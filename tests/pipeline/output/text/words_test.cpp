@@ -82,6 +82,7 @@ TEST(DiagnosisInWords, NamesSeveralTogether) {
 
 TEST(DiagnosisInWords, SaysWhatSeveralTogetherLeave) {
     json d = diagnosis("missing-effect", {"gravity", "misalignment"});
+    d["baseline"].update({{"young_mpa", 0.168}, {"poisson", nullptr}});
     d["explained"] = {{"young_mpa", 0.2417}, {"young_sd_mpa", 0.012}, {"poisson", 0.452},       {"poisson_sd", 0.031},
                       {"rms_mm", 0.85},      {"whitened_rms", 0.97},  {"held_out_rms_mm", 0.88}};
     EXPECT_THAT(diagnosis_in_words(d),
