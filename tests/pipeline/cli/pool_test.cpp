@@ -118,7 +118,8 @@ TEST_F(Pool, TakesNoNumbersOfAnEffectThatIsThereTwice) {
         mesh::write_text(runs.back() / "diagnose/diagnosis.json",
                          json{{"explanation", {"inclusion", "inclusion"}}, {"ranking", {row(x), row(x + 40)}}}.dump());
     }
-    for (const json& one : commands::pool({runs, *scratch_ / "twins"}, {}).json["numbers"])
+    const commands::Outcome outcome = commands::pool({runs, *scratch_ / "twins"}, {});
+    for (const json& one : outcome.json["numbers"])
         EXPECT_FALSE(one["name"].get<std::string>().starts_with("inclusion")) << one;
 }
 
