@@ -16,11 +16,13 @@
 #include <cstdint>
 #include <cstring>
 #include <fstream>
+#include <limits>
 #include <mutex>
 #include <new>
 
 #include "mesh/errors.h"
 #include "mesh/system/interruption.h"
+#include "mesh/system/rest.h"
 
 namespace palpate::mesh {
 namespace {
@@ -32,6 +34,7 @@ constexpr int memory_code = 75;
 constexpr int exception_code = 76;
 
 constexpr long long asked_every = 100;  // whether the work is to go on [ms]
+constexpr int most_copies = 3;          // of this process that are begun, where one after the other comes to rest
 
 bool is_child = false;
 
@@ -102,18 +105,57 @@ void cling_to(pid_t parent, int pipe) {
     }
 }
 
-enum class Reading { Whole, Broken, Late };
+enum class Reading { Whole, Broken, Late, AtRest };
 
-/// Reads up to `size` bytes, or until the other end closes, or until the deadline. @throws what an interruption throws.
-Reading read_all(int pipe, char* at, std::size_t size, Clock::time_point deadline) {
+struct Child {
+    pid_t process = -1;
+    int pipe = -1;  // its answer comes through
+};
+
+Child begin_child(const std::function<std::string()>& work, const ChildLimits& limits) {
+    const double base = address_space();
+    const pid_t parent = getpid();
+    int ends[2];
+    // One at a time: another child must not inherit our writing end, or we would never see it close.
+    static std::mutex one_at_a_time;
+    std::unique_lock lock(one_at_a_time);
+    if (pipe2(ends, O_CLOEXEC) != 0)
+        throw SolverFailure(fmt::format("No pipe to a child process can be made: {}. Close open files and try again.",
+                                        std::strerror(errno)));
+    const pid_t child = fork();
+    if (child == 0) {
+        lock.unlock();  // it may begin children of its own
+        live(work, limits, base, parent, ends[1]);
+    }
+    const int error = errno;
+    close(ends[1]);
+    if (child < 0) {
+        close(ends[0]);
+        throw SolverFailure(fmt::format("No child process can be started: {}. Free memory or processes and try again.",
+                                        std::strerror(error)));
+    }
+    return {child, ends[0]};
+}
+
+/// What of a child is waited for, and for how long.
+struct Patience {
+    Clock::time_point deadline;
+    double rest;  // [s]
+    RestOf child;
+};
+
+/// Reads up to `size` bytes, or until the other end closes, or patience ends. @throws what an interruption throws.
+Reading read_all(int pipe, char* at, std::size_t size, Patience& patience) {
     while (size > 0) {
-        const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(deadline - Clock::now()).count();
+        const auto left =
+            std::chrono::duration_cast<std::chrono::milliseconds>(patience.deadline - Clock::now()).count();
         if (left <= 0) return Reading::Late;
         pollfd waiting{pipe, POLLIN, 0};
         const int ready = poll(&waiting, 1, static_cast<int>(std::min<long long>(left, asked_every)));
         if (ready < 0 && errno != EINTR) return Reading::Broken;
         if (ready <= 0) {
             Interruption::ask();
+            if (patience.child.seconds() > patience.rest) return Reading::AtRest;
             continue;
         }
         const ssize_t got = read(pipe, at, size);
@@ -125,14 +167,14 @@ Reading read_all(int pipe, char* at, std::size_t size, Clock::time_point deadlin
     return Reading::Whole;
 }
 
-Reading read_answer(int pipe, std::string& answer, const ChildLimits& limits, Clock::time_point deadline) {
+Reading read_answer(int pipe, std::string& answer, const ChildLimits& limits, Patience patience) {
     Header header{};
-    const Reading begun = read_all(pipe, reinterpret_cast<char*>(&header), sizeof header, deadline);
+    const Reading begun = read_all(pipe, reinterpret_cast<char*>(&header), sizeof header, patience);
     if (begun != Reading::Whole) return begun;
     if (header.magic != magic || static_cast<double>(header.size) > limits.mebibytes * 1024 * 1024)
         return Reading::Broken;
     answer.resize(header.size);
-    return read_all(pipe, answer.data(), answer.size(), deadline);
+    return read_all(pipe, answer.data(), answer.size(), patience);
 }
 
 int wait_for(pid_t child) {
@@ -148,46 +190,27 @@ bool is_child_process() { return is_child; }
 
 ChildResult run_in_child(const std::function<std::string()>& work, const ChildLimits& limits) {
     constexpr double on_a_busy_machine = 4;  // of wall time, where the processor is shared: what comes out is the same
-    const auto deadline =
-        Clock::now() + std::chrono::microseconds(static_cast<long long>(on_a_busy_machine * limits.seconds * 1e6));
-    const double base = address_space();
-    const pid_t parent = getpid();
-    int ends[2];
-    pid_t child = -1;
-    {
-        // One at a time: another child must not inherit our writing end, or we would never see it close.
-        static std::mutex one_at_a_time;
-        std::unique_lock lock(one_at_a_time);
-        if (pipe2(ends, O_CLOEXEC) != 0)
-            throw SolverFailure(fmt::format(
-                "No pipe to a child process can be made: {}. Close open files and try again.", std::strerror(errno)));
-        child = fork();
-        if (child == 0) {
-            lock.unlock();  // it may begin children of its own
-            live(work, limits, base, parent, ends[1]);
-        }
-        close(ends[1]);
-    }
-    if (child < 0) {
-        const int error = errno;
-        close(ends[0]);
-        throw SolverFailure(fmt::format("No child process can be started: {}. Free memory or processes and try again.",
-                                        std::strerror(error)));
-    }
+    const auto time = std::chrono::microseconds(static_cast<long long>(on_a_busy_machine * limits.seconds * 1e6));
 
     ChildResult result;
-    Reading reading = Reading::Broken;
-    try {
-        reading = read_answer(ends[0], result.answer, limits, deadline);
-    } catch (...) {
-        kill(child, SIGKILL);
-        wait_for(child);
-        close(ends[0]);
-        throw;
+    Reading reading = Reading::AtRest;
+    int status = 0;
+    for (int copy = 1; reading == Reading::AtRest; ++copy) {
+        const Child child = begin_child(work, limits);
+        const double rest = copy < most_copies ? limits.rest : std::numeric_limits<double>::infinity();
+        try {
+            reading =
+                read_answer(child.pipe, result.answer, limits, {Clock::now() + time, rest, RestOf(child.process)});
+        } catch (...) {
+            kill(child.process, SIGKILL);
+            wait_for(child.process);
+            close(child.pipe);
+            throw;
+        }
+        if (reading == Reading::Late || reading == Reading::AtRest) kill(child.process, SIGKILL);
+        close(child.pipe);
+        status = wait_for(child.process);
     }
-    if (reading == Reading::Late) kill(child, SIGKILL);
-    close(ends[0]);
-    const int status = wait_for(child);
 
     // What it died of, in the order of what is sure.
     using End = ChildResult::End;

@@ -10,6 +10,8 @@
 #include <chrono>
 #include <csignal>
 #include <filesystem>
+#include <latch>
+#include <mutex>
 #include <stdexcept>
 #include <string>
 #include <thread>
@@ -60,6 +62,51 @@ TEST(ChildProcess, EndsWithItsTime) {
         },
         {.seconds = 0.2});
     EXPECT_EQ(result.end, End::OutOfTime);
+}
+
+/// A copy begins with every lock as it was, also one that another thread holds: nobody opens it there.
+TEST(ChildProcess, IsBegunAgainWhereItWaitsForALockOfAnotherThread) {
+    std::mutex mutex;
+    std::latch locked(1);
+    const TemporaryFolder folder;
+    const std::jthread other([&] {  // opens it as soon as the first copy tells that it began
+        const std::lock_guard held(mutex);
+        locked.count_down();
+        comes_true([&] { return std::filesystem::exists(folder / "1"); });
+    });
+    locked.wait();
+    int begun = 0;
+    const ChildResult result = run_in_child(
+        [&] {
+            while (std::filesystem::exists(folder / std::to_string(++begun))) {
+            }
+            write_text(folder / std::to_string(begun), "");
+            const std::lock_guard waiting(mutex);
+            return std::to_string(begun);
+        },
+        {.rest = 0.5});
+    EXPECT_EQ(result.end, End::Answered);
+    EXPECT_EQ(result.answer, "2");
+}
+
+/// What computes is not at rest, nor what waits for a child of its own that does.
+TEST(ChildProcess, IsNotBegunAgainWhileItOrItsOwnChildComputes) {
+    const TemporaryFolder folder;
+    const auto compute = [] {
+        const auto end = std::chrono::steady_clock::now() + 1s;
+        while (std::chrono::steady_clock::now() < end) {
+        }
+        return std::string("done");
+    };
+    const ChildResult result = run_in_child(
+        [&] {
+            const std::filesystem::path first = folder / "first";
+            const std::string before = std::filesystem::exists(first) ? "again " : "";
+            write_text(first, "");
+            return before + compute() + run_in_child(compute, {.rest = 0.5}).answer;
+        },
+        {.rest = 0.5});
+    EXPECT_EQ(result.answer, "donedone");
 }
 
 #ifndef __SANITIZE_ADDRESS__  // which addresses terabytes itself
