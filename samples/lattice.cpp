@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "identify/measurements/twin.h"
+#include "identify/loading/twin.h"
 #include "skeleton/model/attachment/attach.h"
 
 namespace palpate::samples {

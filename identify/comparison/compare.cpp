@@ -20,8 +20,7 @@ namespace palpate::identify {
 namespace {
 
 bool is_loaded_from_outside(const LoadState& state) {
-    return !state.motions.empty() || !state.actuations.empty() ||
-           std::ranges::any_of(state.contacts, [](const mesh::Contact& contact) { return !contact.force.isZero(0); });
+    return !state.motions.empty() || !state.actuations.empty() || has_contact_force(state);
 }
 
 constexpr double adequate_rms = 1.1;       // in sigmas: with thousands of readings no p-value forgives rounding

@@ -3,8 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
+#include <functional>
 
+#include "identify/diagnosis/diagnosis_notes.h"
 #include "identify/diagnosis/locate/locate.h"
 #include "identify/diagnosis/locate/residual.h"
 #include "identify/diagnosis/search/baselines.h"
@@ -13,6 +14,7 @@
 #include "identify/diagnosis/search/search.h"
 #include "identify/diagnosis/statistics/discretisation.h"
 #include "identify/diagnosis/statistics/independent_readings.h"
+#include "identify/diagnosis/statistics/outliers/noise_estimate.h"
 #include "identify/diagnosis/statistics/outliers/set_aside.h"
 #include "identify/diagnosis/verdict/verdict.h"
 #include "identify/effects/catalogue.h"
@@ -21,31 +23,27 @@
 namespace palpate::identify {
 namespace {
 
-constexpr const char* noise_note = "The set does not tell its noise: ";
-
 /// The diagnosis in progress.
 class DiagnosisInProgress {
 public:
     DiagnosisInProgress(const BodyModel& model, const MeasurementSet& set, const DiagnoseOptions& options,
                         const Progress& progress)
         : model_(model), set_(set), options_(options), progress_(progress), baselines_(model, options) {
-        result_.noise_known = all_noise_known(set);
+        result_.noise_known = tells_noise(set);
         result_.problem = make_problem(set);
         moved_ = result_.problem.rms_mm(result_.problem.displacement());
         for (const auto& effect : catalogue()) {
             const bool known =
                 std::ranges::find(options.known, effect->name(), &skeleton::EffectRecord::name) != options.known.end();
             if (!options.leaves_out(*effect) && !known) effects_.push_back(effect);
-            if (known && effect->has_memory() && !result_.problem.by_stage) {
+            if (known && effect->has_memory() && !result_.problem.by_stage)
                 result_.problem = result_.problem.stage_by_stage();
-            }
         }
     }
 
     Diagnosis run() {
-        if (!options_.law || *options_.law != 0) {
+        if (!options_.law || *options_.law != 0)
             result_.problem = without_crushing_probes(model_, result_.problem, options_.refit.threads, result_.notes);
-        }
         const bool is_corrected = take_correction_of_neighbour();
         baselines_.fit(result_.problem, result_.notes, progress_);
         if (!is_corrected && options_.refit.correct_for_mesh) {
@@ -68,9 +66,8 @@ public:
         result_.baseline = baseline();
         result_.baseline_held_out = leave_probes_out(result_.problem, result_.baseline);
         result_.noise = result_.problem.rms_sigma();
-        for (int law = 0; law < baselines_.laws(); ++law) {
+        for (int law = 0; law < baselines_.laws(); ++law)
             result_.law_evidence.push_back(baselines_.evidence(law) - baseline().log_evidence);
-        }
         result_.independent = independent_readings(result_.problem);
         result_.large_deformation_failed = baselines_.large_deformation_failed();
         result_.false_claims = options_.false_claims;
@@ -79,23 +76,11 @@ public:
             tell("locating what is missing", 0.95);
             result_.missing = where_missing(model_, set_, result_, options_);
         }
-        note_mesh_error();
-        if (options_.refit.magnitude == MagnitudeUse::alternative && result_.best().has_known_magnitude)
-            result_.notes.emplace_back(
-                "Gravity was fitted with the earth's magnitude, 9.81 m/s² over all its components, as the evidence "
-                "prefers that to a free magnitude; '--gravity unknown' leaves it free.");
-        if (std::string note = note_of_correction(result_.problem); !note.empty())
-            result_.notes.push_back(std::move(note));
+        note_limits(options_, moved_, result_);
         return std::move(result_);
     }
 
 private:
-    static bool all_noise_known(const MeasurementSet& set) {
-        return set.position_noise || std::ranges::all_of(set.states, [](const LoadState& state) {
-                   return std::ranges::none_of(state.readings, [](const Reading& r) { return std::isnan(r.sigma); });
-               });
-    }
-
     const Refit& baseline() const { return baselines_.best(); }
 
     void tell(const std::string& what, double share) const { report(progress_, what, share); }
@@ -123,39 +108,8 @@ private:
         result_.tried = search_->tried();
     }
 
-    /// Sensors finer than the body's mesh see its errors, which no effect explains.
-    void note_mesh_error() {
-        if (result_.verdict != Verdict::unexplained) return;
-        const Eigen::VectorXd left_mm = result_.best().residual.cwiseProduct(result_.problem.sigma);
-        const double left = result_.problem.rms_mm(left_mm);
-        constexpr double most = 0.015;  // of the displacement: what meshes and their contacts may be off by
-        if (left > most * moved_ || moved_ == 0) return;
-        result_.notes.push_back(
-            fmt::format("The residual, {:.3g} mm rms, is {:.2g} % of the displacement, which discretisation error may "
-                        "explain. Shorter elements (--edge-length) reduce it; a noise of {:.3g} mm or more covers it.",
-                        left, 100 * left / moved_, options_.resolution * moved_));
-    }
-
     void estimate_noise() {
-        // What is rough in the errors is noise: a missing effect is smooth from marker to marker. Errors of few
-        // readings that are trusted less are as they are, a median bears them.
-        Problem& problem = result_.problem;
-        const Refit& fit = leading();
-        const Eigen::VectorXd error_mm = fit.residual.cwiseQuotient(fit.V->weights()).cwiseProduct(problem.sigma);
-        const double rough = noise_by_roughness(problem, error_mm);
-        constexpr double least = 1e-12;  // [mm], where nothing moved: a sigma is above 0
-        const double finest = std::max(options_.resolution * moved_, least);
-        const double noise = std::max(rough, finest);
-        for (Eigen::Index n = 0; n < problem.rows(); ++n) {
-            if (problem.is_guessed[n]) problem.sigma[n] = noise;
-        }
-        std::erase_if(result_.notes, [](const std::string& note) { return note.starts_with(noise_note); });
-        result_.notes.push_back(
-            rough >= finest
-                ? fmt::format("{}{:.3g} mm, from how errors differ between neighbouring markers.", noise_note, noise)
-                : fmt::format("{}errors hardly differ between neighbouring markers, and are weighed with {:.3g} mm, "
-                              "{:g} % of the displacement, which a mesh may be off by.",
-                              noise_note, noise, 100 * options_.resolution));
+        estimate_noise_from(leading(), moved_, options_.resolution, result_.problem, result_.notes);
         baselines_.refit(result_.problem);
     }
 
@@ -210,38 +164,38 @@ private:
         const int before = result_.problem.readings();
         result_.outliers = found->outliers;
         result_.problem = result_.problem.with_rows(found->others);
-        result_.notes.push_back(
-            fmt::format("{} of {} readings are outliers and were set aside.", found->outliers.readings.size(), before));
-        for (const ExchangedMarkers& one : found->outliers.exchanged) {
-            const LoadState& state = set_.states[one.state];
-            result_.notes.push_back(fmt::format(
-                "In probe {} at {:g} s the markers {} and {} look exchanged: with their labels swapped both fit. Swap "
-                "them in positions.csv to use their readings.",
-                state.probe, state.time, label_of(set_.markers[one.markers.first]),
-                label_of(set_.markers[one.markers.second])));
-        }
+        note_outliers(set_, before, result_);
         return true;
     }
 
-    /// Next to a missing effect anything looks rough: before one is sought, readings are set aside only where little
-    /// else is left to explain then.
-    void set_plain_outliers_aside() {
+    /// The same, kept only where `is_right` then and the baselines can be fitted to what is left; else all is as
+    /// before.
+    bool set_outliers_aside_if(const Refit& fit, double least, const std::function<bool()>& is_right) {
         const Diagnosis before = result_;
         const Baselines baselines = baselines_;
-        const double least = leaves_only_noise(baseline(), options_)
-                                 ? least_next_to_noise(*single_readings_, result_.problem, options_)
-                                 : 0;
-        if (!set_outliers_aside(baseline(), least)) return;
+        if (!set_outliers_aside(fit, least)) return false;
         try {
-            baselines_.refit(result_.problem, true);
-            if (!options_.screen || leaves_only_noise(baseline(), options_)) {
+            if (is_right()) {
                 baselines_.refit(result_.problem);
-                return;
+                return true;
             }
         } catch (const SolverFailure&) {  // to what is left nothing can be fitted
         }
         result_ = before;
         baselines_ = baselines;
+        return false;
+    }
+
+    /// Next to a missing effect anything looks rough: before one is sought, readings are set aside only where little
+    /// else is left to explain then.
+    void set_plain_outliers_aside() {
+        const double least = leaves_only_noise(baseline(), options_)
+                                 ? least_next_to_noise(*single_readings_, result_.problem, options_)
+                                 : 0;
+        set_outliers_aside_if(baseline(), least, [&] {
+            baselines_.refit(result_.problem, true);
+            return !options_.screen || leaves_only_noise(baseline(), options_);
+        });
     }
 
     /// Once an effect explains the rest, or nothing does, the same; only where noise is left then. True where some were
@@ -264,20 +218,8 @@ private:
     }
 
     bool set_outliers_aside_next_to(const Refit& fit, double least) {
-        const Diagnosis before = result_;
-        const Baselines baselines = baselines_;
         const Refit at = fit;
-        if (!set_outliers_aside(at, least)) return false;
-        try {
-            if (leaves_only_noise(without_them(at), options_)) {
-                baselines_.refit(result_.problem);
-                return true;
-            }
-        } catch (const SolverFailure&) {  // to what is left nothing can be fitted
-            baselines_ = baselines;
-        }
-        result_ = before;
-        return false;
+        return set_outliers_aside_if(at, least, [&] { return leaves_only_noise(without_them(at), options_); });
     }
 
     /// A fit once more, to the readings that are left.
@@ -310,7 +252,13 @@ Diagnosis diagnose(const BodyModel& model, const MeasurementSet& set, const Diag
     if (options.law && (*options.law < 0 || *options.law >= laws)) {
         throw InvalidInput(fmt::format("law is {}; allowed: 0 to {}", *options.law, laws - 1));
     }
-    return DiagnosisInProgress(model, set, options, progress).run();
+    // Its parts come back where they were before, with an effect or without readings: how much is done stays.
+    double done = 0;
+    const Progress onward = [&](std::string_view what, double share) {
+        done = std::max(done, share);
+        report(progress, what, done);
+    };
+    return DiagnosisInProgress(model, set, options, onward).run();
 }
 
 }  // namespace palpate::identify

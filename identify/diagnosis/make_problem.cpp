@@ -20,8 +20,6 @@ std::vector<mesh::Contact> acting(const LoadState& state) {
     return contacts;
 }
 
-bool counts(const Reading& reading) { return reading.marker >= 0 && !reading.position.array().isNaN().all(); }
-
 /// The action of a state: one that is there already, or a new one.
 int action_of(Problem& problem, const Stage& stage) {
     const int probe = is_loaded(stage.action) ? stage.probe : -1;
@@ -60,7 +58,9 @@ void tell_earlier_settings(const MeasurementSet& set, std::vector<Stage>& stages
     }
 }
 
-bool is_read(const LoadState& state) { return std::ranges::any_of(state.readings, counts) || !state.reactions.empty(); }
+bool is_read(const LoadState& state) {
+    return std::ranges::any_of(state.readings, is_usable) || !state.reactions.empty();
+}
 
 Stage stage_of(const MeasurementSet& set, const LoadState& state) {
     return {state.probe,
@@ -113,7 +113,7 @@ int index_of(const MeasurementSet& set, const StateName& name) {
 void add_positions(const MeasurementSet& set, double noise, const std::vector<int>& action, Rows& rows) {
     for (std::size_t s = 0; s < set.states.size(); ++s) {
         for (const Reading& reading : set.states[s].readings) {
-            if (!counts(reading)) continue;
+            if (!is_usable(reading)) continue;
             const bool is_told = !std::isnan(reading.sigma);
             const double sigma = is_told ? reading.sigma : set.position_noise.value_or(noise);
             const int since_state = reading.since ? index_of(set, *reading.since) : -1;
@@ -209,7 +209,7 @@ MeasurementSet without_readings(const MeasurementSet& set, const std::vector<int
     int number = 0;
     for (LoadState& state : result.states) {
         std::erase_if(state.readings, [&](const Reading& reading) {
-            return counts(reading) && std::ranges::binary_search(readings, number++);
+            return is_usable(reading) && std::ranges::binary_search(readings, number++);
         });
     }
     return result;

@@ -83,11 +83,7 @@ PlaneScan::PlaneScan(const BodyModel& model, const Problem& problem, const Model
         Direction direction{n, std::ssize(patches), std::ssize(seeds), {}};
         std::vector<Eigen::VectorXd> own(seeds.size(), Eigen::VectorXd::Zero(3 * rest.rows()));
         for (std::size_t i = 0; i < beyond.size(); ++i) {
-            Eigen::Index nearest = 0;
-            (candidates(seeds, Eigen::all).rowwise() - candidates.row(static_cast<Eigen::Index>(i)))
-                .rowwise()
-                .squaredNorm()
-                .minCoeff(&nearest);
+            const Eigen::Index nearest = mesh::nearest_seed(candidates, seeds, static_cast<Eigen::Index>(i));
             own[nearest].segment<3>(Eigen::Index{3} * beyond[i]) = model.skin_areas()[beyond[i]] * n;
         }
         for (Eigen::VectorXd& patch : own) {

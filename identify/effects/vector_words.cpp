@@ -43,6 +43,12 @@ std::string direction_in_words(const Vec3& direction) {
     return components_in_words(unit);
 }
 
+bool is_undetermined(const VectorComponent& component) {
+    constexpr double two_sided = 2, share = 0.25, ratio = 3;
+    return std::abs(component.value) <= two_sided * component.sd && component.sd >= share * component.rest &&
+           component.sd >= ratio * component.least_sd;
+}
+
 std::string number_in_words(const skeleton::EffectRecord& record, std::size_t number, const Eigen::MatrixXd& covariance,
                             double factor) {
     const auto n = static_cast<Eigen::Index>(number);
@@ -59,7 +65,7 @@ std::string vector_in_words(const Vec3& v, const Mat3& covariance, double unit, 
     std::vector<std::string> open;
     for (int a = 2; a > 0; --a) {
         const Vec3 axis = line_along(axes.eigenvectors().col(a)), others = known - axis * axis.dot(known);
-        if (sd[a] < undetermined_share * others.norm() || sd[a] < undetermined_ratio * sd[0] || others.isZero(0)) break;
+        if (others.isZero(0) || !is_undetermined({axis.dot(known), sd[a], others.norm(), sd[0]})) break;
         known = others;
         open.push_back(fmt::format("{} {} it is not determined ({})", preposition, line_in_words(axis),
                                    mesh::with_sd(axis.dot(v) / unit, sd[a] / unit)));

@@ -19,12 +19,17 @@ std::string direction_in_words(const Vec3& direction);
 std::string number_in_words(const skeleton::EffectRecord& record, std::size_t number, const Eigen::MatrixXd& covariance,
                             double factor = 1);
 
-/// An axis of a fitted vector is undetermined where its standard deviation exceeds both this share of the length of the
-/// rest of the vector (so much of what is known otherwise could be hidden along it) ...
-inline constexpr double undetermined_share = 0.25;
-/// ... and this multiple of the standard deviation along the best-known axis: a vector that is known poorly, but
-/// equally well in all directions, keeps its direction.
-inline constexpr double undetermined_ratio = 3;
+/// What is known of a fitted vector along one axis.
+struct VectorComponent {
+    double value, sd;
+    double rest;      // length of the rest of the vector
+    double least_sd;  // along the best-known axis
+};
+
+/// Do the readings leave it open? Where it may be 0 (within two standard deviations), so much of what is known
+/// otherwise could be hidden along it (a quarter), and other axes are known far better (three times): a vector that is
+/// known poorly, but equally well in all directions, keeps its direction.
+bool is_undetermined(const VectorComponent& component);
 
 /// A vector that was fitted, by size and direction: "9.2 ± 0.5 m/s² along -z; along x it is not determined (3 ± 4)".
 /// Its part along an axis that the readings do not determine enters neither. @param unit the size of one `unit_name`

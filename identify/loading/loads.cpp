@@ -116,11 +116,10 @@ bool is_off_rest(const mesh::ToolMotion& motion) {
 }
 
 bool is_known_to_act(const MeasurementSet& set, const LoadState& state) {
-    const bool pushed = std::ranges::any_of(state.contacts, [](const mesh::Contact& c) { return !c.force.isZero(0); });
     const bool is_heavy = !known_gravity(set, state).value_or(Vec3::Zero()).isZero(0);
     const bool is_moved = std::ranges::any_of(state.motions, [](const auto& motion) { return is_off_rest(motion); });
     const bool is_actuated = std::ranges::any_of(state.actuations, [](const Actuation& a) { return a.value != 0; });
-    return pushed || is_heavy || known_pressure(state) != 0 || is_moved || is_actuated;
+    return has_contact_force(state) || is_heavy || known_pressure(state) != 0 || is_moved || is_actuated;
 }
 
 }  // namespace palpate::identify

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <map>
 
-#include "identify/loading/history/creep.h"
+#include "identify/loading/creep.h"
 #include "identify/loading/loads.h"
 #include "skeleton/model/attachment/attach.h"
 
@@ -35,8 +35,7 @@ StateReadings read_state(const MeasurementSet& set, const LoadState& state, cons
                          const std::vector<skeleton::Attachment>& markers, bool always_loaded) {
     StateReadings readings;
     for (int row = 0; row < static_cast<int>(state.readings.size()); ++row) {
-        const Reading& reading = state.readings[row];
-        if (reading.marker >= 0 && !reading.position.array().isNaN().all()) readings.rows.push_back(row);
+        if (is_usable(state.readings[row])) readings.rows.push_back(row);
     }
     const auto m = static_cast<Eigen::Index>(readings.rows.size());
     readings.rest.resize(m, 3);

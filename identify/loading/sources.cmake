@@ -1,6 +1,6 @@
 # For palpate_identify and for the module for browsers.
 set(loading_sources
-  history/creep.cpp
+  creep.cpp
   history/load_history.cpp
   loads.cpp
   readings.cpp

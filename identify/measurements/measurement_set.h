@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <filesystem>
 #include <functional>
 #include <limits>
@@ -80,6 +81,14 @@ struct LoadState {
     std::filesystem::path field = {};             // the full displacement field (.vtu), or empty
     double field_unit = 1;                        // length unit of that file [mm]
 };
+
+/// Is it a reading of a known marker, with at least one coordinate?
+inline bool is_usable(const Reading& reading) { return reading.marker >= 0 && !reading.position.array().isNaN().all(); }
+
+/// Does a force act on one of the state's contacts?
+inline bool has_contact_force(const LoadState& state) {
+    return std::ranges::any_of(state.contacts, [](const mesh::Contact& c) { return !c.force.isZero(0); });
+}
 
 /// How a body moved: what acted on it, and what was read meanwhile.
 struct MotionRecording {

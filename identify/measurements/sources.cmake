@@ -4,7 +4,6 @@ set(measurements_sources
   measurements/measurement_set.cpp
   measurements/plausibility.cpp
   measurements/rest_body.cpp
-  measurements/twin.cpp
   measurements/files/rig/actuators_yaml.cpp
   measurements/files/path_inside.cpp
   measurements/files/read_measurement_set.cpp

@@ -19,4 +19,10 @@ std::vector<int> farthest_points(const Points& points, int count, int first) {
     return chosen;
 }
 
+Eigen::Index nearest_seed(const Points& points, const std::vector<int>& seeds, Eigen::Index point) {
+    Eigen::Index nearest = 0;
+    (points(seeds, Eigen::all).rowwise() - points.row(point)).rowwise().squaredNorm().minCoeff(&nearest);
+    return nearest;
+}
+
 }  // namespace palpate::mesh

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <charconv>
 #include <cmath>
 #include <numeric>
@@ -137,6 +138,34 @@ std::string with_sd(double value, double sd) {
 
 std::string count_of(long count, const std::string& one, const std::string& many) {
     return fmt::format("{} {}", count, count == 1 ? one : many.empty() ? one + "s" : many);
+}
+
+bool is_before_by_numbers(std::string_view a, std::string_view b) {
+    const auto is_digit = [](char c) { return c >= '0' && c <= '9'; };
+    const auto number = [&](std::string_view text, std::size_t& at) {
+        while (at < text.size() && text[at] == '0') ++at;
+        const std::size_t begin = at;
+        while (at < text.size() && is_digit(text[at])) ++at;
+        return text.substr(begin, at - begin);
+    };
+    std::size_t i = 0, j = 0;
+    while (i < a.size() && j < b.size()) {
+        if (!is_digit(a[i]) || !is_digit(b[j])) {
+            if (a[i] != b[j]) return a[i] < b[j];
+            ++i, ++j;
+            continue;
+        }
+        const std::string_view first = number(a, i), second = number(b, j);
+        if (first.size() != second.size()) return first.size() < second.size();
+        if (first != second) return first < second;
+    }
+    const std::size_t left_of_a = a.size() - i, left_of_b = b.size() - j;
+    return left_of_a != left_of_b ? left_of_a < left_of_b : a < b;
+}
+
+std::string capitalised(std::string text) {
+    if (!text.empty()) text.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(text.front())));
+    return text;
 }
 
 std::string listed(const std::vector<std::string>& words) {

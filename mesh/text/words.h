@@ -39,6 +39,13 @@ std::string with_sd(double value, double sd);
 /// "1 probe", "3 probes". `many`: where it is not one with an "s".
 std::string count_of(long count, const std::string& one, const std::string& many = {});
 
+/// The order of names by the numbers in them: "scan_9" before "scan_10". Names whose numbers are equal, "a01" and
+/// "a1", are ordered by their letters.
+bool is_before_by_numbers(std::string_view a, std::string_view b);
+
+/// With a capital at its beginning.
+std::string capitalised(std::string text);
+
 /// "a, b, c", each in quotes.
 std::string listed(const std::vector<std::string>& words);
 

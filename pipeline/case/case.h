@@ -9,8 +9,8 @@
 #include "mesh/core/material_region.h"
 #include "mesh/core/region.h"
 #include "pipeline/case/body_verdict.h"
+#include "pipeline/case/probe_options.h"
 #include "pipeline/case/run_diagnosis_options.h"
-#include "pipeline/synthesis/probing/probe_options.h"
 #include "skeleton/construction/build_options.h"
 
 namespace palpate::pipeline {

@@ -4,13 +4,13 @@
 #include "mesh/errors.h"
 #include "mesh/formats/surface/read_surface.h"
 #include "mesh/formats/vtk/vtk_files.h"
+#include "mesh/text/words.h"
 #include "pipeline/analysis/playback.h"
 #include "pipeline/command_line/commands.h"
 #include "pipeline/command_line/subcommands.h"
 #include "pipeline/command_line/terminal/console.h"
 #include "pipeline/exports/gltf.h"
 #include "pipeline/exports/programs.h"
-#include "pipeline/output/text/words.h"
 #include "pipeline/output/vtk/series.h"
 #include "skeleton/model/io/model_io.h"
 
@@ -81,7 +81,7 @@ Outcome export_model(const ExportOptions& options, const Common& common) {
             mesh::write_surface(options.output, surface);
         }
     }
-    for (std::string& words : left_out) words = capitalised(words) + ".";
+    for (std::string& words : left_out) words = mesh::capitalised(words) + ".";
     Console::notices(left_out);
     outcome.json["left_out"] = left_out;
     outcome.text = fmt::format("Written: {}\n", options.output.string());

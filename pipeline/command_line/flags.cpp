@@ -4,8 +4,8 @@
 
 #include <stdexcept>
 
+#include "mesh/text/words.h"
 #include "pipeline/case/settings/settings.h"
-#include "pipeline/output/text/words.h"
 
 namespace palpate::pipeline {
 namespace {
@@ -32,7 +32,7 @@ CLI::Option* add_with_argument(CLI::App* command, CaseOverrides& overrides, cons
     auto* option = command->add_option_function<std::vector<std::string>>(
         setting.flag,
         [&overrides, place, yaml_of](const std::vector<std::string>& words) { overrides.set(place, yaml_of(words)); },
-        capitalised(setting.help));
+        mesh::capitalised(setting.help));
     option->expected(1)->multi_option_policy(setting.flag_is_repeatable ? CLI::MultiOptionPolicy::TakeAll
                                                                         : CLI::MultiOptionPolicy::Throw);
     option->type_name(type_in_words(setting.schema));
@@ -49,7 +49,7 @@ void add_flag(CLI::App* command, CaseOverrides& overrides, std::string_view plac
             ? add_with_argument(command, overrides, setting)
             : command->add_flag_callback(
                   setting.flag, [&overrides, &setting] { overrides.set(setting.place(), setting.flag_value); },
-                  capitalised(setting.flag_help.empty() ? setting.help : setting.flag_help));
+                  mesh::capitalised(setting.flag_help.empty() ? setting.help : setting.flag_help));
     option->group(setting.group);
 }
 

@@ -9,7 +9,7 @@
 #include "identify/effects/body/material/stiffness_parts.h"
 #include "identify/effects/catalogue.h"
 #include "identify/effects/vector_words.h"
-#include "pipeline/output/json/ranking_row.h"
+#include "pipeline/output/ranking_row.h"
 
 namespace palpate::pipeline {
 namespace {
@@ -29,7 +29,7 @@ json vector(const skeleton::EffectRecord& effect, const std::array<const char*, 
     return {number(effect, names[0]), number(effect, names[1]), number(effect, names[2])};
 }
 
-/// Takes out of a finding's vector the components that the readings do not determine, by the bounds of vector_words.h.
+/// Takes out of a finding's vector the components that the readings do not determine, as its sentence does.
 void set_undetermined_apart(json& found, const std::array<const char*, 3>& names, const json* candidate) {
     found["undetermined"] = json::array();
     if (!candidate) return;
@@ -45,7 +45,7 @@ void set_undetermined_apart(json& found, const std::array<const char*, 3>& names
         double rest = 0;
         for (std::size_t b = 0; b < 3; ++b)
             if (b != a) rest = std::hypot(rest, vector[b].get<double>());
-        if (rest > 0 && sd[a] > identify::undetermined_share * rest && sd[a] > identify::undetermined_ratio * least) {
+        if (rest > 0 && identify::is_undetermined({vector[a].get<double>(), sd[a], rest, least})) {
             json axis{0, 0, 0};
             axis[a] = 1;
             found["undetermined"].push_back({{"axis", axis}, {"value", vector[a]}, {"sd", sd[a]}});
@@ -67,11 +67,13 @@ void add_parts(const skeleton::EffectRecord& effect, const std::string& words, j
     const std::vector<identify::StiffnessPart> parts = map.parts();
     if (parts.empty()) findings.push_back({{"effect", effect.name}, {"words", words}, {"kind", "words"}});
     for (const identify::StiffnessPart& part : parts)  // the sentence is of all of them, and stands once
-        findings.push_back({{"effect", effect.name},
-                            {"words", &part == &parts.front() ? words : fmt::format("Map: {:.2g} times.", part.ratio)},
-                            {"kind", "ball"},
-                            {"center", {part.centre.x(), part.centre.y(), part.centre.z()}},
-                            {"radius", map.length()}});
+        findings.push_back(
+            {{"effect", effect.name},
+             {"words",
+              &part == &parts.front() ? words : fmt::format("{:.2g} times the mean stiffness here.", part.ratio)},
+             {"kind", "ball"},
+             {"center", {part.centre.x(), part.centre.y(), part.centre.z()}},
+             {"radius", map.length()}});
 }
 
 }  // namespace

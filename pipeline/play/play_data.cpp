@@ -8,7 +8,7 @@
 
 #include "identify/diagnosis/rigged_skeleton.h"
 #include "identify/effects/catalogue.h"
-#include "identify/loading/history/creep.h"
+#include "identify/loading/creep.h"
 #include "identify/measurements/rig/fittable.h"
 #include "mesh/errors.h"
 #include "mesh/formats/read_body.h"
@@ -19,7 +19,7 @@
 #include "pipeline/case/subject/subject.h"
 #include "pipeline/output/findings.h"
 #include "pipeline/output/html/run_files.h"
-#include "pipeline/output/json/ranking_row.h"
+#include "pipeline/output/ranking_row.h"
 #include "pipeline/output/text/words.h"
 #include "pipeline/play/touch/set_text.h"
 #include "skeleton/model/io/model_io.h"

@@ -1,7 +1,7 @@
 #pragma once
 
+#include "pipeline/case/probe_options.h"
 #include "pipeline/synthesis/effects/hidden_effect.h"
-#include "pipeline/synthesis/probing/probe_options.h"
 
 namespace palpate::pipeline {
 

@@ -5,7 +5,7 @@
 #include <limits>
 #include <numbers>
 
-#include "identify/measurements/twin.h"
+#include "identify/loading/twin.h"
 #include "identify/models/reference/reference_body.h"
 #include "identify/models/skeleton/skeleton_body.h"
 #include "mesh/errors.h"

@@ -10,10 +10,10 @@
 #include "identify/models/body_model.h"
 #include "mesh/core/volume_mesh.h"
 #include "mesh/progress.h"
+#include "pipeline/case/probe_options.h"
 #include "pipeline/case/subject/subject.h"
 #include "pipeline/synthesis/loading/probe_load_history.h"
 #include "pipeline/synthesis/options.h"
-#include "pipeline/synthesis/probing/probe_options.h"
 #include "skeleton/model/model.h"
 
 namespace palpate::pipeline {

@@ -12,156 +12,23 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <chrono>
-#include <unsupported/Eigen/NonLinearOptimization>
-#include <unsupported/Eigen/NumericalDiff>
 
 #include "identify/identify.h"
 #include "identify/inference/domains/force/force_domain.h"
 #include "identify/inference/domains/force/node_configuration.h"
-#include "identify/inference/domains/position/position_domain.h"
-#include "identify/measurements/twin.h"
+#include "identify/loading/twin.h"
 #include "identify/numerics/random.h"
-#include "mesh/errors.h"
 #include "pipeline/run/folder/peak_memory.h"
 #include "samples/lattice.h"
-
-#ifdef PALPATE_WITH_NLOPT
-#include <nlopt.hpp>
-#endif
+#include "tests/bench/identify/block.h"
+#include "tests/bench/identify/optimisers.h"
+#include "tests/bench/identify/trial.h"
 
 namespace {
 
 using namespace palpate;
 using namespace palpate::identify;
-
-class Watch {
-public:
-    double seconds() const { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count(); }
-
-private:
-    std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
-};
-
-/// One of the paper's experiments, measured with noise.
-struct Trial {
-    samples::Experiment experiment;
-    Scope scope;
-    MeasurementSet set;
-    std::vector<double> truth;  // of each parameter: kE and kF of each zone
-
-    Trial(const samples::Experiment& made, double noise_share, std::uint64_t seed)
-        : experiment(made), scope(made.elongation.size() > 1 ? Scope::zones : Scope::uniform), set(made.set) {
-        constexpr double spacing = 40;
-        for (std::size_t zone = 0; zone < made.elongation.size(); ++zone) {
-            truth.push_back(made.elongation[zone]);
-            truth.push_back(made.flexion[zone]);
-        }
-        if (noise_share == 0) return;
-        set.position_noise = noise_share * spacing;
-        for (std::size_t s = 0; s < set.states.size(); ++s) {
-            RandomStream random(seed, 1000, s);
-            for (Reading& reading : set.states[s].readings) {
-                reading.position += *set.position_noise * random.normals(3);
-            }
-        }
-    }
-
-    IdentifyOptions options(Method method, Domain domain, std::uint64_t seed) const {
-        IdentifyOptions how;
-        how.scope = scope;
-        how.method = method;
-        how.domain = domain;
-        how.law = LawChoice::large_rotation;
-        how.fixed = {skeleton::Stiffness::torsion};
-        how.seed = seed;
-        how.search_low = 0.05;
-        how.search_high = 2;
-        if (method == Method::burion2008) how.particles = scope == Scope::zones ? 900 : 600;
-        return how;
-    }
-
-    /// Errors of markers by log multipliers, for other people's optimisers.
-    PositionDomain domain() const {
-        PositionDomain result(experiment.start, skeleton::EquilibriumLaw::large_rotation,
-                              group_stiffness(experiment.start, scope, {skeleton::Stiffness::torsion}),
-                              collect_readings(experiment.start, set), 1);
-        result.set_model_error(0);
-        return result;
-    }
-
-    double error_of(const Eigen::VectorXd& stiffness) const {
-        double sum = 0;
-        for (std::size_t p = 0; p < truth.size(); ++p) {
-            sum += std::pow(stiffness[static_cast<Eigen::Index>(p)] / truth[p] - 1, 2);
-        }
-        return std::sqrt(sum / static_cast<double>(truth.size()));
-    }
-};
-
-/// Modelled less measured markers, of one set.
-struct Residuals {
-    using Scalar = double;
-    using InputType = Eigen::VectorXd;
-    using ValueType = Eigen::VectorXd;
-    using JacobianType = Eigen::MatrixXd;
-    enum { InputsAtCompileTime = Eigen::Dynamic, ValuesAtCompileTime = Eigen::Dynamic };
-
-    const PositionDomain* domain;
-    int inputs() const { return domain->parameters().size(); }
-    int values() const {
-        int rows = 0;
-        for (const StateReadings& state : domain->states()) rows += static_cast<int>(3 * state.rest.rows());
-        return rows;
-    }
-    int operator()(const Eigen::VectorXd& theta, Eigen::VectorXd& r) const {
-        try {
-            const Prediction prediction = domain->predict(theta, 1);
-            Eigen::Index row = 0;
-            for (std::size_t s = 0; s < domain->states().size(); ++s) {
-                const Points off = prediction.markers[s] - domain->states()[s].measured;
-                r.segment(row, off.size()) = off.reshaped<Eigen::RowMajor>();
-                row += off.size();
-            }
-        } catch (const SolverFailure&) {
-            r.setConstant(1e3);
-        }
-        return 0;
-    }
-};
-
-Eigen::VectorXd levenberg_marquardt(const PositionDomain& domain) {
-    Eigen::NumericalDiff<Residuals> residuals(Residuals{&domain}, 1e-12);
-    Eigen::LevenbergMarquardt<Eigen::NumericalDiff<Residuals>> lm(residuals);
-    Eigen::VectorXd theta = Eigen::VectorXd::Zero(domain.parameters().size());
-    lm.minimize(theta);
-    return theta;
-}
-
-#ifdef PALPATE_WITH_NLOPT
-Eigen::VectorXd controlled_random_search(const PositionDomain& domain) {
-    const auto n = static_cast<unsigned>(domain.parameters().size());
-    nlopt::opt search(nlopt::GN_CRS2_LM, n);
-    search.set_lower_bounds(std::log(0.05));
-    search.set_upper_bounds(std::log(2));
-    search.set_ftol_rel(1e-6);
-    search.set_maxeval(3000);
-    search.set_min_objective(
-        [](unsigned count, const double* x, double*, void* data) {
-            const auto& d = *static_cast<const PositionDomain*>(data);
-            try {
-                return d.squared_distance(d.predict(Eigen::Map<const Eigen::VectorXd>(x, count), 1));
-            } catch (const SolverFailure&) {
-                return 1e9;
-            }
-        },
-        const_cast<PositionDomain*>(&domain));
-    std::vector<double> x(n, 0);
-    double least = 0;
-    search.optimize(x, least);
-    return Eigen::Map<Eigen::VectorXd>(x.data(), n);
-}
-#endif
+using namespace palpate::bench;
 
 /// What a method found, and what it takes to be left open.
 struct Found {
@@ -270,40 +137,6 @@ void coverage(int repeats) {
         }
     }
 }
-
-/// A cube's lattice of n spheres a side, links of smoothly varying stiffness, and what moves at its surface.
-struct Block {
-    skeleton::Model start, truth;
-    MeasurementSet set;
-
-    Block(int n, skeleton::EquilibriumLaw law) {
-        constexpr double noise = 0.01;
-        start = samples::make_lattice("block", {n, n, n}, 1);
-        start.law = law;
-        truth = start;
-        for (skeleton::Link& link : truth.links) {
-            const Vec3 at = (truth.spheres[link.a].center + truth.spheres[link.b].center) / (2 * 40.0 * n);
-            link.stiffness[0] *= std::exp(0.5 * std::sin(7 * at.x()) * std::cos(5 * at.y()));
-            link.stiffness[1] *= std::exp(0.5 * std::cos(6 * at.x() + 3 * at.z()));
-        }
-        std::vector<Marker> markers;
-        const auto on_surface = [&](const Vec3& c) {
-            return (c.array() == 0).any() || (c.array() == 40.0 * (n - 1)).any();
-        };
-        for (const Marker& marker : markers_on_spheres(start)) {
-            if (on_surface(*marker.anchor)) markers.push_back(marker);
-        }
-        std::vector<LoadState> states;
-        for (int p = 0; p < 12; ++p) {
-            RandomStream random(3, 0, p);
-            Vec3 at = 40.0 * (Vec3(random.uniform(), random.uniform(), random.uniform()) * (n - 1)).array().round();
-            at[p % 3] = 40.0 * (n - 1);
-            const Vec3 force = 2.0 * random.normals(3).normalized();
-            states.push_back({.probe = p + 1, .contacts = {{at, force, 0}}});
-        }
-        set = simulate_measurements(truth, states, markers, noise, 1);
-    }
-};
 
 void particles() {
     fmt::print(

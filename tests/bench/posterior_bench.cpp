@@ -17,7 +17,7 @@
 #include "identify/inference/maximum/calibrate.h"
 #include "identify/inference/methods/methods.h"
 #include "identify/inference/particles/proposal.h"
-#include "identify/measurements/twin.h"
+#include "identify/loading/twin.h"
 #include "identify/numerics/random.h"
 #include "mesh/errors.h"
 #include "samples/lattice.h"

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "identify/measurements/twin.h"
+#include "identify/loading/twin.h"
 #include "skeleton/model/model.h"
 #include "skeleton/statics/statics.h"
 

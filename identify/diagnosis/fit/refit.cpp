@@ -1,5 +1,6 @@
 #include "identify/diagnosis/fit/refit.h"
 
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <numbers>

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "identify/comparison/compare.h"
-#include "identify/diagnosis/diagnose.h"
+#include "identify/diagnosis/ladder/ladder_body.h"
 #include "identify/diagnosis/ladder/ladder_forecast.h"
 #include "identify/diagnosis/ladder/ladder_skeleton.h"
 #include "identify/diagnosis/ladder/understood_set.h"
@@ -25,12 +25,13 @@ double newtons(const Comparison& comparison) { return comparison.reactions ? com
 class LadderBuilder {
 public:
     LadderBuilder(const skeleton::Model& model, const BodyModel& body, const MeasurementSet& set,
-                  const LadderOptions& options, const Progress& progress)
-        : body_(body),
+                  const LadderOptions& options, const Diagnosis* diagnosis, const Progress& progress)
+        : body_(body, options, diagnosis),
           body_is_skeleton_(dynamic_cast<const SkeletonBody*>(&body) != nullptr),
           set_(set),
           options_(options),
           progress_(progress),
+          diagnosis_(diagnosis),
           skeleton_(model, options.identify) {
         for (const std::vector<int>& fold : folds_of(set)) {
             folds_.push_back({part_of(set, fold, false), part_of(set, fold, true)});
@@ -40,8 +41,7 @@ public:
         fitted_ = folds_.size() == 1 ? folds_.front().fitted : set;
     }
 
-    Ladder run(const std::vector<std::string>& effects, const Diagnosis* diagnosis) {
-        diagnosis_ = diagnosis;
+    Ladder run(const std::vector<std::string>& effects) {
         add_step({});
         for (std::size_t number = 1; number <= effects.size(); ++number) {
             report(progress_, fmt::format("ladder, step {}", number),
@@ -119,51 +119,12 @@ private:
         return what_is_worse(before, result_.steps.back(), is_residual ? 1 : held_out_tolerance);
     }
 
-    /// The body explained with these effects and no others.
-    Diagnosis explain(const MeasurementSet& set, const std::vector<std::string>& effects) const {
-        DiagnoseOptions options = options_.diagnose;
-        options.screen = false;
-        for (std::size_t e = 0; e < effects.size(); ++e) {
-            const auto before =
-                std::ranges::count(effects.begin(), effects.begin() + static_cast<std::ptrdiff_t>(e), effects[e]);
-            options.known.push_back(start_of(effects[e], static_cast<int>(before)));
-        }
-        if (!set_readings_aside(effects)) options.without.push_back(effect_of_single_readings()->name());
-        const bool has_residual = options_.residual && options_.residual->fit &&
-                                  std::ranges::find(effects, options_.residual->effect.name) != effects.end();
-        if (diagnosis_ && has_residual) {
-            // Far from where the diagnosis ended: what it knows of the law and of the mesh's error does not hold.
-            options.law = options_.residual->fit->explanation.law;
-            options.near = NeighbouringFit{&diagnosis_->problem, &*options_.residual->fit, false};
-        } else if (diagnosis_) {
-            options.law = diagnosis_->law;
-            options.near =
-                NeighbouringFit{&diagnosis_->problem, effects.empty() ? &diagnosis_->baseline : &diagnosis_->best()};
-        }
-        return diagnose(body_, set, options);
-    }
-
-    /// @param which of those of this name
-    skeleton::EffectRecord start_of(const std::string& name, int which) const {
-        if (diagnosis_) {
-            int next = which;
-            for (const Candidate& candidate : diagnosis_->ranking) {
-                if (candidate.effect->name() != name || candidate.estimate.effect.name.empty()) continue;
-                if (next-- == 0) return candidate.estimate.effect;
-            }
-        }
-        if (options_.residual && options_.residual->effect.name == name) return options_.residual->effect;
-        for (const skeleton::EffectRecord& told : options_.start)
-            if (told.name == name && which-- == 0) return told;
-        return {name, {}};
-    }
-
     void add_step(const std::vector<std::string>& effects) {
         LadderStep step;
-        const Diagnosis found = explain(fitted_, effects);
+        const Diagnosis found = body_.explained(fitted_, effects);
         const Refit& fit = found.best();
         step.effects = estimate(found);
-        step.material = material_of(body_, fit);
+        step.material = material_of(body_.model(), fit);
         step.log_evidence = fit.log_evidence;
         if (!effects.empty() && diagnosis_) {
             const auto& ranking = diagnosis_->ranking;
@@ -206,8 +167,8 @@ private:
         PooledError positions, forces, whitened, positions_of_skeleton, forces_of_skeleton;
         for (const Fold& fold : folds_) {
             const bool is_fitted = folds_.size() == 1;
-            const Diagnosis own = is_fitted ? found : explain_again(fold.fitted, found);
-            const auto [unseen, predicted] = predict_unseen(effects, fold.held_out, own);
+            const Diagnosis own = is_fitted ? found : body_.explained_again(fold.fitted, found);
+            const auto [unseen, predicted] = body_.predicted(fold.held_out, effects, own);
             const Problem problem = make_problem(unseen, own.noise);
             const Eigen::Index positions_read = problem.count_positions(), forces_read = problem.count_forces();
             positions.add(predicted.rms_mm, positions_read);
@@ -229,45 +190,15 @@ private:
         step.skeleton.held_out_rms_n = forces_of_skeleton.rms();
     }
 
-    /// The same explanation fitted to another part of the set, under its law.
-    Diagnosis explain_again(const MeasurementSet& part, const Diagnosis& found) const {
-        DiagnoseOptions options = options_.diagnose;
-        options.screen = false;
-        options.law = found.law;
-        options.known = estimate(found);
-        options.near = NeighbouringFit{&found.problem, &found.best()};
-        if (found.outliers.readings.empty()) options.without.push_back(effect_of_single_readings()->name());
-        return diagnose(body_, part, options);
-    }
-
-    struct Unseen {
-        MeasurementSet set;  // without outliers, where these are among the effects
-        HeldOut predicted;
-    };
-    Unseen predict_unseen(const std::vector<std::string>& effects, const MeasurementSet& held_out,
-                          const Diagnosis& found) const {
-        const RefitOptions& how = options_.diagnose.refit;
-        const Refit& fit = found.best();
-        Unseen result{held_out, predict(body_, make_problem(held_out, found.noise), fit, how)};
-        if (!set_readings_aside(effects)) return result;
-        const Problem problem = make_problem(held_out, found.noise);
-        const Eigen::VectorXd& residual = result.predicted.residual;
-        const Outliers off =
-            find_outliers(problem, residual, find_exchanged_markers(problem, noise_alone(problem.rows()), residual));
-        result.set = without_readings(held_out, off.readings);
-        result.predicted = predict(body_, make_problem(result.set, found.noise), fit, how);
-        return result;
-    }
-
     /// The last step once more, on all states and with particles: the model that is delivered.
     void finish() {
         report(progress_, "the model on all states", 0.9);
         const bool is_known =
             diagnosis_ && std::ranges::is_permutation(estimate(*diagnosis_), added_, {}, &skeleton::EffectRecord::name);
-        const Diagnosis& whole = result_.whole = is_known ? *diagnosis_ : explain(set_, added_);
+        const Diagnosis& whole = result_.whole = is_known ? *diagnosis_ : body_.explained(set_, added_);
         LadderStep& last = result_.steps.back();
         last.effects = estimate(whole);
-        last.material = material_of(body_, whole.best());
+        last.material = material_of(body_.model(), whole.best());
         last.set = understood(set_, last.effects, whole.outliers.readings);
         result_.identified = skeleton_.identified(last.effects, last.set, progress_);
         last.model = result_.identified.model;
@@ -279,18 +210,18 @@ private:
         if (last.reference) take_fitted(*last.reference, whole);
     }
 
-    const BodyModel& body_;
+    LadderBody body_;
     bool body_is_skeleton_;
     const MeasurementSet& set_;
     const LadderOptions& options_;
     const Progress& progress_;
+    const Diagnosis* diagnosis_;  // of the whole set; null: there is none
     struct Fold {
         MeasurementSet fitted, held_out;
     };
     std::vector<Fold> folds_;
-    MeasurementSet fitted_;                 // what the steps are fitted to
-    const Diagnosis* diagnosis_ = nullptr;  // of the whole set, where there is one
-    std::vector<std::string> added_;        // in the order of the steps
+    MeasurementSet fitted_;           // what the steps are fitted to
+    std::vector<std::string> added_;  // in the order of the steps
     LadderSkeleton skeleton_;
     Ladder result_;
 };
@@ -301,7 +232,7 @@ Ladder build_ladder(const skeleton::Model& model, const BodyModel& body, const M
                     const std::vector<std::string>& effects, const LadderOptions& options, const Diagnosis* diagnosis,
                     const Progress& progress) {
     for (const std::string& name : effects) refuse_what_cannot_show(*find_effect(name), body, set);
-    return LadderBuilder(model, body, set, options, progress).run(effects, diagnosis);
+    return LadderBuilder(model, body, set, options, diagnosis, progress).run(effects);
 }
 
 }  // namespace palpate::identify

@@ -1,11 +1,9 @@
 #pragma once
 
-#include "identify/diagnosis/diagnose_options.h"
 #include "identify/diagnosis/diagnosis.h"
+#include "identify/diagnosis/ladder/ladder_options.h"
 #include "identify/diagnosis/ladder/ladder_step.h"
-#include "identify/diagnosis/locate/residual.h"
 #include "identify/inference/identify_result.h"
-#include "identify/inference/problem/identify_options.h"
 #include "identify/measurements/measurement_set.h"
 #include "mesh/progress.h"
 
@@ -24,17 +22,6 @@ struct Ladder {
     std::vector<int> held_out_probes;     // empty where there are too few to spare one
     Verdict verdict = Verdict::adequate;  // on the last step
     std::vector<std::string> notes;
-};
-
-struct LadderOptions {
-    IdentifyOptions identify;
-    DiagnoseOptions diagnose;
-    /// An effect that makes held-out probes worse, or leaves a state without equilibrium, is not added. Those that a
-    /// diagnosis names are then tried together, too.
-    bool only_better = false;
-    /// One of the effects that was located in what is left and has to make held-out probes better.
-    std::optional<Residual> residual = {};
-    std::vector<skeleton::EffectRecord> start = {};  // numbers of effects to begin with, where no diagnosis has any
 };
 
 /// Adds effects to a model, fits anew, and tells the error before and after, on fitted and on held-out probes.

@@ -109,12 +109,7 @@ Eigen::MatrixXd clamp_sectors(const BodyModel& model, int most) {
     const std::vector<int> seeds = mesh::farthest_points(centres, most);
     Eigen::MatrixXd W = Eigen::MatrixXd::Zero(std::ssize(cut), std::ssize(seeds));
     for (std::size_t i = 0; i < ids.size(); ++i) {
-        Eigen::Index nearest = 0;
-        (centres(seeds, Eigen::all).rowwise() - centres.row(static_cast<Eigen::Index>(i)))
-            .rowwise()
-            .squaredNorm()
-            .minCoeff(&nearest);
-        W(ids[i], nearest) = 1;
+        W(ids[i], mesh::nearest_seed(centres, seeds, static_cast<Eigen::Index>(i))) = 1;
     }
     return W;
 }

@@ -32,6 +32,9 @@ std::string law_in_words(const SourceTerm& term) {
             return "in proportion to the force on the supports";
         case SourceLaw::one_probe:
             return fmt::format("in probe {} alone", term.number);
+        case SourceLaw::some_states:
+            return fmt::format("alike in {:.0f} of the {} states, and not in the others", term.strength.sum(),
+                               term.strength.size());
         case SourceLaw::irregular:
             return "in some states more than in others, by no simple law of the load";
     }

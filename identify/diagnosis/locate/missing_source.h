@@ -29,11 +29,12 @@ enum class SourceLaw {
     one_sided,     // against its motion outward there, never inward
     reaction,      // with the force on the supports
     one_probe,     // in one probe alone
+    some_states,   // alike in some states, and not in the others
     irregular,     // a strength of its own in each state
 };
-inline constexpr std::array<const char*, 10> source_law_names{"constant",  "proportional", "quadratic", "time",
+inline constexpr std::array<const char*, 11> source_law_names{"constant",  "proportional", "quadratic", "time",
                                                               "history",   "spring",       "one-sided", "reaction",
-                                                              "one-probe", "irregular"};
+                                                              "one-probe", "some-states",  "irregular"};
 
 /// What a source's numbers are.
 enum class SourceForm {

@@ -7,8 +7,7 @@ namespace palpate::identify {
 namespace {
 
 bool is_loaded(const LoadState& state) {
-    return std::ranges::any_of(state.contacts, [](const mesh::Contact& c) { return !c.force.isZero(0); }) ||
-           !state.motions.empty() || !state.actuations.empty();
+    return has_contact_force(state) || !state.motions.empty() || !state.actuations.empty();
 }
 
 }  // namespace

@@ -119,7 +119,7 @@ private:
         const bool is_pressed = !stage.action.contacts.empty();
         const double most = is_pressed ? overload : 1;
         CandidateProbe trial{
-            .probe = {.kind = probe_kinds::unload, .contact = contact_of(stage)},
+            .probe = {.kind = probe_kinds::load_removed, .contact = contact_of(stage)},
             .asks = fmt::format("{}, and read the body again at half {} and once it is off",
                                 is_pressed ? "load once more, stronger" : "drive it once more as far as ever",
                                 is_pressed ? "the load" : "of that"),

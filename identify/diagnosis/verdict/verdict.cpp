@@ -97,8 +97,8 @@ std::string objection_of_overfit(const Diagnosis& diagnosis, const FittedExplana
     const double most = largest_held_out(diagnosis.problem, explained.fit, options.false_refusals);
     if (unseen <= most) return {};
     return fmt::format(
-        "on held-out probes its normalised error is {:.3g}, where a right explanation has at most {:.3g}", unseen,
-        most);
+        "on held-out probes its normalised error is {:.3g}, where a right explanation would have at most {:.3g}",
+        unseen, most);
 }
 
 std::string objection_to(const Diagnosis& diagnosis, const FittedExplanation& explained,

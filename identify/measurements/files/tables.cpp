@@ -37,6 +37,22 @@ StateName state_name(const CsvTable& table, int row) {
     return {table.integer(row, "probe"), table.number(row, "time")};
 }
 
+void check_not_negative(double time, const std::string& where) {
+    if (time < 0)
+        throw InvalidInput(fmt::format(
+            "{}, column time: {} is negative. Count time from the beginning of the probe, which is 0.", where, time));
+}
+
+double told_sigma(const CsvTable& table, int row, double least) {
+    const double sigma = table.at(row, "sigma");
+    if (sigma < least)
+        throw InvalidInput(
+            fmt::format("{}, column sigma: {} is below {:g}, less than any instrument's noise. Leave it empty where it "
+                        "is unknown.",
+                        table.where(row), sigma, least));
+    return sigma;
+}
+
 Vec3 vector_if_given(const CsvTable& table, int row, const std::array<std::string, 3>& columns) {
     return {table.at(row, columns[0]), table.at(row, columns[1]), table.at(row, columns[2])};
 }
@@ -56,9 +72,7 @@ LoadState& TableReader::state(const StateName& name, const CsvTable& table, int 
 
 void TableReader::check_time(const StateName& name, const std::string& where) {
     const auto [probe, time] = name;
-    if (time < 0)
-        throw InvalidInput(fmt::format(
-            "{}, column time: {} is negative. Count time from the beginning of the probe, which is 0.", where, time));
+    check_not_negative(time, where);
     const auto [last, is_first] = last_time_.try_emplace(probe, time);
     if (time < last->second)
         throw InvalidInput(
@@ -182,13 +196,7 @@ void TableReader::require_length(const CsvTable& table, const std::vector<std::s
 }
 
 double TableReader::position_sigma(const CsvTable& table, int row) const {
-    const double sigma = units_.length * table.at(row, "sigma");
-    if (sigma < least_position_noise)
-        throw InvalidInput(
-            fmt::format("{}, column sigma: {} is below {:g}, less than any instrument's noise. Leave it empty where it "
-                        "is unknown.",
-                        table.where(row), table.at(row, "sigma"), least_position_noise / units_.length));
-    return sigma;
+    return units_.length * told_sigma(table, row, least_position_noise / units_.length);
 }
 
 Reading TableReader::read_position(const CsvTable& table, int row) const {

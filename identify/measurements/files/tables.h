@@ -69,6 +69,12 @@ private:
 /// Probe and time of a row.
 StateName state_name(const mesh::CsvTable& table, int row);
 
+/// @throws InvalidInput where a time is negative.
+void check_not_negative(double time, const std::string& where);
+
+/// 1 sigma of a row, in its unit; NaN where it is not told. @throws InvalidInput where it is below `least`.
+double told_sigma(const mesh::CsvTable& table, int row, double least);
+
 /// Three cells, each NaN where it is empty or its column absent.
 Vec3 vector_if_given(const mesh::CsvTable& table, int row, const std::array<std::string, 3>& columns);
 

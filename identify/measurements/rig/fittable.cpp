@@ -16,7 +16,7 @@ namespace {
 double sharing(const MeasurementSet& set, const LoadState& state, const Reading& one, double length) {
     double sum = 0;
     for (const Reading& other : state.readings) {
-        if (other.marker < 0 || other.position.array().isNaN().all()) continue;
+        if (!is_usable(other)) continue;
         const double d = (set.markers[other.marker].rest - set.markers[one.marker].rest).norm() / length;
         sum += std::exp(-0.5 * d * d);
     }
@@ -98,9 +98,7 @@ void take_correlated_noise(MeasurementSet& set) {
 bool tells_a_force(const MeasurementSet& set) {
     return std::ranges::any_of(set.states, [&](const LoadState& state) {
         const bool is_heavy = set.density && !known_gravity(set, state).value_or(Vec3::Zero()).isZero(0);
-        const bool pushed =
-            std::ranges::any_of(state.contacts, [](const mesh::Contact& c) { return !c.force.isZero(0); });
-        return is_heavy || pushed || known_pressure(state) != 0 || !state.reactions.empty() ||
+        return is_heavy || has_contact_force(state) || known_pressure(state) != 0 || !state.reactions.empty() ||
                std::ranges::any_of(state.actuations,
                                    [&](const Actuation& actuation) { return acts_with_force(set, actuation); });
     });

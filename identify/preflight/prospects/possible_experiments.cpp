@@ -14,11 +14,12 @@
 namespace palpate::identify {
 namespace {
 
-constexpr const char* unloaded_pose = "unload";  // as the file of a check names it
+// As the file of a check names them.
+constexpr const char* unloaded_pose = "unload";
+constexpr const char* load_removed = "release";
 
 bool is_driven(const LoadState& state) {
-    return std::ranges::any_of(state.contacts, [](const auto& c) { return !c.force.isZero(0); }) ||
-           !state.motions.empty() ||
+    return has_contact_force(state) || !state.motions.empty() ||
            std::ranges::any_of(state.actuations, [](const Actuation& a) { return a.value != 0; });
 }
 
@@ -195,7 +196,7 @@ private:
         LoadState off;
         off.probe = 1;
         off.time = 2;
-        add("release",
+        add(load_removed,
             fmt::format("Load as in probe {} and half as much again, take it off, and read the unloaded pose",
                         own_.front().probe),
             {scaled(own_.front(), overload, 1, 1), off});

@@ -11,8 +11,8 @@ namespace palpate::identify {
 
 /// More states for a set, as a rig could bring them within an hour.
 struct Experiment {
-    /// unload (the unloaded pose), levels, repeat, orientation, load, dwell, release (a load taken off), pressure. Not
-    /// a diagnosis's `probe_kinds::unload`, which is "release" here.
+    /// unload (the unloaded pose), levels, repeat, orientation, load, dwell, release (a load removed), pressure. The
+    /// "unload" of a diagnosis, `probe_kinds::load_removed`, is "release" here.
     std::string kind;
     std::string words;                             // what to do, as an order
     std::vector<LoadState> states = {};            // without readings

@@ -22,29 +22,6 @@ namespace fs = std::filesystem;
 
 bool is_decimal_digit(char c) { return std::isdigit(static_cast<unsigned char>(c)) != 0; }
 
-/// Names as people count: "scan_9" goes before "scan_10".
-bool is_before(const fs::path& a, const fs::path& b) {
-    const std::string left = a.filename().string(), right = b.filename().string();
-    std::size_t i = 0, j = 0;
-    while (i < left.size() && j < right.size()) {
-        if (!is_decimal_digit(left[i]) || !is_decimal_digit(right[j])) {
-            if (left[i] != right[j]) return left[i] < right[j];
-            ++i, ++j;
-            continue;
-        }
-        const auto number = [](const std::string& text, std::size_t& at) {
-            while (at < text.size() && text[at] == '0') ++at;
-            const std::size_t begin = at;
-            while (at < text.size() && is_decimal_digit(text[at])) ++at;
-            return text.substr(begin, at - begin);
-        };
-        const std::string first = number(left, i), second = number(right, j);
-        if (first.size() != second.size()) return first.size() < second.size();
-        if (first != second) return first < second;
-    }
-    return left.size() - i < right.size() - j;
-}
-
 /// What stands before and after the '*', or a number, of a name.
 struct NameParts {
     std::string before, after;
@@ -213,7 +190,7 @@ std::vector<fs::path> files_of_series(const fs::path& file, bool is_series) {
     if (files.empty())
         throw IoError(fmt::format("{}: {}.", file.string(),
                                   is_folder ? "there are no files in this folder" : "there is no file of such a name"));
-    std::ranges::sort(files, is_before);
+    std::ranges::sort(files, mesh::is_before_by_numbers, [](const fs::path& path) { return path.filename().string(); });
     return files;
 }
 

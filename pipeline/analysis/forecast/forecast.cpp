@@ -9,7 +9,7 @@
 
 #include "identify/inference/domains/position/solver_pool.h"
 #include "identify/inference/particles/resampling.h"
-#include "identify/loading/history/creep.h"
+#include "identify/loading/creep.h"
 #include "identify/loading/loads.h"
 #include "identify/numerics/parallel.h"
 #include "identify/numerics/summaries.h"

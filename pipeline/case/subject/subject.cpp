@@ -160,7 +160,7 @@ double choose(const std::optional<double>& said, double measured, double fallbac
               const std::string& unit, const std::string& flag, std::vector<std::string>& assumptions) {
     if (said) return *said;
     if (std::isfinite(measured)) return measured;
-    assumptions.push_back(fmt::format("{} is taken to be {:g}{} ({} says otherwise).", name, fallback, unit, flag));
+    assumptions.push_back(fmt::format("{} is taken to be {:g}{} (set {} to change it).", name, fallback, unit, flag));
     return fallback;
 }
 

@@ -9,6 +9,7 @@
 #include "identify/measurements/rig/fittable.h"
 #include "mesh/errors.h"
 #include "mesh/text/atomic_file.h"
+#include "mesh/text/words.h"
 #include "pipeline/analysis/preflight.h"
 #include "pipeline/case/settings/read_case.h"
 #include "pipeline/case/subject/subject.h"
@@ -22,7 +23,6 @@
 #include "pipeline/output/json/preflight.h"
 #include "pipeline/output/text/describe/describe_rig.h"
 #include "pipeline/output/text/preflight.h"
-#include "pipeline/output/text/words.h"
 
 namespace palpate::pipeline::commands {
 namespace {
@@ -35,7 +35,7 @@ std::string describe_set(const identify::MeasurementSet& set) {
     if (!set.recordings.empty()) text += fmt::format(", {} recordings of motion", set.recordings.size());
     if (!set.position_noise && readings > 0) text += "; no noise is declared";
     text += ".\n";
-    for (const std::string& line : rig_in_words(set)) text += capitalised(line) + ".\n";
+    for (const std::string& line : rig_in_words(set)) text += mesh::capitalised(line) + ".\n";
     return text;
 }
 

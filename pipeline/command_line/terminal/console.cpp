@@ -28,7 +28,7 @@ double seconds_since(Clock::time_point start) { return std::chrono::duration<dou
 
 constexpr auto redrawn_every = std::chrono::seconds(1);
 
-/// What is left of a step by how long it took so far; "" where that tells little.
+/// What is left of a piece of work by how long a share of it took; "" where that tells little.
 std::string time_left(double elapsed, double done, double since_last) {
     constexpr double too_early = 0.05, too_late = 0.95, least = 2;  // shares, and seconds
     if (done < too_early || done > too_late) return {};
@@ -50,6 +50,7 @@ public:
         if (what != what_) {
             what_ = what;
             start_ = Clock::now();
+            begun_ = std::clamp(fraction, 0.0, 1.0);
         }
         last_ = Clock::now();
         done_ = std::clamp(fraction, 0.0, 1.0);
@@ -89,9 +90,9 @@ private:
     }
 
     void draw() {
-        const double elapsed = seconds_since(start_);
+        const double elapsed = seconds_since(start_), share = begun_ < 1 ? (done_ - begun_) / (1 - begun_) : 1;
         fmt::print(stderr, "\r\033[K{}",
-                   progress_line(what_, done_, elapsed, time_left(elapsed, done_, seconds_since(last_)), columns()));
+                   progress_line(what_, done_, elapsed, time_left(elapsed, share, seconds_since(last_)), columns()));
         std::fflush(stderr);
         is_shown_ = true;
     }
@@ -113,7 +114,7 @@ private:
     std::mutex mutex_;
     std::condition_variable_any woken_;
     std::string what_;
-    double done_ = 1;
+    double done_ = 1, begun_ = 0;  // where the step began
     bool is_shown_ = false;
     Clock::time_point start_ = Clock::now(), last_ = start_;
     std::jthread ticker_;

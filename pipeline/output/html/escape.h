@@ -1,6 +1,7 @@
 #pragma once
 
 #include <nlohmann/json.hpp>
+#include <regex>
 #include <string>
 
 #include "pipeline/command_line/terminal/printed_units.h"
@@ -32,6 +33,15 @@ inline std::string escape(const std::string& text) {
         }
     }
     return safe;
+}
+
+/// As escape, of running text: no line ends between a name, its "=" and its number, or a number and its unit.
+inline std::string prose(const std::string& text) {
+    static const std::regex equals(" = "), of_sd("± "),
+        unit(R"(([0-9)]) (%|MPa|kPa|N|kg|mm|m|s|Hz|rad|degrees|sigmas?)(?![A-Za-z]))");
+    std::string bound = std::regex_replace(escape(text), equals, "\u00a0=\u00a0");
+    bound = std::regex_replace(bound, of_sd, "±\u00a0");
+    return std::regex_replace(bound, unit, "$1\u00a0$2");
 }
 
 /// JSON as it may stand in a script element: no "</script>" ends it.

@@ -39,7 +39,7 @@ std::string share_of(const json& relative) {
 }
 
 std::string tile(const std::string& value, const std::string& what) {
-    return fmt::format(R"(<div class="tile"><b>{}</b>{}</div>)", escape(value), escape(what));
+    return fmt::format(R"(<div class="tile"><b>{}</b>{}</div>)", prose(value), prose(what));
 }
 
 /// "2.6 → 0.63": before and after what was added, where something was.
@@ -154,15 +154,15 @@ std::string stage_table(const RunFiles& files) {
 std::string assumption_list(const RunFiles& files) {
     std::string items;
     for (const json& a : files.record.value("assumptions", json::array()))
-        items += "<li>" + escape(a.get<std::string>()) + "</li>";
+        items += "<li>" + prose(a.get<std::string>()) + "</li>";
     const json skeleton = files.record["stages"].value("skeleton", json::object());
     for (const json& note : skeleton.value(json::json_pointer("/figures/notes"), json::array()))
-        items += "<li>" + escape(note.get<std::string>()) + "</li>";
+        items += "<li>" + prose(note.get<std::string>()) + "</li>";
     const std::string of_model = files.best == "improve" ? "The model " + with_what(files) + ": " : "";
-    for (const std::string& note : files.notes) items += "<li>" + escape(of_model + note) + "</li>";
+    for (const std::string& note : files.notes) items += "<li>" + prose(of_model + note) + "</li>";
     for (const json* asked : {&files.diagnosis, &files.ladder}) {
         if (asked->is_null()) continue;
-        for (const json& n : (*asked)["notes"]) items += "<li>" + escape(n.get<std::string>()) + "</li>";
+        for (const json& n : (*asked)["notes"]) items += "<li>" + prose(n.get<std::string>()) + "</li>";
     }
     return items.empty() ? "" : "<h2 id=\"noted\">Assumed and noted</h2><ul>" + items + "</ul>";
 }
@@ -231,7 +231,7 @@ void write_report(const fs::path& run, const fs::path& page) {
     sections += aside(more) + "<p class=\"soft\">palpate " + escape(files.record.value("version", "")) +
                 fmt::format(", seed {}", files.record.value("seed", json()).dump()) + "</p>";
     mesh::write_text(page, page_head(name, page_style) + "<body><main><h1>" + escape(name) + "</h1><p class=\"lead\">" +
-                               escape(lead(files)) + "</p>" + tiles(files) + view_section(files, run) +
+                               prose(lead(files)) + "</p>" + tiles(files) + view_section(files, run) +
                                section_links(sections) + sections + "</main></body></html>\n");
 }
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "pipeline/output/json/ranking_row.h"
+#include "pipeline/output/ranking_row.h"
 #include "pipeline/output/text/errors.h"
 #include "pipeline/output/text/words.h"
 

@@ -96,7 +96,7 @@ std::string preflight_lead(const json& preflight) {
     std::string words =
         could.empty()
             ? "No effect of the catalogue could be named from this set at the strength that its prior expects."
-            : fmt::format("As strong as its prior expects, this set could name {}.", listed(could));
+            : fmt::format("Effects as strong as their priors expect could be named from this set: {}.", listed(could));
     if (!partly.empty()) words += fmt::format(" In some places or directions only: {}.", listed(partly));
     const std::size_t odd = preflight["suspicions"].size();
     words += odd == 0   ? " No reading looks off."
@@ -147,7 +147,7 @@ std::vector<std::string> parameter_sentences(const json& preflight) {
 std::string preflight_in_words(const json& preflight) {
     std::string text =
         fmt::format("Before any fit, at E = {:.3g} MPa ({}):\n", preflight["guess"]["young_mpa"].get<double>(),
-                    preflight["guess"]["from"] == "set" ? "the set's" : "at which it answers as much as was read");
+                    preflight["guess"]["from"] == "set" ? "the set's" : "at which it moves as far as was measured");
     for (const std::string& sentence : parameter_sentences(preflight)) text += "  " + sentence + "\n";
     text += fmt::format("  {:<18} {:>7} {:>22} {:>9} {:>8}  {}\n", "effect", "named", "from", "mm rms", "sigma", "");
     for (const json& one : preflight["effects"]) {

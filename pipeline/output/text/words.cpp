@@ -1,7 +1,6 @@
 #include "pipeline/output/text/words.h"
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 
 #include "fem/large_deformation/material_law_names.h"
@@ -76,7 +75,7 @@ std::string material_in_words(const json& material) {
 
 std::string and_under_load(const json& load_exponent) {
     const std::string words = load_exponent["words"];
-    return words == "the error is there without any load" ? " over all states, and it is there without any load, too"
+    return words == "the error is there without any load" ? " over all states; the error is present even without load"
                                                           : ", and " + words;
 }
 
@@ -90,11 +89,6 @@ std::string probability_in_words(double probability) {
     if (probability < reported) return "below 0.01";
     if (probability > 1 - reported) return "above 0.99";
     return fmt::format("{:.2f}", probability);
-}
-
-std::string capitalised(std::string text) {
-    if (!text.empty()) text.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(text.front())));
-    return text;
 }
 
 std::string listed(const std::vector<std::string>& names) {

@@ -37,9 +37,6 @@ std::string law_in_words(const std::string& law);
 /// A probability that is nearly 0 or 1 is reported as such: "below 0.01".
 std::string probability_in_words(double probability);
 
-/// With a capital at its beginning.
-std::string capitalised(std::string text);
-
 /// "gravity, inclusion (2) and outliers": what is repeated stands once, with its count.
 std::string listed(const std::vector<std::string>& names);
 

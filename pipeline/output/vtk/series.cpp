@@ -71,9 +71,8 @@ MarkerState marker_state(const identify::MeasurementSet& set, const identify::Co
                          std::size_t state) {
     const auto& readings = set.states[state].readings;
     std::vector<int> labelled;
-    for (int r = 0; r < static_cast<int>(readings.size()); ++r) {
-        if (readings[r].marker >= 0 && !readings[r].position.array().isNaN().all()) labelled.push_back(r);
-    }
+    for (int r = 0; r < static_cast<int>(readings.size()); ++r)
+        if (is_usable(readings[r])) labelled.push_back(r);
     const auto count = static_cast<Eigen::Index>(labelled.size());
     Points measured(count, 3), rest(count, 3), predicted(count, 3);
     Eigen::VectorXd ids(count), coordinates(count);

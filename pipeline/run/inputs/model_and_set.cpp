@@ -58,10 +58,7 @@ identify::MeasurementSet without_measurement_faults(const identify::MeasurementS
 }
 
 bool have_forces(const std::vector<identify::LoadState>& states) {
-    return std::ranges::any_of(states, [](const identify::LoadState& state) {
-        return std::ranges::any_of(state.contacts,
-                                   [](const mesh::Contact& contact) { return !contact.force.isZero(0); });
-    });
+    return std::ranges::any_of(states, identify::has_contact_force);
 }
 
 std::string command_to_play(const std::filesystem::path& model, const identify::MeasurementSet& set) {

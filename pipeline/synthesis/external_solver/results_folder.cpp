@@ -3,13 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <map>
 #include <set>
 
 #include "mesh/errors.h"
 #include "mesh/formats/solution/read_solution.h"
 #include "mesh/formats/vtk/poly_data.h"
+#include "mesh/text/words.h"
 #include "pipeline/synthesis/external_solver/nodal_loads.h"
 
 namespace palpate::pipeline {
@@ -17,32 +17,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using identify::LoadState;
-
-/// As people count: "beam_2" before "beam_10".
-bool counts_before(const fs::path& a, const fs::path& b) {
-    const std::string x = a.filename().string(), y = b.filename().string();
-    const auto is_digit = [](char c) { return std::isdigit(static_cast<unsigned char>(c)) != 0; };
-    std::size_t i = 0, j = 0;
-    while (i < x.size() && j < y.size()) {
-        if (is_digit(x[i]) && is_digit(y[j])) {
-            const auto digits = [&](const std::string& s, std::size_t& k) {
-                while (k < s.size() && s[k] == '0') ++k;
-                const std::size_t from = k;
-                while (k < s.size() && is_digit(s[k])) ++k;
-                return s.substr(from, k - from);
-            };
-            const std::string p = digits(x, i), q = digits(y, j);
-            if (p.size() != q.size()) return p.size() < q.size();
-            if (p != q) return p < q;
-        } else if (x[i] != y[j]) {
-            return x[i] < y[j];
-        } else {
-            ++i;
-            ++j;
-        }
-    }
-    return x.size() - i < y.size() - j || (x.size() - i == y.size() - j && x < y);
-}
 
 /// Files of one kind, in order; a .frd speaks for the .dat beside it, a .pvd tells the order of its files.
 std::vector<fs::path> results_in(const fs::path& folder) {
@@ -68,7 +42,7 @@ std::vector<fs::path> results_in(const fs::path& folder) {
         throw InvalidInput(fmt::format("{}: holds results of several kinds ({} and {}); keep one kind.",
                                        folder.string(), of_kind.begin()->first, std::next(of_kind.begin())->first));
     std::vector<fs::path> files = of_kind.begin()->second;
-    std::ranges::sort(files, counts_before);
+    std::ranges::sort(files, mesh::is_before_by_numbers, [](const fs::path& path) { return path.filename().string(); });
     return files;
 }
 

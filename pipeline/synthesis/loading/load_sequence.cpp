@@ -2,18 +2,9 @@
 
 #include <fmt/format.h>
 
-#include <cctype>
+#include "mesh/text/words.h"
 
 namespace palpate::pipeline {
-namespace {
-
-/// With a capital letter: "Plasticity".
-std::string as_first_word(std::string name) {
-    name.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(name.front())));
-    return name;
-}
-
-}  // namespace
 
 Sequence sequence_of(const BlindSetOptions& options, const std::vector<EffectSpec>& specs) {
     const EffectSpec* stays = first_with(&identify::SynthesisNeeds::release, specs);
@@ -32,27 +23,27 @@ Sequence sequence_of(const BlindSetOptions& options, const std::vector<EffectSpe
             fmt::format("{} shows where less is borne after more: one body goes through all probes, each to half and "
                         "all of its load, back to half, and let go (--levels, --no-back, --no-continuous say "
                         "otherwise).",
-                        as_first_word(returns->effect)));
+                        mesh::capitalised(returns->effect)));
     }
     if (stays && !(options.unload && options.continuous)) {
         sequence.notes.push_back(
             fmt::format("{} shows in what stays: one body goes through all probes, let go after each (--no-unload, "
                         "--no-continuous say otherwise).",
-                        as_first_word(stays->effect)));
+                        mesh::capitalised(stays->effect)));
     }
     if (changes && sequence.levels == 0) {
         sequence.levels = 3;
         sequence.notes.push_back(
             fmt::format("{} shows where loads change: each probe presses at three levels, let go after each (--levels "
                         "and --no-unload say otherwise).",
-                        as_first_word(changes->effect)));
+                        mesh::capitalised(changes->effect)));
     }
     if (creeps && options.dwell.empty()) {
         sequence.timing.dwell = {0.1, 4, 20};
         sequence.notes.push_back(
             fmt::format("{} shows in time: each load is read 0.1, 4 and 20 s after it was put on (--dwell says "
                         "otherwise).",
-                        as_first_word(creeps->effect)));
+                        mesh::capitalised(creeps->effect)));
     }
     return sequence;
 }

@@ -1,6 +1,6 @@
 #include "pipeline/synthesis/loading/probe_load_history.h"
 
-#include "identify/loading/history/creep.h"
+#include "identify/loading/creep.h"
 #include "identify/loading/history/lagged_load.h"
 
 namespace palpate::pipeline {

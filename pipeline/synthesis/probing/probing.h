@@ -5,7 +5,7 @@
 #include "fem/elastic_body.h"
 #include "identify/measurements/measurement_set.h"
 #include "mesh/progress.h"
-#include "pipeline/synthesis/probing/probe_options.h"
+#include "pipeline/case/probe_options.h"
 
 namespace palpate::pipeline {
 

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "mesh/core/contact.h"
-#include "pipeline/synthesis/probing/probe_options.h"
+#include "pipeline/case/probe_options.h"
 #include "skeleton/model/model.h"
 
 namespace palpate::pipeline {

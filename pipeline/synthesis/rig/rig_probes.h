@@ -4,8 +4,8 @@
 
 #include "identify/models/rig.h"
 #include "mesh/core/surface.h"
+#include "pipeline/case/probe_options.h"
 #include "pipeline/synthesis/loading/probe_load_history.h"
-#include "pipeline/synthesis/probing/probe_options.h"
 
 namespace palpate::pipeline {
 

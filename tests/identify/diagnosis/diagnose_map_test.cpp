@@ -167,8 +167,8 @@ TEST(StiffnessMapEffect, TellsPartsThatDifferByMoreThanIsKnown) {
     const skeleton::EffectRecord record = four_places({1.2, 0, 0, -1.2});
     // Places four lengths apart hardly know of each other: e^1.2 = 3.32, and its inverse.
     EXPECT_EQ(map->sentence(record),
-              "Stiffness varies over the body, over lengths of about 5 mm: (3.32) times its mean round (0, 0, 0) mm, "
-              "(0.301) times its mean round (60, 0, 0) mm.");
+              "Stiffness varies over the body, over lengths of about 5 mm: 3.32 times its mean round (0, 0, 0) mm, "
+              "0.301 times its mean round (60, 0, 0) mm.");
     Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(17, 17);
     covariance(0, 0) = 1;
     for (const Eigen::Index a : {4, 8, 12, 16}) covariance(a, a) = 1;

@@ -8,7 +8,6 @@
 #include <set>
 
 #include "fem/effects/registry.h"
-#include "identify/diagnosis/verdict/verdict.h"
 #include "mesh/errors.h"
 #include "tests/identify/lattice.h"
 #include "tests/identify/small_body.h"
@@ -156,16 +155,6 @@ TEST_P(EveryEffect, SaysHowWellItsNumbersAreKnown) {
     EXPECT_THAT(effect().sentence_with(estimate, covariance), HasSubstr("±"));
 }
 
-TEST(Catalogue, AnInclusionSaysWhereItsRadiusAndStiffnessAreKnownTogetherOnly) {
-    const skeleton::EffectRecord ball{
-        "inclusion", {{"cx", 1, "mm"}, {"cy", 2, "mm"}, {"cz", 3, "mm"}, {"radius", 6, "mm"}, {"ratio", 4, "1"}}};
-    Eigen::MatrixXd covariance = Eigen::VectorXd::Ones(5).asDiagonal();
-    const auto sentence = [&] { return find_effect("inclusion")->sentence_with(ball, covariance); };
-    EXPECT_THAT(sentence(), testing::Not(HasSubstr("together")));
-    covariance(3, 4) = covariance(4, 3) = -0.95;
-    EXPECT_THAT(sentence(), HasSubstr("its radius and its stiffness are known together only."));
-}
-
 TEST_P(EveryEffect, OfABodyIsWhatAModelFilePlays) {
     // In force by the fit's numbers and by what a model file says, the body feels the same.
     const auto numbers = effect().numbers(*model_, problem_);
@@ -233,153 +222,6 @@ INSTANTIATE_TEST_SUITE_P(Catalogue, EveryEffect, testing::ValuesIn(all_effects()
     return name;
 });
 
-/// Six probes, each with twice the load of the one before.
-Problem doubling_loads() {
-    Problem problem;
-    for (int k = 0; k < 6; ++k) {
-        problem.actions.push_back(
-            {.contacts = {{.point = Vec3(10 * k, 0, 0), .force = Vec3(0, 0, -std::pow(2.0, k)), .radius = 1}}});
-        problem.probe.push_back(k + 1);
-    }
-    return problem;
-}
-
-TEST(Inclusion, HasAWidthAcrossASheet) {
-    const SkeletonBody sheet(make_lattice({3, 3, 1}), {}, 1);
-    for (const EffectNumber& number : find_effect("inclusion")->numbers(sheet, {})) {
-        EXPECT_GT(number.prior_sd, 0) << number.name;
-    }
-}
-
-TEST(Stiffening, OfAHundredTimesTheUsualIsNoSurprise) {
-    const auto effect = find_effect("stiffening");
-    const SkeletonBody lattice(make_lattice({3, 3, 1}), {}, 1);
-    const auto numbers = effect->numbers(lattice, {});
-    const auto away = [&](double c2, double c3) -> Eigen::VectorXd {  // in prior standard deviations
-        const skeleton::EffectRecord estimate{"stiffening", {{"c2", c2, "1"}, {"c3", c3, "1"}}};
-        const Eigen::VectorXd values = effect->values(numbers, estimate);
-        return Eigen::Vector2d((values[0] - numbers[0].prior_mean) / numbers[0].prior_sd,
-                               (values[1] - numbers[1].prior_mean) / numbers[1].prior_sd)
-            .cwiseAbs();
-    };
-    EXPECT_NEAR(away(3, 30)[0], 1, 0.05);
-    EXPECT_LT(away(3, 12).maxCoeff(), 1.1);  // exponential laws
-    EXPECT_LT(away(100, 4 / 3. * 1e4).maxCoeff(), 4);
-    EXPECT_DOUBLE_EQ(away(0, 0).norm(), 0);
-}
-
-TEST(Stiffening, OfEitherCoefficientAloneComesBack) {
-    const auto effect = find_effect("stiffening");
-    const SkeletonBody lattice(make_lattice({3, 3, 1}), {}, 1);
-    const auto numbers = effect->numbers(lattice, {});
-    for (const auto& [c2, c3] : {std::pair{3.0, 0.0}, {0.0, 30.0}}) {
-        const skeleton::EffectRecord estimate{"stiffening", {{"c2", c2, "1"}, {"c3", c3, "1"}}};
-        const skeleton::EffectRecord back = effect->record(numbers, effect->values(numbers, estimate));
-        EXPECT_NEAR(back.parameters[0].value, c2, 1e-6);
-        EXPECT_NEAR(back.parameters[1].value, c3, 1e-6);
-    }
-}
-
-TEST(Damage, ShowsWhereLessIsBorneAfterMore) {
-    const SmallBody body;
-    const auto model = body.reference();
-    const auto shows = [&](std::vector<LoadState> states, bool continuous = false) {
-        MeasurementSet set = body.set(std::move(states));
-        set.continuous = continuous;
-        return !find_effect("damage")->numbers(*model, make_problem(set, 0.05)).empty();
-    };
-    EXPECT_TRUE(shows(SmallBody::returns()));
-    // Loads that grow, are held or taken off find each time what is stiff as ever; so does a body of its own.
-    EXPECT_FALSE(shows(SmallBody::steps()));
-    EXPECT_FALSE(shows(SmallBody::dwells()));
-    EXPECT_FALSE(shows(SmallBody::releases()));
-    EXPECT_FALSE(shows(SmallBody::probes()));
-    // One body that is pressed elsewhere afterwards has softened there, too.
-    EXPECT_TRUE(shows(SmallBody::probes(), true));
-    // A tool that is drawn back, and an actuator that is let off.
-    const auto moved = [&](std::vector<double> ways) {
-        std::vector<LoadState> states;
-        for (const double way : ways) {
-            states.push_back({.probe = 1, .time = static_cast<double>(states.size())});
-            if (way > 0) states.back().motions = {{.tool = 0, .translation = Vec3(missing, 0, way)}};
-        }
-        return shows(states);
-    };
-    EXPECT_FALSE(moved({1, 2, 2, 0}));
-    EXPECT_TRUE(moved({1, 2, 1}));
-    std::vector<LoadState> driven{{.probe = 1, .time = 0}, {.probe = 1, .time = 1}};
-    driven[0].actuations = {{.actuator = 0, .value = 0.1}};
-    driven[1].actuations = {{.actuator = 0, .value = 0.2}};
-    EXPECT_FALSE(shows(driven));
-    std::swap(driven[0].actuations, driven[1].actuations);
-    EXPECT_TRUE(shows(driven));
-}
-
-TEST(Damage, ItsShareComesBack) {
-    const auto effect = find_effect("damage");
-    const SmallBody body;
-    const auto numbers = effect->numbers(*body.reference(), make_problem(body.set(SmallBody::returns()), 0.05));
-    ASSERT_EQ(numbers.size(), 2U);
-    for (const double share : {0.0, 0.4, 0.95}) {
-        const skeleton::EffectRecord told{"damage", {{"share", share, "1"}, {"strain", 0.07, "1"}}};
-        const skeleton::EffectRecord back = effect->record(numbers, effect->values(numbers, told));
-        EXPECT_NEAR(back.parameters[0].value, share, 1e-14);
-        EXPECT_NEAR(back.parameters[1].value, 0.07, 1e-14);
-    }
-    // However far a fit goes, something is left of the material.
-    ModelSetting setting;
-    effect->enforce(Eigen::Vector2d(30, std::log(0.07)), setting);
-    EXPECT_LT(setting.effects.damage->share, 1);
-}
-
-TEST(Judge, AsksForMoreBesideWhatFlows) {
-    Problem problem;
-    problem.measured = problem.sigma = Eigen::VectorXd::Ones(0);
-    const DiagnoseOptions options;
-    const auto least_beside = [&](const char* name) {
-        FittedExplanation there;
-        there.effects = {find_effect(name)};
-        there.log_bayes_factor = 1e6;
-        return least_next_to_effect(*find_effect("gravity"), there, problem, options);
-    };
-    EXPECT_DOUBLE_EQ(least_beside("viscosity"), 500);
-    EXPECT_DOUBLE_EQ(least_beside("plasticity"), 3000);
-}
-
-TEST(ForceGain, IsObjectedToWhereTheBodyStiffens) {
-    // effective force F^0.8: gains that fall with the load in one line
-    const Eigen::VectorXd falling = -0.2 * std::log(2.0) * Eigen::VectorXd::LinSpaced(6, 0, 5);
-    EXPECT_THAT(find_effect("force-gain")->objection(doubling_loads(), falling), HasSubstr("stiffens"));
-}
-
-TEST(ForceGain, IsAClaimWhereGainsComeAndGo) {
-    Eigen::VectorXd alternating(6);
-    alternating << 0.2, -0.2, 0.2, -0.2, 0.2, -0.2;
-    EXPECT_EQ(find_effect("force-gain")->objection(doubling_loads(), alternating), "");
-}
-
-TEST(ForceGain, LoadsAlongOneLineShareOneUnlessOneIsRepeated) {
-    Problem curve = doubling_loads();
-    for (Action& action : curve.actions) action.contacts.front().point.setZero();
-    const EffectHypothesis& gain = *find_effect("force-gain");
-    const SkeletonBody body(make_lattice({2, 1, 1}), {}, 1);
-    EXPECT_TRUE(gain.numbers(body, curve).empty());  // one gain is a stiffness
-    curve.actions.push_back(curve.actions[2]);
-    curve.probe.push_back(9);
-    const auto numbers = gain.numbers(body, curve);
-    ASSERT_EQ(numbers.size(), 2U);
-    EXPECT_EQ(numbers[0].name, "probe1");
-    EXPECT_EQ(numbers[1].name, "probe9");
-    Eigen::VectorXd values(2);
-    values << std::log(1.5), std::log(0.5);
-    for (int k = 0; k < 7; ++k)
-        EXPECT_NEAR(gain.act(curve, k, curve.actions[k], values).contacts.front().force.z(),
-                    (k < 6 ? 1.5 : 0.5) * curve.actions[k].contacts.front().force.z(), 1e-12);  // rounding
-    // Along another line it is another way of loading.
-    curve.actions[6].contacts.front().force = Vec3(1, 0, 0);
-    EXPECT_EQ(gain.numbers(body, curve).size(), 2U);
-}
-
 TEST(Catalogue, RefusesASecondEffectOfAName) {
     const std::size_t before = catalogue().size();
     try {
@@ -414,21 +256,6 @@ TEST(Catalogue, RefusesARowWhoseHalvesDiffer) {
               "effect 'wind' of the body is given the physics of 'wind' of the measurement; name and kind must agree");
     EXPECT_EQ(effect_named("wind"), nullptr);
     EXPECT_EQ(skeleton::find_known_effect("storm"), nullptr);
-}
-
-TEST(InclusionEffect, IsNoBallLargerThanTheBody) {
-    const SmallBody body;  // of 40 mm
-    const auto inclusion = find_effect("inclusion");
-    Problem problem = make_problem(body.set(SmallBody::probes()), 1);
-    const auto objection = [&](double radius) {
-        Eigen::VectorXd values(5);
-        values << 20, 5, 5, std::log(radius), 0.5;
-        return inclusion->objection(problem, values);
-    };
-    EXPECT_EQ(objection(15), "");
-    EXPECT_THAT(objection(30), HasSubstr("of radius 30 mm, is larger than the body"));
-    problem.markers = 0;  // forces alone were read
-    EXPECT_EQ(objection(30), "");
 }
 
 TEST(Catalogue, KnowsAllWhosePhysicsIsKnown) {

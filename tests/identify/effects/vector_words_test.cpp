@@ -29,6 +29,18 @@ TEST(VectorInWords, WhatIsNotDeterminedStandsApart) {
               "20.0 ± 1.0 mm along -z; along (0.71, 0.71, 0.00) it is not determined (5 ± 14)");
 }
 
+/// However much worse it is known than the other axes, a part that cannot be 0 is told.
+TEST(VectorInWords, WhatIsFarFromZeroIsDetermined) {
+    EXPECT_EQ(vector_in_words({16, 0, -12}, variances(5, 0.1, 0.1), 1, "mm"),
+              "20 ± 4 mm along (0.80, 0.00, -0.60)");
+    EXPECT_EQ(vector_in_words({9, 0, -12}, variances(5, 0.1, 0.1), 1, "mm"),
+              "12.00 ± 0.10 mm along -z; along x it is not determined (9 ± 5)");
+    EXPECT_TRUE(is_undetermined({.value = 9, .sd = 5, .rest = 12, .least_sd = 0.1}));
+    EXPECT_FALSE(is_undetermined({.value = 11, .sd = 5, .rest = 12, .least_sd = 0.1}));
+    EXPECT_FALSE(is_undetermined({.value = 9, .sd = 5, .rest = 21, .least_sd = 0.1}));
+    EXPECT_FALSE(is_undetermined({.value = 9, .sd = 5, .rest = 12, .least_sd = 2}));
+}
+
 TEST(VectorInWords, PoorlyKnownAllRoundIsNotTakenApart) {
     EXPECT_EQ(vector_in_words({0, 0, 5}, variances(3, 3, 3), 1, "mm"), "5 ± 3 mm along +z");
     EXPECT_EQ(vector_in_words(Vec3::Zero(), Mat3::Zero(), 1, "mm"), "0 mm");

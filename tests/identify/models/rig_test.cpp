@@ -2,132 +2,13 @@
 
 #include <gtest/gtest.h>
 
-#include <random>
-
-#include "identify/models/reference/reference_body.h"
-#include "identify/models/skeleton/skeleton_body.h"
 #include "mesh/errors.h"
-#include "tests/identify/small_body.h"
+#include "tests/identify/models/rig_laws.h"
 #include "tests/messages.h"
 
 // Laws of tools and actuators on every model of a body.
 
-namespace palpate::identify {
-namespace {
-
-constexpr double none = NAN;  // a coordinate that is left free
-constexpr int ball = 0, grip = 1, punch = 2, platen = 3;
-constexpr int pull = 0, cable = 1, chamber = 2;
-
-Rig rig_of_bar() {
-    const auto tendon = [](double y, double z, bool by_length) {
-        Points path(4, 3);
-        path << 0, y, z, 12, y, z - 1, 24, y, z + 0.5, 36, y, z;
-        return mesh::TendonActuator{path, by_length};
-    };
-    const Vec3 end(40, 5, 5);
-    return {
-        {{.name = "ball", .shape = mesh::SphereShape{8}, .bonded = false, .origin = Vec3(25, 5, 18)},
-         {.name = "grip",
-          .shape = mesh::GripShape{{mesh::BoxRegion{Vec3(39, -1, -1), Vec3(41, 11, 11)}}},
-          .bonded = true,
-          .origin = end},
-         {.name = "punch", .shape = mesh::FlatShape{8, Vec3(0, 0, -1)}, .bonded = true, .origin = Vec3(20, 5, 10)},
-         {.name = "platen", .shape = mesh::FlatShape{9, Vec3(0, 0, -1)}, .bonded = false, .origin = Vec3(22, 5, 10)}},
-        {{.name = "pull", .kind = tendon(5, 8, false)},
-         {.name = "cable", .kind = tendon(8, 5, true)},
-         {.name = "chamber", .kind = mesh::PressureActuator{Vec3(20, 5, 5)}}}};
-}
-
-struct RigCase {
-    std::string name;
-    bool is_skeleton;
-    int law;
-    double friction = 0;  // of the tendons
-};
-
-struct NamedAction {
-    std::string name;
-    Action action;
-};
-
-class RigLaws : public testing::TestWithParam<RigCase> {
-protected:
-    RigLaws() {
-        model_ = model(rig_of_bar());
-        setting_.law = GetParam().law;
-        setting_.effects.tendon_friction = GetParam().friction;
-        setting_.theta.resize(std::ssize(model_->parameters()));
-        for (Eigen::Index k = 0; k < setting_.theta.size(); ++k)
-            setting_.theta[k] = model_->parameters()[k].start + 0.1;
-    }
-
-    std::unique_ptr<BodyModel> model(const Rig& rig) const {
-        if (GetParam().is_skeleton)
-            return std::make_unique<SkeletonBody>(body_.chain(), body_.markers, SmallBody::young, rig);
-        return std::make_unique<ReferenceBody>(
-            body_.mesh, body_.supports, body_.markers,
-            ReferenceBodyOptions{.young = 0.1, .measured_on_mesh = true, .rig = rig});
-    }
-
-    static Action moved(const mesh::ToolMotion& motion, const std::vector<mesh::ActuatorSetting>& settings = {}) {
-        Action action;
-        action.motions = {motion};
-        action.settings = settings;
-        return action;
-    }
-    static std::vector<NamedAction> actions() {
-        Action filled, back;
-        filled.gravity = Vec3(0, 0, -2000);
-        filled.settings = {{pull, 0.2}, {cable, 0.8}, {chamber, 0.01}};
-        back.gravity = Vec3(0, 0, -2000);
-        back.settings = {{pull, 0.1, {0.105}}, {cable, 0.6, {1}}};
-        std::vector<NamedAction> all{
-            {"grip", moved({grip, Vec3(-0.5, 1, -3), Vec3(0.05, 0.12, 0)})},
-            {"grip that turns", moved({grip, Vec3(none, 1, -3), Vec3(none, none, none)})},
-            {"punch and tendons", moved({punch, Vec3(0.2, 0.5, -1), Vec3(0, 0.03, 0)}, {{pull, 0.1}, {cable, 0.3}})},
-            {"punch that shifts", moved({punch, Vec3(none, none, -1), Vec3(0, none, 0)})},
-            {"chamber, weight and tendons", filled},
-            // one sticks behind its turns, the other one slides back
-            {"tendons on their way back", back}};
-        // The linear law of a skeleton takes effects as they are at rest: nothing parts.
-        if (!GetParam().is_skeleton || GetParam().law != 0)
-            all.push_back({"ball", moved({ball, Vec3(0.2, 0.1, -1.5), Vec3::Zero()})});
-        return all;
-    }
-    static std::vector<NamedAction> of(const std::vector<std::string>& names) {
-        std::vector<NamedAction> some = actions();
-        std::erase_if(some, [&](const NamedAction& one) { return std::ranges::find(names, one.name) == names.end(); });
-        return some;
-    }
-
-    Eigen::ArrayX<bool> held() const { return model_->support_motion(Vec3::Zero()).rowwise().norm().array() > 0; }
-    Eigen::VectorXd at_free(Eigen::VectorXd r) const {
-        const Eigen::ArrayX<bool> fixed = held();
-        for (Eigen::Index k = 0; k < r.size(); ++k)
-            if (fixed[k]) r[k] = 0;
-        return r;
-    }
-    Eigen::VectorXd random_step(unsigned seed) const {
-        std::mt19937_64 engine(seed);
-        std::uniform_real_distribution<double> uniform(-1, 1);
-        return at_free(Eigen::VectorXd::NullaryExpr(model_->dofs(), [&] { return uniform(engine); }));
-    }
-    /// d f(advance(q, s step)) / d s by central differences.
-    template <class F>
-    Eigen::VectorXd along(const F& f, const Eigen::VectorXd& q, const Eigen::VectorXd& step, double h) const {
-        return (f(model_->advance(q, h * step, setting_)) - f(model_->advance(q, -h * step, setting_))) / (2 * h);
-    }
-    /// The largest force that holds the body in place.
-    double force_at_support(const Eigen::VectorXd& q, const Action& action) const {
-        const Eigen::VectorXd r = model_->residual(q, setting_, action);
-        return (r - at_free(r)).norm();
-    }
-
-    SmallBody body_ = SmallBody::hollow();
-    std::unique_ptr<BodyModel> model_;
-    ModelSetting setting_;
-};
+namespace palpate::identify::rigs {
 
 TEST_P(RigLaws, NetForcesVanishInEquilibrium) {
     for (const NamedAction& named : actions()) {
@@ -251,29 +132,6 @@ TEST_P(RigLaws, MotionsAloneTellNothingOfStiffnessAndReactionsAllOfIt) {
     }
 }
 
-TEST_P(RigLaws, NothingPushesAlongFreeCoordinates) {
-    for (const NamedAction& named : of({"grip that turns", "punch that shifts"})) {
-        const std::string& name = named.name;
-        const Action& action = named.action;
-        const Eigen::VectorXd q = model_->equilibrium(setting_, action);
-        const std::vector<mesh::ToolMotion> found = model_->motions(q, setting_, action);
-        const Eigen::VectorXd W = model_->reactions(q, setting_, action);
-        ASSERT_EQ(found.size(), 1u);
-        const bool shifts = name == "punch that shifts";
-        const Eigen::VectorXd free =
-            shifts ? Eigen::VectorXd(W(std::vector{0, 1, 4})) : Eigen::VectorXd(W(std::vector{0, 3, 4, 5}));
-        EXPECT_LT(free.norm(), 1e-5 * W.norm()) << name;  // as found
-        EXPECT_EQ(found[0].translation.z(), action.motions[0].translation.z());
-        EXPECT_TRUE(found[0].translation.allFinite() && found[0].rotation.allFinite());
-        EXPECT_GT(found[0].rotation.norm(), 1e-3) << name;
-        // Imposed, they leave all as it is.
-        Action imposed = action;
-        imposed.motions = found;
-        const Eigen::VectorXd same = model_->equilibrium(setting_, imposed);
-        EXPECT_LT((model_->observe(same, setting_) - model_->observe(q, setting_)).norm(), 1e-4) << name;
-    }
-}
-
 TEST_P(RigLaws, SupportsBearWhatToolsExert) {
     // Without the cable, whose guide stands in space and bears a part.
     Rig rig = rig_of_bar();
@@ -291,17 +149,6 @@ TEST_P(RigLaws, SupportsBearWhatToolsExert) {
     }
 }
 
-TEST_P(RigLaws, APlatenThatMayTiltLiesFlat) {
-    if (GetParam().is_skeleton && GetParam().law == 0) return;  // it refuses what parts
-    const Action action = moved({platen, Vec3(0, 0, -1.5), Vec3(none, none, 0)});
-    const Eigen::VectorXd q = model_->equilibrium(setting_, action);
-    const Eigen::VectorXd W = model_->reactions(q, setting_, action);
-    EXPECT_LT(W(2), 0);
-    EXPECT_LT(W.segment<2>(3).norm(), 1e-5 * W.norm());  // as free coordinates are found
-    // The bar sinks ahead of its support: the platen's outer edge goes down with it, a turn about y.
-    EXPECT_GT(model_->motions(q, setting_, action)[0].rotation.y(), 0.01);
-}
-
 INSTANTIATE_TEST_SUITE_P(All, RigLaws,
                          testing::Values(RigCase{"ReferenceLinear", false, 0}, RigCase{"ReferenceSvk", false, 1},
                                          RigCase{"ReferenceNeoHooke", false, 2}, RigCase{"SkeletonLinear", true, 0},
@@ -311,19 +158,6 @@ INSTANTIATE_TEST_SUITE_P(All, RigLaws,
                                          RigCase{"SkeletonLinearRubs", true, 0, 0.4},
                                          RigCase{"SkeletonLargeRotationRubs", true, 1, 0.4}),
                          [](const auto& each) { return each.param.name; });
-
-TEST(RigOnBody, AFreeToolThatTouchesNothingStaysWhereItIs) {
-    // Nothing touches the ball: it stays where it is told to be, its free coordinates as at rest.
-    const SmallBody body = SmallBody::hollow();
-    const ReferenceBody model(body.mesh, body.supports, body.markers, {.young = 0.1, .rig = rig_of_bar()});
-    const ModelSetting setting{2, Eigen::Vector2d(-1, -2), {}};
-    Action away;
-    away.motions = {{ball, Vec3(none, 0, 1), Vec3::Zero()}};
-    EXPECT_EQ(model.equilibrium(setting, away), model.rest(setting));
-    EXPECT_EQ(model.motions(model.rest(setting), setting, away)[0].translation, Vec3(0, 0, 1));
-    EXPECT_FALSE(model.discretisation_error(model.rest(setting), setting, away,
-                                            *model.tangent(model.rest(setting), setting, {})));
-}
 
 TEST(RigOnBody, ALinearSkeletonRefusesWhatParts) {
     const SmallBody body = SmallBody::hollow();
@@ -335,5 +169,4 @@ TEST(RigOnBody, ALinearSkeletonRefusesWhatParts) {
                      {"\"ball\"", "linear law", "large-rotation"}));
 }
 
-}  // namespace
-}  // namespace palpate::identify
+}  // namespace palpate::identify::rigs

@@ -38,7 +38,7 @@ TEST_F(Judged, WhatItTellsOfGravityHoldsInTheDiagnosis) {
     ASSERT_NE(gravity, nullptr);
     ASSERT_TRUE(gravity->own.has_value());
     EXPECT_EQ(gravity->own->unit, "mm/s^2");
-    EXPECT_GT(gravity->share, 0.9);
+    EXPECT_EQ(gravity->share, 1);
     const double least = gravity->own->value / 9810;
     EXPECT_THAT(diagnose(heavy(2 * least)).explanation, Contains("gravity"));
     EXPECT_THAT(diagnose(heavy(0.2 * least)).explanation, IsEmpty());
@@ -47,8 +47,9 @@ TEST_F(Judged, WhatItTellsOfGravityHoldsInTheDiagnosis) {
 TEST_F(Judged, StrengthsAreTheStrongerTheMoreNoiseThereIs) {
     const Preflight little = judge(with_noise(twin(bare_truth(*model_, 0)), sigma));
     const Preflight much = judge(with_noise(twin(bare_truth(*model_, 0)), 10 * sigma));
+    // Ten times the noise, but what is doubtful beside it, such as places of contacts, stays: 7 times at least.
     for (const char* name : {"gravity", "misalignment"})
-        EXPECT_GT(much.prospect_of(name)->least, 5 * little.prospect_of(name)->least) << name;
+        EXPECT_GT(much.prospect_of(name)->least, 5.7 * little.prospect_of(name)->least) << name;
 }
 
 TEST_F(Judged, WhatCannotShowSaysWhy) {
@@ -76,7 +77,7 @@ TEST_F(Judged, NumbersAreToldAsWellAsTheFitTellsThem) {
     alone.screen = false;
     const Diagnosis fitted = diagnose(with_noise(twin(bare_truth(*model_, 0))), alone);
     const double sd = std::sqrt(fitted.baseline.covariance(0, 0));
-    EXPECT_NEAR(young.sd, sd, 0.3 * sd);  // where the fit stands is not where the guess does
+    EXPECT_NEAR(young.sd, sd, 0.012 * sd);  // where the fit stands is not where the guess does: 0.8 %
 }
 
 TEST_F(Judged, MoreStatesNeverAskForMore) {
@@ -120,7 +121,7 @@ TEST_F(Judged, NoiseThatIsNotToldIsAHundredthOfTheMotion) {
         for (Reading& reading : state.readings) reading.sigma = missing;
     const Preflight preflight = judge(set);
     EXPECT_FALSE(preflight.noise_known);
-    EXPECT_NEAR(preflight.noise_mm, 0.01 * preflight.moved_mm, 1e-9);
+    EXPECT_NEAR(preflight.noise_mm, 0.01 * preflight.moved_mm, 1e-15);  // rounding
 }
 
 TEST_F(Judged, ExchangedMarkersAreTold) {

@@ -48,7 +48,7 @@ TEST(Suspicions, FindTheReadingThatIsOffAndNoOther) {
     EXPECT_EQ(found[0].kind, Suspect::rough);
     EXPECT_EQ(found[0].state, 3);
     EXPECT_EQ(found[0].marker, 8);
-    EXPECT_NEAR(found[0].mm, 0.5, 0.15);  // less what its neighbours and noise make
+    EXPECT_NEAR(found[0].mm, 0.5, 4 * noise);  // 4 sigma of a reading
 }
 
 TEST(Suspicions, AMarkerThatIsOffInMostStatesIsToldOnce) {
@@ -92,7 +92,7 @@ TEST(Suspicions, MarkersOutsideAreFarUnlessAttached) {
     const std::vector<Suspicion> found = markers_off_the_surface(set);
     ASSERT_EQ(found.size(), 1u);
     EXPECT_EQ(found[0].marker, 25);
-    EXPECT_NEAR(found[0].mm, 6, 1e-6);
+    EXPECT_DOUBLE_EQ(found[0].mm, 6);
 }
 
 TEST(Repeats, TellTheNoise) {
@@ -121,7 +121,7 @@ TEST(Repeats, OfNoiseAloneHaveItsSize) {
     ASSERT_EQ(found.size(), 1u);
     EXPECT_EQ(found[0].freedoms, 5 * 3 * 24);
     EXPECT_NEAR(found[0].sd_mm, noise, 4 * noise / std::sqrt(2.0 * found[0].freedoms));  // 4 sigma of an sd
-    EXPECT_NEAR(found[0].sigma_mm, noise, 1e-9);
+    EXPECT_DOUBLE_EQ(found[0].sigma_mm, noise);
 }
 
 TEST(Repeats, OfOneProbeAreHeld) {

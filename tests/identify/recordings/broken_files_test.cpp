@@ -50,7 +50,7 @@ TEST_P(BrokenFiles, AreReadOrRefused) {
             }
         } catch (const InvalidInput& error) {
             ++refused;
-            EXPECT_GT(std::string(error.what()).size(), 10u);
+            EXPECT_GT(std::string(error.what()).size(), 20u);  // a sentence, not a word
         } catch (const IoError&) {
             ++refused;
         } catch (const std::exception& error) {
@@ -60,7 +60,7 @@ TEST_P(BrokenFiles, AreReadOrRefused) {
         }
     }
     RecordProperty("refused", refused);
-    EXPECT_GT(refused, 0);
+    EXPECT_GT(refused, 0);  // or the mutations break nothing
 }
 
 std::string bytes_of(const std::function<std::filesystem::path(const std::filesystem::path&)>& write) {

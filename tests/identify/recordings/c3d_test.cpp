@@ -43,15 +43,15 @@ TEST_P(C3d, HoldsPointsAnalogsAndEventsWhateverWroteIt) {
     ASSERT_EQ(points.points.size(), 2u);
     EXPECT_EQ(points.points[0].name, "Base");
     EXPECT_EQ(points.points[1].name, "Tip");
-    EXPECT_TRUE(points.points[1].at.col(2).isApprox(unit * Eigen::Vector3d(12, 2, 3), 1e-6));
+    EXPECT_TRUE(points.points[1].at.col(2).isApprox(unit * Eigen::Vector3d(12, 2, 3), 1e-7));  // reals of 24 bits
     EXPECT_TRUE(points.points[1].at.col(1).array().isNaN().all());  // a residual of -1: not seen
     EXPECT_TRUE(points.points[0].at.allFinite());
     ASSERT_EQ(points.times.size(), 3);
     EXPECT_TRUE(points.has_clock);
-    EXPECT_NEAR(points.times[2], 0.02, 1e-12);
+    EXPECT_DOUBLE_EQ(points.times[2], 0.02);
     ASSERT_EQ(points.events.size(), 1u);
     EXPECT_EQ(points.events[0].name, "Touch");
-    EXPECT_NEAR(points.events[0].time, 0.02, 1e-6);  // a real of 24 bits
+    EXPECT_NEAR(points.events[0].time, 0.02, 1e-9);  // a real of 24 bits: 2^-25 of it
 
     const Recording& analogs = recordings[1];
     ASSERT_EQ(analogs.channels.size(), 2u);
@@ -60,9 +60,9 @@ TEST_P(C3d, HoldsPointsAnalogsAndEventsWhateverWroteIt) {
     EXPECT_EQ(analogs.channels[1].unit, "V");
     ASSERT_EQ(analogs.channels[0].values.size(), 6);
     // (raw - offset) scale gen_scale, sample 5 of frame 2: raw 5
-    EXPECT_NEAR(analogs.channels[0].values[5], (5 - 4) * 0.25 * 2 * 1000, 1e-6);
-    EXPECT_NEAR(analogs.channels[1].values[5], 15 * 2, 1e-6);
-    EXPECT_NEAR(analogs.times[5], 5 / 200., 1e-12);
+    EXPECT_DOUBLE_EQ(analogs.channels[0].values[5], (5 - 4) * 0.25 * 2 * 1000);
+    EXPECT_DOUBLE_EQ(analogs.channels[1].values[5], 15 * 2);
+    EXPECT_DOUBLE_EQ(analogs.times[5], 5 / 200.);
 }
 
 INSTANTIATE_TEST_SUITE_P(
@@ -82,8 +82,8 @@ TEST(C3dFile, FirstFrameSetsTheClock) {
     sample.first_frame = 51;
     const TemporaryFolder folder;
     const auto recordings = read_recordings(folder.write("run.c3d", sample.bytes()));
-    EXPECT_NEAR(recordings[0].times[0], 0.5, 1e-12);
-    EXPECT_NEAR(recordings[1].times[0], 0.5, 1e-12);
+    EXPECT_DOUBLE_EQ(recordings[0].times[0], 0.5);
+    EXPECT_DOUBLE_EQ(recordings[1].times[0], 0.5);
 }
 
 TEST(C3dFile, ParametersEndWithTheirSection) {
@@ -109,9 +109,9 @@ TEST(C3dFile, MapTellsUnitRateAndNames) {
     const TemporaryFolder folder;
     const auto recordings = read_recordings(folder.write("run.c3d", C3dSample().bytes()), map);
     EXPECT_EQ(recordings[0].points[1].name, "b");
-    EXPECT_NEAR(recordings[0].points[1].at(0, 0), 10, 1e-6);
-    EXPECT_NEAR(recordings[0].times[2], 0.04, 1e-12);
-    EXPECT_NEAR(recordings[1].times[1], 0.01, 1e-12);
+    EXPECT_DOUBLE_EQ(recordings[0].points[1].at(0, 0), 10);
+    EXPECT_DOUBLE_EQ(recordings[0].times[2], 0.04);
+    EXPECT_DOUBLE_EQ(recordings[1].times[1], 0.01);
 }
 
 TEST(C3dFile, SaysWhereItIsBroken) {

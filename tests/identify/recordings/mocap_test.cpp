@@ -14,9 +14,9 @@ TEST(Trc, HoldsMarkersAndTimes) {
     EXPECT_EQ(run.format, "TRC, motion capture");
     ASSERT_EQ(run.points.size(), 2u);
     EXPECT_EQ(run.points[1].name, "Tip");
-    EXPECT_NEAR(run.points[1].at(0, 0), 40, 1e-12);  // 4 cm
+    EXPECT_DOUBLE_EQ(run.points[1].at(0, 0), 40);  // 4 cm
     EXPECT_TRUE(run.points[1].at.col(1).array().isNaN().all());
-    EXPECT_NEAR(run.times[2], 0.02, 1e-12);
+    EXPECT_DOUBLE_EQ(run.times[2], 0.02);
     EXPECT_TRUE(run.has_clock);
 }
 
@@ -42,10 +42,10 @@ TEST(Motive, TakesMarkersAndLeavesBodiesOut) {
     ASSERT_EQ(take.points.size(), 2u);
     EXPECT_EQ(take.points[0].name, "Plate:Marker1");
     // The measured marker, not the place that the rigid body solves for.
-    EXPECT_NEAR(take.points[0].at(0, 0), 110, 1e-9);
-    EXPECT_NEAR(take.points[1].at(2, 1), 330, 1e-9);
+    EXPECT_DOUBLE_EQ(take.points[0].at(0, 0), 110);
+    EXPECT_DOUBLE_EQ(take.points[1].at(2, 1), 330);
     EXPECT_TRUE(take.points[1].at.col(0).array().isNaN().all());
-    EXPECT_NEAR(take.times[1], 0.0041667, 1e-9);
+    EXPECT_DOUBLE_EQ(take.times[1], 0.0041667);
     EXPECT_TRUE(notes_tell(take, "Rigid Body"));
 }
 
@@ -86,17 +86,17 @@ TEST(Vicon, HoldsTrajectoriesDevicesAndEventsOnTheirClocks) {
     const Recording& points = recordings[0];
     ASSERT_EQ(points.points.size(), 2u);
     EXPECT_EQ(points.points[0].name, "Arm:LASI");
-    EXPECT_NEAR(points.points[1].at(1, 1), 5.5, 1e-12);
-    EXPECT_NEAR(points.times[1], 0.01, 1e-12);
+    EXPECT_DOUBLE_EQ(points.points[1].at(1, 1), 5.5);
+    EXPECT_DOUBLE_EQ(points.times[1], 0.01);
     ASSERT_EQ(points.events.size(), 1u);
-    EXPECT_NEAR(points.events[0].time, 0.015, 1e-12);
+    EXPECT_DOUBLE_EQ(points.events[0].time, 0.015);
 
     const auto devices = std::ranges::find(recordings, "trial.csv, devices", &Recording::source);
     ASSERT_NE(devices, recordings.end());
     ASSERT_EQ(devices->channels.size(), 2u);
     EXPECT_EQ(devices->channels[0].name, "Plate - Force Fx");
     EXPECT_EQ(devices->channels[1].unit, "N*mm");
-    EXPECT_NEAR(devices->times[3], 0.015, 1e-12);  // frame 2, sub frame 1, two of them a frame, 200 a second
+    EXPECT_DOUBLE_EQ(devices->times[3], 0.015);  // frame 2, sub frame 1, two of them a frame, 200 a second
 
     const auto models = std::ranges::find(recordings, "trial.csv, model outputs", &Recording::source);
     ASSERT_NE(models, recordings.end());

@@ -28,5 +28,21 @@ TEST(CountOf, OneIsOne) {
     EXPECT_EQ(count_of(0, "probe"), "0 probes");
 }
 
+TEST(IsBeforeByNumbers, CountsAsPeopleDo) {
+    EXPECT_TRUE(is_before_by_numbers("scan_9.stl", "scan_10.stl"));
+    EXPECT_FALSE(is_before_by_numbers("scan_10.stl", "scan_9.stl"));
+    EXPECT_TRUE(is_before_by_numbers("scan_009.stl", "scan_10.stl"));
+    EXPECT_TRUE(is_before_by_numbers("a2b10", "a10b2"));
+    EXPECT_TRUE(is_before_by_numbers("scan", "scan_1"));
+    EXPECT_TRUE(is_before_by_numbers("a01", "a1"));
+    EXPECT_FALSE(is_before_by_numbers("a1", "a01"));
+}
+
+TEST(Capitalised, ChangesTheFirstLetterAlone) {
+    EXPECT_EQ(capitalised("pressure of 3 kPa"), "Pressure of 3 kPa");
+    EXPECT_EQ(capitalised("ν is told"), "ν is told") << "beyond ASCII nothing changes";
+    EXPECT_EQ(capitalised(""), "");
+}
+
 }  // namespace
 }  // namespace palpate::mesh

@@ -8,7 +8,7 @@
 #include "identify/comparison/compare.h"
 #include "identify/identify.h"
 #include "identify/loading/loads.h"
-#include "identify/measurements/twin.h"
+#include "identify/loading/twin.h"
 #include "mesh/errors.h"
 #include "mesh/text/atomic_file.h"
 #include "pipeline/analysis/particles.h"

@@ -13,16 +13,8 @@
 #include <stop_token>
 #include <thread>
 
-#include "identify/numerics/random.h"
-#include "mesh/text/atomic_file.h"
-#include "pipeline/live/cloud_file.h"
-#include "pipeline/live/json_lines.h"
-#include "pipeline/live/json_reading.h"
-#include "pipeline/live/set_tail.h"
 #include "skeleton/model/io/model_io.h"
-#include "tests/identify/lattice.h"
-#include "tests/messages.h"
-#include "tests/temporary_folder.h"
+#include "tests/pipeline/live/followed_rig.h"
 #include "tests/wait.h"
 
 namespace palpate::pipeline {
@@ -30,58 +22,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using identify::LoadState;
-
-/// A small lattice in a box, its set on disk, and rows that are still to come.
-struct Rig {
-    TemporaryFolder folder;
-    skeleton::Model model = identify::make_lattice({3, 2, 1});
-    identify::MeasurementSet set;
-
-    Rig() {
-        model.surface = mesh::make_box(Vec3(0, -20, -3), Vec3(80, 60, 3), {4, 4, 1});
-        model.supports = {mesh::BoxRegion{Vec3(-1, -21, -4), Vec3(1, 61, 4)}};
-        std::vector<Vec3> forces;
-        for (int i = 0; i < 12; ++i) {
-            const Eigen::VectorXd f = identify::RandomStream(5, 0, i).normals(3);
-            forces.emplace_back(2 * f[0], 2 * f[1], 0.2 * f[2]);
-        }
-        set = identify::simulate_measurements(identify::with_truth(model, {1.5}, {600}),
-                                              identify::push_spheres(model, forces),
-                                              identify::markers_on_spheres(model), 0.05);
-        set.name = "stream";
-        skeleton::write_model(folder / "model.json", model);
-        write(6);
-    }
-    /// The first states, as a set.
-    void write(int count) const {
-        identify::MeasurementSet part = set;
-        part.states.resize(static_cast<std::size_t>(count));
-        identify::write_measurement_set(folder / "set", part);
-    }
-    /// As a program that appends would: loads first, then positions.
-    void append(int from, int to) const {
-        identify::MeasurementSet part = set;
-        part.states.assign(set.states.begin() + from, set.states.begin() + to);
-        const TemporaryFolder other;
-        identify::write_measurement_set(other / "set", part);
-        for (const char* table : {"probes.csv", "positions.csv"}) {
-            const std::string text = mesh::read_text(other / "set" / table);
-            std::ofstream(folder / "set" / table, std::ios::app)
-                << text.substr(text.find("\n", text.find("probe")) + 1);
-        }
-    }
-    /// By "live", which has then read what is there.
-    void wait_until_followed(const std::stop_token& gone) const {
-        comes_true([&] { return fs::exists(folder / "live/cloud.json") || gone.stop_requested(); });
-    }
-    commands::FollowOptions options(const char* output) const {
-        commands::FollowOptions how{folder / "model.json", folder / "set", folder / output, false, 2, {}, {}};
-        how.how.scope = identify::Scope::uniform;
-        how.how.law = identify::LawChoice::large_rotation;
-        how.how.fixed = {skeleton::Stiffness::torsion};
-        return how;
-    }
-};
 
 /// Without what the log says.
 std::vector<nlohmann::json> lines_of(const std::string& text) {
@@ -94,7 +34,7 @@ std::vector<nlohmann::json> lines_of(const std::string& text) {
 }
 
 TEST(Follow, TakesInRowsThatAreAppendedAndGoesOnWhereItWasKilled) {
-    const Rig rig;
+    const FollowedRig rig;
     testing::internal::CaptureStdout();
     {
         const std::jthread other([&](const std::stop_token& gone) {
@@ -126,7 +66,7 @@ TEST(Follow, TakesInRowsThatAreAppendedAndGoesOnWhereItWasKilled) {
 }
 
 TEST(Follow, TellsRowsThatNoReaderTakes) {
-    const Rig rig;
+    const FollowedRig rig;
     testing::internal::CaptureStdout();
     {
         const std::jthread other([&](const std::stop_token& gone) {
@@ -177,7 +117,7 @@ std::string answer_to(const std::string& text, const fs::path& path) {
 }
 
 TEST(Follow, AnswersTheProgramsThatConnectToItsSocket) {
-    const Rig rig;
+    const FollowedRig rig;
     commands::FollowOptions options = rig.options("live");
     options.socket = rig.folder / "rig.sock";
     options.set = rig.folder / "set";
@@ -201,131 +141,6 @@ TEST(Follow, AnswersTheProgramsThatConnectToItsSocket) {
     EXPECT_NE(second[0]["why"].get<std::string>().find("rig.sock, line 3"), std::string::npos) << second[0];
     EXPECT_EQ(second[1]["readings"], 9);
     EXPECT_FALSE(fs::exists(options.socket)) << "it is removed in the end";
-}
-
-TEST(UnixSocket, StandsInForOneThatWasLeftAndForNothingElse) {
-    const TemporaryFolder folder;
-    mesh::write_text(folder / "table.csv", "1\n");
-    EXPECT_NE(message_of([&] { unix_socket(folder / "table.csv"); }).find("is no socket"), std::string::npos);
-    EXPECT_NE(message_of([&] { unix_socket(folder / std::string(200, 'a')); }).find("shorter"), std::string::npos);
-    EXPECT_NE(message_of<IoError>([&] { unix_socket(folder / "none/rig.sock"); }).find("none/rig.sock"),
-              std::string::npos);
-    {
-        const auto listening = unix_socket(folder / "rig.sock");
-        EXPECT_NE(message_of([&] { unix_socket(folder / "rig.sock"); }).find("another program listens"),
-                  std::string::npos);
-    }
-    {  // as a program leaves it that is killed
-        const int left = ::socket(AF_UNIX, SOCK_STREAM, 0);
-        sockaddr_un address{};
-        address.sun_family = AF_UNIX;
-        (folder / "rig.sock").string().copy(address.sun_path, sizeof(address.sun_path) - 1);
-        ASSERT_EQ(::bind(left, reinterpret_cast<const sockaddr*>(&address), sizeof(address)), 0);
-        ::close(left);
-    }
-    EXPECT_NO_THROW(unix_socket(folder / "rig.sock"));
-}
-
-/// The next states, so many at least, as they become whole.
-std::vector<LoadState> next_states(SetTail& tail, std::size_t count) {
-    std::vector<LoadState> states;
-    EXPECT_TRUE(comes_true([&] {
-        const SetTail::News news = tail.poll();
-        states.insert(states.end(), news.states.begin(), news.states.end());
-        return states.size() >= count;
-    }));
-    return states;
-}
-
-TEST(SetTail, GivesEachStateOnceAndWhole) {
-    const Rig rig;
-    SetTail tail(rig.folder / "set");
-    EXPECT_EQ(tail.poll().states.size(), 5);  // the last one may go on
-    EXPECT_EQ(next_states(tail, 1).size(), 1);
-    EXPECT_EQ(tail.poll().states.size(), 0);
-    // half a row is none
-    std::ofstream(rig.folder / "set/positions.csv", std::ios::app) << "8,1,";
-    EXPECT_EQ(tail.poll().states.size(), 0);
-    fs::remove(rig.folder / "set/positions.csv");
-    EXPECT_NE(message_of<IoError>([&] { tail.poll(); }).find("positions.csv"), std::string::npos);
-}
-
-TEST(SetTail, ReadsWhatTheSetsReaderReads) {
-    const Rig rig;
-    SetTail tail(rig.folder / "set");
-    tail.poll();
-    rig.append(6, 8);
-    const std::vector<LoadState> states = next_states(tail, 3);
-    ASSERT_EQ(states.size(), 3);
-    const identify::MeasurementSet whole = identify::read_measurement_set(rig.folder / "set");
-    for (std::size_t i = 0; i < 3; ++i) {
-        const LoadState& expected = whole.states[5 + i];
-        ASSERT_EQ(states[i].probe, expected.probe);
-        ASSERT_EQ(states[i].readings.size(), expected.readings.size());
-        EXPECT_EQ(states[i].contacts.front().force, expected.contacts.front().force);
-        for (std::size_t r = 0; r < expected.readings.size(); ++r) {
-            EXPECT_EQ(states[i].readings[r].position, expected.readings[r].position);
-        }
-    }
-}
-
-TEST(JsonReading, SaysWhatALineHolds) {
-    const Rig rig;
-    const std::string label = identify::label_of(rig.set.markers[2]);
-    const LoadState state = read_json_reading(
-        R"({"probe": 3, "time": 1.5, "contacts": [{"at": [1,2,3], "force": [0,0,-1], "radius": 2}], "markers": {")" +
-            label + R"(": [4, null, 6]}})",
-        rig.set, "line 1");
-    EXPECT_EQ(state.probe, 3);
-    EXPECT_EQ(state.time, 1.5);
-    EXPECT_EQ(state.contacts.front().radius, 2);
-    EXPECT_EQ(state.readings.front().marker, 2);
-    EXPECT_TRUE(std::isnan(state.readings.front().position.y()));
-
-    const auto refusal = [&](const char* line) {
-        return message_of([&] { read_json_reading(line, rig.set, "standard input, line 7"); });
-    };
-    EXPECT_NE(refusal("probe 3").find("standard input, line 7: 'probe 3' is no JSON"), std::string::npos);
-    EXPECT_NE(refusal("[1]").find("no JSON object"), std::string::npos);
-    EXPECT_NE(refusal(R"({"time": 0})").find("'probe' is missing"), std::string::npos);
-    EXPECT_NE(refusal(R"({"probe": 1.5})").find("no whole number"), std::string::npos);
-    EXPECT_NE(refusal(R"({"probe": 1})").find("'markers' is missing"), std::string::npos);
-    EXPECT_NE(refusal(R"({"probe": 1, "markers": {"none": [1,2,3]}})").find("'none' is not in markers.csv"),
-              std::string::npos);
-    EXPECT_NE(refusal(R"({"probe": 1, "contacts": [{"at": [1,2]}], "markers": {}})").find("not three numbers"),
-              std::string::npos);
-    EXPECT_NE(refusal(R"({"probe": 1, "time": "now", "markers": {}})").find("no number"), std::string::npos);
-    EXPECT_NE(refusal(R"({"probe": 1, "markers": 3})").find("no object"), std::string::npos);
-}
-
-TEST(CloudFile, HoldsAllThatAFilterKnows) {
-    const TemporaryFolder folder;
-    Cloud cloud;
-    cloud.begun_with = 4;
-    cloud.state.v = identify::RandomStream(1, 0, 0).normals(5);
-    cloud.state.spectrum = {Eigen::VectorXd::LinSpaced(2, 3, 1), Eigen::MatrixXd::Random(5, 2)};
-    cloud.state.readings = 9;
-    cloud.state.seen = {{1, 0}, {2, 0.5}};
-    cloud.state.change.sum = 4.25;
-    cloud.state.change.since = identify::StateName{2, 0.5};
-    cloud.state.change.off = Eigen::VectorXd::LinSpaced(3, 0, 1);
-    cloud.state.change.count = 2;
-    write_cloud(folder / "cloud.json", cloud);
-    const Cloud read = read_cloud(folder / "cloud.json");
-    EXPECT_EQ(read.begun_with, 4);
-    EXPECT_EQ(read.state.v, cloud.state.v);
-    EXPECT_EQ(read.state.spectrum.values, cloud.state.spectrum.values);
-    EXPECT_EQ(read.state.spectrum.vectors, cloud.state.spectrum.vectors);
-    EXPECT_EQ(read.state.seen, cloud.state.seen);
-    EXPECT_EQ(read.state.change.since, cloud.state.change.since);
-    EXPECT_EQ(read.state.change.off, cloud.state.change.off);
-
-    for (const char* text : {"", "{}", R"({"format": "palpate-model/1"})"}) {
-        folder.write("cloud.json", text);
-        EXPECT_NE(message_of([&] { read_cloud(folder / "cloud.json"); }).find("remove it to begin anew"),
-                  std::string::npos);
-    }
-    EXPECT_NE(message_of<IoError>([&] { read_cloud(folder / "none.json"); }), "");
 }
 
 }  // namespace

@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "identify/comparison/compare.h"
-#include "identify/measurements/twin.h"
+#include "identify/loading/twin.h"
 #include "mesh/errors.h"
 #include "mesh/text/atomic_file.h"
 #include "pipeline/command_line/commands.h"

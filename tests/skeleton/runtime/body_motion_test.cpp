@@ -51,13 +51,15 @@ TEST(LiveMotion, AFreeBodyKeepsItsMomentaAndEnergyIsBounded) {
             const Energy now = body.energy();
             most = std::max(most, std::abs(now.kinetic + now.potential - total) / total);
         }
-        // A rule of second order at a tenth of the stable step errs by (0.1)^2 or so, and does not drift.
-        EXPECT_LT(most, 0.02);
-        EXPECT_GT(body.energy().potential, 0.05 * total);
+        // The energy of a mode swings by (omega h)^2 / 4, 1 % for the stiffest at a tenth of the stable step
+        // (omega h = 0.2), and does not drift; a random start has most of its energy in softer ones (0.05 % in all).
+        EXPECT_LT(most, 1e-3);
+        // About a half, by equipartition; which moment of a chaotic motion this is, rounding decides.
+        EXPECT_GT(body.energy().potential, 0.25 * total);
         const Momenta after = body.momenta();
-        // 20,000 steps of rounding, each 1e-16 of what single spheres have
-        EXPECT_LT((after.linear - before.linear).norm(), 1e-10 * before.linear.norm());
-        EXPECT_LT((after.angular - before.angular).norm(), 1e-10 * before.angular.norm());
+        // 20,000 steps of rounding at random, each 1e-16 of what single spheres have
+        EXPECT_LT((after.linear - before.linear).norm(), 1e-13 * before.linear.norm());
+        EXPECT_LT((after.angular - before.angular).norm(), 1e-13 * before.angular.norm());
     }
 }
 
@@ -71,7 +73,8 @@ TEST(LiveMotion, TheExplicitRuleIsOfSecondOrder) {
     };
     const Vec3 reference = end(64000);
     const double coarse = (end(2000) - reference).norm(), fine = (end(4000) - reference).norm();
-    EXPECT_NEAR(coarse / fine, 4, 0.3);  // and a little of the fourth order
+    // Of second order is (1/2000^2 - 1/64000^2) / (1/4000^2 - 1/64000^2); the rest is of fourth order.
+    EXPECT_NEAR(coarse / fine, 4 * (1 - 1 / 1024.0) / (1 - 1 / 256.0), 0.002);
 }
 
 TEST(LiveMotion, TheImplicitRuleTendsToTheExplicitOne) {
@@ -89,8 +92,8 @@ TEST(LiveMotion, TheImplicitRuleTendsToTheExplicitOne) {
         return (body.position(11) - exact.position(11)).norm();
     };
     const double coarse = error(400), fine = error(800);
-    EXPECT_GT((exact.position(11) - model.spheres[11].center).norm(), 20 * fine);
-    EXPECT_NEAR(coarse / fine, 2, 0.3);  // first order
+    EXPECT_GT((exact.position(11) - model.spheres[11].center).norm(), 50 * fine);  // of 800 steps: 63 times
+    EXPECT_NEAR(coarse / fine, 2, 0.05);  // first order, and a little of the second
 }
 
 TEST(LiveMotion, ImplicitStepsOfAnySizeEndInTheEquilibrium) {
@@ -104,7 +107,7 @@ TEST(LiveMotion, ImplicitStepsOfAnySizeEndInTheEquilibrium) {
         still.equilibrium();
         for (int i = 0; i < 400; ++i) moved.step_implicit(h);
         for (int i = 0; i < moved.sphere_count(); ++i) {
-            EXPECT_LT((moved.position(i) - still.position(i)).norm(), 1e-4) << h;  // mm, of some 5
+            EXPECT_LT((moved.position(i) - still.position(i)).norm(), 1e-8) << h;  // [mm]: 1e-9 of a link of 10 mm
         }
     }
 }
@@ -123,7 +126,7 @@ TEST(LiveMotion, AWeightOnALinkSwingsAsAPendulum) {
         body.step_explicit(h);
         time += h;
     }
-    EXPECT_NEAR(time, T / 4, 1e-3 * T);  // angle^2 / 16, a step, and the spring's give
+    EXPECT_NEAR(time, T / 4, 2e-5 * T);  // angle^2 / 64, a step, and the spring's give
 }
 
 TEST(LiveMotion, DiesAwayAtTheRatioToldOfTheSoftestMode) {
@@ -136,7 +139,8 @@ TEST(LiveMotion, DiesAwayAtTheRatioToldOfTheSoftestMode) {
                  T = 2 * std::numbers::pi / (w * std::sqrt(1 - zeta * zeta));
     const int steps = 20 * static_cast<int>(std::ceil(T / body.stable_step()));
     body.step_explicit(T / steps, steps);
-    EXPECT_NEAR(body.position(1).x() - 10, std::exp(-zeta * w * T), 1e-3);
+    EXPECT_NEAR(body.position(1).x() - 10, std::exp(-zeta * w * T),
+                1e-7);  // of second order in steps much shorter than T
 }
 
 TEST(LiveMotion, DiesAwayAsTheModelSaysUnlessToldOtherwise) {
@@ -148,7 +152,7 @@ TEST(LiveMotion, DiesAwayAsTheModelSaysUnlessToldOtherwise) {
     EXPECT_EQ(told.damping().alpha, 0);
     EXPECT_GT(told.damping().beta, 0);
     model.damping.reset();
-    EXPECT_NEAR(Body(model).damping().beta, told.damping().beta / 2, 1e-9 * told.damping().beta);  // 0.1
+    EXPECT_NEAR(Body(model).damping().beta, told.damping().beta / 2, 1e-14 * told.damping().beta);  // 0.1
 }
 
 TEST(LiveMotion, IsTheSameEachTime) {

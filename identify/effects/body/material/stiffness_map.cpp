@@ -133,8 +133,9 @@ public:
         if (parts.empty()) return text + ", nowhere by more than is known of it.";
         text += ": ";
         for (std::size_t p = 0; p < std::min(most, parts.size()); ++p) {
-            text += fmt::format("{}({}) times its mean round ({:.3g}, {:.3g}, {:.3g}) mm", p == 0 ? "" : ", ",
-                                mesh::with_sd(parts[p].ratio, parts[p].sd), parts[p].centre.x(), parts[p].centre.y(),
+            const std::string ratio = mesh::with_sd(parts[p].ratio, parts[p].sd);
+            text += fmt::format("{}{} times its mean round ({:.3g}, {:.3g}, {:.3g}) mm", p == 0 ? "" : ", ",
+                                parts[p].sd > 0 ? "(" + ratio + ")" : ratio, parts[p].centre.x(), parts[p].centre.y(),
                                 parts[p].centre.z());
         }
         if (parts.size() > most) text += fmt::format(", and {} more", parts.size() - most);

@@ -7,7 +7,7 @@
 #include "identify/diagnosis/fit/explanation.h"
 #include "identify/effects/effect.h"
 #include "identify/effects/vector_words.h"
-#include "identify/loading/history/creep.h"
+#include "identify/loading/creep.h"
 
 namespace palpate::identify {
 namespace {

@@ -39,24 +39,6 @@ void check_single_row(const CsvTable& table, int row, const Rows& rows, Index in
                                    column, mesh::cited(table.name(row, column)), state.probe, state.time));
 }
 
-void check_not_negative(const CsvTable& table, int row) {
-    if (table.number(row, "time") < 0)
-        throw InvalidInput(
-            fmt::format("{}, column time: {} is negative. Count time from the beginning of the probe, which is 0.",
-                        table.where(row), table.number(row, "time")));
-}
-
-/// 1 sigma of a row, in its unit; NaN where it is not told.
-double positive_sigma(const CsvTable& table, int row, double least) {
-    const double sigma = table.at(row, "sigma");
-    if (sigma < least)
-        throw InvalidInput(
-            fmt::format("{}, column sigma: {} is below {:g}, less than any instrument's noise. Leave it empty where it "
-                        "is unknown.",
-                        table.where(row), sigma, least));
-    return sigma;
-}
-
 /// A turn is held at 0 where the table has no such column; free where the cell is empty.
 Vec3 read_turn(const CsvTable& table, int row) {
     Vec3 turn = Vec3::Zero();
@@ -72,7 +54,7 @@ void TableReader::read_motions(const fs::path& file) {
     const CsvTable table(file, {"probe", "time", "tool", "x", "y", "z"}, {"rx", "ry", "rz"}, {"tool"});
     require_length(table, {"x", "y", "z"});
     for (int row = 0; row < table.rows(); ++row) {
-        check_not_negative(table, row);
+        check_not_negative(table.number(row, "time"), table.where(row));
         const int tool = index_of_name(table, row, "tool", set_.tools);
         LoadState& moved = state(state_name(table, row), table, row);
         check_single_row(table, row, moved.motions, &mesh::ToolMotion::tool, tool, "tool");
@@ -92,7 +74,7 @@ void TableReader::read_motions(const fs::path& file) {
 void TableReader::read_actuations(const fs::path& file) {
     const CsvTable table(file, {"probe", "time", "actuator", "value"}, {"sigma"}, {"actuator"});
     for (int row = 0; row < table.rows(); ++row) {
-        check_not_negative(table, row);
+        check_not_negative(table.number(row, "time"), table.where(row));
         const int number = index_of_name(table, row, "actuator", set_.actuators);
         LoadState& actuated = state(state_name(table, row), table, row);
         check_single_row(table, row, actuated.actuations, &Actuation::actuator, number, "actuator");
@@ -105,7 +87,7 @@ void TableReader::read_actuations(const fs::path& file) {
                             "sign, or 0 where it is slack.",
                             table.where(row), value));
         constexpr double least = 1e-15;  // [unit]: whatever is less is a slip
-        actuated.actuations.push_back({number, unit * value, unit * positive_sigma(table, row, least)});
+        actuated.actuations.push_back({number, unit * value, unit * told_sigma(table, row, least)});
     }
 }
 
@@ -187,11 +169,10 @@ void TableReader::read_reactions(const fs::path& file) {
                 fmt::format("{}: tool {} is away in probe {} at time {}, as motions.csv has no row of it there, and "
                             "what is away exerts no force. Tell in motions.csv where it was, or take the reading away.",
                             table.where(row), mesh::cited(table.name(row, "tool")), measured.probe, measured.time));
-        const ReactionReading reading{
-            .tool = tool,
-            .force = units_.force * vector_if_given(table, row, {"fx", "fy", "fz"}),
-            .moment = units_.moment * vector_if_given(table, row, {"mx", "my", "mz"}),
-            .sigma = units_.force * positive_sigma(table, row, least_force_noise / units_.force)};
+        const ReactionReading reading{.tool = tool,
+                                      .force = units_.force * vector_if_given(table, row, {"fx", "fy", "fz"}),
+                                      .moment = units_.moment * vector_if_given(table, row, {"mx", "my", "mz"}),
+                                      .sigma = units_.force * told_sigma(table, row, least_force_noise / units_.force)};
         const bool reads_force = !reading.force.array().isNaN().all();
         if (!reads_force && reading.moment.array().isNaN().all()) continue;  // nothing was read
         if (!reads_force && !std::isnan(reading.sigma))

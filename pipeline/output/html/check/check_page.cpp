@@ -23,20 +23,20 @@ namespace {
 using nlohmann::json;
 
 std::string check_tile(const std::string& value, const std::string& what) {
-    return fmt::format(R"(<div class="tile"><b>{}</b>{}</div>)", escape(value), escape(what));
+    return fmt::format(R"(<div class="tile"><b>{}</b>{}</div>)", prose(value), prose(what));
 }
 
 std::string items(const json& list) {
     std::string html;
     for (const json& one : list)
-        html += "<li>" + escape(one.is_string() ? one.get<std::string>() : one["words"].get<std::string>()) + "</li>";
+        html += "<li>" + prose(one.is_string() ? one.get<std::string>() : one["words"].get<std::string>()) + "</li>";
     return html.empty() ? "" : "<ul>" + html + "</ul>";
 }
 
 std::string mm(const json& value) { return value.is_number() ? fmt::format("{:.2g} mm", value.get<double>()) : "–"; }
 
 std::string data_cell(const char* name, const std::string& text) {
-    return fmt::format("<td data-name=\"{}\">{}</td>", name, escape(text));
+    return fmt::format("<td data-name=\"{}\">{}</td>", name, prose(text));
 }
 
 std::string lead(const json& check, const json& preflight) {
@@ -64,8 +64,8 @@ std::string tiles_of(const json& check, const json& preflight) {
                 "independent among measured coordinates") +
             check_tile(mm(preflight["noise_mm"]),
                        preflight["noise_known"].get<bool>() ? "noise, declared" : "noise, assumed: 1 % of the motion") +
-            check_tile(mm(preflight["moved_mm"]), "read from rest, rms") +
-            check_tile(mm(preflight["nuisance_mm"]), "unknown about contacts and clamps, rms");
+            check_tile(mm(preflight["moved_mm"]), "measured displacement, rms") +
+            check_tile(mm(preflight["nuisance_mm"]), "uncertainty from contacts and clamps, rms");
     }
     return html + "</div>";
 }
@@ -76,7 +76,7 @@ std::string words_of_effect(const json& one) {
     const std::string why = one["why_not"].get<std::string>();
     const auto confused = one["confused_with"].get<std::vector<std::string>>();
     if (!why.empty()) {
-        words += "<br><b>Why not:</b> " + escape(why) + ".";
+        words += "<br><b>Why not:</b> " + prose(why) + ".";
     } else if (!confused.empty()) {
         words += "<br><span class=\"soft\">Could be mistaken for " + escape(listed(confused)) + ".</span>";
     }
@@ -84,7 +84,7 @@ std::string words_of_effect(const json& one) {
     const std::string effect = one["effect"];
     if (is_within_reach(one) && !easiest.is_null() && !usual.is_null() &&
         own_strength(easiest, effect) != own_strength(usual, effect))
-        words += "<br><span class=\"soft\">Where it shows best: " + escape(own_strength(easiest, effect)) + ".</span>";
+        words += "<br><span class=\"soft\">Where it shows best: " + prose(own_strength(easiest, effect)) + ".</span>";
     return words;
 }
 
@@ -123,20 +123,20 @@ std::string effects_table(const json& preflight) {
 
 std::string effects_section(const json& preflight) {
     return "<h2 id=\"effects\">What could be named</h2><p>The strength from which each effect would be named, ahead of "
-           "all others and beyond what nobody can know about contacts and clamps, by the rules of the diagnosis; and "
-           "the trace that it leaves in the readings then. Effects with a place or a direction are evaluated for forty "
+           "all others and beyond what is uncertain about contacts and clamps, by the rules of the diagnosis; and "
+           "the trace that it then leaves in the readings. Effects with a place or a direction are evaluated for forty "
            "of them; the strength stated is sufficient in half of these.</p>" +
            effects_table(preflight);
 }
 
 std::string parameters_section(const json& preflight) {
     std::string html;
-    for (const std::string& sentence : parameter_sentences(preflight)) html += "<li>" + escape(sentence) + "</li>";
+    for (const std::string& sentence : parameter_sentences(preflight)) html += "<li>" + prose(sentence) + "</li>";
     return "<h2 id=\"parameters\">Which parameters it would determine</h2><ul>" + html + "</ul><p class=\"soft\">" +
-           fmt::format("Judged about E = {:.3g} MPa, {}, before any fit.",
+           fmt::format("Judged at E&nbsp;=&nbsp;{:.3g}&nbsp;MPa, {}, before any fit.",
                        preflight["guess"]["young_mpa"].get<double>(),
                        preflight["guess"]["from"] == "set" ? "the set's first guess"
-                                                           : "at which a linear body answers as large as was read") +
+                                                           : "at which a linear body moves as far as was measured") +
            "</p>";
 }
 
@@ -190,7 +190,7 @@ std::string gain_words(const json& experiment) {
 std::string experiments_section(const json& preflight) {
     std::string rows;
     for (const json& one : preflight["experiments"]) {
-        rows += "<tr><td class=\"words\">" + escape(one["words"].get<std::string>()) + ".</td>" +
+        rows += "<tr><td class=\"words\">" + prose(one["words"].get<std::string>()) + ".</td>" +
                 data_cell("states", std::to_string(one["states"].get<long>())) + "<td class=\"words\">" +
                 gain_words(one) + "</td></tr>";
     }
@@ -232,7 +232,7 @@ void write_check_page(const std::filesystem::path& page, const Subject& subject,
                                std::string(check_view) + "<script id=\"check-data\" type=\"application/json\">" +
                                as_script_data(check_picture(subject, preflight)) + "</script><script>" +
                                std::string(check_script) + "</script><p class=\"lead\">" +
-                               escape(lead(check, preflight)) + "</p>" + tiles_of(check, preflight) +
+                               prose(lead(check, preflight)) + "</p>" + tiles_of(check, preflight) +
                                section_links(sections) + sections + "</main></body></html>\n");
 }
 

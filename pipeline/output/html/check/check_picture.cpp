@@ -6,18 +6,16 @@
 #include <cmath>
 #include <map>
 
+#include "identify/numerics/summaries.h"
 #include "mesh/text/words.h"
 #include "pipeline/output/html/packed_rows.h"
 #include "pipeline/output/html/view_tools.h"
+#include "pipeline/output/json/json_values.h"
 
 namespace palpate::pipeline {
 namespace {
 
 using nlohmann::json;
-
-json place_json(const Vec3& at) { return {at.x(), at.y(), at.z()}; }
-
-Vec3 without_missing(const Vec3& v) { return v.array().isNaN().select(Vec3::Zero(), v); }
 
 /// Vertices that lie in regions.
 std::vector<int> inside(const std::vector<mesh::Region>& regions, const Points& vertices) {
@@ -54,7 +52,7 @@ json tendons_json(const identify::MeasurementSet& set) {
         const auto* tendon = std::get_if<mesh::TendonActuator>(&actuator.kind);
         if (!tendon) continue;
         json path = json::array();
-        for (Eigen::Index p = 0; p < tendon->path.rows(); ++p) path.push_back(place_json(tendon->path.row(p)));
+        for (Eigen::Index p = 0; p < tendon->path.rows(); ++p) path.push_back(numbers(tendon->path.row(p)));
         list.push_back(path);
     }
     return list;
@@ -67,7 +65,7 @@ std::string words_of(const identify::MeasurementSet& set, const identify::LoadSt
         if (!contact.force.isZero(0)) add(fmt::format("{:.3g} N", contact.force.norm()));
     for (const mesh::ToolMotion& motion : state.motions)
         add(fmt::format("{} moved by {:.3g} mm", set.tools[static_cast<std::size_t>(motion.tool)].name,
-                        without_missing(motion.translation).norm()));
+                        identify::known_part(motion.translation).norm()));
     for (const identify::Actuation& one : state.actuations)
         add(fmt::format("{} at {:.3g}", set.actuators[static_cast<std::size_t>(one.actuator)].name, one.value));
     if (words.empty()) words = "no load is stated";
@@ -95,9 +93,9 @@ json picture_of_state(const identify::MeasurementSet& set, const identify::LoadS
                       const std::map<std::string, int>& by_name, const json& preflight) {
     Points moved = Points::Constant(std::ssize(set.markers), 3, identify::missing);
     for (const identify::Reading& reading : state.readings) {
-        if (reading.marker < 0 || reading.position.array().isNaN().all()) continue;
+        if (!is_usable(reading)) continue;
         const Vec3 rest = set.markers[static_cast<std::size_t>(reading.marker)].rest;
-        moved.row(reading.marker) = without_missing(reading.position - rest);
+        moved.row(reading.marker) = identify::known_part(reading.position - rest);
     }
     json loads = json::array();
     for (const mesh::Contact& contact : state.contacts) {

@@ -40,6 +40,16 @@ function startCheck() {
   fill(at('state'), states.length ? states.map((s) => s.name) : ['at rest']);
   at('frame').max = Math.max(states.length - 1, 0);
   at('magnify').value = furthest > 0 && furthest < 0.03 * size ? +(0.1 * size / furthest).toPrecision(2) : 1;
+  // What the set has none of is neither in the key nor to be chosen.
+  const moves = furthest > 0, loaded = states.some((s) => s.loads.length || s.tools.length);
+  at('key-held').hidden = !data.surface.held.length;
+  at('key-force').hidden = !states.some((s) => s.loads.length);
+  at('key-marker').hidden = at('offer-markers').hidden = !markers.names.length;
+  at('offer-positions').hidden = !moves;
+  at('of-motion').hidden = !moves && !data.tools.length;
+  at('offer-loads').hidden = !loaded && !data.tendons.length;
+  at('offer-all').hidden = !loaded || states.length < 2;
+  at('steps').hidden = at('of-state').hidden = states.length < 2;
   at('key-grip').hidden = !data.surface.gripped.length;
   at('key-tool').hidden = !data.tools.length && !data.tendons.length;
   at('key-tool').lastChild.textContent = [...(data.tools.length ? [tools.words()] : []), ...(data.tendons.length ? ['tendon'] : [])].join('; ');

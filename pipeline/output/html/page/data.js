@@ -109,6 +109,6 @@ function errorWords(now, answer) {
     const force = answer.tool_forces.find((f) => f.name === tool.name);
     return `${tool.name} ${short(measuredForce(tool))} N measured${force ? `, ${short(modelledForce(tool, force))} N modelled` : ''}`;
   });
-  return [...(answer.markers.id.length ? [`rms error ${short(answer.rms)} mm per coordinate, largest distance ${short(answer.largest)} mm`] : []),
+  return [...(answer.markers.id.length ? [`rms error ${short(answer.rms)}\u00a0mm per coordinate, largest distance ${short(answer.largest)}\u00a0mm`] : []),
     ...forces].join('; ') || 'nothing was read';
 }

@@ -74,15 +74,15 @@ std::string damping_section(const std::filesystem::path& folder) {
     if (!std::filesystem::exists(folder / "damping.csv")) return {};
     const json damping = json_of_file(folder / "identify.json")["damping"];
     std::string html = fmt::format(
-        "<h2 id=\"damping\">Damping</h2><p>The slowest vibration that was seen has a damping ratio of {}; "
-        "{}. "
-        "Motion of {:.3g} mm rms is followed to {:.2g} mm.</p><div class=\"pair\">{}</div>{}",
+        "<h2 id=\"damping\">Damping</h2><p>The slowest observed vibration has a damping ratio of {}; {}. The model "
+        "follows "
+        "the motion of {:.3g}&nbsp;mm rms to within {:.2g}&nbsp;mm.</p><div class=\"pair\">{}</div>{}",
         interval(damping["modes"][0]["ratio"]), how_it_goes(damping), damping["displacement_mm"].get<double>(),
         damping["rms_mm"].get<double>(), trace_charts(folder / "damping.csv"), mode_table(damping["modes"]));
-    for (const json& note : damping["notes"]) html += "<p>" + escape(note.get<std::string>()) + "</p>";
+    for (const json& note : damping["notes"]) html += "<p>" + prose(note.get<std::string>()) + "</p>";
     return html +
-           "<p class=\"soft\">Intervals hold 95 % of the posterior; ● known better than before. As played: by the "
-           "damping in model.json, which has two numbers for all modes.</p>";
+           "<p class=\"soft\">Intervals hold 95 % of the posterior; ● narrower than the prior. As played: by the "
+           "damping in model.json, two coefficients for all modes.</p>";
 }
 
 }  // namespace palpate::pipeline

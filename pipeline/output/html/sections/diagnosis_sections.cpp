@@ -23,8 +23,10 @@ std::string number(const json& value, const char* format = "{:.3g}") {
     return value.is_number() ? fmt::format(fmt::runtime(format), value.get<double>()) : "–";
 }
 
-/// "gx 12 ± 3 mm/s^2, ..."
+/// "gx 12 ± 3 mm/s^2, ..."; of too many to read only how many there are.
 std::string parameters(const json& reported) {
+    constexpr std::size_t most = 12;  // a choice: most effects have up to six, a map has four a place; more fill a page
+    if (reported.size() > most) return fmt::format("{} parameters, listed in diagnose/diagnosis.json", reported.size());
     std::string text;
     for (const auto& [name, p] : reported.items()) {
         if (!p["value"].is_number()) continue;
@@ -65,32 +67,34 @@ std::string screened_words(const json& candidate, double baseline_rms) {
     const double predicted = candidate["predicted_rms_mm"].get<double>();
     // The estimate is of positions: where forces alone were read, the evidence decides.
     const bool explains = has_evidence && (predicted < hardly * baseline_rms || baseline_rms == 0);
-    if (!explains) return "Screened out: its linear estimate explains nothing.";
+    if (!explains)
+        return has_evidence ? "Screened out: its linear estimate does not lower the rms error."
+                            : "Screened out: its linear estimate explains nothing.";
     return baseline_rms > 0 ? fmt::format("Screened out: its linear estimate leaves {:.3g} mm rms.", predicted)
                             : "Screened out.";
 }
 
 /// What became of an effect first, then what it would mean.
 std::string candidate_words(const json& candidate, bool claimed, double baseline_rms, const std::string& why_not) {
-    const std::string meaning = escape(candidate.value("sentence", ""));
+    const std::string meaning = prose(candidate.value("sentence", ""));
     std::string words;
     if (claimed)
         words = "<b>Claimed.</b> " + meaning;
     else if (!candidate["rms_mm"].is_number() && candidate["predicted_rms_mm"].is_number())
-        words = screened_words(candidate, baseline_rms);
+        words = prose(screened_words(candidate, baseline_rms));
     else if (candidate.contains("objection"))
-        words = "<b>Rejected:</b> " + escape(candidate["objection"].get<std::string>()) + ".";
+        words = "<b>Rejected:</b> " + prose(candidate["objection"].get<std::string>()) + ".";
     else
         words = "<b>Not claimed.</b>";
     words += escape(why_not);
     if (!claimed && !meaning.empty()) words += " It would mean: " + meaning;
     const std::string numbers = parameters(candidate["parameters"]);
-    if (!numbers.empty()) words += "<br><span class=\"soft\">" + escape(numbers) + "</span>";
+    if (!numbers.empty()) words += "<br><span class=\"soft\">" + prose(numbers) + "</span>";
     return words;
 }
 
 std::string named_cell(const char* name, const std::string& text) {
-    return fmt::format("<td data-name=\"{}\">{}</td>", name, escape(text));
+    return fmt::format("<td data-name=\"{}\">{}</td>", name, prose(text));
 }
 
 std::string ranking_table(const json& diagnosis) {
@@ -136,7 +140,7 @@ std::string baseline_line(const json& diagnosis) {
 
 std::string in_lines(const std::string& text) {
     std::string html;
-    for (const char c : escape(text)) html += c == '\n' ? std::string("<br>") : std::string(1, c);
+    for (const char c : prose(text)) html += c == '\n' ? std::string("<br>") : std::string(1, c);
     return html;
 }
 
@@ -171,7 +175,7 @@ std::string where_line(const json& diagnosis) {
     return fmt::format(
         "<p><b>Without assuming a specific effect:</b> {} <span class=\"soft\">{}; ln Bayes factors by kind of source, "
         "not comparable with those of the table: {}.</span></p>",
-        escape(where["sentence"].get<std::string>()), how, escape(kinds));
+        prose(where["sentence"].get<std::string>()), how, escape(kinds));
 }
 
 /// Which probes were held out, and how; `states`: as in compare.json.
@@ -183,8 +187,9 @@ std::string held_out_line(const json& held_out, const json& states) {
         states, [&](const json& state) { return std::ranges::find(held_out, state["probe"]) != held_out.end(); });
     return "<p class=\"soft\">Blue: error on the probes that were fitted. Orange: cross-validation error" +
            (in_turn ? ", a third of the probes held out in turn" : " on probes " + probes + ", held out of each fit") +
-           ". <span class=\"aside\">The table above " + (in_turn ? "" : "is of fits to all probes, and ") +
-           "holds out one probe at a time.</span></p>";
+           ". <span class=\"aside\">In the table above, the errors are of fits to all probes; those held out leave out "
+           "one probe at "
+           "a time.</span></p>";
 }
 
 }  // namespace
@@ -199,7 +204,7 @@ std::string missing_section(const json& diagnosis) {
            "10 on, with a lead of 5. Held out: rms error on each probe by a fit to all others, one by one. Normalised: "
            "rms of the errors, "
            "each over its standard deviation by measurement noise and unknown contacts; 1 is fully explained. " +
-           escape(baseline_line(diagnosis)) + " All numbers are of the finite-element model.</p>";
+           prose(baseline_line(diagnosis)) + " All numbers are of the finite-element model.</p>";
 }
 
 std::string ladder_section(const json& ladder, const json& compare) {

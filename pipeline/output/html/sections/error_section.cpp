@@ -125,7 +125,7 @@ std::string load_chart(const RunFiles& files) {
     // With an effect in, the model moves without load, too: its exponent is not about what acts alone.
     if (const json exponent = files.compare.value("load_exponent", json());
         exponent.is_object() && !files.compare["adequate"].get<bool>())
-        words += " Baseline: " + escape(exponent["words"].get<std::string>()) + ".";
+        words += " Baseline: " + prose(exponent["words"].get<std::string>()) + ".";
     return "<div class=\"pair\">" + figure(chart, words) + "</div>";
 }
 
@@ -141,11 +141,11 @@ std::string error_section(const RunFiles& files) {
     std::string html = "<h2 id=\"errors\">Remaining error</h2>";
     if (files.improved.is_object()) {
         html += "<p>" +
-                escape(compare_in_words(files.improved,
-                                        "The real-time model " + with_what(files) + ", fitted to all probes,")) +
+                prose(compare_in_words(files.improved,
+                                       "The real-time model " + with_what(files) + ", fitted to all probes,")) +
                 "</p>" + worst_section(files.improved);
     } else {
-        if (!files.diagnosis.is_null()) html += "<p>" + escape(compare_in_words(files.compare)) + "</p>";
+        if (!files.diagnosis.is_null()) html += "<p>" + prose(compare_in_words(files.compare)) + "</p>";
         html += worst_section(files.compare);
     }
     return html + "<div class=\"aside\">" + pictures(files) + probe_chart(files) + load_chart(files) + "</div>";

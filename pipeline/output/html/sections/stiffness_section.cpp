@@ -80,12 +80,12 @@ std::string kinds_of(const Rows& posterior, const ParticleSet& particles, PriorK
                                                      posterior, particles, places, prior));
     }
     html +=
-        "</div><p class=\"soft\">Dashed: prior density. Filled: posterior density, of the weighted particles. Above, "
-        "its "
-        "median and 95 %";
-    return html + (pooled ? "; of several numbers together those of their medians, each over the middle of its prior. "
-                            "Where the two agree, the data are uninformative.</p>"
-                          : ".</p>");
+        "</div><p class=\"soft\">Dashed: prior density. Filled: posterior density, of the weighted particles. Above: "
+        "the posterior's median and 95 % interval";
+    return html +
+           (pooled ? "; of several numbers together, those of their medians, each relative to the middle of its prior. "
+                     "Where prior and posterior agree, the data are uninformative.</p>"
+                   : ".</p>");
 }
 
 /// Any one number, chosen from a list.
@@ -103,8 +103,7 @@ std::string one_by_one(const Rows& posterior, const ParticleSet& particles, Prio
     }
     return fmt::format(
                "<h3>One by one</h3><p><label>Number <select id=\"density-of\">{}</select></label> <span "
-               "class=\"soft\">{}first the one that the measurements determine best; ● narrower than "
-               "its prior</span></p>"
+               "class=\"soft\">{}the best determined first; ● narrower than its prior</span></p>"
                "<div class=\"densities\" id=\"density\">{}</div>",
                options, all > most_chosen ? fmt::format("{} of {}, ", most_chosen, all) : "",
                pictures.front().get<std::string>()) +
@@ -125,10 +124,10 @@ std::string shared_words(const Rows& posterior) {
     const auto of_several = [](const identify::PosteriorRow& row) {
         return row.link < 0 && row.parameter.find(":sphere") == std::string::npos;
     };
-    return std::ranges::any_of(posterior, of_several) ? " A stiffness that no link is named with is the geometric mean "
-                                                        "over all that share it: the links, or for "
-                                                        "the volume the spheres."
-                                                      : "";
+    return std::ranges::any_of(posterior, of_several)
+               ? " A stiffness that names no link is the geometric mean over all "
+                 "links that share it; for the volume, over all spheres."
+               : "";
 }
 
 std::string intervals(const Rows& posterior, PriorKind prior) {
@@ -160,8 +159,8 @@ std::string stiffness_section(const Rows& posterior, const ParticleSet& particle
                        particles.stiffness.minCoeff() > 0;
     if (drawn) html += kinds_of(posterior, particles, prior) + one_by_one(posterior, particles, prior);
     return html + intervals(posterior, prior) +
-           "<p class=\"soft\">Grey: 95 % of the prior. Blue: 95 % of the posterior, with its median; first those that "
-           "the measurements determine best." +
+           "<p class=\"soft\">Grey: 95 % of the prior. Blue: 95 % of the posterior, with its median; the best "
+           "determined first." +
            shared_words(posterior) + " All numbers are in " + escape(file) + ", where bending is called flexion.</p>";
 }
 

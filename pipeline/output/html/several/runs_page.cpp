@@ -85,7 +85,7 @@ std::string error_chart(const json& runs) {
     }
     return "<figure style=\"max-width:40rem\">" + svg +
            "</svg><figcaption class=\"soft\">For each run: nothing added, with what was added, and with that on "
-           "held-out probes (orange), as far as there is such.</figcaption></figure>";
+           "held-out probes (orange), where there are any.</figcaption></figure>";
 }
 
 std::string settings_table(const json& runs) {

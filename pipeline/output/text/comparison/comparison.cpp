@@ -91,7 +91,7 @@ std::string budget_words(const json& compare) {
     const double noise = budget["noise"].get<double>();
     if (noise >= all) return " The noise accounts for all of the real-time model's mean square error.";
     return fmt::format(
-        " Of the real-time model's mean square error {} is noise, {} the coarseness of the skeleton, {} unexplained.",
+        " Of the real-time model's mean square error, {} is noise, {} the coarseness of the skeleton, {} unexplained.",
         percent(noise), percent(budget["reduction"].get<double>()), percent(budget["missing_physics"].get<double>()));
 }
 

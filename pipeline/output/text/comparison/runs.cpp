@@ -75,7 +75,7 @@ std::vector<RunNumber> run_numbers(const json& runs) {
     add("finite elements", [](const json& run) { return or_none(run["material"]); });
     add("spheres, links",
         [](const json& run) { return fmt::format("{}, {}", run["spheres"].get<int>(), run["links"].get<int>()); });
-    add("stiffnesses that the data inform", [](const json& run) {
+    add("stiffnesses constrained by the data", [](const json& run) {
         return fmt::format("{} of {}", run["informed"].get<int>(), run["stiffnesses"].get<int>());
     });
     add("time taken", [](const json& run) { return fmt::format("{:.0f} s", run["seconds"].get<double>()); });

@@ -1,10 +1,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <map>
 #include <sstream>
 
+#include "identify/numerics/summaries.h"
 #include "mesh/errors.h"
 #include "mesh/formats/read_body.h"
 #include "mesh/formats/solution/read_solution.h"
@@ -161,9 +161,10 @@ Description describe_solution(const fs::path& file) {
         .next = fmt::format("palpate probe BODY --from {} -o set",
                             file.has_parent_path() ? file.parent_path().string() : ".")};
     for (const mesh::SolvedStep& step : solution.steps) {
-        description.lines.push_back(fmt::format(
-            "time {:g}: up to {:.4g}", step.time,
-            step.displacement.rowwise().norm().unaryExpr([](double u) { return std::isnan(u) ? 0 : u; }).maxCoeff()));
+        const Eigen::VectorXd lengths = step.displacement.rowwise().norm();
+        description.lines.push_back(
+            fmt::format("time {:g}: up to {:.4g}", step.time,
+                        lengths.unaryExpr([](double u) { return identify::known_part(u); }).maxCoeff()));
     }
     return description;
 }

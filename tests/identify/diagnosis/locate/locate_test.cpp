@@ -104,6 +104,33 @@ TEST_P(LocatedNothing, HasNoEvidence) {
 INSTANTIATE_TEST_SUITE_P(Effects, LocatedNothing,
                          testing::Values(LocatedCase{"", {}, 0.1, SourceKind::sensor, SourceLaw::constant}));
 
+/// A finger that touches the side in two states, of which the set says nothing.
+TEST(LocatedTouch, IsInTheStatesThatItTouchesIn) {
+    const SmallBody body;
+    const auto model = body.reference();
+    const MeasurementSet told = body.set(SmallBody::probes());
+    MeasurementSet touched = told;
+    const std::vector<int> states{3, 6};
+    const Vec3 place(28, 5, 10), touch(0.003, 0.003, -0.02);  // [mm], [N]
+    for (const int state : states) touched.states[state].contacts.push_back({place, touch, 3});
+    MeasurementSet set = make_twin(*model, touched, bare_truth(*model, neo_hookean), 0.005);
+    for (std::size_t s = 0; s < set.states.size(); ++s) set.states[s].contacts = told.states[s].contacts;
+    DiagnoseOptions options;
+    options.law = neo_hookean;
+    options.refit.nuisances.ragged = 0;
+    options.screen = false;
+    const Diagnosis found = diagnose(*model, set, options);
+    const auto source = locate_missing(*model, found.problem, found.baseline, 1);
+    ASSERT_TRUE(source);
+    EXPECT_EQ(source->kind, SourceKind::boundary) << source->sentence();
+    EXPECT_EQ(source->likeliest().law, SourceLaw::some_states) << source->sentence();
+    EXPECT_EQ(source->states, states);
+    EXPECT_THAT(source->sentence(), testing::HasSubstr("alike in 2 of the "));
+    constexpr double degrees = M_PI / 180;
+    EXPECT_LT(std::acos(source->direction.dot(touch.normalized())), 20 * degrees) << source->sentence();
+    EXPECT_LT((source->at - place).norm(), 2 * source->spread);
+}
+
 /// The same as by a solve for each force.
 TEST(ReadingAdjoints, AnswerForcesAsSensitivitiesDo) {
     const SmallBody body;

@@ -16,15 +16,21 @@ EffectSignature signature(const std::string& name, const Eigen::MatrixXd& column
 // A rule that asks for the same evidence whether or not what is left passes for noise.
 constexpr NamingRules rules{.least_evidence = 12, .least_next_to_noise = 12, .most_left = 1.1, .least_lead = 5};
 
+/// The least factor a by which b is named where M = b^T V^-1 b: ln BF(a) = a^2 M^2 / (1 + M) / 2 - ln(1 + M) / 2, and
+/// more by `besides`. Bisected to 1 %.
+double least_factor(double M, double besides = 0) {
+    return std::sqrt((rules.least_evidence - besides + 0.5 * std::log(1 + M)) * 2 * (1 + M)) / M;
+}
+constexpr double bisected = 0.01;
+
 TEST(EvidenceOfSignatures, OfOneColumnIsThatOfTheScoreTest) {
-    // |b| = 3 in noise of 1: M = 9, and ln BF(a) = a^2 81 / 10 / 2 - ln(10) / 2.
     const Whitening V = noise_alone(9);
     const std::vector<EffectSignature> signatures{signature("pressure", Eigen::VectorXd::Ones(9))};
     const EffectCases cases = draw_cases(signatures[0]);
     ASSERT_EQ(cases.alternative.size(), 2u);  // either sign
     const auto least = EvidenceOfSignatures(V, signatures).least_factors(0, cases, rules);
-    const double expected = std::sqrt((12 + 0.5 * std::log(10)) * 2 * 10 / 81);
-    for (const double factor : least.named) EXPECT_NEAR(factor, expected, 0.01 * expected);  // as it is bisected
+    const double expected = least_factor(9);
+    for (const double factor : least.named) EXPECT_NEAR(factor, expected, bisected * expected);
     EXPECT_EQ(least.rival, std::vector<int>({-1, -1}));
 }
 
@@ -34,8 +40,8 @@ TEST(EvidenceOfSignatures, OfOneSideIsMoreByLnTwo) {
     const EffectCases cases = draw_cases(signatures[0]);
     ASSERT_EQ(cases.alternative.size(), 1u);
     const auto least = EvidenceOfSignatures(V, signatures).least_factors(0, cases, rules);
-    const double expected = std::sqrt((12 - std::log(2) + 0.5 * std::log(10)) * 2 * 10 / 81);
-    EXPECT_NEAR(least.named[0], expected, 0.01 * expected);
+    const double expected = least_factor(9, std::log(2));
+    EXPECT_NEAR(least.named[0], expected, bisected * expected);
 }
 
 TEST(EvidenceOfSignatures, OfEffectsThatLookAlikeIsNeverEnoughForAName) {
@@ -44,7 +50,8 @@ TEST(EvidenceOfSignatures, OfEffectsThatLookAlikeIsNeverEnoughForAName) {
     const std::vector<EffectSignature> signatures{signature("pressure", b), signature("force-gain", b)};
     const auto least = EvidenceOfSignatures(V, signatures).least_factors(0, draw_cases(signatures[0]), rules);
     EXPECT_TRUE(std::isinf(least.named[0]));
-    EXPECT_LT(least.seen[0], 10);
+    const double expected = least_factor(b.squaredNorm());
+    EXPECT_NEAR(least.seen[0], expected, bisected * expected);
     EXPECT_EQ(least.rival[0], 1);
 }
 
@@ -58,16 +65,18 @@ TEST(EvidenceOfSignatures, OfWhatANuisanceAbsorbsNeedsMore) {
     const Whitening unsure(Eigen::VectorXd::Ones(9), A, Eigen::VectorXd::Constant(1, 0.01));
     const auto sure = EvidenceOfSignatures(noise_alone(9), signatures).least_factors(0, cases, rules);
     const auto less_sure = EvidenceOfSignatures(unsure, signatures).least_factors(0, cases, rules);
-    EXPECT_GT(less_sure.named[0], 1.3 * sure.named[0]);  // 4 of 9 rows are left: 1.5 times, less the prior's share
+    EXPECT_NEAR(sure.named[0], least_factor(9), bisected * least_factor(9));
+    const double expected = least_factor(4 + 5 / (1 + 5 / 0.01));  // four rows are left, and what they leave of five
+    EXPECT_NEAR(less_sure.named[0], expected, bisected * expected);
 }
 
 TEST(EvidenceOfSignatures, CasesAreOfTheSizeThatThePriorExpects) {
     EffectSignature gravity{find_effect("gravity"), {}};
     gravity.columns = {Eigen::MatrixXd::Identity(6, 3), Eigen::Vector3d(2, 2, 2), false};
     const EffectCases cases = draw_cases(gravity);
-    ASSERT_GT(cases.alternative.size(), 10u);
+    ASSERT_EQ(cases.alternative.size(), 40u);  // as many as are drawn where numbers have a direction
     for (Eigen::Index c = 0; c < cases.values.cols(); ++c)
-        EXPECT_NEAR(cases.values.col(c).norm(), 2 * std::sqrt(3), 1e-9);  // rms of three numbers of sd 2
+        EXPECT_NEAR(cases.values.col(c).norm(), 2 * std::sqrt(3), 1e-14);  // rms of three numbers of sd 2
 }
 
 TEST(EvidenceOfSignatures, CasesThatAlterNothingAreLeftOut) {

@@ -40,17 +40,17 @@ TEST_F(RigOfABar, BrokenInTwoHundredWaysIsTakenOrRefused) {
             write_measurement_set(folder / "set", got.set);
             ++taken;
         } catch (const InvalidInput& error) {
-            EXPECT_GT(std::string(error.what()).size(), 20U) << i;
+            EXPECT_GT(std::string(error.what()).size(), 20U) << i;  // a sentence, not a word
             ++refused;
         } catch (const IoError& error) {
-            EXPECT_GT(std::string(error.what()).size(), 20U) << i;
+            EXPECT_GT(std::string(error.what()).size(), 20U) << i;  // a sentence, not a word
             ++refused;
         }
         folder.write(names[which], sound[which]);
     }
-    // neither all nor none, or the mutations would tell nothing
-    EXPECT_GT(refused, inputs / 20);
-    EXPECT_GT(taken, inputs / 20);
+    // neither all nor none, or the mutations would tell nothing: four fifths are refused
+    EXPECT_GT(refused, inputs / 2);
+    EXPECT_GT(taken, inputs / 10);
 }
 
 }  // namespace

@@ -8,17 +8,21 @@
 namespace palpate::identify {
 namespace {
 
+// Of a force [N]: 4 sd of means of some 2000 samples of a load cell; of 2 N also what a plateau keeps of its last
+// flank.
+constexpr double mean_force = 0.001, flank_force = 0.003;
+
 TEST_F(RigOfABar, IsRegisteredWithinHalfTheNoiseAndTwoMilliseconds) {
     const ImportedSet got = imported();
     ASSERT_TRUE(got.report.registration);
-    // fiducials stand on a frame of 50 mm: what the body's far end is off is the worst of it
+    // fiducials stand on a frame of 50 mm: what the body's far end is off is the worst of it, a fifth of the noise
     for (const Vec3& at : {Vec3(0, 0, 0), Vec3(50, 10, 10), Vec3(100, 20, 20)}) {
         const Vec3 seen = R.transpose() * (at - t);
-        EXPECT_LT((got.report.registration->motion(seen) - at).norm(), noise / 2) << at.transpose();
+        EXPECT_LT((got.report.registration->motion(seen) - at).norm(), noise / 3) << at.transpose();
     }
     ASSERT_EQ(got.report.clocks.size(), 1U);
-    EXPECT_NEAR(got.report.clocks[0].offset, lag, 0.002);
-    EXPECT_LT(got.report.clocks[0].sd, 0.002);
+    EXPECT_NEAR(got.report.clocks[0].offset, lag, 0.002);  // [s]: 3.5 sd
+    EXPECT_LT(got.report.clocks[0].sd, 7e-4);              // 0.6 ms
 }
 
 TEST_F(RigOfABar, BecomesStatesOfMeanPlacesAndForces) {
@@ -31,12 +35,12 @@ TEST_F(RigOfABar, BecomesStatesOfMeanPlacesAndForces) {
         const LoadState& state = set.states[s];
         ASSERT_EQ(state.contacts.size(), newtons[s] > 0 ? 1U : 0U) << s;
         if (newtons[s] > 0) {
-            EXPECT_NEAR(state.contacts[0].force.z(), -newtons[s], 0.005);
+            EXPECT_NEAR(state.contacts[0].force.z(), -newtons[s], flank_force);
             EXPECT_EQ(state.contacts[0].point, Vec3(100, 10, 20));
         }
         ASSERT_EQ(state.readings.size(), markers.size());
         for (std::size_t m = 0; m < markers.size(); ++m) {
-            EXPECT_LT((state.readings[m].position - bent(markers[m], newtons[s])).norm(), noise / 2);
+            EXPECT_LT((state.readings[m].position - bent(markers[m], newtons[s])).norm(), noise / 2);  // as registered
             EXPECT_GT(state.readings[m].sigma, 0.0);
             EXPECT_LT(state.readings[m].sigma, noise / 5) << "means of some hundred samples";
         }
@@ -62,8 +66,9 @@ TEST_F(RigOfABar, IsMergedByATrigger) {
     const ClockReport& clock = got.report.clocks[0];
     EXPECT_NEAR(clock.offset + clock.rate * 4 - (lag + 4), 0,
                 0.007);  // edges are seen by a sample of 10 ms, half of it late
-    EXPECT_NEAR(clock.sd, 0.01 / std::sqrt(12) / std::sqrt(2), 0.001);
-    EXPECT_NEAR(got.set.states[2].contacts[0].force.z(), -2, 0.005);
+    EXPECT_NEAR(clock.sd, std::hypot(0.01, 0.001) / std::sqrt(12) / std::sqrt(2),
+                1e-9);  // two edges, by samples of both
+    EXPECT_NEAR(got.set.states[2].contacts[0].force.z(), -2, flank_force);
 }
 
 TEST_F(RigOfABar, IsMergedByACommonColumn) {
@@ -72,14 +77,14 @@ TEST_F(RigOfABar, IsMergedByACommonColumn) {
             {"name: load, unit: N}", "name: load, unit: N}, {column: \"4\", name: count}"}});
     const ImportedSet got = imported();
     EXPECT_TRUE(says(got.report.clocks[0].how, {"common column 'count'"}));
-    EXPECT_NEAR(got.set.states[1].contacts[0].force.z(), -1, 0.005);
+    EXPECT_NEAR(got.set.states[1].contacts[0].force.z(), -1, mean_force);
 }
 
 TEST_F(RigOfABar, IsMergedByALagThatIsTold) {
     change("{lag: auto}", "{lag: 0.7321}");
     const ImportedSet got = imported();
     EXPECT_EQ(got.report.clocks[0].offset, 0.7321);
-    EXPECT_NEAR(got.set.states[1].contacts[0].force.z(), -1, 0.005);
+    EXPECT_NEAR(got.set.states[1].contacts[0].force.z(), -1, mean_force);
 }
 
 TEST_F(RigOfABar, TellsDisplacementsWhereTheseAreAskedFor) {
@@ -109,7 +114,8 @@ TEST_F(RigOfABar, WithoutNamesIsRegisteredByItsSurface) {
     folder.write("map.yaml", text.erase(from, to - from));
     const ImportedSet got = imported();
     EXPECT_EQ(got.report.registration->points, 6);
-    EXPECT_LT(got.report.registration->rms, 3 * noise);
+    EXPECT_LT(got.report.registration->rms,
+              noise / 8);  // of means of some hundred samples, of which six numbers fit most
     EXPECT_TRUE(says(all_notes(got), {"Another pose fits as well"}));
 }
 
@@ -118,8 +124,9 @@ TEST_F(RigOfABar, KeepsTheHeightOfMarkersThatStandOff) {
     write_points("points.csv", true);
     const ImportedSet got = imported();
     ASSERT_TRUE(got.set.markers[1].anchor);
-    EXPECT_NEAR((*got.set.markers[1].anchor - Vec3(50, 5, 20)).norm(), 0, noise);
-    EXPECT_NEAR(got.set.markers[1].rest.z(), 26, noise / 2);
+    EXPECT_NEAR((*got.set.markers[1].anchor - Vec3(50, 5, 20)).norm(), 0,
+                0.15 * noise);                                // along the skin, as registered
+    EXPECT_NEAR(got.set.markers[1].rest.z(), 26, noise / 2);  // as registered
     EXPECT_TRUE(says(all_notes(got), {"1 of 6 markers stand off", "by 6"}));
 }
 
@@ -156,7 +163,7 @@ TEST_F(RigOfABar, NamesItsPointsByTheirDistances) {
     text.replace(text.find("{file: points.csv,"), 18, "{file: points.csv, order: unknown,");
     folder.write("map.yaml", text);
     const ImportedSet got = imported();
-    EXPECT_LT(got.report.registration->rms, noise);
+    EXPECT_LT(got.report.registration->rms, 2 * noise / std::sqrt(900));  // of means of 900 samples
     EXPECT_TRUE(says(all_notes(got), {"by their distances", "'clamp4'"}));
 }
 

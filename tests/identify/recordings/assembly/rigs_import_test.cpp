@@ -57,11 +57,11 @@ TEST_F(Rigs, APneumaticArmIsFourProbesOfRisingPressure) {
                 moved = (state.readings[0].position - set.markers[0].rest).norm();
         }
         EXPECT_GE(unloaded, 1) << probe;
-        EXPECT_NEAR(pressure, 0.01 * probe, 1e-12) << probe;  // 100 mbar are 0.01 MPa
+        EXPECT_DOUBLE_EQ(pressure, 0.01 * probe) << probe;  // 100 mbar are 0.01 MPa
         EXPECT_GT(moved, before) << probe;
         before = moved;
     }
-    EXPECT_NEAR(before, 36, 3);  // mm at 400 mbar
+    EXPECT_NEAR(before, 37.3, 0.4);  // [mm] at 400 mbar, by the last plateau of its file
     EXPECT_TRUE(is_noted("plateaus drift")) << "the segment creeps";
     EXPECT_TRUE(std::ranges::any_of(set.notes, [](const std::string& note) {
         return note.find("carved out of the body") != std::string::npos;
@@ -78,16 +78,17 @@ TEST_F(Rigs, ATentaclesMarkersAreFoundInEveryFile) {
         ASSERT_EQ(state.actuations.size(), 1U);
         EXPECT_EQ(state.actuations[0].actuator, state.probe <= 2 ? 0 : 1);
         // 0.1 and 0.2 N m on a spool of 32.5 mm
-        EXPECT_NEAR(state.actuations[0].value, (state.probe % 2 == 1 ? 100 : 200) / 32.5, 1e-9);
+        EXPECT_DOUBLE_EQ(state.actuations[0].value, (state.probe % 2 == 1 ? 100 : 200) / 32.5);
         // the first tendon pulls to +y, the second to -y, and the markers go there, the tip most
         const double side = state.probe <= 2 ? 1 : -1;
         const auto moved = [&](int marker) {
             const auto reading = std::ranges::find(state.readings, marker, &Reading::marker);
             return Vec3(reading->position - set.markers[static_cast<std::size_t>(marker)].rest);
         };
-        EXPECT_GT(side * moved(3).y(), 80);
-        EXPECT_LT(moved(0).norm(), 60);
-        EXPECT_NEAR(side * moved(0).y(), 0, 30);
+        // [mm], as the files hold them: 114 and more at the tip, 21 and less at the base
+        EXPECT_GT(side * moved(3).y(), 90);
+        EXPECT_LT(moved(0).norm(), 26);
+        EXPECT_NEAR(side * moved(0).y(), 0, 20);
     }
 }
 
@@ -101,16 +102,16 @@ TEST_F(Rigs, SkinIsASheetWhosePadMovesAndAnswers) {
         ASSERT_EQ(state.motions.size(), 1U);
         EXPECT_LT(state.motions[0].translation.x(), before);  // ever further to -x
         before = state.motions[0].translation.x();
-        EXPECT_GT(state.readings.size(), 500U);
+        EXPECT_EQ(state.readings.size(), 544U);
         EXPECT_TRUE(std::isnan(state.readings[0].position.z())) << "one camera sees two coordinates";
     }
-    EXPECT_NEAR(before, -3.6, 0.4);
+    EXPECT_NEAR(before, -3.36, 0.1);  // [mm], by the pad's own log at the last plateau
     for (const LoadState& state : set.states)
         for (const Reading& reading : state.readings)
-            EXPECT_GT(reading.sigma, 1e-4) << "a track that froze, or one frame";
+            EXPECT_GT(reading.sigma, 4e-3) << "a track that froze, or one frame";  // [mm]; 0.0056 and more
     const LoadState& last = set.states.back();
     ASSERT_EQ(last.reactions.size(), 1U);
-    EXPECT_LT(last.reactions[0].force.x(), -0.05);
+    EXPECT_LT(last.reactions[0].force.x(), -0.1);  // [N], as the log holds it: -0.13
     EXPECT_TRUE(std::isnan(last.reactions[0].force.y())) << "the load cell reads one axis";
     EXPECT_EQ(got.report.clocks.size(), 3U);
 }

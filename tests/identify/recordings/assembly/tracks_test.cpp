@@ -27,7 +27,7 @@ TEST(Assignments, HaveTheLeastSumOfAll) {
             for (int i = 0; i < 4; ++i) other += cost(i, order[i]);
             least = std::min(least, other);
         } while (std::next_permutation(order.begin(), order.end()));
-        EXPECT_NEAR(sum, least, 1e-12);
+        EXPECT_DOUBLE_EQ(sum, least);
     }
 }
 

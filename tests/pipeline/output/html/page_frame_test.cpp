@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "pipeline/output/html/escape.h"
+
 namespace palpate::pipeline {
 namespace {
 
@@ -20,6 +22,11 @@ TEST(PageFrame, TitleIsEscapedAndStyleIsNot) {
     const std::string head = page_head("E < 1 & \"soft\"", "main > h1 {}");
     EXPECT_THAT(head, HasSubstr("<title>E &lt; 1 &amp; &quot;soft&quot;</title>"));
     EXPECT_THAT(head, HasSubstr("main > h1 {}"));
+}
+
+TEST(Prose, KeepsANumberWithItsUnitOnOneLine) {
+    EXPECT_EQ(prose("ν = 0.43 ± 0.12, 3 mm of (1, 2) mm/s^2, 95 % < 3 modes"),
+              "ν\u00a0=\u00a00.43 ±\u00a00.12, 3\u00a0mm of (1, 2)\u00a0mm/s², 95\u00a0% &lt; 3 modes");
 }
 
 TEST(PageFrame, SectionLinksFollowHeadingsThatHaveAnId) {

@@ -48,7 +48,7 @@ TEST(DiagnosisInWords, NamesTheEffectWithItsEvidence) {
     EXPECT_THAT(
         diagnosis_in_words(diagnosis("missing-effect", {"gravity"})),
         AllOf(HasSubstr("Gravity is missing (probability 0.98): 9.90 m/s^2"),
-              HasSubstr("rms error of the model is 6.4 mm over all states, and it is there without any load, too."),
+              HasSubstr("rms error of the model is 6.4 mm over all states; the error is present even without load."),
               HasSubstr("lowers the error to 0.9 mm, no more than noise"),
               HasSubstr("Probes left out of the fit one at a time are predicted to within 0.92 mm rms, without it to "
                         "within 6.6 "

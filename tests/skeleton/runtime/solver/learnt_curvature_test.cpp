@@ -52,12 +52,12 @@ TEST_F(Learnt, ItsLastStepIsKnownExactly) {
         const Eigen::VectorXd step =
             random_steps.col(i % size) + 0.1 * static_cast<double>(i) * random_steps.col((i + 3) % size);
         update(Eigen::VectorXd::Zero(size), step);
-        EXPECT_LT((solved(A * step) - step).norm(), 1e-9 * step.norm());
+        EXPECT_LT((solved(A * step) - step).norm(), 1e-14 * step.norm());  // rounding
     }
     // symmetric and positive
     Eigen::MatrixXd H(size, size);
     for (Eigen::Index i = 0; i < size; ++i) H.col(i) = solved(Eigen::VectorXd::Unit(size, i));
-    EXPECT_LT((H - H.transpose()).norm(), 1e-9 * H.norm());
+    EXPECT_LT((H - H.transpose()).norm(), 1e-14 * H.norm());  // rounding
     EXPECT_EQ(Eigen::LLT<Eigen::MatrixXd>(H).info(), Eigen::Success);
 }
 
@@ -73,7 +73,8 @@ TEST_F(Learnt, LeadsToTheLeastOfThePotentialFaster) {
         }
         return x.norm() / start.norm();
     };
-    EXPECT_LT(error_after(12, true), 1e-3 * error_after(12, false));
+    // By B alone each step leaves a like share; what is learnt of 8 directions ends that after as many (2e-5 here).
+    EXPECT_LT(error_after(12, true), 3e-5 * error_after(12, false));
 }
 
 TEST_F(Learnt, NothingWhereThePotentialCurvesDownwards) {

@@ -99,7 +99,7 @@ class SeriesChart {
     const marker = +this.at('series-marker').value, axis = +this.at('series-axis').value;
     const series = seriesOf(this.run, marker, axis, state);
     this.at('series-plot').innerHTML = seriesDrawing(series, this.run, this.titles, state);
-    const here = series.states.indexOf(state), number = (v) => (Number.isFinite(v) ? `${+v.toPrecision(3)} mm` : '–');
+    const here = series.states.indexOf(state), number = (v) => (Number.isFinite(v) ? `${+v.toPrecision(3)}\u00a0mm` : '–');
     this.at('series-plot').setAttribute('aria-label', `Motion of marker ${marker}, measured and by each model, over ${series.overTime ? 'time' : 'the probes'}`);
     this.at('series-told').textContent = here < 0 ? `Marker ${marker} was not read in probe ${this.titles[state]}.`
       : `Probe ${this.titles[state]}: measured ${number(series.measured[here])}; ${series.models.map((m) => `${m.name} ${number(m.values[here])}`).join(', ')}.`;

@@ -29,7 +29,7 @@
 
     // first what is delivered, said where a print-out has it; what a run does not have is not offered
     const last = at('step').options.length - 1, isOffered = (id) => !at(id).closest('label').hidden;
-    const isMarked = isOffered('show-markers'), error = isMarked ? /rms error .* mm/ : /N measured/;
+    const isMarked = isOffered('show-markers'), error = isMarked ? /rms error .*\smm/ : /N measured/;
     expect(+at('step').value === last, 'the page does not open at the last step');
     expect(!at('told').closest('#controls'), 'a print-out has no caption');
     expect(error.test(at('told').textContent), 'the error is not told');
@@ -97,7 +97,7 @@
       dot?.dispatchEvent(new MouseEvent('click', {bubbles: true}));
       drawn();
       expect(at('state').value === dot?.dataset.state, 'a click on a measured point does not show its state');
-      expect(/measured .* mm/.test(at('series-told').textContent), 'the motion is not told');
+      expect(/measured .*\smm/.test(at('series-told').textContent), 'the motion is not told');
     }
     // any number's density can be chosen, as by the keys of a list
     const number = at('density-of');

@@ -14,6 +14,8 @@
     expect(data.tools.length > 0, 'the set has no tool');
     const key = at('key-tool').textContent;
     expect(!at('key-tool').hidden && data.tools.some((t) => t.patch) === /grips/.test(key), `the key says of tools: ${key}`);
+    expect(at('key-marker').hidden === !data.markers.names.length, 'the key does not agree with the markers of the set');
+    expect(at('key-force').hidden === !data.states.some((s) => s.loads.length), 'the key does not agree with the forces of the set');
     let before = picture();
     const changes = (what) => { const now = picture(); expect(now !== before, `${what} changes nothing`); before = now; };
     choose('state', String(last), 'change'); changes('another state');

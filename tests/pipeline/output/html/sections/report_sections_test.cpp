@@ -1,5 +1,6 @@
 // Sections and charts of the report that need no run.
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -25,50 +26,56 @@ using ::testing::HasSubstr;
 using ::testing::Not;
 
 TEST(MissingSection, PutsEveryCandidateInWords) {
-    const json diagnosis = {{"verdict", "missing-effect"},
-                            {"explanation", {"gravity"}},
-                            {"noise_mm", 0.1},
-                            {"noise_known", true},
-                            {"baseline",
-                             {{"law", "neo-hooke"},
-                              {"young_mpa", 0.1},
-                              {"poisson", nullptr},
-                              {"rms_mm", 2.0},
-                              {"held_out_rms_mm", 2.1},
-                              {"whitened_rms", 20.0}}},
-                            {"ranking",
-                             {{{"effect", "gravity"},
-                               {"log_bayes_factor", 412.3},
-                               {"probability", 1.0},
-                               {"rms_mm", 0.1},
-                               {"held_out_rms_mm", 0.11},
-                               {"whitened_rms", 1.0},
-                               {"predicted_rms_mm", 0.1},
-                               {"parameters", {{"gz", {{"value", -9810.0}, {"sd", 12.0}, {"unit", "mm/s^2"}}}}},
-                               {"sentence", "Gravity is <missing>."}},
-                              {{"effect", "contact"},
-                               {"log_bayes_factor", 3.0},
-                               {"probability", 0.0},
-                               {"rms_mm", nullptr},
-                               {"held_out_rms_mm", nullptr},
-                               {"whitened_rms", nullptr},
-                               {"predicted_rms_mm", 1.7},
-                               {"parameters", json::object()}},
-                              {{"effect", "prestress"},
-                               {"log_bayes_factor", 12.0},
-                               {"probability", 0.0},
-                               {"rms_mm", 0.4},
-                               {"held_out_rms_mm", 0.5},
-                               {"whitened_rms", 3.0},
-                               {"predicted_rms_mm", 0.3},
-                               {"parameters", json::object()},
-                               {"sentence", "The body is prestressed."},
-                               {"objection", "too much of the misfit"}}}}};
-    EXPECT_THAT(missing_section(diagnosis),
-                AllOf(HasSubstr("<b>Claimed.</b> Gravity is &lt;missing&gt;."), HasSubstr("gz -9810 ± 12 mm/s²"),
-                      HasSubstr("<b>Rejected:</b> too much of the misfit. It would mean: The body is prestressed."),
-                      HasSubstr("Screened out: its linear estimate leaves 1.7 mm rms."), HasSubstr("above 0.99"),
-                      HasSubstr("below 0.01"), Not(HasSubstr("left out"))));
+    json diagnosis = {{"verdict", "missing-effect"},
+                      {"explanation", {"gravity"}},
+                      {"noise_mm", 0.1},
+                      {"noise_known", true},
+                      {"baseline",
+                       {{"law", "neo-hooke"},
+                        {"young_mpa", 0.1},
+                        {"poisson", nullptr},
+                        {"rms_mm", 2.0},
+                        {"held_out_rms_mm", 2.1},
+                        {"whitened_rms", 20.0}}},
+                      {"ranking",
+                       {{{"effect", "gravity"},
+                         {"log_bayes_factor", 412.3},
+                         {"probability", 1.0},
+                         {"rms_mm", 0.1},
+                         {"held_out_rms_mm", 0.11},
+                         {"whitened_rms", 1.0},
+                         {"predicted_rms_mm", 0.1},
+                         {"parameters", {{"gz", {{"value", -9810.0}, {"sd", 12.0}, {"unit", "mm/s^2"}}}}},
+                         {"sentence", "Gravity is <missing>."}},
+                        {{"effect", "contact"},
+                         {"log_bayes_factor", 3.0},
+                         {"probability", 0.0},
+                         {"rms_mm", nullptr},
+                         {"held_out_rms_mm", nullptr},
+                         {"whitened_rms", nullptr},
+                         {"predicted_rms_mm", 1.7},
+                         {"parameters", json::object()}},
+                        {{"effect", "prestress"},
+                         {"log_bayes_factor", 12.0},
+                         {"probability", 0.0},
+                         {"rms_mm", 0.4},
+                         {"held_out_rms_mm", 0.5},
+                         {"whitened_rms", 3.0},
+                         {"predicted_rms_mm", 0.3},
+                         {"parameters", json::object()},
+                         {"sentence", "The body is prestressed."},
+                         {"objection", "too much of the misfit"}}}}};
+    EXPECT_THAT(
+        missing_section(diagnosis),
+        AllOf(HasSubstr("<b>Claimed.</b> Gravity is &lt;missing&gt;."), HasSubstr("gz -9810 ±\u00a012\u00a0mm/s²"),
+              HasSubstr("<b>Rejected:</b> too much of the misfit. It would mean: The body is prestressed."),
+              HasSubstr("Screened out: its linear estimate leaves 1.7\u00a0mm rms."), HasSubstr("above 0.99"),
+              HasSubstr("below 0.01"), Not(HasSubstr("left out"))));
+    diagnosis["ranking"][1]["predicted_rms_mm"] = 2 * diagnosis["baseline"]["rms_mm"].get<double>();
+    EXPECT_THAT(missing_section(diagnosis), HasSubstr("its linear estimate does not lower the rms error."));
+    json& of_map = diagnosis["ranking"][2]["parameters"];
+    for (int i = 1; i <= 40; ++i) of_map[fmt::format("a{}", i)] = {{"value", 0.1}, {"sd", 0.3}, {"unit", "1"}};
+    EXPECT_THAT(missing_section(diagnosis), AllOf(HasSubstr("40 parameters, listed in"), Not(HasSubstr("a40"))));
     EXPECT_EQ(missing_section(nullptr), "");
 }
 

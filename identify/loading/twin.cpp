@@ -1,8 +1,8 @@
-#include "identify/measurements/twin.h"
+#include "identify/loading/twin.h"
 
 #include "identify/loading/loads.h"
+#include "identify/loading/readings.h"
 #include "identify/numerics/random.h"
-#include "skeleton/model/attachment/attach.h"
 #include "skeleton/statics/equilibrium.h"
 #include "skeleton/statics/statics.h"
 
@@ -18,11 +18,7 @@ MeasurementSet simulate_measurements(const skeleton::Model& model, std::vector<L
     set.markers = std::move(markers);
     set.states = std::move(states);
 
-    std::vector<skeleton::Attachment> points;
-    const skeleton::Attacher attach(model);
-    for (const Marker& marker : set.markers) {
-        points.push_back(attach(marker.anchor.value_or(marker.rest), marker.rest));
-    }
+    const std::vector<skeleton::Attachment> points = marker_attachments(model, set.markers);
     const ContactLoads loads(model);
     skeleton::StaticsSolver solver(model);
     const Eigen::VectorXd k = stiffness_vector(model);

@@ -1,4 +1,4 @@
-#include "identify/loading/history/creep.h"
+#include "identify/loading/creep.h"
 
 #include <cmath>
 

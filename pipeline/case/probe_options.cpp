@@ -1,4 +1,4 @@
-#include "pipeline/synthesis/probing/probe_options.h"
+#include "pipeline/case/probe_options.h"
 
 #include <fmt/format.h>
 
