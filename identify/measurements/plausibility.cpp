@@ -65,7 +65,7 @@ std::string implausible_size(double longest) {
     constexpr double least = 1, most = 1e4;  // [mm]: what is pressed with forces that are read
     if (longest >= least && longest <= most) return {};
     return fmt::format(
-        "The body is {:.4g} mm at its longest, {} than anything that is usually pressed and read: is its file in {}? "
+        "The body is {:g} mm at its longest, {} than anything that is usually pressed and read: is its file in {}? "
         "(--unit or --longest, or 'units' in set.yaml)",
         longest, longest < least ? "smaller" : "larger", longest < least ? "m or cm" : "micrometres");
 }

@@ -88,10 +88,14 @@ std::vector<HeldPart> held_parts(const std::vector<Region>& regions, const Volum
     return parts;
 }
 
+std::string surface_in_words(double area) {
+    return (area < 100 ? fmt::format("{:.3g}", area) : fmt::format("{:.0f}", area)) + " mm^2 of the surface";
+}
+
 std::string describe_held_part(const std::vector<Region>& regions, const std::vector<HeldPart>& parts, std::size_t i,
                                const std::string& nodes) {
-    return fmt::format("support {} ({}): {} {}, {:.3g} mm^2 of the surface", i + 1, kind_of(regions[i]), parts[i].nodes,
-                       nodes, parts[i].area);
+    return fmt::format("support {} ({}): {} {}, {}", i + 1, kind_of(regions[i]), parts[i].nodes, nodes,
+                       surface_in_words(parts[i].area));
 }
 
 std::vector<std::string> too_little_held(const std::vector<Region>& regions, const VolumeMesh& mesh) {

@@ -20,6 +20,9 @@ std::vector<HeldPart> held_parts(const std::vector<Region>& regions, const Surfa
 /// Of each region by itself; area: of sides whose corners all are held.
 std::vector<HeldPart> held_parts(const std::vector<Region>& regions, const VolumeMesh& mesh);
 
+/// "1941 mm^2 of the surface".
+std::string surface_in_words(double area);
+
 /// "support 2 (points): 214 nodes, 380 mm^2 of the surface"
 std::string describe_held_part(const std::vector<Region>& regions, const std::vector<HeldPart>& parts, std::size_t i,
                                const std::string& nodes);

@@ -108,7 +108,7 @@ private:
     }
 
     /// In words, where the last step, to which these effects have led, is worse than `before`.
-    std::optional<std::string> why_not_added(const LadderStep& before, const std::vector<std::string>& effects) const {
+    std::optional<std::string> why_not_added(const LadderStep& before, const std::vector<std::string>& effects) {
         // What a diagnosis names needs no better forecast, by as much as chance may make one worse; what was located in
         // what is left has nothing else to speak for it.
         const bool is_residual = options_.residual && options_.residual->effect.name == effects.back();
@@ -116,7 +116,14 @@ private:
             return "there are too few probes to see whether others are forecast better; load the body in three probes "
                    "or more";
         }
-        return what_is_worse(before, result_.steps.back(), is_residual ? 1 : held_out_tolerance);
+        const LadderStep& now = result_.steps.back();
+        const std::optional<std::string> worse = what_is_worse(before, now, is_residual ? 1 : held_out_tolerance);
+        if (!worse || !is_forecast_by_its_spread(before, now)) return worse;
+        result_.notes.push_back(fmt::format(
+            "{} is added though {}: it may differ from probe to probe, and of a held-out probe its spread "
+            "alone is known, by which the normalised error falls from {:.3g} to {:.3g}",
+            effects.back(), *worse, before.reference->held_out_whitened_rms, now.reference->held_out_whitened_rms));
+        return {};
     }
 
     void add_step(const std::vector<std::string>& effects) {

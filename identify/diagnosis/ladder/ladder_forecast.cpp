@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include "identify/effects/catalogue.h"
+
 namespace palpate::identify {
 namespace {
 
@@ -46,6 +48,11 @@ std::optional<std::string> what_is_worse(const LadderStep& before, const LadderS
         text += fmt::format(" (finite elements: {} with it, {} without)", forecast_in_words(*now.reference),
                             forecast_in_words(*before.reference));
     return text;
+}
+
+bool is_forecast_by_its_spread(const LadderStep& before, const LadderStep& now) {
+    return !now.effects.empty() && !find_effect(now.effects.back().name)->is_of_body() && before.reference &&
+           now.reference && now.reference->held_out_whitened_rms < before.reference->held_out_whitened_rms;
 }
 
 }  // namespace palpate::identify

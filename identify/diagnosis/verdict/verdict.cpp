@@ -81,10 +81,14 @@ std::string objection_of_few_readings(const Diagnosis& diagnosis, const FittedEx
         numbers, diagnosis.independent);
 }
 
-/// A correct explanation predicts left-out probes better than the baseline, whatever the nuisances absorb.
+/// A correct explanation predicts left-out probes better than the baseline, whatever the nuisances absorb. A fault of
+/// the measurement may differ from probe to probe: of a left-out one its spread alone is known, and normalised errors
+/// have to be the smaller ones.
 std::string objection_of_held_out(const Diagnosis& diagnosis, const FittedExplanation& explained) {
     const double with = explained.held_out.rms_mm, without = diagnosis.baseline_held_out.rms_mm;
     if (with <= held_out_tolerance * without) return {};
+    const bool has_faults = std::ranges::any_of(explained.effects, [](const auto& one) { return !one->is_of_body(); });
+    if (has_faults && explained.held_out.whitened_rms < diagnosis.baseline_held_out.whitened_rms) return {};
     return fmt::format("held-out probes are predicted worse with it, to {:.3g} mm instead of {:.3g} mm", with, without);
 }
 

@@ -105,8 +105,9 @@ void read_mesh(Subject& subject) {
     std::string strange = identify::implausible_size(mesh::bounding_box(subject.surface.vertices).longest_side());
     if (!strange.empty()) subject.notes.push_back(std::move(strange));
     if (c.longest == 0 && c.unit == 1 && !read.is_in_mm) {
-        subject.assumptions.push_back(fmt::format(
-            "The mesh is taken to be in mm: {:.4g} mm at its longest (--unit or --longest say otherwise).", longest));
+        subject.assumptions.push_back(
+            fmt::format("The mesh is taken to be in mm: {:.4g} mm at its longest (--unit or --longest say otherwise).",
+                        mesh::bounding_box(subject.surface.vertices).longest_side()));
     }
 }
 

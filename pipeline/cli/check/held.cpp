@@ -50,8 +50,9 @@ void add_grips(const Subject& subject, Outcome& outcome) {
             whole.nodes += part.nodes;
             whole.area += part.area;
         }
-        outcome.text += fmt::format("Tool '{}' grips {} {} and {:.3g} mm^2 of the surface.\n", tool.name, whole.nodes,
-                                    subject.volume ? "nodes of the mesh" : "vertices", whole.area);
+        outcome.text +=
+            fmt::format("Tool '{}' grips {} {} and {}.\n", tool.name, whole.nodes,
+                        subject.volume ? "nodes of the mesh" : "vertices", mesh::surface_in_words(whole.area));
         outcome.json["set"]["tools"][t]["grips"] = {{"nodes", whole.nodes}, {"area_mm2", whole.area}};
         if (whole.nodes > 0 || whole.area > 0) continue;
         const std::string warning = fmt::format(

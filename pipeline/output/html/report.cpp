@@ -27,9 +27,19 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-/// The verdict, or where there is none how wrong the model is.
+/// The verdict, or where there is none how wrong the model is. Effects that were added without being named are said.
 std::string lead(const RunFiles& files) {
-    return files.diagnosis.is_null() ? compare_in_words(files.compare) : diagnosis_in_words(files.diagnosis);
+    if (files.diagnosis.is_null()) return compare_in_words(files.compare);
+    std::string words = diagnosis_in_words(files.diagnosis);
+    std::vector<std::string> unnamed = added_effects(files);
+    for (const json& effect : files.diagnosis["explanation"]) {
+        const auto named = std::ranges::find(unnamed, effect.get<std::string>());
+        if (named != unnamed.end()) unnamed.erase(named);
+    }
+    if (!unnamed.empty())
+        words +=
+            fmt::format(" The model below was improved with {}, which this diagnosis does not name.", listed(unnamed));
+    return words;
 }
 
 std::string share_of(const json& relative) {

@@ -96,6 +96,8 @@ TEST(HeldParts, TellNodesAndAreaOfEachSupport) {
     EXPECT_NEAR(parts[0].area, 400, 1e-9);
     EXPECT_EQ(parts[1].nodes, 0);
     EXPECT_EQ(describe_held_part(regions, parts, 0, "nodes"), "support 1 (box): 49 nodes, 400 mm^2 of the surface");
+    EXPECT_EQ(surface_in_words(1.94123e3), "1941 mm^2 of the surface");
+    EXPECT_EQ(surface_in_words(1.94123), "1.94 mm^2 of the surface");
 }
 
 TEST(HeldParts, TooLittleIsToldInItsKind) {

@@ -9,6 +9,7 @@
 #include "mesh/text/atomic_file.h"
 #include "pipeline/case/settings/read_case.h"
 #include "pipeline/command_line/commands.h"
+#include "pipeline/output/html/report.h"
 #include "pipeline/run/expectation.h"
 #include "pipeline/run/inputs/model_and_set.h"
 #include "skeleton/model/io/model_io.h"
@@ -105,6 +106,19 @@ TEST_F(HeavyBeam, LeavesTheFilesThatItPromises) {
     const std::string page = mesh::read_text(path("run/report.html"));
     EXPECT_THAT(page, HasSubstr("<b>missing effect</b>verdict: gravity"));
     EXPECT_THAT(page, AllOf(HasSubstr("What is missing"), HasSubstr("Ladder"), HasSubstr("Error budget")));
+}
+
+/// Effects may be added by hand after a diagnosis that names others, or none.
+TEST_F(HeavyBeam, ItsReportSaysWhatWasAddedUnnamed) {
+    const std::string unnamed = ", which this diagnosis does not name.";
+    EXPECT_THAT(mesh::read_text(path("run/report.html")), testing::Not(HasSubstr(unnamed)));
+    std::filesystem::copy(path("run"), path("unnamed"), std::filesystem::copy_options::recursive);
+    json diagnosis = read(path("unnamed/diagnose/diagnosis.json"));
+    diagnosis["explanation"] = json::array();
+    diagnosis["verdict"] = "unexplained";
+    mesh::write_text(path("unnamed/diagnose/diagnosis.json"), diagnosis.dump());
+    write_report(path("unnamed"), path("unnamed/report.html"));
+    EXPECT_THAT(mesh::read_text(path("unnamed/report.html")), HasSubstr("improved with gravity" + unnamed));
 }
 
 TEST_F(HeavyBeam, ComparisonHasTheKeysOfTheContract) {

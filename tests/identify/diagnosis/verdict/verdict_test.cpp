@@ -129,6 +129,19 @@ TEST_F(JudgedAgain, WhatMakesProbesLeftOutWorseIsNone) {
     EXPECT_THAT(found_.tried.front().objection, HasSubstr("predicted worse with it"));
 }
 
+/// Of a probe that is left out, the spread of such a fault alone is known: millimetres are no measure of it.
+TEST_F(JudgedAgain, AFaultOfTheMeasurementIsJudgedByNormalisedErrors) {
+    found_ = diagnose(twin(truth("misalignment", numbers({1, -1, 1, 0.3, -0.3, 0.3}))));
+    ASSERT_THAT(found_.explanation, ElementsAre("misalignment"));
+    found_.tried = {found_.explained.value()};
+    found_.baseline_held_out.rms_mm = 0.9 * found_.tried.front().held_out.rms_mm;
+    ASSERT_GT(found_.baseline_held_out.whitened_rms, found_.tried.front().held_out.whitened_rms);
+    EXPECT_EQ(verdict(), Verdict::missing_effect);
+    found_.baseline_held_out.whitened_rms = 0.9 * found_.tried.front().held_out.whitened_rms;
+    EXPECT_EQ(verdict(), Verdict::unexplained);
+    EXPECT_THAT(found_.tried.front().objection, HasSubstr("predicted worse with it"));
+}
+
 TEST_F(JudgedAgain, WithoutAnyLawOfLargeDeformationItIsNone) {
     found_.large_deformation_failed = true;
     EXPECT_EQ(verdict(), Verdict::unexplained);
