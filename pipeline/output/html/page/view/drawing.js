@@ -14,6 +14,9 @@ class Drawing {
   }
   /// Does a step have an effect in it?
   has(step, effect) { return this.run.steps[step].findings.some((f) => f.effect === effect); }
+  /// Has anything that was found a place in the picture of this state?
+  drawsFindings(now) { return this.found.length > 0 || this.exchangedIn(now).length > 0; }
+  exchangedIn(now) { return this.run.exchanged.filter((one) => one.probe === now.probe && Math.abs(one.time - now.time) < 1e-9); }
   /// The box of the body at rest and, magnified so, of all that the last step does.
   box(magnify) {
     const {run, rest, loads} = this, {centers, radii} = run.spheres;
@@ -101,7 +104,7 @@ class Drawing {
       this.scene.glyphs(shape, [glyph], (this.has(step, effect) ? 1 : 0.45) * opacity);
       if (text) this.told.push({at: times3(plus3(glyph.start, glyph.end), 0.5), text});
     }
-    for (const pair of this.run.exchanged.filter((one) => one.probe === now.probe && Math.abs(one.time - now.time) < 1e-9)) {
+    for (const pair of this.exchangedIn(now)) {
       const places = pair.markers.map((id) => markers.id.indexOf(id)).filter((i) => i >= 0)
         .map((i) => plus3(point3(markers.rest, i), point3(markers.measured, i), magnify));
       if (places.length < 2) continue;

@@ -66,7 +66,9 @@
       expect(at('found').textContent.startsWith('Not in this model: '), 'what the step lacks is not told');
       choose('opacity', '0.35', 'input'); before = picture();
       const isDrawn = /Gravity/.test(at('found').textContent);  // what has no place is said alone
+      if (isDrawn) expect(!at('key-found').hidden, 'the key says nothing of what was found');
       choose('show-findings', false, 'input');
+      expect(at('key-found').hidden, 'the key names what is not drawn');
       expect(at('found').hidden, 'what was found cannot be hidden');
       if (isDrawn) changes('what was found, in the first step,');
       dispatchEvent(new Event('beforeprint'));
