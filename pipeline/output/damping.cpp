@@ -12,12 +12,12 @@ json to_json(const identify::PosteriorSummary& known) {
             {"q50", known.q50},   {"q975", known.q975}, {"informed", known.informed}};
 }
 
-std::string interval(const json& known) {
+}  // namespace
+
+std::string interval_in_words(const json& known) {
     return fmt::format("{:.3g} ({:.3g} to {:.3g})", known["q50"].get<double>(), known["q025"].get<double>(),
                        known["q975"].get<double>());
 }
-
-}  // namespace
 
 json to_json(const identify::DampingResult& found) {
     json modes = json::array(), evidence = json::object();
@@ -71,13 +71,13 @@ std::string damping_in_words(const json& damping) {
         "  Damping: ratio {} of the slowest vibration that was seen; {}.\n"
         "  Motion of {:.3g} mm rms is followed to {:.2g} mm; the body vibrates {} times as fast as the model.\n"
         "  {:>10} {:>26} {:>28} {:>8} {:>8}\n",
-        interval(damping["modes"][0]["ratio"]), how_it_goes(damping), damping["displacement_mm"].get<double>(),
-        damping["rms_mm"].get<double>(), interval(damping["speed"]), "model [Hz]", "measured [Hz]", "damping ratio",
-        "played", "share");
+        interval_in_words(damping["modes"][0]["ratio"]), how_it_goes(damping), damping["displacement_mm"].get<double>(),
+        damping["rms_mm"].get<double>(), interval_in_words(damping["speed"]), "model [Hz]", "measured [Hz]",
+        "damping ratio", "played", "share");
     for (const json& mode : damping["modes"]) {
         text += fmt::format("  {:>10.3g} {:>26} {:>28} {:>8.3g} {:>6.1f} %{}\n", mode["frequency_hz"].get<double>(),
-                            interval(mode["measured_hz"]), interval(mode["ratio"]), mode["played_ratio"].get<double>(),
-                            100 * mode["share"].get<double>(),
+                            interval_in_words(mode["measured_hz"]), interval_in_words(mode["ratio"]),
+                            mode["played_ratio"].get<double>(), 100 * mode["share"].get<double>(),
                             mode["ratio"]["informed"].get<bool>() ? "" : "  not determined by the data");
     }
     for (const json& note : damping["notes"]) text += "  " + note.get<std::string>() + "\n";

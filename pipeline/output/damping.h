@@ -14,6 +14,9 @@ nlohmann::json to_json(const identify::DampingResult& found);
 /// Where each recording moves most, measured and played, as damping.csv.
 std::string damping_csv(const identify::DampingResult& found);
 
+/// "3.1 (2.9 to 3.3)": what is known of a number, the median and 95 %.
+std::string interval_in_words(const nlohmann::json& known);
+
 /// How damping goes with frequency, in words.
 std::string how_it_goes(const nlohmann::json& damping);
 

@@ -49,18 +49,13 @@ std::string trace_charts(const std::filesystem::path& file) {
     return html;
 }
 
-std::string interval(const json& known) {
-    return fmt::format("{:.3g} ({:.3g} – {:.3g})", known["q50"].get<double>(), known["q025"].get<double>(),
-                       known["q975"].get<double>());
-}
-
 std::string mode_table(const json& modes) {
     std::string rows;
     for (const json& mode : modes) {
         rows += fmt::format("<tr><td>{:.3g}</td><td>{}</td><td>{}{}</td><td>{:.3g}</td><td>{:.1f} %</td></tr>",
-                            mode["frequency_hz"].get<double>(), interval(mode["measured_hz"]), interval(mode["ratio"]),
-                            mode["ratio"]["informed"].get<bool>() ? " ●" : "", mode["played_ratio"].get<double>(),
-                            100 * mode["share"].get<double>());
+                            mode["frequency_hz"].get<double>(), interval_in_words(mode["measured_hz"]),
+                            interval_in_words(mode["ratio"]), mode["ratio"]["informed"].get<bool>() ? " ●" : "",
+                            mode["played_ratio"].get<double>(), 100 * mode["share"].get<double>());
     }
     return "<div class=\"wide\" tabindex=\"0\"><table><tr><th>model [Hz]</th><th>measured [Hz]</th><th>damping "
            "ratio</th>"
@@ -77,7 +72,7 @@ std::string damping_section(const std::filesystem::path& folder) {
         "<h2 id=\"damping\">Damping</h2><p>The slowest observed vibration has a damping ratio of {}; {}. The model "
         "follows "
         "the motion of {:.3g}&nbsp;mm rms to within {:.2g}&nbsp;mm.</p><div class=\"pair\">{}</div>{}",
-        interval(damping["modes"][0]["ratio"]), how_it_goes(damping), damping["displacement_mm"].get<double>(),
+        interval_in_words(damping["modes"][0]["ratio"]), how_it_goes(damping), damping["displacement_mm"].get<double>(),
         damping["rms_mm"].get<double>(), trace_charts(folder / "damping.csv"), mode_table(damping["modes"]));
     for (const json& note : damping["notes"]) html += "<p>" + prose(note.get<std::string>()) + "</p>";
     return html +
