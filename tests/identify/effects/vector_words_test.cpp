@@ -31,8 +31,7 @@ TEST(VectorInWords, WhatIsNotDeterminedStandsApart) {
 
 /// However much worse it is known than the other axes, a part that cannot be 0 is told.
 TEST(VectorInWords, WhatIsFarFromZeroIsDetermined) {
-    EXPECT_EQ(vector_in_words({16, 0, -12}, variances(5, 0.1, 0.1), 1, "mm"),
-              "20 ± 4 mm along (0.80, 0.00, -0.60)");
+    EXPECT_EQ(vector_in_words({16, 0, -12}, variances(5, 0.1, 0.1), 1, "mm"), "20 ± 4 mm along (0.80, 0.00, -0.60)");
     EXPECT_EQ(vector_in_words({9, 0, -12}, variances(5, 0.1, 0.1), 1, "mm"),
               "12.00 ± 0.10 mm along -z; along x it is not determined (9 ± 5)");
     EXPECT_TRUE(is_undetermined({.value = 9, .sd = 5, .rest = 12, .least_sd = 0.1}));
