@@ -34,7 +34,7 @@ constexpr int memory_code = 75;
 constexpr int exception_code = 76;
 
 constexpr long long asked_every = 100;  // whether the work is to go on [ms]
-constexpr int most_copies = 3;          // of this process that are begun, where one after the other comes to rest
+constexpr int most_copies = 3;          // of this process, where one after the other comes to rest; a choice
 
 bool is_child = false;
 

@@ -8,7 +8,7 @@ namespace palpate::mesh {
 struct ChildLimits {
     double seconds = 60;      // of processor time, and four times as many of wall time, as others may use the machine
     double mebibytes = 8192;  // of memory, on top of what this process holds
-    double rest = 5;          // [s] of a child that does nothing, after which another is begun: see run_in_child()
+    double rest = 5;          // [s] of a child that does nothing, until another is begun; a choice, work sleeps less
 };
 
 /// How a child process ended.
