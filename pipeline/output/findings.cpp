@@ -73,7 +73,8 @@ void add_parts(const skeleton::EffectRecord& effect, const std::string& words, j
               &part == &parts.front() ? words : fmt::format("{:.2g} times the mean stiffness here.", part.ratio)},
              {"kind", "ball"},
              {"center", {part.centre.x(), part.centre.y(), part.centre.z()}},
-             {"radius", map.length()}});
+             {"radius", map.length()},
+             {"ratio", part.ratio}});
 }
 
 }  // namespace
@@ -98,6 +99,7 @@ json findings_json(const std::vector<skeleton::EffectRecord>& effects, const jso
             found["center"] = vector(effect, centre);
             found["radius"] = number(effect, "radius");
             if (has(effect, force.front())) found["vector"] = vector(effect, force);
+            if (has(effect, "ratio")) found["ratio"] = number(effect, "ratio");
         } else if (has(effect, normal.front())) {
             const bool is_plane = has(effect, "offset");
             found["kind"] = is_plane ? "plane" : "axis";

@@ -1,9 +1,7 @@
 // Where and what kind of thing is missing, whatever its name, on sets whose truth is known.
 // Usage: locate_bench FOLDER [--threads N] [--coarser FACTOR] [SET ...]
 // FOLDER holds measurement sets and truth.csv. A table in Markdown on standard output: only baselines are fitted, no
-// effect of the catalogue is looked at. `kind` is right where it is what the hidden effect is: gravity and prestress
-// are forces in the body; contact, pressure and compliant supports act at its boundary; faults of readings and gains
-// are the sensors'; all others change its stiffness.
+// effect of the catalogue is looked at. diagnosis/located.h tells what counts as right.
 
 #include <fmt/format.h>
 
@@ -11,8 +9,8 @@
 #include <algorithm>
 #include <chrono>
 #include <iostream>
-#include <set>
 
+#include "diagnosis/located.h"
 #include "diagnosis/tally.h"
 #include "diagnosis/truth.h"
 #include "identify/diagnosis/diagnose.h"
@@ -34,21 +32,11 @@ struct LocateOptions {
     double coarser = 1;
 };
 
-identify::SourceKind kind_of(const std::string& effect) {
-    static const std::set<std::string> forces{"gravity", "prestress", "swelling"};
-    static const std::set<std::string> boundary{"contact", "pressure", "compliant-support", "friction"};
-    static const std::set<std::string> sensor{"misalignment", "outliers",       "force-gain",
-                                              "slip",         "actuation-gain", "clock"};
-    if (forces.contains(effect)) return identify::SourceKind::body_force;
-    if (boundary.contains(effect)) return identify::SourceKind::boundary;
-    return sensor.contains(effect) ? identify::SourceKind::sensor : identify::SourceKind::stiffness;
+std::string number_or_nothing(const std::optional<double>& number, const char* unit) {
+    return number ? fmt::format("{:.3g} {}", *number, unit) : "";
 }
 
-bool is_right(const Truth& truth, identify::SourceKind kind) {
-    return std::ranges::any_of(truth.effects, [&](const std::string& effect) { return kind_of(effect) == kind; });
-}
-
-std::string row_of(const Truth& truth, const LocateOptions& options) {
+std::string row_of(const Truth& truth, const LocateOptions& options, LocatedTally& tally) {
     const identify::MeasurementSet set = identify::read_measurement_set(options.folder / truth.set);
     const double edge = options.coarser == 1 ? 0 : options.coarser * pipeline::reference_edge_length(set.rest_surface);
     const pipeline::Reference reference = pipeline::make_reference(set, edge);
@@ -60,14 +48,21 @@ std::string row_of(const Truth& truth, const LocateOptions& options) {
     const auto start = std::chrono::steady_clock::now();
     const auto source = identify::locate_missing(*reference.body, found.problem, found.baseline, options.threads);
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    const double size = mesh::bounding_box(set.rest_surface.vertices).longest_side();
+    tally.add(truth, source, size);
     if (!source) return fmt::format("| {} | {} | nothing located |\n", truth.set, joined(truth.effects));
     const auto& ln = source->log_bayes_factors;
-    const char* verdict = truth.effects.empty() ? "" : is_right(truth, source->kind) ? "right" : "WRONG";
-    return fmt::format(
-        "| {} | {} | {:.2f} | {} | {} | {:.0f} {:.0f} {:.0f} {:.0f} | {:.0f} % | {} of {} | {:.1f} | {} |\n", truth.set,
-        joined(truth.effects), found.baseline.whitened_rms,
-        identify::source_kind_names[static_cast<std::size_t>(source->kind)], verdict, ln[0], ln[1], ln[2], ln[3],
-        100 * source->explained, source->states.size(), set.states.size(), seconds, source->sentence());
+    const Located right = judge_location(truth, *source, size);
+    const char* verdict = truth.effects.empty() ? "" : right.kind ? "right" : "WRONG";
+    const auto name = [](const auto& names, auto value) { return names[static_cast<std::size_t>(value)]; };
+    return fmt::format("| {} | {} | {:.2f} | {} | {} | {:.0f} {:.0f} {:.0f} {:.0f} | {:.0f} % | {} of {} | {}{} | {} | {} "
+                       "| {:.1f} | {} |\n",
+                       truth.set, joined(truth.effects), found.baseline.whitened_rms,
+                       name(identify::source_kind_names, source->kind), verdict, ln[0], ln[1], ln[2], ln[3],
+                       100 * source->explained, source->states.size(), set.states.size(),
+                       name(identify::source_law_names, source->likeliest().law), right.law == false ? " WRONG" : "",
+                       number_or_nothing(right.place_mm, "mm"), number_or_nothing(right.angle, "degrees"), seconds,
+                       source->sentence());
 }
 
 }  // namespace
@@ -83,11 +78,14 @@ int main(int argc, char** argv) {
     try {
         std::cout
             << "| set | hidden | whitened | kind | | ln BF body, stiffness, boundary, sensor | explained | states "
-               "| s | sentence |\n| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |\n";
+               "| law | off by | turned by | s | sentence |\n"
+               "| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |\n";
+        LocatedTally tally;
         for (const Truth& truth : read_truth(options.folder)) {
             if (!options.sets.empty() && std::ranges::find(options.sets, truth.set) == options.sets.end()) continue;
-            std::cout << row_of(truth, options) << std::flush;
+            std::cout << row_of(truth, options, tally) << std::flush;
         }
+        tally.print();
     } catch (const std::exception& e) {
         fmt::print(stderr, "{}\n", e.what());
         return 1;

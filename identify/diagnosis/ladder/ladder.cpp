@@ -118,7 +118,7 @@ private:
         }
         const LadderStep& now = result_.steps.back();
         const std::optional<std::string> worse = what_is_worse(before, now, is_residual ? 1 : held_out_tolerance);
-        if (!worse || !is_forecast_by_its_spread(before, now)) return worse;
+        if (!worse || !is_forecast_by_its_spread(effects.back(), before, now)) return worse;
         result_.notes.push_back(fmt::format(
             "{} is added though {}: it may differ from probe to probe, and of a held-out probe its spread "
             "alone is known, by which the normalised error falls from {:.3g} to {:.3g}",

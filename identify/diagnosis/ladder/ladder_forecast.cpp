@@ -50,9 +50,9 @@ std::optional<std::string> what_is_worse(const LadderStep& before, const LadderS
     return text;
 }
 
-bool is_forecast_by_its_spread(const LadderStep& before, const LadderStep& now) {
-    return !now.effects.empty() && !find_effect(now.effects.back().name)->is_of_body() && before.reference &&
-           now.reference && now.reference->held_out_whitened_rms < before.reference->held_out_whitened_rms;
+bool is_forecast_by_its_spread(const std::string& effect, const LadderStep& before, const LadderStep& now) {
+    return !find_effect(effect)->is_of_body() && before.reference && now.reference &&
+           now.reference->held_out_whitened_rms < before.reference->held_out_whitened_rms;
 }
 
 }  // namespace palpate::identify

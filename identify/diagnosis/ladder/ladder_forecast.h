@@ -13,9 +13,10 @@ namespace palpate::identify {
 /// skeleton.
 std::optional<std::string> what_is_worse(const LadderStep& before, const LadderStep& now, double most);
 
-/// A fault of the measurement may differ from probe to probe: of a held-out one its spread alone is known. Is the last
-/// step's effect one, and are held-out probes of the body forecast better with it, as normalised errors have it?
-bool is_forecast_by_its_spread(const LadderStep& before, const LadderStep& now);
+/// A fault of the measurement may differ from probe to probe: of a held-out one its spread alone is known. Is `effect`,
+/// which `now` has and `before` lacks, one, and are held-out probes of the body forecast better with it, as normalised
+/// errors have it?
+bool is_forecast_by_its_spread(const std::string& effect, const LadderStep& before, const LadderStep& now);
 
 /// Mean squares of several folds together, each by the rows of its kind.
 class PooledError {

@@ -78,10 +78,17 @@ public:
     std::vector<EffectNumber> numbers(const BodyModel& model, const Problem&) const override {
         if (model.skin().rows() == 0) return {};
         std::vector<EffectNumber> result;
+        constexpr double tilt = 0.5;  // between the directions of a scan
         for (const char* axis : {"nx", "ny", "nz"}) {
-            result.push_back({.name = axis, .unit = "1", .prior_sd = 0.5, .prior_at_start = true});
+            result.push_back({.name = axis, .unit = "1", .prior_sd = tilt, .prior_at_start = true});
         }
-        result.push_back({.name = "offset", .unit = "mm", .prior_sd = 0.05 * model.size(), .prior_at_start = true});
+        // Offsets are told at the origin: a plane that turns about the place where it is met moves there, the further
+        // that place is away.
+        const double furthest = model.skin().rowwise().norm().maxCoeff();
+        result.push_back({.name = "offset",
+                          .unit = "mm",
+                          .prior_sd = std::hypot(0.05 * model.size(), tilt * furthest),
+                          .prior_at_start = true});
         const double hard = std::log(hardness(model));
         result.push_back({.name = "stiffness",
                           .unit = "N/mm^3",

@@ -106,7 +106,7 @@ void read_mesh(Subject& subject) {
     if (!strange.empty()) subject.notes.push_back(std::move(strange));
     if (c.longest == 0 && c.unit == 1 && !read.is_in_mm) {
         subject.assumptions.push_back(
-            fmt::format("The mesh is taken to be in mm: {:.4g} mm at its longest (--unit or --longest say otherwise).",
+            fmt::format("The mesh is taken to be in mm: {:.4g} mm at its longest (--unit or --longest changes this).",
                         mesh::bounding_box(subject.surface.vertices).longest_side()));
     }
 }
@@ -150,7 +150,7 @@ void choose_supports(Subject& subject) {
         subject.supports = {clamp};
         subject.assumptions.push_back(
             fmt::format("Held over the 5 % of its length at the low end of its longest axis, in the box ({:.4g}, "
-                        "{:.4g}, {:.4g}) to ({:.4g}, {:.4g}, {:.4g}) mm ('supports' in a case say otherwise).",
+                        "{:.4g}, {:.4g}) to ({:.4g}, {:.4g}, {:.4g}) mm ('supports' in a case changes this).",
                         clamp.min.x(), clamp.min.y(), clamp.min.z(), clamp.max.x(), clamp.max.y(), clamp.max.z()));
     }
     if (subject.set) subject.set->supports = subject.supports;

@@ -72,7 +72,7 @@ public:
         } else if (kind == "springs") {
             springs();
         }
-        number(kind);
+        number(kind, finding.value("ratio", 1.0));
     }
 
     /// Two markers that look swapped, where they are at rest.
@@ -92,7 +92,9 @@ public:
             return Eigen::VectorXd(
                 Eigen::Map<const Eigen::VectorXi>(numbers.data(), std::ssize(numbers)).cast<double>());
         };
-        return {.cells = {{"finding", as_array(finding_)}, {"kind", as_array(kind_)}}};
+        return {.cells = {{"finding", as_array(finding_)},
+                          {"kind", as_array(kind_)},
+                          {"ratio", Eigen::Map<const Eigen::VectorXd>(ratio_.data(), std::ssize(ratio_))}}};
     }
     bool is_empty() const { return corners_.empty(); }
 
@@ -193,8 +195,9 @@ private:
         }
     }
     /// The triangles since the last finding are of this one.
-    void number(const std::string& kind) {
+    void number(const std::string& kind, double ratio = 1) {
         finding_.resize(corners_.size(), count_++);
+        ratio_.resize(corners_.size(), ratio);
         kind_.resize(corners_.size(), static_cast<int>(std::ranges::find(kinds, kind) - kinds.begin()));
     }
 
@@ -205,6 +208,7 @@ private:
     std::vector<std::array<double, 3>> places_;
     std::vector<std::array<int, 3>> corners_;
     std::vector<int> finding_, kind_;  // of each triangle
+    std::vector<double> ratio_;        // a part's stiffness over that of the rest; 1 where a finding is none
 };
 
 }  // namespace

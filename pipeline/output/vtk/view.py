@@ -12,7 +12,8 @@ from paraview.simple import *
 
 script = globals().get("__file__") or sys.argv[0]
 run = os.path.dirname(os.path.abspath(script))
-ORANGE, GREY, DARK, FOUND = [0.78, 0.45, 0.1], [0.6, 0.64, 0.68], [0.1, 0.1, 0.12], [0.69, 0.23, 0.55]
+ORANGE, GREY, DARK = [0.78, 0.45, 0.1], [0.6, 0.64, 0.68], [0.1, 0.1, 0.12]
+FOUND, SOFTER = [0.69, 0.23, 0.55], [0.95, 0.66, 0.83]
 
 
 def path(*names):
@@ -183,7 +184,10 @@ def stiffness_view(view):
     plain(Show(balls_of(model, "radius [mm]", 2.0), view), GREY, 0.15)
     told = "Stiffness of the links (%s/model.vtp)" % best
     if os.path.exists(path("findings.vtp")):  # at rest, as the model is here
-        plain(Show(XMLPolyDataReader(FileName=[path("findings.vtp")]), view), FOUND, 0.7)
+        findings = XMLPolyDataReader(FileName=[path("findings.vtp")])
+        for low, high, hue in ((0, 0.9999, SOFTER), (1, sys.float_info.max, FOUND)):
+            part = Threshold(Input=findings, Scalars=["CELLS", "ratio"], LowerThreshold=low, UpperThreshold=high)
+            plain(Show(part, view), hue, 0.7)
         told += "; what was found to be missing in purple, dashed where it is not determined, by one standard deviation either way"
     return told
 

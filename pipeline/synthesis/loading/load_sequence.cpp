@@ -21,21 +21,21 @@ Sequence sequence_of(const BlindSetOptions& options, const std::vector<EffectSpe
     if (returns && !(options.back && options.continuous)) {
         sequence.notes.push_back(
             fmt::format("{} shows where less is borne after more: one body goes through all probes, each to half and "
-                        "all of its load, back to half, and let go (--levels, --no-back, --no-continuous say "
-                        "otherwise).",
+                        "all of its load, back to half, and let go (--levels, --no-back, --no-continuous "
+                        "change this).",
                         mesh::capitalised(returns->effect)));
     }
     if (stays && !(options.unload && options.continuous)) {
         sequence.notes.push_back(
             fmt::format("{} shows in what stays: one body goes through all probes, let go after each (--no-unload, "
-                        "--no-continuous say otherwise).",
+                        "--no-continuous change this).",
                         mesh::capitalised(stays->effect)));
     }
     if (changes && sequence.levels == 0) {
         sequence.levels = 3;
         sequence.notes.push_back(
             fmt::format("{} shows where loads change: each probe presses at three levels, let go after each (--levels "
-                        "and --no-unload say otherwise).",
+                        "and --no-unload change this).",
                         mesh::capitalised(changes->effect)));
     }
     if (creeps && options.dwell.empty()) {

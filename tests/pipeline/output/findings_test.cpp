@@ -51,11 +51,13 @@ TEST(FindingsJson, TellsWhatCanBeDrawn) {
     EXPECT_EQ(found[1]["kind"], "ball");
     EXPECT_EQ(found[1]["center"], json({1.0, 2.0, 3.0}));
     EXPECT_EQ(found[1]["radius"], 4.0);
+    EXPECT_EQ(found[1]["ratio"], 8.0);
     EXPECT_EQ(found[2]["kind"], "plane");
     EXPECT_EQ(found[2]["offset"], -5.0);
     EXPECT_THAT(found[1]["words"].get<std::string>(), HasSubstr("hard"));
     EXPECT_EQ(found[3]["kind"], "ball");
     EXPECT_EQ(found[3]["vector"], json({0.0, 3.0, 0.0}));
+    EXPECT_FALSE(found[3].contains("ratio")) << "a force is neither softer nor stiffer";
     EXPECT_EQ(found[4]["kind"], "words");
     EXPECT_EQ(found[4]["effect"], "stiffening");
 }
@@ -118,6 +120,10 @@ TEST(FindingsFile, DrawsEachWhereItIs) {
     const Points arrow = points_of(drawing, 0);
     EXPECT_NEAR(arrow.col(2).maxCoeff() - arrow.col(2).minCoeff(), 0.25 * size, tolerance) << "straight down";
     EXPECT_LT(arrow.col(2).maxCoeff(), (low[2] + high[2]) / 2);
+
+    ASSERT_EQ(drawing.data.cells[2].name, "ratio");
+    for (Eigen::Index t = 0; t < drawing.triangles.rows(); ++t)
+        EXPECT_EQ(drawing.data.cells[2].values(t, 0), drawing.data.cells[0].values(t, 0) == 1 ? 8 : 1);
 
     const Points ball = points_of(drawing, 1);
     for (Eigen::Index p = 0; p < ball.rows(); ++p)

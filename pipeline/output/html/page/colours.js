@@ -11,7 +11,8 @@ const unknownColour = [0.72, 0.72, 0.72], loadColour = [0.84, 0.37, 0], measured
 const viewColours = (dark) => ({
   measured: dark ? [1, 0.44, 0.5] : [0.83, 0.05, 0.2], error: dark ? [0.9, 0.92, 0.94] : measuredColour,
   load: dark ? [1, 0.6, 0.2] : loadColour, held: dark ? [0.32, 0.74, 0.62] : [0.14, 0.62, 0.48],
-  tool: dark ? [0.45, 0.72, 0.95] : [0.2, 0.55, 0.85], shape: wireColour, found: foundColour});
+  tool: dark ? [0.45, 0.72, 0.95] : [0.2, 0.55, 0.85], shape: wireColour, found: foundColour,
+  softer: softerColour});
 
 /// [r, g, b] in 0..1 of a share in 0..1; grey where there is none.
 function colourOf(share) {

@@ -1,14 +1,15 @@
 // What was found to be missing, drawn in the body: gravity, fibres, a lump, a wall, a soft clamp, swapped markers.
 'use strict';
 
-const foundColour = [0.69, 0.23, 0.55];
+const foundColour = [0.69, 0.23, 0.55], softerColour = [0.95, 0.66, 0.83];
+const isSofter = (found) => found.ratio < 1;
 
 /// Glyphs of the findings: {shape, glyph, opacity, text} each. `body`: its middle, its size, and the spheres' places and
 /// radii with what of them is held.
 function findingGlyphs(findings, body) {
   const {middle, size, spheres, radii, held} = body, glyphs = [];
-  const add = (shape, start, end, radius, text, opacity = 1) =>
-    glyphs.push({shape, glyph: {start, end, radius, colour: foundColour}, opacity, text});
+  const add = (shape, start, end, radius, text, opacity = 1, colour = foundColour) =>
+    glyphs.push({shape, glyph: {start, end, radius, colour}, opacity, text});
   /// A dashed line through a place along an axis, from one length to another.
   const dashes = (place, axis, low, high, text) => {
     const count = Math.max(3, Math.round((high - low) / (0.035 * size))), pitch = (high - low) / (count - 0.4);
@@ -43,7 +44,7 @@ function findingGlyphs(findings, body) {
       for (const sign of [1, -1]) add('arrow', middle, plus3(middle, n, sign * 0.3 * size), 0.008 * size, text);
     } else if (found.kind === 'ball') {
       const r = found.radius, [x, y, z] = found.center;
-      add('ball', [x, y, z - r], [x, y, z + r], r, text, 0.55);
+      add('ball', [x, y, z - r], [x, y, z + r], r, text, 0.55, isSofter(found) ? softerColour : foundColour);
       if (found.vector) add('arrow', found.center, plus3(found.center, unit3(found.vector), 0.25 * size), 0.012 * size, '');
     } else if (found.kind === 'plane') {
       // a disc below the sphere that comes nearest to the wall

@@ -104,7 +104,8 @@ function startView() {
   function tellColours(now, colour) {
     for (const [name, rgb] of Object.entries(colour)) at('view').style.setProperty(`--${name}`, `rgb(${rgb.map((c) => Math.round(255 * c))})`);
     const there = {measured: isOn('positions'), error: isOn('errors'), load: isOn('loads'), tool: isOn('tools'),
-      held: run.spheres.held.some(Boolean) && isOn('spheres'), shape: now.measured && isOn('measured'), found: isOn('findings') && drawing.drawsFindings(now)};
+      held: run.spheres.held.some(Boolean) && isOn('spheres'), shape: now.measured && isOn('measured'), found: isOn('findings') && drawing.drawsFindings(now),
+      softer: isOn('findings') && run.steps[last].findings.some(isSofter)};
     for (const [name, is] of Object.entries(there)) at(`key-${name}`).hidden = !is;
   }
 
