@@ -114,7 +114,7 @@ Preflight assess(const BodyModel& model, const MeasurementSet& set, const Prefli
 
     if (options.experiments) {
         report(progress, "what more states would bring", 0.4);
-        result.experiments = experiment_prospects(model, set, noise, result.guess, result.effects,
+        result.experiments = experiment_prospects(model, set, noise, point, result.effects,
                                                   possible_experiments(model, set, problem), options.diagnose);
     }
     return result;

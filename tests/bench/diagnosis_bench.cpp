@@ -63,10 +63,12 @@ identify::DiagnoseOptions ablated(const std::vector<std::string>& parts) {
                          .clamp = none,
                          .gain_at_support = none,
                          .dent = none,
+                         .wall_dent = none,
                          .ragged = none,
                          .flow = none};
         } else if (part == "mesh-error") {
-            nuisances.softness = nuisances.clamp = nuisances.dent = nuisances.ragged = nuisances.flow = none;
+            nuisances.softness = nuisances.clamp = nuisances.ragged = nuisances.flow = none;
+            nuisances.dent = nuisances.wall_dent = none;
             options.mesh_error = 0;
             options.refit.correct_for_mesh = false;
         } else if (part == "correction") {

@@ -55,14 +55,14 @@ std::string row_of(const Truth& truth, const LocateOptions& options, LocatedTall
     const Located right = judge_location(truth, *source, size);
     const char* verdict = truth.effects.empty() ? "" : right.kind ? "right" : "WRONG";
     const auto name = [](const auto& names, auto value) { return names[static_cast<std::size_t>(value)]; };
-    return fmt::format("| {} | {} | {:.2f} | {} | {} | {:.0f} {:.0f} {:.0f} {:.0f} | {:.0f} % | {} of {} | {}{} | {} | {} "
-                       "| {:.1f} | {} |\n",
-                       truth.set, joined(truth.effects), found.baseline.whitened_rms,
-                       name(identify::source_kind_names, source->kind), verdict, ln[0], ln[1], ln[2], ln[3],
-                       100 * source->explained, source->states.size(), set.states.size(),
-                       name(identify::source_law_names, source->likeliest().law), right.law == false ? " WRONG" : "",
-                       number_or_nothing(right.place_mm, "mm"), number_or_nothing(right.angle, "degrees"), seconds,
-                       source->sentence());
+    return fmt::format(
+        "| {} | {} | {:.2f} | {} | {} | {:.0f} {:.0f} {:.0f} {:.0f} | {:.0f} % | {} of {} | {}{} | {} | {} "
+        "| {:.1f} | {} |\n",
+        truth.set, joined(truth.effects), found.baseline.whitened_rms, name(identify::source_kind_names, source->kind),
+        verdict, ln[0], ln[1], ln[2], ln[3], 100 * source->explained, source->states.size(), set.states.size(),
+        name(identify::source_law_names, source->likeliest().law), right.law == false ? " WRONG" : "",
+        number_or_nothing(right.place_mm, "mm"), number_or_nothing(right.angle, "degrees"), seconds,
+        source->sentence());
 }
 
 }  // namespace

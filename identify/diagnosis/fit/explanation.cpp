@@ -120,8 +120,9 @@ ForwardSolution solve_forward(const BodyModel& model, const Problem& problem, co
         } else if (linear) {
             result.q[k] = model.advance(rest, linear->solve(model.residual(rest, setting, action)), setting);
         } else {
-            result.q[k] =
-                model.equilibrium(setting, action, start ? &(*start)[k] : nullptr, guides ? guides->kept(k) : nullptr);
+            const bool is_begun = start && (*start)[k].size() > 0;
+            result.q[k] = model.equilibrium(setting, action, is_begun ? &(*start)[k] : nullptr,
+                                            guides ? guides->kept(k) : nullptr);
         }
         if (remembers) after[k] = model.remember(result.q[k], setting, action);
         result.channels[k] = channels_of(model, problem, setting, action, result.q[k]);

@@ -45,23 +45,47 @@ private:
     std::vector<Eigen::Index> skin_;
 };
 
-/// The contacts that dent the body in each action: its own and those of tools, and where it yields, the strongest at
-/// each place before.
-std::vector<std::vector<mesh::Contact>> contacts_that_dent(const BodyModel& model, const Problem& problem,
-                                                           const ModelSetting& setting, const ForwardSolution& forward,
-                                                           bool yields) {
-    std::vector<std::vector<mesh::Contact>> dents;
-    dents.reserve(forward.actions.size());
+/// An indentation, of which a share is unknown.
+struct Dent {
+    mesh::Contact contact;
+    double unknown = 0;
+};
+
+/// What walls press into the skin (s x 3), a dent for each of its points that they touch.
+void add_walls(const BodyModel& model, const ModelSetting& setting, const Points& skin, double unknown,
+               std::vector<Dent>& dents) {
+    for (const auto& potential : setting.effects.points) {
+        if (!potential->is_one_sided() || potential->acts_on() != fem::ActsOn::surface) continue;
+        const Eigen::VectorXd areas = potential->weights(model.skin(), model.skin_areas());
+        const double none = 1e-6 * areas.maxCoeff();  // what rounding makes of the corners of quadratic faces
+        for (Eigen::Index s = 0; s < skin.rows(); ++s) {
+            if (areas[s] <= none) continue;
+            const Vec3 rest = model.skin().row(s);
+            const Vec3 force = -areas[s] * potential->terms(rest, skin.row(s)).gradient;
+            if (!force.isZero(0))
+                dents.push_back({{.point = rest, .force = force, .radius = std::sqrt(areas[s] / M_PI)}, unknown});
+        }
+    }
+}
+
+/// Dents in each action: of its contacts, of tools and walls, and where the body yields, the strongest at each place
+/// before. `skin`: where it stands in each action.
+std::vector<std::vector<Dent>> dents_of(const BodyModel& model, const Problem& problem, const ModelSetting& setting,
+                                        const ForwardSolution& forward, const std::vector<Points>& skin, bool yields,
+                                        const NuisanceOptions& options) {
+    std::vector<std::vector<Dent>> dents(forward.actions.size());
     for (int k = 0; k < static_cast<int>(forward.actions.size()); ++k) {
-        dents.push_back(forward.actions[k].contacts);
-        std::ranges::transform(tool_prints(model, problem, setting, forward, k), std::back_inserter(dents.back()),
-                               &ToolPrint::contact);
+        for (const mesh::Contact& contact : forward.actions[k].contacts) dents[k].push_back({contact, options.dent});
+        for (const ToolPrint& print : tool_prints(model, problem, setting, forward, k))
+            dents[k].push_back({print.contact, options.dent});
+        add_walls(model, setting, skin[k], options.wall_dent, dents[k]);
         if (!yields || problem.before(k) < 0) continue;
-        for (const mesh::Contact& earlier : dents[problem.before(k)]) {
-            const auto same = std::ranges::find(dents.back(), earlier.point, &mesh::Contact::point);
-            if (same == dents.back().end()) {
-                dents.back().push_back(earlier);
-            } else if (earlier.force.norm() > same->force.norm()) {
+        for (const Dent& earlier : dents[problem.before(k)]) {
+            const auto same =
+                std::ranges::find(dents[k], earlier.contact.point, [](const Dent& dent) { return dent.contact.point; });
+            if (same == dents[k].end()) {
+                dents[k].push_back(earlier);
+            } else if (earlier.contact.force.norm() > same->contact.force.norm()) {
                 *same = earlier;
             }
         }
@@ -87,20 +111,21 @@ Eigen::VectorXd reading_weights(const BodyModel& model, const Problem& problem, 
     constexpr double nu = 0.45;
     const double flow = setting.effects.plasticity ? options.flow : 0;
     const Border border(model, problem.rest.topRows(problem.markers));
-    const std::vector<std::vector<mesh::Contact>> dents =
-        contacts_that_dent(model, problem, setting, forward, problem.by_stage && flow > 0);
-    std::vector<Points> skin;  // what it moved by, in each action
-    for (const Eigen::VectorXd& q : forward.q) skin.push_back(model.skin_positions(q, setting) - model.skin());
+    std::vector<Points> skin;  // where it stands in each action
+    for (const Eigen::VectorXd& q : forward.q) skin.push_back(model.skin_positions(q, setting));
+    const std::vector<std::vector<Dent>> dents =
+        dents_of(model, problem, setting, forward, skin, problem.by_stage && flow > 0, options);
     Eigen::VectorXd variance = Eigen::VectorXd::Ones(problem.rows());  // in sigma^2
     for (Eigen::Index n = 0; n < problem.rows(); ++n) {
         if (!problem.is_position(n)) continue;
         const int marker = problem.channel(n);
         const Vec3 moved = forward.channels[problem.action[n]].row(marker) - problem.rest.row(marker);
-        const Vec3 base = skin[problem.action[n]].row(border.skin_point(marker));
+        const Eigen::Index held = border.skin_point(marker);
+        const Vec3 base = skin[problem.action[n]].row(held) - model.skin().row(held);
         variance[n] += std::pow(flow * moved.norm() / problem.sigma[n], 2);
         variance[n] +=
             std::pow(options.ragged * border.closeness(marker) * (moved - base).norm() / problem.sigma[n], 2);
-        for (const mesh::Contact& contact : dents[problem.action[n]]) {
+        for (const auto& [contact, unknown] : dents[problem.action[n]]) {
             const double r = effective_radius(model, contact), F = contact.force.norm();
             const double d = (problem.rest.row(marker).transpose() - contact.point).norm();
             double U = F * (1 - nu * nu) / (2 * E * r);
@@ -108,7 +133,7 @@ Eigen::VectorXd reading_weights(const BodyModel& model, const Problem& problem, 
             if (model.is_nonlinear(setting)) U *= 1 + p / E;
             if (setting.effects.plasticity) U *= 1 + plastic_indentation(*setting.effects.plasticity, p / E);
             const double near = std::min(1.0, std::pow(1.2 * r / std::max(d, 1e-9), 2));
-            variance[n] += std::pow(options.dent * U * near / problem.sigma[n], 2);
+            variance[n] += std::pow(unknown * U * near / problem.sigma[n], 2);
         }
     }
     return variance.cwiseSqrt().cwiseInverse();

@@ -49,7 +49,7 @@ void turn_numbers(const BodyModel& model, const Problem& problem, const Experime
 }  // namespace
 
 std::vector<ExperimentProspect> experiment_prospects(const BodyModel& model, const MeasurementSet& set, double noise,
-                                                     const Explanation& guess,
+                                                     const LinearPoint& guess,
                                                      const std::vector<EffectProspect>& before,
                                                      const std::vector<Experiment>& experiments,
                                                      const DiagnoseOptions& options) {
@@ -60,7 +60,8 @@ std::vector<ExperimentProspect> experiment_prospects(const BodyModel& model, con
     const auto try_out = [&](const Experiment& experiment) {
         const MeasurementSet more = with_states(set, experiment);
         Problem problem = make_problem(more, noise);
-        const LinearPoint point = linearise(model, problem, guess, options.mesh_error, options.refit.threads);
+        const LinearPoint point =
+            linearise(model, problem, guess.explanation, options.mesh_error, options.refit.threads, &guess);
         const auto first = static_cast<int>(set.states.size());
         const Eigen::VectorXd answered = problem.pick(point.forward.markers);
         for (Eigen::Index n = 0; n < problem.rows(); ++n)

@@ -25,8 +25,9 @@ struct ExperimentProspect {
 /// Each experiment added to the set, its readings of all markers as noisy as the set's, at the same guess of the
 /// stiffness; those that open most come first, and those that bring nothing are left out.
 /// @param noise where the set tells none [mm]
+/// @param guess of the stiffness, with the body in the set's states
 std::vector<ExperimentProspect> experiment_prospects(const BodyModel& model, const MeasurementSet& set, double noise,
-                                                     const Explanation& guess,
+                                                     const LinearPoint& guess,
                                                      const std::vector<EffectProspect>& before,
                                                      const std::vector<Experiment>& experiments,
                                                      const DiagnoseOptions& options);

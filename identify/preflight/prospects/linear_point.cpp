@@ -1,5 +1,6 @@
 #include "identify/preflight/prospects/linear_point.h"
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 
@@ -52,8 +53,10 @@ ForwardSolution forward_in_stages(const BodyModel& model, const LinearPoint& poi
 }  // namespace
 
 LinearPoint linearise(const BodyModel& model, const Problem& problem, const Explanation& explanation, double mesh_error,
-                      int threads) {
-    ForwardSolution forward = solve_forward(model, problem, explanation, threads);
+                      int threads, const LinearPoint* known) {
+    std::vector<Eigen::VectorXd> start(problem.actions.size());
+    if (known) std::ranges::copy(known->forward.q, start.begin());
+    ForwardSolution forward = solve_forward(model, problem, explanation, threads, &start);
     Eigen::MatrixXd columns = sensitivities(model, problem, explanation, forward,
                                             {own_signatures(model, problem, explanation, forward)}, threads)
                                   .front() +

@@ -23,9 +23,10 @@ struct LinearPoint {
 /// Linearises a model's readings at an explanation without effects. One factorisation for all actions in small strain.
 /// @param mesh_error share of what is read in a state that the model may be off by, beside its noise: no sensor is
 /// finer than the mesh
+/// @param known the same explanation in a problem whose actions are this one's first: where equilibria are sought from
 /// @throws SolverFailure where an action has no equilibrium.
 LinearPoint linearise(const BodyModel& model, const Problem& problem, const Explanation& explanation, double mesh_error,
-                      int threads);
+                      int threads, const LinearPoint* known = nullptr);
 
 /// What an effect does to the readings where it is weak.
 struct EffectSignature {

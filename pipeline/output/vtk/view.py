@@ -188,7 +188,7 @@ def stiffness_view(view):
         for low, high, hue in ((0, 0.9999, SOFTER), (1, sys.float_info.max, FOUND)):
             part = Threshold(Input=findings, Scalars=["CELLS", "ratio"], LowerThreshold=low, UpperThreshold=high)
             plain(Show(part, view), hue, 0.7)
-        told += "; what was found to be missing in purple, dashed where it is not determined, by one standard deviation either way"
+        told += "\nPurple: found to be missing; pink: softer than the rest;\ndashed: not determined, one standard deviation either way"
     return told
 
 
@@ -233,6 +233,7 @@ for view, build in zip(views, builders):
     shown = Show(title, view)
     shown.Color = [0, 0, 0]
     shown.FontSize = 13
+    shown.Justification = "Left"
     view.CameraParallelProjection = 1
 
 # Views know their sizes only now.

@@ -64,8 +64,8 @@ constexpr double near_share = 0.15, near_degrees = 20;  // what the aim counts a
 
 Located judge_location(const Truth& truth, const identify::MissingSource& source, double size) {
     Located result;
-    const auto found = std::ranges::find_if(
-        truth.effects, [&](const std::string& effect) { return kind_of(effect) == source.kind; });
+    const auto found =
+        std::ranges::find_if(truth.effects, [&](const std::string& effect) { return kind_of(effect) == source.kind; });
     if (found == truth.effects.end()) return result;
     const std::string& effect = *found;
     const identify::SourceTerm& term = source.likeliest();
@@ -102,7 +102,8 @@ void LocatedTally::add(const Truth& truth, const std::optional<identify::Missing
 
 void LocatedTally::print() const {
     fmt::print(
-        "\nKind right in {} of {}; of these the law in {} of {}, the place within {:.0f} % of the size in {} of {}, the "
+        "\nKind right in {} of {}; of these the law in {} of {}, the place within {:.0f} % of the size in {} of {}, "
+        "the "
         "direction within {:.0f} degrees in {} of {}. Something is located in {} of {} null sets.\n",
         kind_.right, kind_.of, law_.right, law_.of, 100 * near_share, place_.right, place_.of, near_degrees,
         direction_.right, direction_.of, nulls_.right, nulls_.of);

@@ -10,9 +10,9 @@ namespace palpate::bench {
 
 /// What a located source has right of what is hidden. What the truth does not tell, or has not got, is absent.
 struct Located {
-    bool kind = false;  // gravity, prestress and growth are forces in the body; contact, pressure, compliant supports and
-                        // friction act at its boundary; faults of readings and gains are the sensors'; all others change
-                        // its stiffness
+    bool kind = false;  // gravity, prestress and growth are forces in the body; contact, pressure, compliant supports
+                        // and friction act at its boundary; faults of readings and gains are the sensors'; all others
+                        // change its stiffness
     std::optional<bool> law;
     std::optional<double> place_mm, place_share;  // from the hidden part's centre; over the body's longest side
     std::optional<double> angle;                  // between the directions [degrees]

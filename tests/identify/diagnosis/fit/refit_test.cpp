@@ -184,6 +184,36 @@ TEST_F(Refits, TrustMarkersLessUnderAPressureBeyondYield) {
     EXPECT_NEAR(unknown(pressure / 3) / unknown(10 * pressure), std::pow(1 + 1 / hardening, 2), 1e-6);
 }
 
+TEST_F(Refits, TrustMarkersLessNextToWhereAWallIsTouched) {
+    // A wall beneath the tip.
+    const Problem problem = make_problem(twin(truth()), sigma);
+    const Explanation walled = truth("contact", numbers({0, 0, 1, -0.2, std::log(1.0)}));
+    const ForwardSolution forward = solve_forward(*model_, problem, walled, 1);
+    const auto unknown = [&](double wall_dent) {  // variance beyond the noise (N)
+        const NuisanceOptions walls_alone{.dent = 0, .wall_dent = wall_dent, .ragged = 0};
+        const Eigen::VectorXd weights = reading_weights(*model_, problem, walled, forward, walls_alone);
+        return Eigen::VectorXd(weights.cwiseAbs2().cwiseInverse().array() - 1);
+    };
+    const Eigen::VectorXd all = unknown(1);
+    EXPECT_EQ(unknown(0).cwiseAbs().maxCoeff(), 0);
+    EXPECT_LT((unknown(0.5) - 0.25 * all).norm(), 1e-9 * all.norm());
+    double near = 0, far = 0, apart = 0;
+    for (Eigen::Index n = 0; n < problem.rows(); ++n) {
+        const Points skin = model_->skin_positions(forward.q[problem.action[n]], walled.setting());
+        const Vec3 rest = problem.rest.row(problem.coordinate[n] / 3);
+        if (skin.col(2).minCoeff() >= -0.2) {
+            apart = std::max(apart, all[n]);
+        } else if (rest.x() < 20) {
+            far = std::max(far, all[n]);
+        } else if (rest.x() > 30 && rest.z() < 1) {
+            near = std::max(near, all[n]);
+        }
+    }
+    EXPECT_EQ(apart, 0) << "where nothing touches";
+    EXPECT_GT(near, 1);
+    EXPECT_LT(far, 0.1 * near);
+}
+
 TEST_F(Refits, KnowLessWhereProbesDisagree) {
     // Noise alone scatters no more than the covariance says; of gains that come and go from probe to probe it knows
     // nothing.
