@@ -5,15 +5,11 @@
 
 #include <nlohmann/json.hpp>
 
-#include "mesh/errors.h"
 #include "mesh/text/atomic_file.h"
-#include "pipeline/case/settings/read_case.h"
 #include "pipeline/command_line/commands.h"
 #include "pipeline/output/html/report.h"
-#include "pipeline/run/expectation.h"
 #include "pipeline/run/inputs/model_and_set.h"
 #include "skeleton/model/io/model_io.h"
-#include "tests/messages.h"
 #include "tests/pipeline/heavy_beam.h"
 
 namespace palpate::pipeline {
@@ -284,57 +280,6 @@ TEST_F(HeavyBeam, TakesUpWhatIsLeftAndDraftsIt) {
     EXPECT_EQ(outcome.json["draft"], path("magnet.cpp").string());
     EXPECT_THAT(mesh::read_text(path("magnet.cpp")), HasSubstr("return {\"magnet\","));
     EXPECT_THAT(outcome.text, HasSubstr("Draft of an effect: "));
-}
-
-TEST(RunDiagnosis, RefusesADraftThatCannotBeNamedSoBeforeAnythingIsRead) {
-    EXPECT_TRUE(says(message_of<InvalidInput>([] {
-                         commands::improve(
-                             {.model = "m.json", .set = "set", .output = {}, .residual = true, .draft = "gravity.cpp"},
-                             {});
-                     }),
-                     {"gravity", "another name"}));
-}
-
-TEST(RunDiagnosis, SeveralOfAKindNeedTheirPlaces) {
-    const auto message = [](const std::vector<std::string>& add) {
-        return message_of<std::exception>(
-            [&] { commands::improve({.model = "m.json", .set = "set", .output = {}, .add = add}, {}); });
-    };
-    EXPECT_TRUE(says(message({"inclusion", "inclusion:cx=1"}), {"inclusion", "several times", "cx", "--auto"}));
-    EXPECT_FALSE(says(message({"inclusion:cx=30", "inclusion:cx=1"}), {"several times"}));
-}
-
-TEST(RunDiagnosis, TellsExpectationsThatAreNotMet) {
-    Expectation expect;
-    expect.verdict = "missing-effect";
-    expect.explanation = {"misalignment", "gravity"};
-    expect.rms_at_most_mm = 1;
-    RunResults results{.compare = {{"error", {{"rms_mm", 3.0}, {"relative", 0.1}}}}};
-    EXPECT_THAT(broken_expectations(expect, results), ::testing::SizeIs(3));
-    results.diagnosis = {{"verdict", "missing-effect"}, {"explanation", {"gravity", "misalignment"}}};
-    results.ladder = {{"steps", {{{"rms_mm", 3.0}}, {{"rms_mm", 0.9}}}}};
-    EXPECT_THAT(broken_expectations(expect, results), ::testing::IsEmpty());
-}
-
-TEST(RunDiagnosis, AnUnknownEffectIsToldWithItsNeighbour) {
-    const auto says_gravity = [](const auto& command) {
-        return says(message_of<InvalidInput>(command), {"gravty", "gravity"});
-    };
-    EXPECT_TRUE(says_gravity([] { commands::effects({"gravty"}, {}); }));
-    EXPECT_TRUE(says_gravity(
-        [] { commands::improve({.model = "m.json", .set = "set", .output = {}, .add = {"gravty"}}, {}); }));
-    EXPECT_TRUE(says_gravity(
-        [] { commands::diagnose({.model = "m.json", .set = "set", .output = {}, .without = {"gravty"}}, {}); }));
-    const TemporaryFolder scratch;
-    const auto file =
-        scratch.write("case.yaml", "format: palpate-case/1\nmesh: a.stl\ndiagnose: {without: [gravty]}\n");
-    EXPECT_TRUE(says_gravity([&] { read_case(file); }));
-}
-
-TEST(RunDiagnosis, AVerdictThatThereIsNotIsRefused) {
-    const TemporaryFolder scratch;
-    const auto file = scratch.write("case.yaml", "format: palpate-case/1\nmesh: a.stl\nexpect: {verdict: fine}\n");
-    EXPECT_TRUE(says(message_of<InvalidInput>([&] { read_case(file); }), {"line 3", "verdict", "unexplained"}));
 }
 
 /// A sheet with no inside has no finite elements: the comparison goes on without, and says why.

@@ -6,8 +6,12 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "mesh/errors.h"
 #include "mesh/text/atomic_file.h"
+#include "pipeline/case/settings/read_case.h"
 #include "pipeline/command_line/commands.h"
+#include "pipeline/run/expectation.h"
+#include "tests/messages.h"
 #include "tests/pipeline/output/html/beam_run.h"
 #include "tests/temporary_folder.h"
 
@@ -121,6 +125,57 @@ TEST(Run, TellsExpectationsThatAreNotMet) {
     const commands::Outcome outcome = commands::run({.input = file, .output = scratch / "run", .overrides = {}}, {});
     EXPECT_EQ(outcome.code, commands::not_met);
     EXPECT_EQ(outcome.json["expectations_not_met"].size(), 1U);
+}
+
+TEST(RunMessages, RefusesADraftThatCannotBeNamedSoBeforeAnythingIsRead) {
+    EXPECT_TRUE(says(message_of<InvalidInput>([] {
+                         commands::improve(
+                             {.model = "m.json", .set = "set", .output = {}, .residual = true, .draft = "gravity.cpp"},
+                             {});
+                     }),
+                     {"gravity", "another name"}));
+}
+
+TEST(RunMessages, SeveralOfAKindNeedTheirPlaces) {
+    const auto message = [](const std::vector<std::string>& add) {
+        return message_of<std::exception>(
+            [&] { commands::improve({.model = "m.json", .set = "set", .output = {}, .add = add}, {}); });
+    };
+    EXPECT_TRUE(says(message({"inclusion", "inclusion:cx=1"}), {"inclusion", "several times", "cx", "--auto"}));
+    EXPECT_FALSE(says(message({"inclusion:cx=30", "inclusion:cx=1"}), {"several times"}));
+}
+
+TEST(RunMessages, TellHowManyExpectationsAreNotMet) {
+    Expectation expect;
+    expect.verdict = "missing-effect";
+    expect.explanation = {"misalignment", "gravity"};
+    expect.rms_at_most_mm = 1;
+    RunResults results{.compare = {{"error", {{"rms_mm", 3.0}, {"relative", 0.1}}}}};
+    EXPECT_THAT(broken_expectations(expect, results), ::testing::SizeIs(3));
+    results.diagnosis = {{"verdict", "missing-effect"}, {"explanation", {"gravity", "misalignment"}}};
+    results.ladder = {{"steps", {{{"rms_mm", 3.0}}, {{"rms_mm", 0.9}}}}};
+    EXPECT_THAT(broken_expectations(expect, results), ::testing::IsEmpty());
+}
+
+TEST(RunMessages, AnUnknownEffectIsToldWithItsNeighbour) {
+    const auto says_gravity = [](const auto& command) {
+        return says(message_of<InvalidInput>(command), {"gravty", "gravity"});
+    };
+    EXPECT_TRUE(says_gravity([] { commands::effects({"gravty"}, {}); }));
+    EXPECT_TRUE(says_gravity(
+        [] { commands::improve({.model = "m.json", .set = "set", .output = {}, .add = {"gravty"}}, {}); }));
+    EXPECT_TRUE(says_gravity(
+        [] { commands::diagnose({.model = "m.json", .set = "set", .output = {}, .without = {"gravty"}}, {}); }));
+    const TemporaryFolder scratch;
+    const auto file =
+        scratch.write("case.yaml", "format: palpate-case/1\nmesh: a.stl\ndiagnose: {without: [gravty]}\n");
+    EXPECT_TRUE(says_gravity([&] { read_case(file); }));
+}
+
+TEST(RunMessages, AVerdictThatThereIsNotIsRefused) {
+    const TemporaryFolder scratch;
+    const auto file = scratch.write("case.yaml", "format: palpate-case/1\nmesh: a.stl\nexpect: {verdict: fine}\n");
+    EXPECT_TRUE(says(message_of<InvalidInput>([&] { read_case(file); }), {"line 3", "verdict", "unexplained"}));
 }
 
 }  // namespace

@@ -124,7 +124,7 @@ public:
         const auto& p = record.parameters;
         constexpr double young_over_shear = 2.9;  // at nu = .45
         const double sd = covariance.size() > 0 ? std::sqrt(std::max(covariance(0, 0), 0.0)) : 0;
-        return fmt::format("The material is ({}) times as stiff along {} as across.",
+        return fmt::format("The material is {} times as stiff along {} as across.",
                            mesh::with_sd(1 + p[0].value / young_over_shear, sd / young_over_shear),
                            components_in_words({p[1].value, p[2].value, p[3].value}));
     }

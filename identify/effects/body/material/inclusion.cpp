@@ -123,7 +123,7 @@ public:
         constexpr std::size_t radius = 3, ratio = 4;
         const auto& p = record.parameters;
         std::string text = fmt::format(
-            "Something {} lies in the body around ({}, {}, {}) mm, with a radius of {} mm, ({}) times as stiff as "
+            "Something {} lies in the body around ({}, {}, {}) mm, with a radius of {} mm, {} times as stiff as "
             "elsewhere",
             p[ratio].value > 1 ? "hard" : "soft", number_in_words(record, 0, covariance),
             number_in_words(record, 1, covariance), number_in_words(record, 2, covariance),

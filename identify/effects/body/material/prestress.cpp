@@ -47,7 +47,7 @@ public:
             record.parameters, {}, [](const skeleton::EffectParameter& s) { return std::abs(s.value); });
         const auto number = static_cast<std::size_t>(largest - record.parameters.begin());
         return fmt::format(
-            "The body is prestressed: its largest component of stress is {} = ({}) times the shear modulus.",
+            "The body is prestressed: its largest component of stress is {} = {} times the shear modulus.",
             largest->name, number_in_words(record, number, covariance));
     }
 
