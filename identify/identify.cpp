@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "identify/diagnosis/rigged_skeleton.h"
+#include "identify/diagnosis/rigged/rigged_skeleton.h"
 #include "identify/inference/methods/methods.h"
 #include "identify/measurements/field.h"
 #include "identify/measurements/labels/label_readings.h"

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "identify/comparison/load_exponent.h"
-#include "identify/diagnosis/rigged_skeleton.h"
+#include "identify/diagnosis/rigged/rigged_skeleton.h"
 #include "identify/inference/domains/position/solver_pool.h"
 #include "identify/loading/history/load_history.h"
 #include "identify/loading/readings.h"

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "identify/diagnosis/rigged_skeleton.h"
+#include "identify/diagnosis/rigged/rigged_skeleton.h"
 #include "identify/inference/particles/proposal.h"
 #include "identify/inference/posterior.h"
 #include "identify/loading/history/load_history.h"

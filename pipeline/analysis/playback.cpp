@@ -2,7 +2,7 @@
 
 #include <map>
 
-#include "identify/diagnosis/rigged_skeleton.h"
+#include "identify/diagnosis/rigged/rigged_skeleton.h"
 #include "identify/loading/history/load_history.h"
 #include "identify/loading/loads.h"
 #include "identify/loading/readings.h"

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <map>
 
-#include "identify/diagnosis/rigged_skeleton.h"
+#include "identify/diagnosis/rigged/rigged_skeleton.h"
 #include "identify/effects/catalogue.h"
 #include "identify/loading/creep.h"
 #include "identify/measurements/rig/fittable.h"

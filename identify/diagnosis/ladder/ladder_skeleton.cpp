@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <iterator>
 
-#include "identify/diagnosis/rigged_skeleton.h"
+#include "identify/diagnosis/rigged/rigged_skeleton.h"
 #include "identify/effects/catalogue.h"
 #include "identify/identify.h"
 #include "identify/loading/readings.h"

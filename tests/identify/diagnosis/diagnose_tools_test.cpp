@@ -1,5 +1,5 @@
 #include "identify/diagnosis/ladder/ladder.h"
-#include "identify/diagnosis/rigged_skeleton.h"
+#include "identify/diagnosis/rigged/rigged_skeleton.h"
 #include "tests/identify/diagnosed.h"
 
 namespace palpate::identify {

@@ -1,4 +1,4 @@
-#include "identify/diagnosis/rigged_skeleton.h"
+#include "identify/diagnosis/rigged/rigged_skeleton.h"
 
 #include <algorithm>
 #include <cmath>
