@@ -209,6 +209,24 @@ def ladder_view(view):
     return "Ladder, worst state: play it. " + ", ".join(told)
 
 
+def look_at_all(view):
+    """z up, from a little above and before the body: as large as the view holds, with room for title and legend."""
+    view.ResetCamera()
+    camera = view.GetActiveCamera()
+    focus, distance = camera.GetFocalPoint(), camera.GetDistance()
+    away = (0.31, -0.87, 0.39)
+    camera.SetPosition([f + distance * d for f, d in zip(focus, away)])
+    camera.SetViewUp(0, 0, 1)
+    b = view.GetRenderer().ComputeVisiblePropBounds()
+    flat = math.hypot(away[0], away[1])
+    right = (-away[1] / flat, away[0] / flat, 0)
+    up = (-away[0] * away[2] / flat, -away[1] * away[2] / flat, flat)
+    across, high = (sum(abs(axis[k]) * (b[2 * k + 1] - b[2 * k]) for k in range(3)) for axis in (right, up))
+    wide, tall = view.ViewSize
+    view.CameraParallelScale = 0.5 * max(high, across * tall / wide) / 0.75
+    Render(view)
+
+
 builders = [fit_view, error_view, stiffness_view]
 if os.path.exists(path("improve", "ladder_skin.pvd")):
     builders.append(ladder_view)
@@ -240,14 +258,7 @@ for view, build in zip(views, builders):
 layout.SetSize(1800, 1100)
 for view in views:
     Render(view)
-    # z up, from a little above and before the body
-    view.ResetCamera()
-    camera = view.GetActiveCamera()
-    focus, distance = camera.GetFocalPoint(), camera.GetDistance()
-    camera.SetPosition([f + distance * d for f, d in zip(focus, (0.31, -0.87, 0.39))])
-    camera.SetViewUp(0, 0, 1)
-    view.ResetCamera(True)
-    view.CameraParallelScale *= 1.1  # room for the legend
+    look_at_all(view)
     Render(view)
 if len(sys.argv) > 1 and sys.argv[-1].endswith(".png"):
     SaveScreenshot(sys.argv[-1], layout, ImageResolution=[1800, 1100])
