@@ -224,7 +224,6 @@ def look_at_all(view):
     across, high = (sum(abs(axis[k]) * (b[2 * k + 1] - b[2 * k]) for k in range(3)) for axis in (right, up))
     wide, tall = view.ViewSize
     view.CameraParallelScale = 0.5 * max(high, across * tall / wide) / 0.75
-    Render(view)
 
 
 builders = [fit_view, error_view, stiffness_view]
