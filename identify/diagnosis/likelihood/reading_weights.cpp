@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 
+#include "fem/effects/point/point_potential.h"
 #include "identify/diagnosis/likelihood/tool_prints.h"
 
 namespace palpate::identify {
@@ -54,6 +54,7 @@ struct Dent {
 /// What walls press into the skin (s x 3), a dent for each of its points that they touch.
 void add_walls(const BodyModel& model, const ModelSetting& setting, const Points& skin, double unknown,
                std::vector<Dent>& dents) {
+    if (skin.rows() == 0) return;
     for (const auto& potential : setting.effects.points) {
         if (!potential->is_one_sided() || potential->acts_on() != fem::ActsOn::surface) continue;
         const Eigen::VectorXd areas = potential->weights(model.skin(), model.skin_areas());
