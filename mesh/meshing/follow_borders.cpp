@@ -226,13 +226,20 @@ private:
         std::vector<int> around;
         std::ranges::copy_if(elements_of_[a], std::back_inserter(around),
                              [&](int e) { return std::ranges::find(elements_[e], b) != elements_[e].end(); });
-        nodes_.push_back(crossing.point);
-        const bool is_sound = std::ranges::all_of(around, [&](int e) {
-            return quality(corners_of(with(elements_[e], b, middle))) > 0 &&
-                   quality(corners_of(with(elements_[e], a, middle))) > 0;
-        });
-        // Where a surface curves too much for its edges, on the edge itself.
-        if (!is_sound) nodes_.back() = nodes_[a] + crossing.share * (nodes_[b] - nodes_[a]);
+        const auto parts_by = [&](const Vec3& point) {  // qualities
+            nodes_[middle] = point;
+            std::vector<double> qualities;
+            for (const int e : around)
+                for (const int end : {a, b}) qualities.push_back(quality(corners_of(with(elements_[e], end, middle))));
+            return qualities;
+        };
+        // Where a surface curves so much that elements would become flat, on the edge itself.
+        nodes_.emplace_back();
+        const Vec3 on_edge = nodes_[a] + crossing.share * (nodes_[b] - nodes_[a]);
+        const std::vector<double> straight = parts_by(on_edge), curved = parts_by(crossing.point);
+        const bool is_sound = std::ranges::equal(
+            curved, straight, [](double part, double least) { return part > worst_allowed * least; });
+        if (!is_sound) nodes_[middle] = on_edge;
         is_within_.push_back(1);
         is_on_.push_back(1);
         elements_of_.emplace_back();
