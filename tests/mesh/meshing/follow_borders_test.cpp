@@ -114,6 +114,22 @@ TEST(FollowBorders, OfSpheresAndSlabsInARoundBody) {
     EXPECT_NE(curved.nodes, straight.nodes);
 }
 
+/// A surface that dips to the edge on the other side of an element, but for rounding: cut there it would be flat.
+TEST(FollowBorders, NoCutFlattensAnElement) {
+    constexpr double height = 0.9;
+    VolumeMesh body;
+    body.nodes.resize(4, 3);
+    body.nodes << 0, 0, 0, 10, 0, 0, 5, 5, height, 5, -5, height;
+    body.tetrahedra.resize(1, 4);
+    body.tetrahedra << 0, 1, 2, 3;
+    if (element_volumes(body)[0] < 0) body.tetrahedra << 0, 1, 3, 2;
+    body.faces = boundary_faces(body.tetrahedra);
+    const Surface dip = make_box({-1, -6, height - 1e-12}, {11, 6, 5}, {1, 1, 1});
+    const VolumeMesh cut = follow_borders(body, {BoxRegion{{-1, -9, -9}, {5, 9, 9}}}, dip);
+    ASSERT_EQ(cut.tetrahedra.rows(), 2);
+    EXPECT_GT(element_volumes(cut).minCoeff(), 0.49 * element_volumes(body)[0]);
+}
+
 TEST(FollowBorders, FixedNodesStay) {
     const Surface surface = make_box({0, 0, 0}, {100, 20, 20}, {10, 2, 2});
     const VolumeMesh plain = filled(surface, 7);
