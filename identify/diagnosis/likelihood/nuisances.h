@@ -18,8 +18,8 @@ struct NuisanceOptions {
     /// the travel of a crosshead is off by some per cent, which is what extensometers are for.
     double play = 0.02;
     double dent = 0.1;  // of the local indentation, unknown for each reading
-    /// The same of what a wall presses in at a point of the skin: where between such points it is touched no mesh tells,
-    /// uniform over their distance as for a clamp.
+    /// The same of what a wall presses in at a point of the skin: no mesh tells where between such points it is
+    /// touched, uniform over their distance, as for a clamp.
     double wall_dent = 0.29;
     double ragged = 0.15;  // of what a marker at a support's border moves against it, unknown for each reading
     /// Of the mesh's error that was computed and taken off: halved edges leave a third of it where it falls with
