@@ -22,7 +22,8 @@ constexpr double rounding = 1e-5;    // borders belong to a region a little beyo
 constexpr double flattest = 0.001;   // element that a cut may leave outside
 constexpr double close = 0.3;        // a longer move flattens elements behind the node, a cut so near those before it
 
-constexpr double worst_allowed = 0.1;        // of an element that a move leaves: a tenth of a regular one's
+constexpr double worst_allowed = 0.1;        // of an element that a move leaves: a tenth of a regular one's; that a
+                                             // cut off the edge leaves: of one on it
 constexpr double largest_turn = 15;          // of a way off the triangles it leads over [degrees]: no crease is lost
 constexpr double largest_off_surface = 0.1;  // of an edge: further off, the nearest point may lie on another side
 

@@ -185,7 +185,7 @@ def stiffness_view(view):
     told = "Stiffness of the links (%s/model.vtp)" % best
     if os.path.exists(path("findings.vtp")):  # at rest, as the model is here
         findings = XMLPolyDataReader(FileName=[path("findings.vtp")])
-        for low, high, hue in ((0, 0.9999, SOFTER), (1, sys.float_info.max, FOUND)):
+        for low, high, hue in ((0, 1 - sys.float_info.epsilon, SOFTER), (1, sys.float_info.max, FOUND)):
             part = Threshold(Input=findings, Scalars=["CELLS", "ratio"], LowerThreshold=low, UpperThreshold=high)
             plain(Show(part, view), hue, 0.7)
         told += "\nPurple: found to be missing; pink: softer than the rest;\ndashed: not determined, one standard deviation either way"
