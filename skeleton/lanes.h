@@ -12,8 +12,8 @@ using Lanes = double __attribute__((vector_size(lanes * sizeof(double))));
 using LaneMask = decltype(Lanes{} > Lanes{});
 
 PALPATE_INLINE Lanes all(double a) { return Lanes{a, a, a, a}; }
-// In memory they need not be aligned.
-using LanesInMemory = double __attribute__((vector_size(lanes * sizeof(double)), aligned(8), may_alias));
+// In memory they need not be aligned. Clang takes an alignment from a typedef, from an alias it does not.
+typedef double LanesInMemory __attribute__((vector_size(lanes * sizeof(double)), aligned(8), may_alias));
 PALPATE_INLINE Lanes at(const double* p) { return *reinterpret_cast<const LanesInMemory*>(p); }
 PALPATE_INLINE void put(double* p, Lanes a) { *reinterpret_cast<LanesInMemory*>(p) = a; }
 PALPATE_INLINE Lanes pick(LaneMask yes, Lanes a, Lanes b) { return yes ? a : b; }

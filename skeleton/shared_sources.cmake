@@ -25,6 +25,7 @@ set(shared_skeleton_sources
   links/sections/section_law.cpp
   links/sections/section_shape.cpp
   loads/cavities.cpp
+  loads/cavity_walls.cpp
   loads/dent.cpp
   loads/load.cpp
   model/attachment/attach.cpp

@@ -40,7 +40,8 @@ Eigen::VectorXd dense_forms(const Eigen::SparseMatrix<double>& half, const Eigen
 }
 
 using Eight = double __attribute__((vector_size(64)));
-using EightInMemory = double __attribute__((vector_size(64), aligned(8), may_alias));
+// A typedef: from an alias Clang takes no alignment.
+typedef double EightInMemory __attribute__((vector_size(64), aligned(8), may_alias));
 
 PALPATE_INLINE Eight load(const double* p) { return *reinterpret_cast<const EightInMemory*>(p); }
 PALPATE_INLINE void store(Eight v, double* p) { *reinterpret_cast<EightInMemory*>(p) = v; }

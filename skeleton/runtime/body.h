@@ -121,6 +121,10 @@ public:
     /// In the cavities that the skin encloses, beside the model's effects [MPa]. Allocates the first time.
     /// @throws InvalidInput when there are none.
     void set_pressure(double pressure);
+    /// The number of the cavity with a wall nearest to a point at rest. @throws InvalidInput when there is none.
+    int find_cavity(const Eigen::Vector3d& point) const;
+    /// In one cavity [MPa]. @throws InvalidInput when there is no such one.
+    void set_cavity_pressure(int cavity, double pressure);
     /// A cable through points of the body (p x 3) [mm]: the first is fixed in space, the last to the body. Let go until
     /// it is pulled. Allocates. @throws InvalidInput for less than two points, or two next to each other in one place.
     int add_tendon(const Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>& path);

@@ -8,6 +8,7 @@
 #include "fem/rig/round_shapes.h"
 #include "mesh/errors.h"
 #include "skeleton/effects/tool_points.h"
+#include "skeleton/loads/cavity_walls.h"
 #include "skeleton/model/link_modulus.h"
 #include "skeleton/runtime/body_impl.h"
 
@@ -17,6 +18,10 @@ namespace {
 
 void require_above(const char* what, double value, double least) {
     if (!(value > least)) throw InvalidInput(fmt::format("{} is {}; it must be above {:g}", what, value, least));
+}
+
+void require_finite_pressure(double pressure) {
+    if (!std::isfinite(pressure)) throw InvalidInput(fmt::format("the pressure is {}; it must be finite", pressure));
 }
 
 }  // namespace
@@ -165,8 +170,20 @@ double Body::tendon_tension(int tendon) {
 }
 
 void Body::set_pressure(double pressure) {
-    if (!std::isfinite(pressure)) throw InvalidInput(fmt::format("the pressure is {}; it must be finite", pressure));
+    require_finite_pressure(pressure);
     impl_->field.set_pressure(pressure);
+}
+
+int Body::find_cavity(const Eigen::Vector3d& point) const {
+    const skeleton::Model& model = impl_->reordered.model;
+    const int found = skeleton::find_cavity(model, skeleton::walls_by_cavity(model), {point});
+    if (found < 0) throw InvalidInput("the model's skin encloses no cavity");
+    return found;
+}
+
+void Body::set_cavity_pressure(int cavity, double pressure) {
+    require_finite_pressure(pressure);
+    impl_->field.set_cavity_pressure(cavity, pressure);
 }
 
 void Body::set_damping(const RayleighDamping& damping) {

@@ -148,6 +148,14 @@ palpate_status palpate_set_pressure(palpate_body* body, double pressure) {
     return guarded([&] { body->body.set_pressure(pressure); });
 }
 
+palpate_status palpate_find_cavity(palpate_body* body, const double point[3], int* cavity) {
+    return guarded([&] { *cavity = body->body.find_cavity(Vec3Of(point)); });
+}
+
+palpate_status palpate_set_cavity_pressure(palpate_body* body, int cavity, double pressure) {
+    return guarded([&] { body->body.set_cavity_pressure(cavity, pressure); });
+}
+
 palpate_status palpate_add_tendon(palpate_body* body, const double* path, int points, int* tendon) {
     using Path = Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>;
     return guarded([&] { *tendon = body->body.add_tendon(Eigen::Map<const Path>(path, points, 3)); });

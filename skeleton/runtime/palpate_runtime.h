@@ -76,6 +76,9 @@ PALPATE_API palpate_status palpate_tool_load(palpate_body* body, int tool, doubl
 
 /* In the cavities that the skin encloses, beside the model's effects [MPa]. */
 PALPATE_API palpate_status palpate_set_pressure(palpate_body* body, double pressure);
+/* The cavity with a wall nearest to a point at rest, and the pressure in one. */
+PALPATE_API palpate_status palpate_find_cavity(palpate_body* body, const double point[3], int* cavity);
+PALPATE_API palpate_status palpate_set_cavity_pressure(palpate_body* body, int cavity, double pressure);
 /* A cable through `points` points of the body, x, y, z each [mm]: the first is fixed in space, the last to the body. */
 PALPATE_API palpate_status palpate_add_tendon(palpate_body* body, const double* path, int points, int* tendon);
 PALPATE_API palpate_status palpate_pull_tendon(palpate_body* body, int tendon, double tension); /* [N] */

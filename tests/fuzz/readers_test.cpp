@@ -11,6 +11,7 @@
 #include "mesh/text/atomic_file.h"
 #include "tests/fuzz/mutations.h"
 #include "tests/fuzz/readers.h"
+#include "tests/sanitizers.h"
 #include "tests/temporary_folder.h"
 
 namespace palpate::fuzz {
@@ -32,7 +33,7 @@ class Readers : public testing::TestWithParam<Reader> {};
 class MemoryLimit {
 public:
     MemoryLimit() {
-#ifndef __SANITIZE_ADDRESS__
+#ifndef PALPATE_ADDRESS_SANITIZER
         std::ifstream statm("/proc/self/statm");
         double pages = 0;
         statm >> pages;
@@ -43,7 +44,7 @@ public:
 #endif
     }
     ~MemoryLimit() {
-#ifndef __SANITIZE_ADDRESS__
+#ifndef PALPATE_ADDRESS_SANITIZER
         setrlimit(RLIMIT_AS, &before_);
 #endif
     }

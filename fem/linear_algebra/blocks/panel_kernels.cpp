@@ -8,10 +8,9 @@ namespace {
 
 constexpr int lanes = 8;
 using Lanes = double __attribute__((vector_size(lanes * sizeof(double))));
-// In memory they need not be aligned.
-using LanesInMemory = double __attribute__((vector_size(lanes * sizeof(double)), aligned(8), may_alias));
-
-using FloatsInMemory = float __attribute__((vector_size(lanes * sizeof(float)), aligned(4), may_alias));
+// In memory they need not be aligned. Clang takes an alignment from a typedef, from an alias it does not.
+typedef double LanesInMemory __attribute__((vector_size(lanes * sizeof(double)), aligned(8), may_alias));
+typedef float FloatsInMemory __attribute__((vector_size(lanes * sizeof(float)), aligned(4), may_alias));
 
 PALPATE_INLINE void load(const double* from, Lanes& to) { to = *reinterpret_cast<const LanesInMemory*>(from); }
 PALPATE_INLINE void load(const float* from, Lanes& to) {

@@ -192,6 +192,20 @@ EMSCRIPTEN_KEEPALIVE const double* play_ball_force() {
     });
 }
 
+/// Adds an actuator as actuator_as_text writes it, at 0. Its number.
+EMSCRIPTEN_KEEPALIVE int play_add_actuator(const char* text) {
+    return guarded(-1,
+                   [&] { return touched().add_actuator(pipeline::actuator_from_text(nlohmann::json::parse(text))); });
+}
+/// Pressure [MPa], tension [N] or length drawn in [mm].
+EMSCRIPTEN_KEEPALIVE int play_drive(int actuator, double value) {
+    return guarded(-1, [&] { return touched().drive(actuator, value), 0; });
+}
+/// Of a tendon [N]: one number.
+EMSCRIPTEN_KEEPALIVE const double* play_tension(int actuator) {
+    return guarded(static_cast<const double*>(nullptr), [&] { return handed_out({touched().tension(actuator)}); });
+}
+
 /// Begins to judge a model with those of its effects on a set. How many states there are to judge.
 EMSCRIPTEN_KEEPALIVE int play_judge(int model, unsigned effects, int set) {
     return guarded(-1, [&] {

@@ -9,7 +9,8 @@ class HandledPlayer extends ToldPlayer {
     fill(at('model'), this.data.models.map((m, i) => [m.name, i]));
     at('model-label').hidden = this.data.models.length < 2;
     const states = this.data.sets[0]?.states ?? [];
-    const unloaded = (s) => s.contacts.every((c) => c[3] === 0 && c[4] === 0 && c[5] === 0);
+    const unloaded = (s) => s.contacts.every((c) => c[3] === 0 && c[4] === 0 && c[5] === 0)
+      && (s.settings ?? []).every(([, value]) => value === 0);
     fill(at('probe'), [['none', -1], ...states.map((s, i) => [
       `${s.probe} at ${+s.time.toPrecision(4)} s${unloaded(s) ? ', unloaded' : ''}${this.judge.heldOut.has(s.probe) ? ', held out' : ''}`, i])]);
     fill(at('point'), [['none', -1], ...this.points.map((v, i) => [
@@ -22,6 +23,9 @@ class HandledPlayer extends ToldPlayer {
       item.textContent = note;
       return item;
     }));
+
+    at('drives').hidden = !this.actuators.length;
+    at('sliders').replaceChildren(...this.actuators.map((actuator, i) => this.sliderOf(actuator, i)));
 
     at('controls').addEventListener('submit', (e) => e.preventDefault());
     at('controls').addEventListener('input', () => { this.changed = true; this.tellLink(); });
@@ -41,6 +45,16 @@ class HandledPlayer extends ToldPlayer {
       letGo: () => { this.letGo(); canvas.classList.remove('held'); this.tellLink(); }, key: (e) => this.key(e)});
     addEventListener('hashchange', () => { if (location.hash !== this.link()) this.follow(location.hash); });
     new ResizeObserver(() => { this.changed = true; }).observe(canvas);
+  }
+  sliderOf({name, low, high}, i) {
+    const label = document.createElement('label'), slider = document.createElement('input'), told = document.createElement('output');
+    label.className = 'slider';
+    Object.assign(slider, {type: 'range', id: `drive-${i}`, min: low, max: high, step: (high - low) / 200, value: 0});
+    slider.setAttribute('aria-label', name);
+    slider.addEventListener('input', () => this.drive(i, +slider.value));
+    told.id = `driven-${i}`;
+    label.append(name, slider, told);
+    return label;
   }
   under(x, y) {
     const canvas = this.at('canvas'), ray = rayAt(this.camera, x, y, canvas.clientWidth, canvas.clientHeight);

@@ -72,6 +72,10 @@ class Numerics {
     return pointer ? this.doubles(pointer, 9) : null;
   }
 
+  addActuator(actuator) { return this.withText(JSON.stringify(actuator), this.wasm._play_add_actuator); }
+  drive(actuator, value) { this.told(this.wasm._play_drive(actuator, value)); }
+  tension(tendon) { return this.doubles(this.wasm._play_tension(tendon), 1)[0]; }
+
   judge(model, effects, set) { return this.told(this.wasm._play_judge(model, effects, set)); }
   judgeState(r) {
     const [squares, coordinates, whole, state] = this.doubles(this.wasm._play_judge_state(r), 4);

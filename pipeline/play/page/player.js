@@ -28,6 +28,9 @@ class Player {
     this.hand = null;        // {touch, from, target}, or with a ball {ball, from, target}: what is held now
     this.ball = null;        // {radius, at}: a ball that presses, in the hand or left where it was
     this.strongest = 1e-9;   // force that has been seen [N]
+    this.actuators = data.actuators.map((actuator, i) => ({...actuator, of: i})).filter((actuator) => actuator.kind);
+    this.asked = this.actuators.map(() => 0);   // where each shall be
+    this.driven = this.actuators.map(() => 0);  // where it is
     this.wake();
 
     const held = first.spheres.filter((s) => s.held).map((s) => s.center);
@@ -53,6 +56,12 @@ class Player {
     return this.chosen.probe < 0 ? null : this.data.sets[set].states[this.chosen.probe];
   }
 
+  /// What the probe sets each actuator to; without one 0.
+  get settings() {
+    const settings = new Map(this.state?.settings ?? []);
+    return this.actuators.map((actuator) => settings.get(actuator.of) ?? 0);
+  }
+
   /// Takes up what is chosen; `anew`: from rest, with the probe's loads, else from where the body stands.
   restart(anew) {
     const set = this.set < 0 ? null : this.data.sets[this.set], state = this.state;
@@ -65,8 +74,12 @@ class Player {
       this.loads = acting.map(([x, y, z, , , , radius]) => this.numerics.touch([x, y, z], radius));
     }
     acting.forEach((contact, i) => this.numerics.bear(this.loads[i], contact.slice(3, 6)));
-    if (anew) this.high = 0;
-    if (this.set >= 0) this.verdict = this.judge.begin(this.chosen.model, this.effects, this.set);
+    if (anew) Object.assign(this, {high: 0, driven: this.actuators.map(() => 0)});
+    this.actuators.forEach((actuator, i) => {
+      this.numerics.addActuator(actuator);
+      this.numerics.drive(i, this.driven[i]);
+    });
+    if (this.set >= 0 && this.data.judged) this.verdict = this.judge.begin(this.chosen.model, this.effects, this.set);
     this.wake();
     this.tellChoice();
   }
@@ -80,6 +93,7 @@ class Player {
   }
   chooseProbe(probe) {
     this.chosen.probe = probe;
+    this.asked = this.settings;
     this.restart(true);
     if (this.still || probe < 0) this.settle();
   }
@@ -153,6 +167,29 @@ class Player {
     Object.assign(this, {hand: null, pinned: []});
     this.wake();
   }
+  // --- Actuators ---------------------------------------------------------------------------------------------------
+  drive(i, value) {
+    this.asked[i] = value;
+    this.wake();
+    if (this.still) this.settle();
+  }
+  /// Each on its way to where it shall be, by that share of its range at most; false where all are there.
+  driveOn(share) {
+    const before = this.driven;
+    this.driven = before.map((value, i) => {
+      const most = share * (this.actuators[i].high - this.actuators[i].low), way = this.asked[i] - value;
+      return Math.abs(way) > most ? value + Math.sign(way) * most : this.asked[i];
+    });
+    this.driven.forEach((value, i) => { if (value !== before[i]) this.numerics.drive(i, value); });
+    return this.driven.some((value, i) => value !== before[i]);
+  }
+  /// The body does not bear it: back to what it bore, and no further.
+  driveBack(to) {
+    this.driven = to;
+    this.asked = [...to];
+    to.forEach((value, i) => this.numerics.drive(i, value));
+    this.tellActuators();
+  }
   get touches() { return [...this.loads, ...this.pinned, ...(this.hand && !this.hand.ball ? [this.hand.touch] : [])]; }
   /// What acts now, as `palpate simulate` takes it.
   probesTable() {
@@ -165,7 +202,14 @@ class Player {
   wake() { this.quiet = 0; }
   /// To where all forces balance.
   settle() {
-    this.attempt(() => this.numerics.equilibrium());
+    for (let driving = true; driving;) {
+      const before = this.driven;
+      driving = this.driveOn(0.1);
+      if (!this.attempt(() => this.numerics.equilibrium())) {
+        if (driving) this.driveBack(before);
+        break;
+      }
+    }
     this.wake();
   }
   /// Runs what may find no answer: the body stays where it was then, and the page says so.
@@ -184,10 +228,13 @@ class Player {
   step() {
     const before = this.centres ?? this.numerics.centres();
     this.moveBall();
+    const bore = this.driven, driving = this.driveOn(1 / 30);  // half a second from end to end
     const moved = this.attempt(() => (this.motionless ? this.numerics.equilibrium() : this.numerics.advance(frameTime)));
     if (!moved && !this.motionless && this.numerics.message().includes('mass')) this.motionless = true;
-    // Too hard a pull: the hand gives way until the body bears it.
-    if (!moved && this.hand?.ball) {
+    // Too hard a pull: the actuators or the hand give way until the body bears it.
+    if (!moved && driving) {
+      this.driveBack(bore);
+    } else if (!moved && this.hand?.ball) {
       this.pull(plus3(this.hand.ball.at, this.hand.normal, 0.2 * this.hand.ball.radius));
     } else if (!moved && this.hand?.target) {
       const {place} = this.numerics.at(this.hand.touch);
@@ -196,7 +243,7 @@ class Player {
     this.centres = this.numerics.centres();
     let furthest = 0;
     for (let i = 0; i < before.length; ++i) furthest = Math.max(furthest, Math.abs(this.centres[i] - before[i]));
-    this.quiet = furthest > 2e-6 * this.size ? 0 : this.quiet + 1;
+    this.quiet = driving || furthest > 2e-6 * this.size ? 0 : this.quiet + 1;
   }
   get moving() { return this.quiet < 20; }
   /// A frame: time goes on by as many steps as have passed, errors are found in what is left of it.

@@ -31,14 +31,25 @@ class ToldPlayer extends SeenPlayer {
           'millimetres')}, stiffness ${inUnit(feel.stiffness, 'newton per millimetre')}.` : 'Nothing is held.';
       }
     }
+    this.tellActuators();
     const errors = this.markerErrors();
     if (errors) {
       const worst = errors.lengths.reduce((a, b) => (b > a ? b : a), 0);
       this.at('told').textContent = `Off by ${inUnit(errors.rms, 'mm')} rms, ${inUnit(worst, 'mm')} at most` +
         `${this.hand || this.pinned.length ? ', pulled besides' : ''}. Dark: measured; light: the model.`;
     } else if (this.set >= 0) {
-      this.at('told').textContent = this.state ? 'Nothing was read in this state.' : 'Choose one: its forces act, and the measured markers are drawn.';
+      this.at('told').textContent = this.state ? 'Nothing was read in this state.' : 'Choose one: its loads act, and the measured markers are drawn.';
     }
+  }
+  /// Where each actuator is, and how taut a tendon that is drawn in.
+  tellActuators() {
+    this.actuators.forEach(({kind, unit}, i) => {
+      const tension = kind === 'length' ? `, ${inUnit(this.numerics.tension(i), 'N')}` : '';
+      const slider = this.at(`drive-${i}`), told = inUnit(this.driven[i], unit) + tension;
+      slider.value = this.asked[i];
+      slider.setAttribute('aria-valuetext', told);
+      this.at(`driven-${i}`).textContent = told;
+    });
   }
   tellChoice() {
     this.at('model').value = this.chosen.model;
@@ -73,13 +84,14 @@ class ToldPlayer extends SeenPlayer {
   tellErrors() {
     const shown = this.set >= 0;
     this.at('errors').hidden = this.at('replay').hidden = this.at('markers-label').hidden = !shown;
+    if (shown && !this.data.judged) this.at('errors').hidden = !this.data.models.some((m) => m.told);
     this.at('findings-label').hidden = !this.findings.length && !this.data.exchanged.length;
     if (!shown) return;
     const off = this.model.effects.filter((e) => e.played && !this.isOn(e)).map((e) => e.name);
     const {verdict} = this, told = this.data.models.filter((m) => m.told);
     const bars = told.map((m) => ({name: m.name, rms: m.told.rms_mm}));
     const name = `In the hand${off.length ? `, without ${off.join(', ')}` : ''}`;
-    bars.push({name, rms: verdict.done ? verdict.rms : NaN, now: true});
+    if (this.data.judged) bars.push({name, rms: verdict.done ? verdict.rms : NaN, now: true});
     const largest = Math.max(...bars.map((b) => b.rms || 0)) || 1;
     this.at('bars').replaceChildren(...bars.map(({name: text, rms, now}) => {
       const row = document.createElement('div'), words = document.createElement('span');
@@ -91,6 +103,10 @@ class ToldPlayer extends SeenPlayer {
       row.append(words, value, bar);
       return row;
     }));
+    if (!this.data.judged) {
+      this.at('judged').textContent = 'As the run tells them: under actuators, models in the hand are not judged here.';
+      return;
+    }
     const part = this.judge.heldOut.size ? 'rms over the probes that were fitted' : 'rms over all measured coordinates';
     const unseen = Number.isFinite(verdict.heldOutRms) ? `; ${inUnit(verdict.heldOutRms, 'mm')} on those held out` : '';
     this.at('judged').textContent = verdict.trouble ? `Not found: ${verdict.trouble}`
@@ -106,6 +122,7 @@ class ToldPlayer extends SeenPlayer {
       model: chosen.model, off: [...chosen.off].join(','), probe: state ? chosen.probe : '',
       colour: this.at('colour').value, radius: this.at('radius').value,
       skeleton: this.at('show-skeleton').checked ? 1 : '',
+      driven: this.asked.some((value) => value !== 0) ? this.asked.map(round).join(',') : '',
       view: [...camera.turned, ...camera.target, camera.distance].map(round).join(','),
       pull: pulled ? [...pulled.rest, ...pulled.force, pulled.radius].map(round).join(',') : '',
     });
@@ -125,6 +142,7 @@ class ToldPlayer extends SeenPlayer {
     if ([...this.at('colour').options].some((o) => o.value === told.colour)) this.at('colour').value = told.colour;
     if (told.radius !== undefined && +told.radius >= 0) this.at('radius').value = told.radius;
     this.at('show-skeleton').checked = told.skeleton === '1';
+    this.asked = inHash.numbers(told.driven, this.actuators.length) ?? this.settings;
     const view = inHash.numbers(told.view, 13), pull = inHash.numbers(told.pull, 7);
     if (view) Object.assign(camera, {turned: view.slice(0, 9), target: view.slice(9, 12), distance: view[12]});
     this.restart(true);

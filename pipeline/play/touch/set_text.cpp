@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "mesh/errors.h"
+
 namespace palpate::pipeline {
 namespace {
 
@@ -27,12 +29,14 @@ json as_text(const identify::LoadState& state) {
         for (const double x : r.position) reading.push_back(number(rounded(x)));
         readings.push_back(reading);
     }
-    return {{"probe", state.probe},
-            {"time", state.time},
-            {"contacts", contacts},
-            {"readings", readings},
-            {"gravity", vector(state.gravity)},
-            {"pressure", number(state.pressure)}};
+    json text = {{"probe", state.probe},
+                 {"time", state.time},
+                 {"contacts", contacts},
+                 {"readings", readings},
+                 {"gravity", vector(state.gravity)},
+                 {"pressure", number(state.pressure)}};
+    for (const identify::Actuation& one : state.actuations) text["settings"].push_back({one.actuator, one.value});
+    return text;
 }
 
 identify::LoadState from_text(const json& text) {
@@ -45,6 +49,8 @@ identify::LoadState from_text(const json& text) {
     }
     state.gravity = vector(text.at("gravity"));
     state.pressure = number(text.at("pressure"));
+    for (const json& one : text.value("settings", json::array()))
+        state.actuations.push_back({.actuator = one.at(0).get<int>(), .value = number(one.at(1))});
     return state;
 }
 
@@ -65,6 +71,32 @@ json set_as_text(const identify::MeasurementSet& set) {
     }
     for (const identify::LoadState& state : set.states) text["states"].push_back(as_text(state));
     return text;
+}
+
+json actuator_as_text(const mesh::Actuator& actuator) {
+    if (const auto* tendon = std::get_if<mesh::TendonActuator>(&actuator.kind)) {
+        json path = json::array();
+        for (Eigen::Index k = 0; k < tendon->path.rows(); ++k) path.push_back(vector(Vec3(tendon->path.row(k))));
+        return {{"name", actuator.name}, {"kind", tendon->by_length ? "length" : "tension"}, {"path", path}};
+    }
+    const auto* point = std::get_if<Vec3>(&std::get<mesh::PressureActuator>(actuator.kind).cavity);
+    if (!point) throw InvalidInput(actuator.name + ": a cavity is played by a point of its wall");
+    return {{"name", actuator.name}, {"kind", "pressure"}, {"at", vector(*point)}};
+}
+
+mesh::Actuator actuator_from_text(const json& text) {
+    mesh::Actuator actuator{text.at("name").get<std::string>(), {}};
+    const auto kind = text.at("kind").get<std::string>();
+    if (kind == "pressure") {
+        actuator.kind = mesh::PressureActuator{vector(text.at("at"))};
+        return actuator;
+    }
+    const json& path = text.at("path");
+    mesh::TendonActuator tendon{Points(std::ssize(path), 3), kind == "length"};
+    for (std::size_t k = 0; k < path.size(); ++k)
+        tendon.path.row(static_cast<Eigen::Index>(k)) = vector(path[k]).transpose();
+    actuator.kind = std::move(tendon);
+    return actuator;
 }
 
 identify::MeasurementSet set_from_text(const json& text) {

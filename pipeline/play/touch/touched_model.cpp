@@ -3,9 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <memory>
 
 #include "mesh/errors.h"
+#include "skeleton/loads/cavity_walls.h"
 #include "skeleton/loads/dent.h"
+#include "skeleton/model/link_modulus.h"
 #include "skeleton/model/observation.h"
 
 namespace palpate::pipeline {
@@ -27,7 +30,6 @@ TouchedModel::TouchedModel(skeleton::Model model, const Vec3& gravity, double pr
     : model_(as_played(std::move(model), pressure)),
       body_(model_, for_display),
       to_load_(model_),
-      solver_(model_),
       k_(skeleton::stiffness_vector(model_)),
       touches_(most_touches),
       unit_loads_(most_touches),
@@ -63,6 +65,7 @@ void TouchedModel::reset() {
     body_.reset();
     std::ranges::fill(touches_, Touch());
     ball_.is_placed = false;
+    for (int a = 0; a < std::ssize(actuators_); ++a) drive(a, 0);
 }
 
 int TouchedModel::touch(const Vec3& rest, double radius) {
@@ -130,6 +133,62 @@ void TouchedModel::lift_ball() {
 
 Vec3 TouchedModel::ball_force() { return ball_.is_placed ? body_.tool_load(ball_.tool).force : Vec3::Zero().eval(); }
 
+TouchedModel::Driven& TouchedModel::driven(int actuator) {
+    if (actuator < 0 || actuator >= std::ssize(actuators_))
+        throw InvalidInput(
+            fmt::format("actuator {} does not exist; there are {}, numbered from 0", actuator, actuators_.size()));
+    return actuators_[actuator];
+}
+
+int TouchedModel::add_actuator(const mesh::Actuator& actuator) {
+    Driven own{actuator};
+    if (const auto* tendon = std::get_if<mesh::TendonActuator>(&actuator.kind)) {
+        own.number = body_.add_tendon(tendon->path);
+    } else {
+        own.number = skeleton::find_cavity(model_, skeleton::walls_by_cavity(model_),
+                                           std::get<mesh::PressureActuator>(actuator.kind));
+        if (own.number < 0) throw InvalidInput(fmt::format("{}: the model's skin encloses no cavity", actuator.name));
+    }
+    actuators_.push_back(std::move(own));
+    return static_cast<int>(actuators_.size()) - 1;
+}
+
+void TouchedModel::drive(int actuator, double value) {
+    Driven& own = driven(actuator);
+    const auto* tendon = std::get_if<mesh::TendonActuator>(&own.actuator.kind);
+    if (!tendon) {
+        body_.set_cavity_pressure(own.number, value);
+    } else if (tendon->by_length) {
+        body_.draw_tendon(own.number, value);
+    } else {
+        body_.pull_tendon(own.number, value);
+    }
+    own.value = value;
+    solver_.reset();
+}
+
+double TouchedModel::tension(int actuator) {
+    const Driven& own = driven(actuator);
+    if (!std::holds_alternative<mesh::TendonActuator>(own.actuator.kind))
+        throw InvalidInput(own.actuator.name + ": is no tendon");
+    return body_.tendon_tension(own.number);
+}
+
+fem::Effects TouchedModel::driven_effects() const {
+    fem::Effects effects;
+    for (const Driven& own : actuators_) {
+        if (const auto* tendon = std::get_if<mesh::TendonActuator>(&own.actuator.kind)) {
+            effects.tendons.push_back(
+                {std::make_shared<mesh::TendonActuator>(*tendon), own.value, skeleton::link_modulus(model_)});
+        } else if (own.value != 0) {
+            effects.cavities.push_back(
+                {std::make_shared<mesh::PressureActuator>(std::get<mesh::PressureActuator>(own.actuator.kind)),
+                 own.value});
+        }
+    }
+    return effects;
+}
+
 void TouchedModel::advance(double h) {
     constexpr int parts = 4;
     try {
@@ -150,12 +209,13 @@ std::optional<Mat3> TouchedModel::compliance(int touch) {
         unit.forces.front().force = Vec3::Unit(c);
         B.col(c) = skeleton::external_force(model_, here.state, unit);
     }
+    if (!solver_) solver_.emplace(model_, driven_effects());
     try {
-        solver_.factor_tangent(k_, load(), here);
+        solver_->factor_tangent(k_, load(), here);
     } catch (const SolverFailure&) {
         return std::nullopt;
     }
-    return B.transpose() * solver_.solve_tangent(B);
+    return B.transpose() * solver_->solve_tangent(B);
 }
 
 void TouchedModel::stand_as(const skeleton::State& state) {

@@ -4,13 +4,14 @@
 #include <vector>
 
 #include "identify/loading/loads.h"
+#include "mesh/core/actuator.h"
 #include "skeleton/runtime/body.h"
 #include "skeleton/statics/equilibrium.h"
 
 namespace palpate::pipeline {
 
-/// A model under a hand: the runtime's body, and what a page asks of it beyond. Contacts are places on the skin at
-/// rest, so that they outlive a change of the model.
+/// A model under a hand, driven by actuators: the runtime's body, and what a page asks of it beyond. Contacts are
+/// places on the skin at rest, so that they outlive a change of the model.
 class TouchedModel {
 public:
     /// A contact, as it can be made again on another body of the same skin.
@@ -42,7 +43,7 @@ public:
 
     /// Stands and is touched as another one of the same spheres and skin.
     void take_over(const TouchedModel& other);
-    /// At rest, untouched.
+    /// At rest, untouched, actuators at 0.
     void reset();
 
     /// Takes hold of the skin at rest. @return the number of the touch, to be used below. @throws InvalidInput when all
@@ -61,6 +62,13 @@ public:
     void lift_ball();
     Vec3 ball_force();  // on the body [N]
 
+    /// Something that drives the body from inside; at first it does nothing. Its number. @throws as
+    /// runtime::Body::add_tendon; InvalidInput for pressure where the skin encloses no cavity.
+    int add_actuator(const mesh::Actuator& actuator);
+    /// Pressure [MPa], tension [N] or length drawn in [mm].
+    void drive(int actuator, double value);
+    double tension(int actuator);  // of a tendon as the body stands [N]
+
     /// h seconds on; in smaller steps where one does not end. @throws SolverFailure when these do not either.
     void advance(double h);
 
@@ -76,15 +84,24 @@ public:
     Points places(const std::vector<skeleton::Attachment>& points);
 
 private:
+    struct Driven {
+        mesh::Actuator actuator;
+        int number = 0;    // of the body's cavity or tendon
+        double value = 0;  // as drive() has it
+    };
     Touch& at(int touch);
+    Driven& driven(int actuator);
+    /// The actuators as effects on the statics.
+    fem::Effects driven_effects() const;
 
     skeleton::Model model_;
     runtime::Body body_;
     identify::ContactLoads to_load_;
-    skeleton::StaticsSolver solver_;
+    std::optional<skeleton::StaticsSolver> solver_;  // none: the actuators act otherwise since
     Eigen::VectorXd k_;
     std::vector<Touch> touches_;
     Ball ball_;
+    std::vector<Driven> actuators_;
     std::vector<skeleton::Load> unit_loads_;  // of touches, each 1 N
     Vec3 gravity_;
 };

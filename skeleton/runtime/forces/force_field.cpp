@@ -139,6 +139,11 @@ void ForceField::set_pressure(double pressure) {
     effects_->set_pressure(pressure);
 }
 
+void ForceField::set_cavity_pressure(int cavity, double pressure) {
+    if (!effects_) effects_ = std::make_unique<PointEffects>(model_, fem::Effects{});
+    effects_->set_cavity_pressure(cavity, pressure);
+}
+
 double ForceField::evaluate(const double* pose, const Rates& rates, double* force) {
     std::fill_n(force, static_cast<std::size_t>(row_length) * row_count(model_), 0.0);
     double energy = add_paper_links(paper_, pose, rates, force);

@@ -29,6 +29,7 @@ public:
 
     /// In the cavities of the skin, beside the effects [MPa]. @throws InvalidInput when it has none.
     void set_pressure(double pressure);
+    void set_cavity_pressure(int cavity, double pressure);
 
     /// Sets the forces on all spheres (rows); returns the potential energy [N mm], without what was dissipated.
     double evaluate(const double* pose, const Rates& rates, double* force);

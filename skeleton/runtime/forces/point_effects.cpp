@@ -1,11 +1,13 @@
 #include "skeleton/runtime/forces/point_effects.h"
 
+#include <fmt/format.h>
+
 #include <Eigen/Geometry>
 #include <map>
 
 #include "mesh/errors.h"
 #include "skeleton/effects/point_sets.h"
-#include "skeleton/loads/cavities.h"
+#include "skeleton/loads/cavity_walls.h"
 #include "skeleton/runtime/forces/link_tables.h"
 
 namespace palpate::runtime {
@@ -34,34 +36,43 @@ PointEffects::PointEffects(const skeleton::Model& model, const fem::Effects& eff
         for (const skeleton::Attachment& point : model.skin) vertices_.emplace_back().assign(point, model.spheres);
         pulls_.resize(vertices_.size());
     }
-    set_pressure(0);
+    if (of_effects_ != 0) take_cavities();
 }
 
 void PointEffects::set_pressure(double pressure) {
-    const double all = of_effects_ + pressure;
-    if (all != 0 && walls_.empty()) take_walls();
-    pressure_ = all;
+    if (pressure != 0) take_cavities();
+    for (Cavity& cavity : cavities_) cavity.pressure = pressure;
 }
 
-void PointEffects::take_walls() {
-    std::map<int, int> corner_of;
-    for (std::array<int, 3> wall : skeleton::cavity_walls(model_)) {
-        for (int& corner : wall) {
-            const auto [at, fresh] = corner_of.try_emplace(corner, static_cast<int>(corners_.size()));
-            if (fresh) corners_.emplace_back().assign(model_.skin[corner], model_.spheres);
-            corner = at->second;
+void PointEffects::set_cavity_pressure(int cavity, double pressure) {
+    take_cavities();
+    if (cavity < 0 || cavity >= static_cast<int>(cavities_.size()))
+        throw InvalidInput(fmt::format("cavity {} does not exist; the model's skin encloses {}, numbered from 0",
+                                       cavity, cavities_.size()));
+    cavities_[cavity].pressure = pressure;
+}
+
+void PointEffects::take_cavities() {
+    if (!cavities_.empty()) return;
+    const SphereRows rest = rest_rows(model_);
+    for (const skeleton::CavityWall& wall : skeleton::walls_by_cavity(model_)) {
+        Cavity& cavity = cavities_.emplace_back();
+        std::map<int, int> corner_of;
+        for (std::array<int, 3> triangle : wall) {
+            for (int& corner : triangle) {
+                const auto [at, fresh] = corner_of.try_emplace(corner, static_cast<int>(cavity.corners.size()));
+                if (fresh) cavity.corners.emplace_back().assign(model_.skin[corner], model_.spheres);
+                corner = at->second;
+            }
+            cavity.wall.push_back(triangle);
         }
-        walls_.push_back(wall);
+        cavity.growth.resize(cavity.corners.size());
+        cavity.rest_volume = cavity.place(rest.data());
     }
-    if (walls_.empty())
+    if (cavities_.empty())
         throw InvalidInput(
             "the model's skin encloses no cavity, in which a pressure could act: give it one, closed and turned "
             "inwards, or take the pressure away");
-    growth_.resize(corners_.size());
-    const SphereRows rest = rest_rows(model_);
-    SphereRows nothing(rest.size(), 0.0);
-    pressure_ = 1;
-    rest_volume_ = -add_pressure(rest.data(), nothing.data());
 }
 
 double PointEffects::add_forces(const double* pose, double* force) {
@@ -76,7 +87,7 @@ double PointEffects::add_forces(const double* pose, double* force) {
         }
     }
     if (!surface_.empty()) energy += add_skin(pose, force);
-    return pressure_ == 0 ? energy : energy + add_pressure(pose, force);
+    return cavities_.empty() ? energy : energy + add_pressure(pose, force);
 }
 
 double PointEffects::add_skin(const double* pose, double* force) {
@@ -97,21 +108,32 @@ double PointEffects::add_skin(const double* pose, double* force) {
 }
 
 // A triangle's part in V is -1/6 x_0 . (x_1 x x_2), as its outward normal points into the cavity.
-double PointEffects::add_pressure(const double* pose, double* force) {
-    for (std::size_t c = 0; c < corners_.size(); ++c) {
-        corners_[c].place(pose);
-        growth_[c].setZero();
+double PointEffects::Cavity::place(const double* pose) {
+    for (std::size_t c = 0; c < corners.size(); ++c) {
+        corners[c].place(pose);
+        growth[c].setZero();
     }
-    const Vec3 origin = corners_.front().x();
+    const Vec3 origin = corners.front().x();
     double volume = 0;
-    for (const auto& wall : walls_) {
-        const Vec3 x[3] = {corners_[wall[0]].x() - origin, corners_[wall[1]].x() - origin,
-                           corners_[wall[2]].x() - origin};
+    for (const auto& triangle : wall) {
+        const Vec3 x[3] = {corners[triangle[0]].x() - origin, corners[triangle[1]].x() - origin,
+                           corners[triangle[2]].x() - origin};
         volume -= x[0].dot(x[1].cross(x[2])) / 6;
-        for (int v = 0; v < 3; ++v) growth_[wall[v]] -= x[(v + 1) % 3].cross(x[(v + 2) % 3]) / 6;
+        for (int v = 0; v < 3; ++v) growth[triangle[v]] -= x[(v + 1) % 3].cross(x[(v + 2) % 3]) / 6;
     }
-    for (std::size_t c = 0; c < corners_.size(); ++c) corners_[c].add_force(pressure_ * growth_[c], force);
-    return -pressure_ * (volume - rest_volume_);
+    return volume;
+}
+
+double PointEffects::add_pressure(const double* pose, double* force) {
+    double energy = 0;
+    for (Cavity& cavity : cavities_) {
+        const double pressure = of_effects_ + cavity.pressure;
+        if (pressure == 0) continue;
+        energy -= pressure * (cavity.place(pose) - cavity.rest_volume);
+        for (std::size_t c = 0; c < cavity.corners.size(); ++c)
+            cavity.corners[c].add_force(pressure * cavity.growth[c], force);
+    }
+    return energy;
 }
 
 }  // namespace palpate::runtime

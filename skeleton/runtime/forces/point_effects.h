@@ -20,8 +20,10 @@ public:
     /// Spheres that support points hang on (flags, N).
     const std::vector<char>& supported() const { return supported_; }
 
-    /// Beside that of the effects [MPa]. @throws InvalidInput when the model has no cavities.
+    /// In all cavities, beside that of the effects [MPa]. @throws InvalidInput when the model has none.
     void set_pressure(double pressure);
+    /// In one of them, in the order of skeleton::walls_by_cavity. @throws InvalidInput when there is no such one.
+    void set_cavity_pressure(int cavity, double pressure);
 
     /// Adds their forces to the spheres' rows; returns their energy [N mm].
     double add_forces(const double* pose, double* force);
@@ -40,8 +42,18 @@ private:
         std::vector<RuntimePoint> points;
         std::vector<double> weights;
     };
+    struct Cavity {
+        std::vector<std::array<int, 3>> wall;  // by their corners
+        std::vector<RuntimePoint> corners;
+        std::vector<Vec3> growth;  // of the volume by each corner
+        double rest_volume = 0;    // [mm^3]
+        double pressure = 0;       // beside that of the effects [MPa]
+
+        /// Volume as the spheres stand at `pose`, with the growth by each corner [mm^3].
+        double place(const double* pose);
+    };
     double add_skin(const double* pose, double* force);
-    void take_walls();
+    void take_cavities();
     double add_pressure(const double* pose, double* force);
 
     const skeleton::Model& model_;
@@ -52,11 +64,8 @@ private:
     std::vector<skeleton::SkinTriangle> triangles_;  // where there are any
     std::vector<RuntimePoint> vertices_;             // of the skin
     std::vector<Vec3> pulls_;                        // on each of them [N]
-    double pressure_ = 0, of_effects_ = 0;           // all of it, and that of the effects [MPa]
-    std::vector<std::array<int, 3>> walls_;          // by their corners among `corners_`
-    std::vector<RuntimePoint> corners_;
-    std::vector<Vec3> growth_;  // of the volume by each corner
-    double rest_volume_ = 0;    // [mm^3]
+    double of_effects_ = 0;                          // pressure in all cavities [MPa]
+    std::vector<Cavity> cavities_;                   // where there was ever pressure
     std::vector<Eigen::Matrix<double, 3, 6>> by_share_;
 };
 

@@ -14,7 +14,8 @@ using namespace skeleton::lanewise;
 namespace {
 
 using Eight = float __attribute__((vector_size(32)));
-using EightInMemory = float __attribute__((vector_size(32), aligned(4), may_alias));
+// A typedef: from an alias Clang takes no alignment.
+typedef float EightInMemory __attribute__((vector_size(32), aligned(4), may_alias));
 
 PALPATE_INLINE Eight eight(const float* p) { return *reinterpret_cast<const EightInMemory*>(p); }
 PALPATE_INLINE Eight root(Eight a) {

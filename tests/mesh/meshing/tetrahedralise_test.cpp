@@ -12,6 +12,7 @@
 #include "mesh/system/child_process.h"
 #include "tests/mesh/faulty_surfaces.h"
 #include "tests/messages.h"
+#include "tests/sanitizers.h"
 
 namespace palpate::mesh {
 namespace {
@@ -67,7 +68,7 @@ TEST(Tetrahedralise, TheTimeLimitHolds) {
 }
 
 TEST(Tetrahedralise, TheMemoryLimitHolds) {
-#ifdef __SANITIZE_ADDRESS__
+#ifdef PALPATE_ADDRESS_SANITIZER
     GTEST_SKIP() << "the address sanitizer has its own way to run out of memory";
 #endif
     const TetrahedraliseOptions options{.edge_length = 0.05, .memory_limit = 16};

@@ -17,6 +17,7 @@
 #include <thread>
 
 #include "mesh/text/atomic_file.h"
+#include "tests/sanitizers.h"
 #include "tests/temporary_folder.h"
 #include "tests/wait.h"
 
@@ -109,7 +110,7 @@ TEST(ChildProcess, IsNotBegunAgainWhileItOrItsOwnChildComputes) {
     EXPECT_EQ(result.answer, "donedone");
 }
 
-#ifndef __SANITIZE_ADDRESS__  // which addresses terabytes itself
+#ifndef PALPATE_ADDRESS_SANITIZER  // which addresses terabytes itself
 TEST(ChildProcess, EndsWithItsMemory) {
     const auto greed = [] { return std::string(std::size_t{512} << 20, 'x'); };
     EXPECT_EQ(run_in_child(greed, {.mebibytes = 64}).end, End::OutOfMemory);

@@ -18,9 +18,11 @@
 #include "pipeline/play/touch/touched_model.h"
 #include "samples/lattice.h"
 #include "skeleton/model/io/model_io.h"
+#include "skeleton/model/link_modulus.h"
 #include "skeleton/statics/equilibrium.h"
 #include "skeleton/statics/statics.h"
 #include "tests/messages.h"
+#include "tests/places.h"
 #include "tests/temporary_folder.h"
 
 namespace palpate::pipeline {
@@ -98,6 +100,123 @@ TEST(InTheHand, ComplianceIsTheSlopeOfThePlace) {
         // central differences: second order in a step that moves the place by some thousandths of the body
         EXPECT_LT((slope - C->col(c)).norm(), 1e-4 * C->norm());
     }
+}
+
+/// A tendon from beside the lattice to its far corner.
+mesh::Actuator tendon_through(const skeleton::Model& model, bool by_length) {
+    const Vec3 to = 0.8 * vertex_of(model);
+    Points path(3, 3);
+    path << to.x(), to.y(), -5, to.x(), to.y(), 0.5 * to.z(), to.x(), to.y(), to.z();
+    return {"tendon", mesh::TendonActuator{path, by_length}};
+}
+
+TEST(InTheHand, ActuatorsDriveItAsTheyDriveTheModel) {
+    const skeleton::Model model = lattice_in_the_hand();
+    for (const bool by_length : {false, true}) {
+        const mesh::Actuator tendon = tendon_through(model, by_length);
+        TouchedModel touched(model, Vec3::Zero(), 0);
+        const int number = touched.add_actuator(tendon);
+        const double value = by_length ? 0.5 : 0.05;
+        touched.drive(number, value);
+        touched.body().equilibrium();
+        fem::Effects effects;
+        effects.tendons.push_back(
+            {.actuator = std::make_shared<const mesh::TendonActuator>(std::get<mesh::TendonActuator>(tendon.kind)),
+             .value = value,
+             .young = skeleton::link_modulus(model)});
+        const skeleton::Equilibrium expected =
+            skeleton::StaticsSolver(model, effects).solve(skeleton::stiffness_vector(model), {});
+        const Points places = touched.places(model.skin);
+        EXPECT_GT((places - model.surface.vertices).cwiseAbs().maxCoeff(), 0.05);  // [mm]
+        // the runtime's tests hold equilibria to 1e-8 of what moves, some millimetres
+        EXPECT_LT((places - skeleton::observed(model, expected, {}, model.skin)).cwiseAbs().maxCoeff(), 1e-6);
+        EXPECT_NEAR(touched.tension(number), by_length ? touched.tension(number) : value, 1e-12);
+        EXPECT_GT(touched.tension(number), 0);
+        touched.reset();
+        touched.body().equilibrium();
+        // what a slack tendon's stiffness leaves: rounding of 30 mm
+        EXPECT_LT((touched.places(model.skin) - model.surface.vertices).cwiseAbs().maxCoeff(), 1e-6);
+    }
+}
+
+TEST(InTheHand, ATautTendonIsFeltInTheStiffness) {
+    const skeleton::Model model = lattice_in_the_hand();
+    TouchedModel touched(model, Vec3::Zero(), 0);
+    const int tendon = touched.add_actuator(tendon_through(model, true));
+    touched.drive(tendon, 0.5);
+    const int touch = touched.touch(vertex_of(model), 0);
+    touched.push(touch, Vec3(0.001, 0, 0.002));
+    touched.body().equilibrium();
+    const std::optional<Mat3> C = touched.compliance(touch);
+    ASSERT_TRUE(C);
+    for (int c = 0; c < 3; ++c) {
+        const Vec3 step = 1e-4 * Vec3::Unit(c);
+        touched.push(touch, Vec3(0.001, 0, 0.002) + step);
+        touched.body().equilibrium();
+        const Vec3 up = touched.place(touch);
+        touched.push(touch, Vec3(0.001, 0, 0.002) - step);
+        touched.body().equilibrium();
+        // central differences: second order in a step that moves the place by some thousandths of the body
+        EXPECT_LT(((up - touched.place(touch)) / 2e-4 - C->col(c)).norm(), 1e-4 * C->norm());
+    }
+    touched.drive(tendon, 0);
+    touched.push(touch, Vec3::Zero());
+    touched.body().equilibrium();
+    EXPECT_GT((*touched.compliance(touch) - *C).norm(), 1e-3 * C->norm()) << "let out, it is another tangent";
+}
+
+TEST(InTheHand, RefusesActuatorsThatActOnNothing) {
+    const skeleton::Model model = lattice_in_the_hand();
+    TouchedModel touched(model, Vec3::Zero(), 0);
+    EXPECT_THAT(message_of([&] {
+                    touched.add_actuator({"bellows", mesh::PressureActuator{Vec3(1, 1, 1)}});
+                }),
+                AllOf(HasSubstr("bellows"), HasSubstr("no cavity")));
+    EXPECT_THAT(message_of([&] { touched.drive(0, 1); }), AllOf(HasSubstr("actuator 0"), HasSubstr("there are 0")));
+}
+
+TEST(InTheHand, AnActuatorIsTheSameAsText) {
+    const skeleton::Model model = lattice_in_the_hand();
+    for (const mesh::Actuator& one : {tendon_through(model, true), tendon_through(model, false),
+                                      mesh::Actuator{"bellows", mesh::PressureActuator{Vec3(1, 2, 3)}}}) {
+        const nlohmann::json text = nlohmann::json::parse(actuator_as_text(one).dump());
+        EXPECT_EQ(actuator_as_text(actuator_from_text(text)), text);
+        EXPECT_EQ(text["name"], one.name);
+    }
+    EXPECT_EQ(actuator_as_text(tendon_through(model, true))["kind"], "length");
+    const mesh::Actuator by_surface{"bellows", mesh::PressureActuator{mesh::make_sphere({1, 2, 3}, 1, 1)}};
+    EXPECT_THAT(message_of([&] { actuator_as_text(by_surface); }), HasSubstr("bellows"));
+}
+
+/// Sliders reach half as far again as the set goes; states that moved tools are not replayed.
+TEST(InTheHand, TakesTheActuatorsOfASet) {
+    const TemporaryFolder scratch;
+    const std::filesystem::path finger = std::filesystem::path(samples_folder) / "tendon-finger";
+    skeleton::write_model(scratch / "model.json", lattice_in_the_hand());
+    const nlohmann::json content = nlohmann::json::parse(play_data(scratch / "model.json", finger).content.dump());
+    ASSERT_EQ(content["actuators"].size(), 1U);
+    const nlohmann::json& tendon = content["actuators"][0];
+    EXPECT_FALSE(content["judged"]);
+    double largest = 0;
+    int set = 0;
+    for (const nlohmann::json& state : content["sets"][0]["states"]) {
+        for (const nlohmann::json& one : state.value("settings", nlohmann::json::array())) {
+            EXPECT_EQ(one[0], 0);
+            largest = std::max(largest, one[1].get<double>());
+            ++set;
+        }
+    }
+    EXPECT_GT(set, 3);
+    EXPECT_DOUBLE_EQ(tendon["high"].get<double>(), 1.5 * largest);
+    EXPECT_EQ(tendon["low"], 0.0);
+    EXPECT_EQ(tendon["unit"], "N");
+    EXPECT_EQ(tendon["kind"], "tension");
+
+    const std::filesystem::path phantom = std::filesystem::path(samples_folder) / "lump-phantom";
+    const nlohmann::json pressed = nlohmann::json::parse(play_data(scratch / "model.json", phantom).content.dump());
+    EXPECT_TRUE(pressed["sets"].empty());
+    EXPECT_TRUE(pressed["actuators"].empty());
+    EXPECT_THAT(pressed["notes"].dump(), HasSubstr("tools"));
 }
 
 TEST(InTheHand, TheHandHoldsWhenTheModelChanges) {

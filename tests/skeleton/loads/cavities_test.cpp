@@ -2,6 +2,7 @@
 
 #include "skeleton/effects/placed_effects.h"
 #include "skeleton/loads/cavities.h"
+#include "skeleton/loads/cavity_walls.h"
 #include "skeleton/statics/equilibrium.h"
 #include "tests/messages.h"
 #include "tests/skeleton/test_effects.h"
@@ -30,6 +31,17 @@ TEST(Cavities, AreTheClosedPartsThatAreTurnedInwards) {
     EXPECT_TRUE(Cavities(open).empty());
     const Model two = with_cavity(model, {5, 5, 5}, 2);
     EXPECT_NEAR(Cavities(two).volume(rest_state(two)), ball * 9 / 8, 1e-12);
+}
+
+TEST(Cavities, HaveWallsOfTheirOwn) {
+    const Model one = hollow(), two = with_cavity(one, {5, 5, 5}, 2);
+    EXPECT_EQ(walls_by_cavity(one).size(), 1U);
+    const std::vector<CavityWall> walls = walls_by_cavity(two);
+    ASSERT_EQ(walls.size(), 2U);
+    EXPECT_EQ(find_cavity(two, walls, {Vec3(15, 5, 5)}), 0);
+    EXPECT_EQ(find_cavity(two, walls, {Vec3(5, 5, 5)}), 1);
+    EXPECT_EQ(find_cavity(two, walls, {mesh::make_sphere({5, 5, 5}, 2, 1)}), 1);
+    EXPECT_EQ(find_cavity(make_chain(2), walls_by_cavity(make_chain(2)), {Vec3(5, 5, 5)}), -1);
 }
 
 TEST(Cavities, GradientIsTheVolumesDerivative) {

@@ -8,7 +8,7 @@
 #include "skeleton/runtime/body.h"
 #include "tests/skeleton/runtime/live_models.h"
 
-#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__) && defined(__GLIBC__)
+#ifdef __GLIBC__
 
 namespace {
 std::atomic<long> allocations_made{0};

@@ -56,6 +56,29 @@ TEST(CInterface, PlaysAModelFromItsFile) {
     palpate_close(body);
 }
 
+TEST(CInterface, SetsThePressureInACavity) {
+    const TemporaryFolder scratch;
+    skeleton::Model model = skeleton::testing::make_full_lattice({4, 3, 2});
+    give_skin(model);
+    add_cavity(model);
+    skeleton::write_model(scratch / "model.json", model);
+    palpate_body* body = nullptr;
+    ASSERT_EQ(palpate_open((scratch / "model.json").c_str(), 4, &body), PALPATE_OK) << palpate_message();
+    int cavity = -1;
+    ASSERT_EQ(palpate_find_cavity(body, Vec3(10, 10, 5).data(), &cavity), PALPATE_OK);
+    EXPECT_EQ(cavity, 0);
+    ASSERT_EQ(palpate_set_cavity_pressure(body, cavity, 0.02), PALPATE_OK);
+    ASSERT_EQ(palpate_equilibrium(body), PALPATE_OK);
+    Vec3 x;
+    ASSERT_EQ(palpate_sphere(body, 23, x.data(), nullptr), PALPATE_OK);
+    Body expected(scratch / "model.json");
+    expected.set_cavity_pressure(0, 0.02);
+    expected.equilibrium();
+    EXPECT_EQ(x, expected.position(23));
+    EXPECT_EQ(palpate_set_cavity_pressure(body, 1, 0.02), PALPATE_BAD_INPUT);
+    palpate_close(body);
+}
+
 TEST(CInterface, SaysWhatWentWrong) {
     const TemporaryFolder scratch;
     palpate_body* body = nullptr;

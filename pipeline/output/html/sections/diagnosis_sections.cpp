@@ -178,18 +178,48 @@ std::string where_line(const json& diagnosis) {
         prose(where["sentence"].get<std::string>()), how, escape(kinds));
 }
 
+bool is_among(const json& probes, const json& state) {
+    return std::ranges::find(probes, state["probe"]) != probes.end();
+}
+
+/// Why probes that no fit has seen err less than those fitted, where they move the body less; `states`: as in
+/// compare.json.
+std::string why_held_out_errs_less(const std::vector<BarGroup>& groups, const json& held_out, const json& states) {
+    if (std::ranges::none_of(groups, [](const BarGroup& group) {
+            return group.bars.size() > 1 && group.bars[1].value < group.bars[0].value;
+        }))
+        return {};
+    struct Moved {  // sum of squares [mm^2] over states
+        double squares = 0;
+        int states = 0;
+        double rms() const { return states > 0 ? std::sqrt(squares / states) : 0; }
+    } left_out, fitted;
+    for (const json& state : states) {
+        if (!state["rms_mm"].is_number() || !state["relative"].is_number() || !(state["relative"].get<double>() > 0))
+            continue;
+        const double moved = state["rms_mm"].get<double>() / state["relative"].get<double>();
+        Moved& of = is_among(held_out, state) ? left_out : fitted;
+        of.squares += moved * moved;
+        ++of.states;
+    }
+    if (left_out.states == 0 || !(left_out.rms() < fitted.rms())) return {};
+    return fmt::format(
+        " The held-out probes move the markers by {} mm rms, the fitted ones by {} mm: errors grow with the motion, so "
+        "that held-out ones can be the smaller.",
+        number(left_out.rms()), number(fitted.rms()));
+}
+
 /// Which probes were held out, and how; `states`: as in compare.json.
-std::string held_out_line(const json& held_out, const json& states) {
+std::string held_out_line(const std::vector<BarGroup>& groups, const json& held_out, const json& states) {
     if (held_out.empty()) return {};
     std::string probes;
     for (const json& probe : held_out) probes += (probes.empty() ? "" : ", ") + probe.dump();
-    const bool in_turn = std::ranges::all_of(
-        states, [&](const json& state) { return std::ranges::find(held_out, state["probe"]) != held_out.end(); });
+    const bool in_turn = std::ranges::all_of(states, [&](const json& state) { return is_among(held_out, state); });
     return "<p class=\"soft\">Blue: error on the probes that were fitted. Orange: cross-validation error" +
            (in_turn ? ", a third of the probes held out in turn" : " on probes " + probes + ", held out of each fit") +
-           ". <span class=\"aside\">In the table above, the errors are of fits to all probes; those held out leave out "
-           "one probe at "
-           "a time.</span></p>";
+           "." + why_held_out_errs_less(groups, held_out, states) +
+           " <span class=\"aside\">In the table above, the errors are of fits to all probes; those held out leave out "
+           "one probe at a time.</span></p>";
 }
 
 }  // namespace
@@ -210,10 +240,11 @@ std::string missing_section(const json& diagnosis) {
 std::string ladder_section(const json& ladder, const json& compare) {
     if (ladder.is_null()) return {};
     const std::string unit = std::string(keys_of(ladder["steps"].front()).unit) + " rms";
+    const std::vector<BarGroup> real_time = groups_of(ladder, false);
     return "<h2 id=\"ladder\">Ladder</h2><p>" + in_lines(ladder_in_words(ladder)) + "</p><div class=\"pair\">" +
-           group_chart(groups_of(ladder, false), "Error of the real-time model", unit) +
+           group_chart(real_time, "Error of the real-time model", unit) +
            group_chart(groups_of(ladder, true), "Error of the finite-element model", unit) + "</div>" +
-           held_out_line(ladder["held_out_probes"], compare["probes"]);
+           held_out_line(real_time, ladder["held_out_probes"], compare["probes"]);
 }
 
 std::string budget_section(const json& compare, const json& improved) {

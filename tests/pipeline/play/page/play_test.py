@@ -254,6 +254,38 @@ def check_creep(browser, run, page):
     expect(after > 1.1 * before and 0 < back < after - 0.9 * before, "a push does not creep, or leaves nothing behind")
 
 
+def check_actuators(browser, page):
+    """A slider bends the body as far as a probe's setting does, which the probe's markers show; and back."""
+    browser.open(page.as_uri(), 1366, 900)
+    rest = browser.run("return Array.from(p.numerics.shape());")
+    bent = browser.run("""
+      const slider = p.at('drive-0');
+      slider.value = slider.max; slider.dispatchEvent(new Event('input'));
+      p.settle();
+      return {shape: Array.from(p.numerics.shape()), told: p.at('driven-0').textContent, asked: p.asked[0], max: +slider.max};""")
+    moved = max(abs(a - b) for a, b in zip(bent["shape"], rest))
+    browser.picture("actuator")
+    print(f"tendon: {bent['told']} moves the body by {moved:.3g} mm")
+    expect(moved > 1 and bent["asked"] == bent["max"], f"the slider moves the body by {moved} mm only")
+    link = browser.run("return p.link();")
+    largest = browser.run("""
+      const {states} = p.data.sets[p.set];
+      return states.reduce((best, s, i) => (s.settings?.[0]?.[1] ?? 0) > (states[best].settings?.[0]?.[1] ?? 0) ? i : best, 0);""")
+    set_to, asked, told = browser.run(f"""
+      p.chooseProbe({largest}); p.settle(); p.tell(0);
+      return [p.state.settings[0][1], p.driven[0], p.at('told').textContent];""")
+    expect(asked == set_to, f"the probe sets the tendon to {set_to} N, but the body is driven by {asked} N")
+    expect("rms" in told, "the error of a driven probe is not told")
+    browser.picture("actuated-probe")
+    back = browser.run("p.chooseProbe(-1); p.settle(); return Array.from(p.numerics.shape());")
+    expect(max(abs(a - b) for a, b in zip(back, rest)) < 1e-6, "the body does not come back")
+    browser.open(page.as_uri() + link, 1366, 900)
+    again = browser.run("return Array.from(p.numerics.shape());")
+    expect(max(abs(a - b) for a, b in zip(again, bent["shape"])) < 0.01 * moved, "the link loses the actuators")
+    unnamed = browser.unnamed_controls()
+    expect(not unnamed, f"controls without a name: {unnamed}")
+
+
 def check_phone(browser, page):
     browser.open(page.as_uri(), 390, 844, mobile=True)
     wait_for_verdict(browser)
@@ -337,6 +369,9 @@ with tempfile.TemporaryDirectory() as folder:
             "--edge-length", 10)
     palpate("run", at / "slow", "-o", at / "crept", "--parameters", "uniform", "--particles", 40, "--edge-length", 10)
     palpate("play", at / "crept", "-o", at / "crept.html")
+    finger = pathlib.Path(sys.argv[2]) / "samples/tendon-finger"
+    palpate("skeleton", finger, "-o", at / "finger.json")
+    palpate("play", at / "finger.json", "--set", finger, "-o", at / "finger.html")
     check_server(at / "measured")
     browser = PlayerBrowser(at / "profile", "player")
     try:
@@ -344,6 +379,7 @@ with tempfile.TemporaryDirectory() as folder:
         check_ball(browser, page)
         check_ladder(browser, at / "measured", page)
         check_creep(browser, at / "crept", at / "crept.html")
+        check_actuators(browser, at / "finger.html")
         check_phone(browser, page)
         tell_time(browser, page)
         for error in browser.errors():

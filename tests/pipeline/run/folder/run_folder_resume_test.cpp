@@ -16,6 +16,7 @@
 #include "pipeline/run/folder/run_folder.h"
 #include "tests/messages.h"
 #include "tests/places.h"
+#include "tests/sanitizers.h"
 #include "tests/temporary_folder.h"
 #include "tests/wait.h"
 
@@ -148,7 +149,7 @@ std::vector<std::tuple<Grant, std::string>> too_little() {
     constexpr rlim_t kB = 1000;
     std::vector<std::tuple<Grant, std::string>> grants = {{{RLIMIT_FSIZE, 4 * kB}, "cannot be written"},
                                                           {{RLIMIT_FSIZE, 60 * kB}, "cannot be written"}};
-#ifndef __SANITIZE_ADDRESS__  // which addresses terabytes itself
+#ifndef PALPATE_ADDRESS_SANITIZER  // which addresses terabytes itself
     grants.push_back({{RLIMIT_AS, 500'000 * kB}, "address space is limited to 500 MB"});
 #endif
     return grants;

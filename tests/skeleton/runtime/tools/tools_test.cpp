@@ -9,6 +9,7 @@
 #include "skeleton/statics/equilibrium.h"
 #include "tests/messages.h"
 #include "tests/skeleton/runtime/live_models.h"
+#include "tests/skeleton/test_effects.h"
 
 namespace palpate::runtime {
 namespace {
@@ -173,9 +174,10 @@ protected:
     }
     skeleton::Equilibrium expected_under(double value, bool by_length) const {
         fem::Effects effects;
-        effects.tendons.push_back({.actuator = std::make_shared<const mesh::TendonActuator>(path_, by_length),
-                                   .value = value,
-                                   .young = skeleton::link_modulus(model_)});
+        effects.tendons.push_back(
+            {.actuator = std::make_shared<const mesh::TendonActuator>(mesh::TendonActuator{path_, by_length}),
+             .value = value,
+             .young = skeleton::link_modulus(model_)});
         return skeleton::StaticsSolver(model_, effects).solve(skeleton::stiffness_vector(model_), {});
     }
     Points path_;
@@ -232,9 +234,39 @@ TEST_F(LiveActuation, PressureActsAsTheEffectDoes) {
     EXPECT_LT(moved(of_effect), 3e-14);  // rounding of 30 mm
 }
 
+TEST_F(LiveActuation, PressureActsInOneCavityAlone) {
+    add_cavity(model_);
+    const Vec3 first = model_.surface.vertices.bottomRows(1).transpose();
+    const mesh::Box box = mesh::bounding_box(model_.surface.vertices);
+    model_ = skeleton::testing::with_cavity(model_, {0.7 * box.max.x() + 0.3 * box.min.x(), first.y(), first.z()}, 1);
+    const Vec3 second = model_.surface.vertices.bottomRows(1).transpose();
+    Body body(model_);
+    ASSERT_NE(body.find_cavity(first), body.find_cavity(second));
+    for (const Vec3& at : {first, second}) {
+        body.set_pressure(0);
+        body.set_cavity_pressure(body.find_cavity(at), 0.05);
+        body.equilibrium();
+        fem::Effects effects;
+        effects.cavities.push_back({std::make_shared<const mesh::PressureActuator>(mesh::PressureActuator{at}), 0.05});
+        const skeleton::Equilibrium expected =
+            skeleton::StaticsSolver(model_, effects).solve(skeleton::stiffness_vector(model_), {});
+        EXPECT_GT(moved(body), 0.001);                                    // [mm]
+        EXPECT_LT(apart(body, expected), 3 * as_in_model * moved(body));  // a small displacement
+    }
+    body.set_pressure(0.05);  // in both
+    body.equilibrium();
+    skeleton::Model with = model_;
+    with.effects = {{"pressure", {{"pressure", 0.05, "MPa"}}}};
+    EXPECT_LT(apart(body, skeleton::equilibrium(with, {})), 3 * as_in_model * moved(body));
+    EXPECT_TRUE(says(message_of<InvalidInput>([&] { body.set_cavity_pressure(2, 1); }), {"cavity 2", "encloses 2"}));
+    EXPECT_TRUE(says(message_of<InvalidInput>([&] { body.set_cavity_pressure(0, NAN); }), {"finite"}));
+}
+
 TEST_F(LiveActuation, RefusesWhatCannotBe) {
     Body body(model_);
     EXPECT_TRUE(says(message_of<InvalidInput>([&] { body.set_pressure(1); }), {"no cavity"}));
+    EXPECT_TRUE(says(message_of<InvalidInput>([&] { body.find_cavity(top_); }), {"no cavity"}));
+    EXPECT_TRUE(says(message_of<InvalidInput>([&] { body.set_cavity_pressure(0, 1); }), {"no cavity"}));
     body.equilibrium();  // and nothing has changed
     EXPECT_TRUE(says(message_of<InvalidInput>([&] { body.add_tendon(path_.topRows(1)); }), {"1 points", "2 or more"}));
     const Points twice = path_({0, 1, 1}, Eigen::all);

@@ -25,6 +25,29 @@ using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
+TEST(LadderSection, TellsWhyHeldOutProbesErrLess) {
+    const json ladder = {
+        {"steps", {{{"effects", json::array()}, {"rms_mm", 0.4}, {"held_out_rms_mm", 0.2}, {"reference", nullptr}}}},
+        {"held_out_probes", {2}},
+        {"noise_mm", 0.1},
+        {"verdict", "adequate"}};
+    const auto moved_by = [](double fitted, double held_out) {
+        json states = json::array();
+        for (int probe : {1, 2, 3}) {
+            const double moved = probe == 2 ? held_out : fitted;
+            states.push_back({{"probe", probe}, {"rms_mm", 0.3}, {"relative", 0.3 / moved}});
+        }
+        states.push_back({{"probe", 2}, {"rms_mm", 0.3}, {"relative", nullptr}});  // at rest
+        return json{{"probes", states}};
+    };
+    EXPECT_THAT(ladder_section(ladder, moved_by(4, 2)),
+                HasSubstr("move the markers by 2 mm rms, the fitted ones by 4 mm"));
+    EXPECT_THAT(ladder_section(ladder, moved_by(2, 4)), Not(HasSubstr("move the markers")));
+    json more = ladder;
+    more["steps"][0]["held_out_rms_mm"] = 0.5;
+    EXPECT_THAT(ladder_section(more, moved_by(4, 2)), Not(HasSubstr("move the markers")));
+}
+
 TEST(MissingSection, PutsEveryCandidateInWords) {
     json diagnosis = {{"verdict", "missing-effect"},
                       {"explanation", {"gravity"}},
