@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
 
 #include "mesh/errors.h"
@@ -24,6 +25,7 @@ int Tendons::add(const Points& path, double stiffness) {
     }
     tendon.stiffness = stiffness;
     tendon.along.resize(tendon.points.size());
+    tendon.lengths.resize(tendon.points.size());
     tendons_.push_back(std::move(tendon));
     return count() - 1;
 }
@@ -45,6 +47,7 @@ void Tendons::place(Tendon& tendon, const double* pose) {
         const Vec3 way = tendon.points[k].x() - from;
         const double own = way.norm();
         tendon.along[k] = own > 0 ? Vec3(way / own) : Vec3(Vec3::Zero());
+        tendon.lengths[k] = own;
         length += own;
         from = tendon.points[k].x();
     }
@@ -71,12 +74,28 @@ void Tendons::add_forces(const double* pose, double* force) {
 
 void Tendons::add_rows(const double* pose, StiffRows& stiff) {
     for (Tendon& tendon : tendons_) {
-        if (tendon.mode != Mode::drawn) continue;
+        if (tendon.mode == Mode::free) continue;
         place(tendon, pose);
         if (tendon.tension == 0) continue;
+        add_turning_rows(tendon, stiff);
+        if (tendon.mode == Mode::pulled) continue;
         stiff.rows.push_back({tendon.stiffness, tendon.points.size()});
         for (std::size_t k = 0; k < tendon.points.size(); ++k)
             stiff.moves.push_back({&tendon.points[k], lengthening(tendon, k)});
+    }
+}
+
+// A segment under tension resists turning, by tension over length across it. Without that, links which the tendon
+// compresses seem to buckle.
+void Tendons::add_turning_rows(const Tendon& tendon, StiffRows& stiff) {
+    for (std::size_t k = 0; k < tendon.points.size(); ++k) {
+        if (!(tendon.lengths[k] > 0)) continue;
+        const Vec3 first = tendon.along[k].unitOrthogonal(), second = tendon.along[k].cross(first);
+        for (const Vec3& across : {first, second}) {
+            stiff.rows.push_back({tendon.tension / tendon.lengths[k], k > 0 ? 2U : 1U});
+            stiff.moves.push_back({&tendon.points[k], across});
+            if (k > 0) stiff.moves.push_back({&tendon.points[k - 1], -across});
+        }
     }
 }
 

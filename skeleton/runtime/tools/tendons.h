@@ -24,7 +24,7 @@ public:
 
     /// Adds what the tendons do to the spheres at a pose (rows).
     void add_forces(const double* pose, double* force);
-    /// Adds a row for each cable that is taut at a pose.
+    /// Adds rows for each cable that is taut at a pose: one along it where it is drawn in, and two across each segment.
     void add_rows(const double* pose, StiffRows& stiff);
     double tension(int tendon, const double* pose);  // [N]
 
@@ -39,8 +39,10 @@ private:
         // as it was placed:
         double tension = 0;
         std::vector<Vec3> along;  // unit, of each segment
+        std::vector<double> lengths;
     };
     void set(int tendon, Mode mode, double value);
+    static void add_turning_rows(const Tendon& tendon, StiffRows& stiff);
     static void place(Tendon& tendon, const double* pose);
     /// d length / d point k, one of those on the body.
     static Vec3 lengthening(const Tendon& tendon, std::size_t k);

@@ -104,7 +104,7 @@ TEST(InTheHand, ComplianceIsTheSlopeOfThePlace) {
 
 /// A tendon from beside the lattice to its far corner.
 mesh::Actuator tendon_through(const skeleton::Model& model, bool by_length) {
-    const Vec3 to = 0.8 * vertex_of(model);
+    const Vec3 to = vertex_of(model).cwiseProduct(Vec3(0.83, 0.71, 0.77));  // no two links are as near
     Points path(3, 3);
     path << to.x(), to.y(), -5, to.x(), to.y(), 0.5 * to.z(), to.x(), to.y(), to.z();
     return {"tendon", mesh::TendonActuator{path, by_length}};
@@ -116,7 +116,7 @@ TEST(InTheHand, ActuatorsDriveItAsTheyDriveTheModel) {
         const mesh::Actuator tendon = tendon_through(model, by_length);
         TouchedModel touched(model, Vec3::Zero(), 0);
         const int number = touched.add_actuator(tendon);
-        const double value = by_length ? 0.5 : 0.05;
+        const double value = by_length ? 0.1 : 0.01;
         touched.drive(number, value);
         touched.body().equilibrium();
         fem::Effects effects;
@@ -127,7 +127,7 @@ TEST(InTheHand, ActuatorsDriveItAsTheyDriveTheModel) {
         const skeleton::Equilibrium expected =
             skeleton::StaticsSolver(model, effects).solve(skeleton::stiffness_vector(model), {});
         const Points places = touched.places(model.skin);
-        EXPECT_GT((places - model.surface.vertices).cwiseAbs().maxCoeff(), 0.05);  // [mm]
+        EXPECT_GT((places - model.surface.vertices).cwiseAbs().maxCoeff(), 0.01);  // [mm]
         // the runtime's tests hold equilibria to 1e-8 of what moves, some millimetres
         EXPECT_LT((places - skeleton::observed(model, expected, {}, model.skin)).cwiseAbs().maxCoeff(), 1e-6);
         EXPECT_NEAR(touched.tension(number), by_length ? touched.tension(number) : value, 1e-12);
@@ -143,7 +143,7 @@ TEST(InTheHand, ATautTendonIsFeltInTheStiffness) {
     const skeleton::Model model = lattice_in_the_hand();
     TouchedModel touched(model, Vec3::Zero(), 0);
     const int tendon = touched.add_actuator(tendon_through(model, true));
-    touched.drive(tendon, 0.5);
+    touched.drive(tendon, 0.1);
     const int touch = touched.touch(vertex_of(model), 0);
     touched.push(touch, Vec3(0.001, 0, 0.002));
     touched.body().equilibrium();
