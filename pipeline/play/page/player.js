@@ -205,12 +205,28 @@ class Player {
     for (let driving = true; driving;) {
       const before = this.driven;
       driving = this.driveOn(0.1);
-      if (!this.attempt(() => this.numerics.equilibrium())) {
+      if (!this.attempt(() => this.balance())) {
         if (driving) this.driveBack(before);
         break;
       }
     }
     this.wake();
+  }
+  /// Under strong actuators Newton's method may not end, for the tangent is not exact: then as time goes on.
+  balance() {
+    try {
+      this.numerics.equilibrium();
+    } catch (error) {
+      if (this.motionless || this.driven.every((value) => value === 0)) throw error;
+      for (let i = 0, still = 0; i < 600 && still < 20; ++i) still = this.goOn() ? 0 : still + 1;
+    }
+  }
+  /// A step of time; does the body move?
+  goOn() {
+    const before = this.numerics.centres();
+    this.numerics.advance(frameTime);
+    const after = this.numerics.centres();
+    return after.some((x, i) => Math.abs(x - before[i]) > 2e-6 * this.size);
   }
   /// Runs what may find no answer: the body stays where it was then, and the page says so.
   attempt(run) {
