@@ -17,13 +17,12 @@
 #include "pipeline/case/json_file.h"
 #include "pipeline/case/settings/read_case.h"
 #include "pipeline/case/subject/subject.h"
-#include "pipeline/output/actuator_unit.h"
 #include "pipeline/output/findings.h"
 #include "pipeline/output/html/run_files.h"
 #include "pipeline/output/ranking_row.h"
 #include "pipeline/output/text/words.h"
+#include "pipeline/play/sliders.h"
 #include "pipeline/play/touch/set_text.h"
-#include "skeleton/loads/cavity_walls.h"
 #include "skeleton/model/io/model_io.h"
 #include "skeleton/runtime/body.h"
 
@@ -166,40 +165,6 @@ bool is_replayed(const identify::MeasurementSet& set) {
     });
 }
 
-/// The same actuator, its cavity told by a point of the wall; none where the skin encloses no cavity.
-std::optional<mesh::Actuator> by_point(const mesh::Actuator& actuator, const skeleton::Model& model) {
-    const auto* pressure = std::get_if<mesh::PressureActuator>(&actuator.kind);
-    if (!pressure) return actuator;
-    const std::vector<skeleton::CavityWall> cavities = skeleton::walls_by_cavity(model);
-    const int own = skeleton::find_cavity(model, cavities, *pressure);
-    if (own < 0) return std::nullopt;
-    const int corner = cavities[own].front().front();
-    return mesh::Actuator{actuator.name, mesh::PressureActuator{Vec3(model.surface.vertices.row(corner))}};
-}
-
-/// A set's actuators, each with the range of its slider: what it was set to, and half as far again. Null: one that no
-/// state sets, or that acts on nothing of the model; that is told in a note.
-json actuators_of(const identify::MeasurementSet& set, const skeleton::Model& model, std::vector<std::string>& notes) {
-    constexpr double beyond = 1.5;
-    json result = json::array();
-    for (int a = 0; a < std::ssize(set.actuators); ++a) {
-        double low = 0, high = 0;
-        for (const identify::LoadState& state : set.states) {
-            for (const identify::Actuation& one : state.actuations) {
-                if (one.actuator != a) continue;
-                low = std::min(low, beyond * one.value);
-                high = std::max(high, beyond * one.value);
-            }
-        }
-        const std::optional<mesh::Actuator> played = by_point(set.actuators[a], model);
-        if (!played) notes.push_back(set.actuators[a].name + " is not played: the model's skin encloses no cavity.");
-        result.push_back(played && high > low ? actuator_as_text(*played) : json());
-        if (!result.back().is_null())
-            result.back().update({{"low", low}, {"high", high}, {"unit", unit_of(set.actuators[a])}});
-    }
-    return result;
-}
-
 /// What was diagnosed in a run, or null.
 json diagnosis_of(const fs::path& run) {
     const fs::path file = run / "diagnose/diagnosis.json";
@@ -273,7 +238,7 @@ PlayData play_data(const fs::path& input, const fs::path& set_folder) {
         set = measurements_of(input, data.notes);
     }
     json actuators = json::array();
-    if (set) actuators = actuators_of(*set, skeleton::read_model(candidates.front().file), data.notes);
+    if (set) actuators = actuator_sliders(*set, skeleton::read_model(candidates.front().file), data.notes);
     const bool is_judged = set && !identify::is_rigged(*set);
     if (set && !is_replayed(*set)) {
         data.notes.emplace_back(

@@ -11,8 +11,7 @@
 #include "identify/effects/catalogue.h"
 #include "mesh/errors.h"
 #include "skeleton/model/state.h"
-#include "tests/identify/diagnosed.h"
-#include "tests/identify/small_body.h"
+#include "tests/identify/diagnosis/ladder/ladder_fixture.h"
 #include "tests/messages.h"
 
 namespace palpate::identify {
@@ -20,35 +19,6 @@ namespace {
 
 using testing::ElementsAre;
 using testing::IsEmpty;
-
-class LadderTest : public testing::Test {
-protected:
-    LadderTest() {
-        options_.identify.scope = Scope::uniform;
-        options_.identify.particles = 50;
-        options_.diagnose.law = neo_hookean;
-    }
-
-    MeasurementSet twin(const std::vector<std::pair<std::string, Eigen::VectorXd>>& hidden, int probes = 8) const {
-        Explanation truth = bare_truth(*reference_, neo_hookean);
-        for (const auto& [name, values] : hidden) truth = with(truth, find_effect(name), values);
-        return make_twin(*reference_, body_.set(SmallBody::probes(0.03, probes)), truth, sigma);
-    }
-    Ladder build_ladder(const MeasurementSet& set, const std::vector<std::string>& effects) const {
-        return identify::build_ladder(body_.chain(), *reference_, set, effects, options_);
-    }
-    static std::vector<std::string> names_of(const std::vector<skeleton::EffectRecord>& effects) {
-        std::vector<std::string> names;
-        for (const skeleton::EffectRecord& effect : effects) names.push_back(effect.name);
-        return names;
-    }
-
-    const Eigen::VectorXd half_g_ = Vec3(0.02, -0.1, -0.5);
-    const Eigen::VectorXd moved_ = (Eigen::VectorXd(6) << 0.3, -0.2, 0.1, 0.01, -0.015, 0.02).finished();
-    SmallBody body_;
-    std::unique_ptr<ReferenceBody> reference_ = body_.reference();
-    LadderOptions options_;
-};
 
 TEST_F(LadderTest, GravityLowersTheErrorOnFittedAndOnHeldOutProbes) {
     const Ladder ladder = build_ladder(twin({{"gravity", half_g_}}), {"gravity"});
@@ -248,41 +218,6 @@ TEST_F(LadderTest, AnEffectThatNeedsAnotherIsAddedOnIt) {
     EXPECT_THAT(names_of(of_both.steps[2].validation_model.effects), ElementsAre("gravity", "anisotropy"));
     EXPECT_LT(of_both.steps[2].reference->held_out_rms_mm, of_both.steps[1].reference->held_out_rms_mm);
     EXPECT_LT(of_both.steps[1].reference->held_out_rms_mm, of_both.steps[0].reference->held_out_rms_mm);
-}
-
-TEST_F(LadderTest, AResidualIsAddedWhereItMakesForecastsBetter) {
-    const Eigen::VectorXd pull = numbers({32, 5, 5, std::log(4), 0, 0.006, -0.008});
-    options_.residual = Residual{.effect = {"local-force", {{"cx", 28, "mm"}, {"fz", -0.01, "N"}}}};
-    const Ladder ladder = build_ladder(twin({{"local-force", pull}}), {"local-force"});
-    ASSERT_EQ(ladder.steps.size(), 2u);
-    EXPECT_LT(ladder.steps[1].reference->held_out_rms_mm, 0.2 * ladder.steps[0].reference->held_out_rms_mm);
-    EXPECT_LT(ladder.steps[1].skeleton.held_out_rms_mm, 0.5 * ladder.steps[0].skeleton.held_out_rms_mm);
-    EXPECT_EQ(ladder.identified.model.effects.front().name, "local-force");
-}
-
-TEST_F(LadderTest, AResidualIsNotAddedWhereItForecastsNothing) {
-    options_.residual = Residual{.effect = {"local-force", {}}};
-    options_.only_better = true;
-    const Ladder ladder = build_ladder(twin({}), {"local-force"});
-    EXPECT_EQ(ladder.steps.size(), 1u);
-    ASSERT_EQ(ladder.not_added.size(), 1u);
-    EXPECT_TRUE(says(ladder.not_added[0].why, {"held-out probes"}));
-}
-
-TEST_F(LadderTest, AResidualIsNotAddedWhereNoProbeCanBeHeldOut) {
-    options_.residual = Residual{.effect = {"local-force", {}}};
-    options_.only_better = true;
-    const Ladder ladder = build_ladder(twin({}, 2), {"local-force"});
-    ASSERT_TRUE(ladder.held_out_probes.empty());
-    ASSERT_EQ(ladder.not_added.size(), 1u);
-    EXPECT_TRUE(says(ladder.not_added[0].why, {"too few probes"}));
-}
-
-TEST_F(LadderTest, WhatHasANameIsAddedWhereNoProbeCanBeHeldOut) {
-    options_.only_better = true;
-    const Ladder ladder = build_ladder(twin({{"gravity", half_g_}}, 2), {"gravity"});
-    ASSERT_TRUE(ladder.held_out_probes.empty());
-    EXPECT_THAT(names_of(ladder.steps.back().effects), ElementsAre("gravity"));
 }
 
 TEST_F(LadderTest, AnUnknownEffectIsRefused) { EXPECT_THROW(build_ladder(twin({}), {"gravty"}), InvalidInput); }
