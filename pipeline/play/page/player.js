@@ -225,8 +225,12 @@ class Player {
   goOn() {
     const before = this.numerics.centres();
     this.numerics.advance(frameTime);
-    const after = this.numerics.centres();
-    return after.some((x, i) => Math.abs(x - before[i]) > 2e-6 * this.size);
+    return this.movedFrom(before);
+  }
+  /// Are spheres elsewhere, by more than is seen?
+  movedFrom(before) {
+    this.centres = this.numerics.centres();
+    return this.centres.some((x, i) => Math.abs(x - before[i]) > 2e-6 * this.size);
   }
   /// Runs what may find no answer: the body stays where it was then, and the page says so.
   attempt(run) {
@@ -256,10 +260,7 @@ class Player {
       const {place} = this.numerics.at(this.hand.touch);
       this.pull(times3(plus3(place, this.hand.target), 0.5));
     }
-    this.centres = this.numerics.centres();
-    let furthest = 0;
-    for (let i = 0; i < before.length; ++i) furthest = Math.max(furthest, Math.abs(this.centres[i] - before[i]));
-    this.quiet = driving || furthest > 2e-6 * this.size ? 0 : this.quiet + 1;
+    this.quiet = this.movedFrom(before) || driving ? 0 : this.quiet + 1;
   }
   get moving() { return this.quiet < 20; }
   /// A frame: time goes on by as many steps as have passed, errors are found in what is left of it.
