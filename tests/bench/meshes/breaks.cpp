@@ -75,7 +75,7 @@ Surface refined(Surface surface, double longest) {
             }
             // Begin behind a corner, so that a fan from there has no triangle without area.
             const auto begin = std::ranges::find_if(loop, [&](int v) { return v >= surface.vertices.rows(); });
-            if (begin != loop.end()) std::ranges::rotate(loop, begin);
+            if (begin != loop.end()) std::rotate(loop.begin(), begin, loop.end());
             for (std::size_t i = 1; i + 1 < loop.size(); ++i) triangles.emplace_back(loop[0], loop[i], loop[i + 1]);
         }
         again = !added.empty();
