@@ -95,13 +95,13 @@ private:
     /// Once more where an effect explains the readings: it may move the body far from where the baseline stood.
     void correct_for_mesh_with_effect() {
         Problem& problem = result_.problem;
-        if (!explained() || !shows_next_to_noise(problem, problem.discretisation)) return;
+        if (!explained() || !shows_next_to(leader()->fit, problem, problem.discretisation)) return;
         const Refit& fit = leader()->fit;
         if (fit.explanation.has_memory()) return;
         tell("error of the mesh", 0.9);
         const Eigen::VectorXd before = problem.measured;
         correct_for_mesh(model_, problem, fit.explanation, fit.forward, options_.refit.threads);
-        if (!shows_next_to_noise(problem, problem.measured - before)) return;
+        if (!shows_next_to(fit, problem, problem.measured - before)) return;
         baselines_.refit(problem);
         search_->refit_tried(problem);
         result_.ranking = search_->ranking();

@@ -27,7 +27,10 @@ std::string law_in_words(const SourceTerm& term) {
         case SourceLaw::spring:
             return "against the body's motion there, as springs do";
         case SourceLaw::one_sided:
-            return "where the body moves outward there, on one side only";
+            return term.gap > 0 ? fmt::format("once the body has moved outward by {:.2g} mm there", term.gap)
+                                : "where the body moves outward there, on one side only";
+        case SourceLaw::with_strain:
+            return "with its strain";
         case SourceLaw::reaction:
             return "in proportion to the force on the supports";
         case SourceLaw::one_probe:
@@ -111,8 +114,7 @@ std::optional<MissingSource::Magnitude> MissingSource::magnitude() const {
     }
     if (term.form == SourceForm::softening) result.unit = "ln";
     if (term.form == SourceForm::support) result.unit = "mm/N";
-    if (term.form == SourceForm::normal)
-        result.unit = term.law == SourceLaw::spring || term.law == SourceLaw::one_sided ? "N/mm" : "N";
+    if (term.form == SourceForm::normal) result.unit = term.law == SourceLaw::spring ? "N/mm" : "N";
     return result;
 }
 
@@ -135,6 +137,13 @@ std::string MissingSource::sentence() const {
                 return fmt::format("The material is {} by more than five times, as a first-order model has it, {}{}.",
                                    value > 0 ? "stiffer" : "softer", place, is_everywhere ? "" : ", growing " + law);
             }
+            if (term.law == SourceLaw::with_strain) {
+                return fmt::format(
+                    "The material becomes {} as it is strained, {}: {:.3g} times as stiff (from {:.3g} to {:.3g}) at "
+                    "the mean strain of the most strained state.",
+                    value > 0 ? "stiffer" : "softer", place, std::exp(value), std::exp(value - 2 * sd),
+                    std::exp(value + 2 * sd));
+            }
             return fmt::format("The material is {:.2g} times as stiff (from {:.2g} to {:.2g}) {}{}.", std::exp(value),
                                std::exp(value - 2 * sd), std::exp(value + 2 * sd), place,
                                is_everywhere ? "" : " at the most, growing " + law);
@@ -149,12 +158,14 @@ std::string MissingSource::sentence() const {
                 "acted.",
                 term.mean.sum());
         case SourceForm::traction:
+            if (term.law == SourceLaw::one_sided)
+                return fmt::format("Something is in the way of the surface, {}, {}: with a force of up to {}.", place,
+                                   law, vector_in_short(*this, term, "N"));
             return fmt::format("A force of {} acts on the surface, {}, {}.", vector_in_short(*this, term, "N"), place,
                                law);
         case SourceForm::normal:
-            if (term.law == SourceLaw::spring || term.law == SourceLaw::one_sided)
-                return fmt::format("Something of {} N/mm {} the surface, {}, {}.", with_sd(value, sd),
-                                   term.law == SourceLaw::spring ? "holds" : "is in the way of", place, law);
+            if (term.law == SourceLaw::spring)
+                return fmt::format("Something of {} N/mm holds the surface, {}, {}.", with_sd(value, sd), place, law);
             return fmt::format("A pressure of {} N in all presses {}, {}, {}.", with_sd(std::abs(value), sd),
                                value > 0 ? "inward" : "outward", place, law);
         case SourceForm::support:

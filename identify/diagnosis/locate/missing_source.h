@@ -26,21 +26,22 @@ enum class SourceLaw {
     with_time,     // with the logarithm of the time since the probe began
     with_history,  // with the largest load so far
     spring,        // against the body's own motion there
-    one_sided,     // against its motion outward there, never inward
+    one_sided,     // against its motion outward there, beyond a gap, never inward
+    with_strain,   // with the elastic energy that the material holds there in the state
     reaction,      // with the force on the supports
     one_probe,     // in one probe alone
     some_states,   // alike in some states, and not in the others
     irregular,     // a strength of its own in each state
 };
-inline constexpr std::array<const char*, 11> source_law_names{"constant",  "proportional", "quadratic", "time",
-                                                              "history",   "spring",       "one-sided", "reaction",
-                                                              "one-probe", "some-states",  "irregular"};
+inline constexpr std::array<const char*, 12> source_law_names{"constant", "proportional", "quadratic",   "time",
+                                                              "history",  "spring",       "one-sided",   "strain",
+                                                              "reaction", "one-probe",    "some-states", "irregular"};
 
 /// What a source's numbers are.
 enum class SourceForm {
     force,      // a force in the material [N] (3)
     growth,     // of every free length of the material [-] (1)
-    softening,  // ln of the stiffness over the model's [-] (1)
+    softening,  // ln of the stiffness over the model's [-]; with the strain, at the largest mean energy of a state (1)
     fibres,     // stiffness along a direction, a share of the shear modulus [-] (1)
     set,        // share of earlier loads that the body keeps the shape of, linear and quadratic [-] (2)
     traction,   // a force on the skin [N] (3)
@@ -65,6 +66,7 @@ struct SourceTerm {
     double extent = 0;           // rms distance of that weight from the centre [mm]
     double norm = 1;             // that weight summed over the body or its skin, by their shares
     Vec3 axis = Vec3::Zero();    // of fibres, or into the body; 0: none
+    double gap = 0;              // under one_sided: how far the skin moves outward before it is met [mm]
     int number = -1;             // of the marker (of the set) or probe (as in the set); -1: none
     double log_bayes_factor = 0, probability = 0;
     Eigen::VectorXd mean = {}, sd = {};  // its numbers (p)

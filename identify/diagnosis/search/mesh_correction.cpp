@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "identify/diagnosis/statistics/discretisation.h"
@@ -13,6 +14,9 @@ namespace {
 /// Change of the mesh's error after which it is computed anew, rms over sigma. The next change is a third of it or
 /// less, 0.1, which alters a whitened rms of 1 by half a per cent.
 constexpr double much_for_noise = 0.3;
+
+/// Where a fit leaves more than noise its equilibria are not the body's, and a closer correction is none.
+double much_next_to(const Refit& fit) { return much_for_noise * std::max(1.0, fit.whitened_rms); }
 
 double rms_over_sigma(const Problem& problem, const Eigen::VectorXd& v) {
     return std::sqrt(v.cwiseQuotient(problem.sigma).squaredNorm() / static_cast<double>(v.size()));
@@ -53,17 +57,18 @@ void correct_baselines_for_mesh(const BodyModel& model, Problem& problem, Baseli
         const double change = correct_for_mesh(model, problem, at.explanation, at.forward, threads);
         if (change == 0) return;
         baselines.refit(problem);
-        if (change < much_for_noise) return;
+        if (change < much_next_to(baselines.best())) return;
         at = {baselines.best().explanation, baselines.best().forward};
     }
 }
 
-bool shows_next_to_noise(const Problem& problem, const Eigen::VectorXd& change) {
-    return change.size() > 0 && rms_over_sigma(problem, change) >= much_for_noise;
+bool shows_next_to(const Refit& fit, const Problem& problem, const Eigen::VectorXd& change) {
+    return change.size() > 0 && rms_over_sigma(problem, change) >= much_next_to(fit);
 }
 
 std::string note_of_correction(const Problem& problem) {
-    if (!shows_next_to_noise(problem, problem.discretisation)) return {};
+    if (problem.discretisation.size() == 0 || rms_over_sigma(problem, problem.discretisation) < much_for_noise)
+        return {};
     const double mm = problem.rms_mm(problem.discretisation), share = problem.relative(problem.discretisation);
     const bool of_forces = mm == 0;
     if (!of_forces && mm < problem.rms_sigma()) return {};

@@ -36,7 +36,7 @@ SourceDensity density_of(const identify::SourceTerm& term, const mesh::Surface& 
         case SourceForm::traction:
             return {"missing force [N/mm^2]", area_of(surface)};
         case SourceForm::normal:
-            if (term.law == identify::SourceLaw::spring || term.law == identify::SourceLaw::one_sided)
+            if (term.law == identify::SourceLaw::spring)
                 return {"missing springs [N/mm^3]", area_of(surface)};
             return {"missing pressure [N/mm^2]", area_of(surface)};
         case SourceForm::growth:

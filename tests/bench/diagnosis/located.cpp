@@ -34,7 +34,7 @@ std::set<SourceLaw> laws_of(const std::string& effect) {
         {"misalignment", {SourceLaw::constant}},
         {"inclusion", {SourceLaw::constant}},
         {"anisotropy", {SourceLaw::constant}},
-        {"stiffening", {SourceLaw::proportional, SourceLaw::quadratic}},
+        {"stiffening", {SourceLaw::proportional, SourceLaw::quadratic, SourceLaw::with_strain}},
         {"viscosity", {SourceLaw::with_time}},
         {"plasticity", {SourceLaw::with_history}},
         {"contact", {SourceLaw::one_sided}},
@@ -100,6 +100,21 @@ void LocatedTally::add(const Truth& truth, const std::optional<identify::Missing
     if (found.angle) direction_.add(*found.angle <= near_degrees);
 }
 
+void LocatedTally::add_held_out(const Truth& truth, double before, double after) {
+    constexpr double halved = 0.5;  // of what noise does not explain
+    const auto excess = [](double whitened) { return std::sqrt(std::max(0.0, whitened * whitened - 1)); };
+    if (!truth.effects.empty()) held_out_.add(std::isfinite(after) && excess(after) <= halved * excess(before));
+}
+
+void LocatedTally::add(const LocatedTally& more) {
+    kind_.add(more.kind_);
+    law_.add(more.law_);
+    place_.add(more.place_);
+    direction_.add(more.direction_);
+    held_out_.add(more.held_out_);
+    nulls_.add(more.nulls_);
+}
+
 void LocatedTally::print() const {
     fmt::print(
         "\nKind right in {} of {}; of these the law in {} of {}, the place within {:.0f} % of the size in {} of {}, "
@@ -107,6 +122,10 @@ void LocatedTally::print() const {
         "direction within {:.0f} degrees in {} of {}. Something is located in {} of {} null sets.\n",
         kind_.right, kind_.of, law_.right, law_.of, 100 * near_share, place_.right, place_.of, near_degrees,
         direction_.right, direction_.of, nulls_.right, nulls_.of);
+    if (held_out_.of > 0) {
+        fmt::print("Errors of held-out probes beyond the noise are at least halved in {} of {}.\n", held_out_.right,
+                   held_out_.of);
+    }
 }
 
 }  // namespace palpate::bench

@@ -25,6 +25,9 @@ Located judge_location(const Truth& truth, const identify::MissingSource& source
 class LocatedTally {
 public:
     void add(const Truth& truth, const std::optional<identify::MissingSource>& source, double size);
+    /// Held-out errors without and with what was located; not finite: it could not be added.
+    void add_held_out(const Truth& truth, double before, double after);
+    void add(const LocatedTally& more);
     /// In Markdown: shares of what is right, and what is located where nothing is hidden.
     void print() const;
 
@@ -35,8 +38,12 @@ private:
             right += is_right ? 1 : 0;
             ++of;
         }
+        void add(const Share& more) {
+            right += more.right;
+            of += more.of;
+        }
     };
-    Share kind_, law_, place_, direction_, nulls_;
+    Share kind_, law_, place_, direction_, held_out_, nulls_;
 };
 
 }  // namespace palpate::bench

@@ -52,6 +52,7 @@ public:
             constexpr double least = 0.1;
             if (outward.norm() > least) skin_.places[static_cast<std::size_t>(c)].axis = -outward.normalized();
         }
+        mean_energy_ = Eigen::VectorXd::Zero(std::ssize(fit.forward.q));
         plan_ = screen_plan(*anisotropy_, model, problem, fit.explanation, fit.forward);
         const auto basis = [&](SourceKind kind, SourceForm form, int width, const std::vector<SourcePlace>& places,
                                std::optional<SourceLaw> law = {}, bool one_sided = false) {
@@ -67,10 +68,11 @@ public:
                   basis(boundary, SourceForm::traction, 3, skin_.places),
                   basis(boundary, SourceForm::normal, 1, skin_.places),
                   basis(boundary, SourceForm::normal, 1, skin_.places, SourceLaw::spring, true),
-                  basis(boundary, SourceForm::normal, 1, skin_.places, SourceLaw::one_sided, true),
                   basis(boundary, SourceForm::support, 2, {support_place()}, SourceLaw::reaction),
                   basis(sensor, SourceForm::gain, 1, gain_places(), SourceLaw::one_probe),
-                  basis(stiffness, SourceForm::set, 2, {pieces_.places.back()}, SourceLaw::with_history)};
+                  basis(stiffness, SourceForm::set, 2, {pieces_.places.back()}, SourceLaw::with_history),
+                  basis(stiffness, SourceForm::softening, 1, pieces_.places, SourceLaw::with_strain)};
+        bases_[3].motions.setZero(std::ssize(problem.actions), 3 * skin_.count());
         fibres_.resize(entries, plan_.signatures.width);
         fibres_.setZero();
     }
@@ -97,17 +99,22 @@ public:
         put(3, spread(of_skin, skin_weights_));
         put(4, directed(of_skin, -normals_, skin_weights_));
         put(5, directed(of_skin, -moved, skin_weights_));
-        const Eigen::VectorXd outward = moved.cwiseProduct(normals_).rowwise().sum().cwiseMax(0);
-        put(6, directed(of_skin, -(outward.asDiagonal() * normals_), skin_weights_));
-        put(7, of_support(adjoint, q, action));
-        bases_[8].columns.middleRows(adjoint.first, adjoint.count()) = of_gains(adjoint, q, action);
-        bases_[9].columns.middleRows(adjoint.first, adjoint.count()) = of_loads_so_far(adjoint, q);
+        const Eigen::MatrixXd of_places = moved.transpose() * skin_weights_;
+        bases_[3].motions.row(k) = of_places.reshaped().transpose();
+        put(6, of_support(adjoint, q, action));
+        bases_[7].columns.middleRows(adjoint.first, adjoint.count()) = of_gains(adjoint, q, action);
+        bases_[8].columns.middleRows(adjoint.first, adjoint.count()) = of_loads_so_far(adjoint, q);
+        const Eigen::VectorXd energy = energy_of_pieces(q, softer);
+        mean_energy_[k] = energy.mean();
+        put(9, adjoint.by_force.transpose() *
+                   model_.piece_force(q, setting_, action, energy.asDiagonal() * pieces_.weights));
         const Signatures::InAction along = plan_.signatures.in_action(k, q);
         fibres_.middleRows(adjoint.first, adjoint.count()) = adjoint.felt(along.forces);
     }
 
     /// All of them; leaves nothing behind.
     std::vector<SourceBasis> take() {
+        if (mean_energy_.maxCoeff() > 0) bases_[9].columns /= mean_energy_.maxCoeff();
         const Eigen::MatrixXd columns = plan_.columns(fibres_).columns;
         SourceBasis fibres{.kind = SourceKind::stiffness, .form = SourceForm::fibres, .columns = columns};
         fibres.places.reserve(static_cast<std::size_t>(columns.cols()));
@@ -119,7 +126,7 @@ public:
         }
         bases_.push_back(std::move(fibres));
         // Each probe with a gain of its own.
-        SourceBasis gains = bases_[8];
+        SourceBasis gains = bases_[7];
         gains.form = SourceForm::gains;
         gains.law = SourceLaw::irregular;
         gains.width = static_cast<int>(gains.places.size());
@@ -155,7 +162,7 @@ private:
 
     /// A support that gives way moves and turns as the force and the moment on it say.
     Eigen::MatrixXd of_support(const ActionAdjoint& adjoint, const Eigen::VectorXd& q, const Action& action) const {
-        const Eigen::MatrixXd base = model_.support_motion(bases_[7].places.front().centre);
+        const Eigen::MatrixXd base = model_.support_motion(bases_[6].places.front().centre);
         const Eigen::VectorXd pressed = base.transpose() * model_.residual(q, setting_, action);
         Eigen::MatrixXd moved(base.rows(), 2);
         moved << base.leftCols(3) * pressed.head<3>(), base.rightCols(3) * pressed.tail<3>();
@@ -163,8 +170,19 @@ private:
                adjoint.by_force.transpose() * model_.tangent_times(q, setting_, action, moved);
     }
 
+    /// Elastic energy of the pieces in a state, to first order about rest, each as of the smallest places around it;
+    /// from the forces of softened places (dofs x places).
+    Eigen::VectorXd energy_of_pieces(const Eigen::VectorXd& q, const Eigen::MatrixXd& softer) const {
+        const auto small = std::ranges::count(pieces_.places, pieces_.places.front().radius, &SourcePlace::radius);
+        const auto weights = pieces_.weights.leftCols(small);
+        const Eigen::VectorXd of_places =
+            (-0.5 * softer.leftCols(small).transpose() * (q - model_.rest(setting_))).cwiseMax(0);
+        const Eigen::VectorXd shares = weights.colwise().sum().transpose();
+        return (weights * of_places.cwiseQuotient(shares)).cwiseQuotient(weights.rowwise().sum());
+    }
+
     Eigen::MatrixXd of_gains(const ActionAdjoint& adjoint, const Eigen::VectorXd& q, const Action& action) const {
-        const std::vector<SourcePlace>& probes = bases_[8].places;
+        const std::vector<SourcePlace>& probes = bases_[7].places;
         Eigen::MatrixXd result = Eigen::MatrixXd::Zero(adjoint.count(), std::ssize(probes));
         const auto own = std::ranges::find(probes, problem_.probe[adjoint.action], &SourcePlace::number);
         if (own == probes.end()) return result;
@@ -214,6 +232,7 @@ private:
     Eigen::SparseMatrix<double> material_motion_;
     Eigen::MatrixXd material_weights_, skin_weights_;
     Points normals_;
+    Eigen::VectorXd mean_energy_;  // of each action
     std::shared_ptr<const EffectHypothesis> anisotropy_;
     ScreenPlan plan_;
     Eigen::MatrixXd fibres_;

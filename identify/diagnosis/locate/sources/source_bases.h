@@ -18,6 +18,7 @@ struct SourceBasis {
     std::optional<SourceLaw> law = {};
     std::vector<SourcePlace> places = {};
     Eigen::MatrixXd columns = {};  // of the entries, over sigma (entries x places p)
+    Eigen::MatrixXd motions = {};  // of places on the skin in each action (actions x 3 places) [mm]; empty: elsewhere
 };
 
 /// All forms that the model and the problem allow, at the configurations of a fit.

@@ -76,7 +76,9 @@ std::vector<SourceEvidence> SourceScore::operator()(const Eigen::MatrixXd& colum
         const double s2 = 1 + std::max(0.0, chi_square_ - gain - rows_) / independent_;  // of errors of the model, too
         one.covariance = s2 * scale2 * eigen.eigenvectors() * precision.inverse().matrix().asDiagonal() *
                          eigen.eigenvectors().transpose();
-        if (one_sided) one.log_bayes_factor = one_sided_evidence(one.log_bayes_factor, one.mean.sum());
+        if (!one_sided) continue;
+        one.log_bayes_factor = one_sided_evidence(one.log_bayes_factor, one.mean.sum());
+        one.log_fit = one_sided_evidence(one.log_fit, one.mean.sum());
     }
     return result;
 }

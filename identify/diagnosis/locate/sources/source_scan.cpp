@@ -3,13 +3,34 @@
 #include <Eigen/Eigenvalues>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 #include <numeric>
 
 #include "identify/diagnosis/locate/sources/source_laws.h"
+#include "mesh/core/surface.h"
 
 namespace palpate::identify {
+namespace {
+
+/// Those of unit vectors that lead out of the body where `inward` leads into it; all where that is 0 (n x 3).
+Points out_of_body(const Points& directions, const Vec3& inward) {
+    if (inward.isZero()) return directions;
+    std::vector<Eigen::Index> chosen;
+    for (Eigen::Index d = 0; d < directions.rows(); ++d)
+        if (directions.row(d).dot(inward) < 0) chosen.push_back(d);
+    return directions(chosen, Eigen::all);
+}
+
+/// Is a place so small that its parts move about alike: at most twice as large as the smallest? What a part of the body
+/// meets the rest of a larger place may not.
+bool moves_as_one(const SourceBasis& basis, std::size_t place) {
+    constexpr double twice = 2.01;
+    return basis.places[place].radius < twice * basis.places.front().radius;
+}
+
+}  // namespace
 
 SourceScan::SourceScan(const BodyModel& model, const Problem& problem, const Refit& fit, int threads)
     : problem_(problem),
@@ -31,8 +52,10 @@ std::vector<Alternative> SourceScan::alternatives() {
         // What differs from state to state by no law of load, time or motion touches from outside, or is the
         // camera's.
         const bool alone = basis.form == SourceForm::traction || basis.form == SourceForm::frame;
+        const bool may_be_met = basis.motions.size() > 0;
         constexpr std::size_t of_single_states = 3;  // in one probe, in some states, irregular
-        const double share = -std::log(static_cast<double>(laws.size() + (alone ? of_single_states : 0)));
+        const double share =
+            -std::log(static_cast<double>(laws.size() + (alone ? of_single_states : 0) + (may_be_met ? 1 : 0)));
         // A set says what touches the body: that something does in all states, though none says so, is less likely
         // than a force that needs no touch, which it cannot be told from where the body is slender.
         constexpr double unsaid = -2.3;  // ln of a tenth: a prior, design choice
@@ -44,6 +67,12 @@ std::vector<Alternative> SourceScan::alternatives() {
         for (const auto& [probe, strength] : probes)
             add(basis, SourceLaw::one_probe, strength, share - std::log(static_cast<double>(probes.size())), probe);
         add_irregular(basis, share);
+        if (!may_be_met) continue;
+        const Points directions = mesh::make_sphere(Vec3::Zero(), 1, 1).vertices;  // 35 degrees apart
+        for (std::size_t place = 0; place < basis.places.size(); ++place) {
+            if (moves_as_one(basis, place))
+                add_one_sided(basis, place, out_of_body(directions, basis.places[place].axis), share);
+        }
     }
     return std::move(found_);
 }
@@ -70,27 +99,65 @@ void SourceScan::add(const SourceBasis& basis, SourceLaw law, const Eigen::Vecto
                      int probe) {
     const auto places = std::ssize(basis.places);
     const std::vector<SourceEvidence> all = score_(rows_of(basis, strength, 0, places), basis.width, basis.one_sided);
-    for (std::size_t i = 0; i < all.size(); ++i) {
-        if (!std::isfinite(all[i].log_bayes_factor)) continue;
-        const SourcePlace& place = basis.places[i];
-        Alternative one{.kind = basis.kind, .basis = &basis, .place = i};
-        one.term = {.form = basis.form,
-                    .law = law,
-                    .centre = place.centre,
-                    .radius = place.radius,
-                    .extent = place.extent,
-                    .norm = place.norm,
-                    .axis = place.axis,
-                    .number = probe >= 0 ? probe : place.number,
-                    .log_bayes_factor = all[i].log_bayes_factor,
-                    .mean = all[i].mean,
-                    .sd = all[i].covariance.diagonal().cwiseSqrt(),
-                    .covariance = all[i].covariance,
-                    .strength = strength};
-        one.explained = all[i].explained;
-        one.log_weight = all[i].log_bayes_factor + place.log_prior + log_prior;
-        one.log_fit = all[i].log_fit + place.log_prior;
-        found_.push_back(std::move(one));
+    for (std::size_t i = 0; i < all.size(); ++i) keep(basis, i, all[i], law, strength, log_prior, 0, probe);
+}
+
+void SourceScan::keep(const SourceBasis& basis, std::size_t place, const SourceEvidence& found, SourceLaw law,
+                      const Eigen::VectorXd& strength, double log_prior, double gap, int probe) {
+    if (!std::isfinite(found.log_bayes_factor)) return;
+    const SourcePlace& at = basis.places[place];
+    Alternative one{.kind = basis.kind, .basis = &basis, .place = place};
+    one.term = {.form = basis.form,
+                .law = law,
+                .centre = at.centre,
+                .radius = at.radius,
+                .extent = at.extent,
+                .norm = at.norm,
+                .axis = at.axis,
+                .gap = gap,
+                .number = probe >= 0 ? probe : at.number,
+                .log_bayes_factor = found.log_bayes_factor,
+                .mean = found.mean,
+                .sd = found.covariance.diagonal().cwiseSqrt(),
+                .covariance = found.covariance,
+                .strength = strength};
+    one.explained = found.explained;
+    one.log_weight = found.log_bayes_factor + at.log_prior + log_prior;
+    one.log_fit = found.log_fit + at.log_prior;
+    found_.push_back(std::move(one));
+}
+
+/// Something in the way of the skin, without friction: it pushes back against the direction in which a place moves
+/// towards it, in proportion to how far that goes beyond a gap, which no law of the load is.
+void SourceScan::add_one_sided(const SourceBasis& basis, std::size_t place, const Points& towards, double log_prior) {
+    // At how much of the largest motion it is met; design choice: between two of them evidence is as of the nearest.
+    constexpr std::array<double, 4> gaps{0, 0.25, 0.5, 0.75};
+    log_prior -= std::log(static_cast<double>(gaps.size()) * static_cast<double>(towards.rows()));
+    const auto first = static_cast<Eigen::Index>(3 * place);
+    const Eigen::MatrixXd moved = basis.motions.middleCols<3>(first) * towards.transpose();  // (actions x directions)
+    const Eigen::MatrixXd felt = -basis.columns.middleCols<3>(first) * towards.transpose();  // (entries x directions)
+    Eigen::MatrixXd strengths = Eigen::MatrixXd::Zero(std::ssize(problem_.stages), towards.rows() * std::ssize(gaps));
+    Eigen::MatrixXd columns = Eigen::MatrixXd::Zero(problem_.rows(), strengths.cols());
+    const auto gap_of = [&](Eigen::Index c) { return gaps[static_cast<std::size_t>(c / towards.rows())]; };
+    for (Eigen::Index c = 0; c < columns.cols(); ++c) {
+        const Eigen::Index d = c % towards.rows();
+        const double most = moved.col(d).maxCoeff();
+        if (!(most > 0)) continue;
+        for (std::size_t e = 0; e < entries_.size(); ++e) {
+            const ReadingEntry& entry = entries_[e];
+            const double strength = std::max(0.0, (moved(entry.action, d) / most - gap_of(c)) / (1 - gap_of(c)));
+            strengths(entry.state, c) = strength;
+            columns(entry.row, c) += entry.sign * strength * felt(static_cast<Eigen::Index>(e), d);
+        }
+    }
+    std::vector<SourceEvidence> all = score_(columns, 1, true);
+    for (Eigen::Index c = 0; c < columns.cols(); ++c) {
+        const Vec3 toward = towards.row(c % towards.rows()).transpose();
+        SourceEvidence& one = all[static_cast<std::size_t>(c)];
+        one.covariance = one.covariance(0, 0) * toward * toward.transpose();
+        one.mean = -one.mean[0] * toward;
+        const double gap = gap_of(c) * moved.col(c % towards.rows()).maxCoeff();
+        keep(basis, place, one, SourceLaw::one_sided, strengths.col(c), log_prior, gap);
     }
 }
 

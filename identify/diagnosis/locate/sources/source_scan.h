@@ -37,6 +37,9 @@ private:
                             Eigen::Index places) const;
     void add(const SourceBasis& basis, SourceLaw law, const Eigen::VectorXd& strength, double log_prior,
              int probe = -1);
+    void keep(const SourceBasis& basis, std::size_t place, const SourceEvidence& found, SourceLaw law,
+              const Eigen::VectorXd& strength, double log_prior, double gap = 0, int probe = -1);
+    void add_one_sided(const SourceBasis& basis, std::size_t place, const Points& towards, double log_prior);
     void add_irregular(const SourceBasis& basis, double log_prior);
     void add_some_states(const SourceBasis& basis, Eigen::Index place, const std::vector<int>& actions,
                          const Eigen::VectorXd& along, double log_prior);

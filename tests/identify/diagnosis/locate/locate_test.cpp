@@ -61,6 +61,8 @@ INSTANTIATE_TEST_SUITE_P(Effects, Located,
                                                      SourceKind::stiffness, SourceLaw::constant},
                                          LocatedCase{"anisotropy", numbers({1.5, 0.48, 0.6, 0.64}), 0.2,
                                                      SourceKind::stiffness, SourceLaw::constant},
+                                         LocatedCase{"contact", numbers({0, 0, 1, -2, std::log(0.5)}), 0.1,
+                                                     SourceKind::boundary, SourceLaw::one_sided},
                                          LocatedCase{"misalignment", numbers({1, -1, 1, 0.3, -0.3, 0.3}), 0.03,
                                                      SourceKind::sensor, SourceLaw::constant}),
                          [](const auto& of) { return of.param.effect; });
@@ -94,6 +96,43 @@ TEST_P(LocatedWeight, PointsWhereItPulls) {
 INSTANTIATE_TEST_SUITE_P(Effects, LocatedWeight,
                          testing::Values(LocatedCase{"gravity", numbers({0, 0.2, -0.3}), 0.03, SourceKind::body_force,
                                                      SourceLaw::constant}));
+
+/// A wall of a direction that no side of the bar has.
+using LocatedWall = Located;
+TEST_P(LocatedWall, PushesBackAlongItsNormalBehindItsGap) {
+    ASSERT_TRUE(source_);
+    const Vec3 normal = GetParam().values.head<3>().normalized();
+    constexpr double degrees = M_PI / 180;
+    EXPECT_LT(std::acos(source_->direction.dot(normal)), 20 * degrees) << source_->sentence();
+    const SourceTerm& term = source_->likeliest();
+    EXPECT_GT(term.gap, 0);
+    EXPECT_LT(term.strength.minCoeff(), 0.01);  // away from it in some states
+    EXPECT_NEAR(term.strength.maxCoeff(), 1, 1e-9);
+    EXPECT_LT(std::ssize(source_->states), std::ssize(set_.states));
+    EXPECT_THAT(source_->sentence(), testing::HasSubstr("once the body has moved outward by"));
+}
+INSTANTIATE_TEST_SUITE_P(Effects, LocatedWall,
+                         testing::Values(LocatedCase{"contact", numbers({0, 0.6, 0.8, -2, std::log(0.5)}), 0.1,
+                                                     SourceKind::boundary, SourceLaw::one_sided}));
+
+/// Of all ways in which the stiffness of a place may go with what acts, the strain is what a law of the material goes
+/// by.
+using LocatedStiffening = Located;
+TEST_P(LocatedStiffening, GoesWithTheStrain) {
+    ASSERT_TRUE(source_);
+    const auto is_of_body = [](const MissingSource::Rival& one) {
+        return one.term.form == SourceForm::softening && std::isinf(one.term.radius);
+    };
+    const auto likeliest = std::ranges::find_if(source_->rivals, is_of_body);  // they are in order
+    ASSERT_NE(likeliest, source_->rivals.end());
+    EXPECT_EQ(likeliest->term.law, SourceLaw::with_strain);
+    EXPECT_GT(likeliest->term.mean[0], 0);
+    const MissingSource alone{.kind = SourceKind::stiffness, .terms = {likeliest->term}};
+    EXPECT_THAT(alone.sentence(), testing::HasSubstr("becomes stiffer as it is strained"));
+}
+INSTANTIATE_TEST_SUITE_P(Effects, LocatedStiffening,
+                         testing::Values(LocatedCase{"stiffening", numbers({0.3, 2.3}), 0.15, SourceKind::stiffness,
+                                                     SourceLaw::with_strain}));
 
 using LocatedNothing = Located;
 TEST_P(LocatedNothing, HasNoEvidence) {
