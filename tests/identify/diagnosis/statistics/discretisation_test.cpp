@@ -2,10 +2,13 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <memory>
+#include <tuple>
 
 #include "identify/diagnosis/diagnose.h"
 #include "identify/diagnosis/likelihood/nuisances.h"
+#include "identify/effects/catalogue.h"
 #include "tests/identify/small_body.h"
 
 namespace palpate::identify {
@@ -63,6 +66,42 @@ TEST_F(Discretisation, IsTakenOffWhatAThinPlateIsFittedTo) {
     EXPECT_EQ(corrected.verdict, Verdict::adequate);
     EXPECT_EQ(corrected.problem.discretisation.size(), corrected.problem.rows());
     EXPECT_EQ(plain.problem.discretisation.size(), 0);
+}
+
+/// A body that counts how often it is asked for the error of its mesh.
+class CountingBody : public ReferenceBody {
+public:
+    using ReferenceBody::ReferenceBody;
+    std::optional<MeshError> discretisation_error(const Eigen::VectorXd& q, const ModelSetting& setting,
+                                                  const Action& action, const Tangent& tangent) const override {
+        ++asked;
+        return ReferenceBody::discretisation_error(q, setting, action, tangent);
+    }
+    mutable int asked = 0;
+};
+
+TEST_F(Discretisation, IsComputedAgainOnlyWhileItShowsNextToWhatIsLeft) {
+    const auto asked = [&](const Explanation& hidden) {
+        const ReferenceBody truth(plate({12, 8, 2}), body_.supports, body_.markers);
+        const CountingBody model(body_.mesh, body_.supports, body_.markers, {.young = 0.1});
+        DiagnoseOptions options;
+        options.screen = false;
+        const Diagnosis found = identify::diagnose(model, make_twin(truth, set_, hidden, noise), options);
+        const Eigen::VectorXd error = found.problem.discretisation;  // [mm]
+        const double in_sigmas = error.norm() / std::sqrt(static_cast<double>(error.size())) / noise;
+        return std::tuple{model.asked, found.baseline.whitened_rms, in_sigmas};
+    };
+    const Explanation bare = bare_truth(ReferenceBody(body_.mesh, body_.supports, body_.markers), 2);
+    const auto [of_plain, left_of_plain, error_of_plain] = asked(bare);
+    EXPECT_LT(left_of_plain, 1.2);
+    EXPECT_GT(error_of_plain, 0.3);
+    EXPECT_GT(of_plain, std::ssize(set_.states)) << "the first one alters the fit that the next is of";
+    Eigen::VectorXd moved(6);
+    moved << 0.2, -0.2, 0.2, 0, 0, 0;
+    const auto [of_moved, left_of_moved, error_of_moved] = asked(with(bare, find_effect("misalignment"), moved));
+    EXPECT_GT(left_of_moved, 3);
+    EXPECT_GT(error_of_moved, 0.3) << "it shows next to noise, not next to what is left";
+    EXPECT_LT(of_moved, of_plain);
 }
 
 TEST_F(Discretisation, IsToldByAFinerMeshThatIsGiven) {
