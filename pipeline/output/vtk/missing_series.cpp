@@ -36,8 +36,7 @@ SourceDensity density_of(const identify::SourceTerm& term, const mesh::Surface& 
         case SourceForm::traction:
             return {"missing force [N/mm^2]", area_of(surface)};
         case SourceForm::normal:
-            if (term.law == identify::SourceLaw::spring)
-                return {"missing springs [N/mm^3]", area_of(surface)};
+            if (term.law == identify::SourceLaw::spring) return {"missing springs [N/mm^3]", area_of(surface)};
             return {"missing pressure [N/mm^2]", area_of(surface)};
         case SourceForm::growth:
             return {"missing growth of lengths [-]"};
