@@ -171,8 +171,10 @@ private:
     }
 
     /// Elastic energy of the pieces in a state, to first order about rest, each as of the smallest places around it;
-    /// from the forces of softened places (dofs x places).
+    /// from the forces of softened places (dofs x places). 0 where configurations are no displacements: of links that
+    /// turn.
     Eigen::VectorXd energy_of_pieces(const Eigen::VectorXd& q, const Eigen::MatrixXd& softer) const {
+        if (q.size() != softer.rows()) return Eigen::VectorXd::Zero(pieces_.weights.rows());
         const auto small = std::ranges::count(pieces_.places, pieces_.places.front().radius, &SourcePlace::radius);
         const auto weights = pieces_.weights.leftCols(small);
         const Eigen::VectorXd of_places =
