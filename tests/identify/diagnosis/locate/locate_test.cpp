@@ -115,8 +115,8 @@ INSTANTIATE_TEST_SUITE_P(Effects, LocatedWall,
                          testing::Values(LocatedCase{"contact", numbers({0, 0.6, 0.8, -2, std::log(0.5)}), 0.1,
                                                      SourceKind::boundary, SourceLaw::one_sided}));
 
-/// Of all ways in which the stiffness of the whole body may go with what acts, a law of the material goes by its strain.
-/// Weakly, as sources are sought to first order.
+/// Of all ways in which the stiffness of the whole body may go with what acts, a law of the material goes by its
+/// strain. It stiffens little, as sources are sought to first order.
 using LocatedStiffening = Located;
 TEST_P(LocatedStiffening, GoesWithTheStrain) {
     ASSERT_TRUE(source_);
