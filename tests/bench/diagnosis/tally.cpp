@@ -102,6 +102,7 @@ void Tally::add(const Tally& more) {
     nulls_ += more.nulls_;
     blamed_ += more.blamed_;
     append(null_evidence_, more.null_evidence_);
+    append(seconds_, more.seconds_);
     for (const auto& [hidden, row] : more.named_) {
         for (const auto& [name, times] : row) named_[hidden][name] += times;
     }
@@ -126,6 +127,10 @@ void Tally::print() const {
     const auto count = [&](Outcome outcome) { return counts_.contains(outcome) ? counts_.at(outcome) : 0; };
     fmt::print("\n{} right, {} in part, {} wrong, {} inconclusive; {} of {} null sets blamed.\n", count(Outcome::right),
                count(Outcome::in_part), count(Outcome::wrong), count(Outcome::inconclusive), blamed_, nulls_);
+    if (!seconds_.empty()) {
+        fmt::print("Seconds: median {:.0f}, 90 % {:.0f}, largest {:.0f}.\n", quantile(seconds_, 0.5),
+                   quantile(seconds_, 0.9), quantile(seconds_, 1));
+    }
     if (!null_evidence_.empty()) {
         fmt::print(
             "Largest ln BF of any effect in a null set: median {:.1f}, 95 % {:.1f}, 99 % {:.1f}, largest {:.1f}.\n",

@@ -17,6 +17,7 @@ public:
              const identify::MaterialEstimate& material);
     void add(const Tally& more);
     void add_failure() { ++counts_[Outcome::inconclusive]; }
+    void add_seconds(double taken) { seconds_.push_back(taken); }
 
     /// Outcomes, false claims, what is named for what (confusion matrix), what is left before and after, the numbers'
     /// errors and how many of them lie inside their 95 % intervals; in Markdown.
@@ -33,6 +34,7 @@ private:
     void print_reliability() const;
 
     std::map<Outcome, int> counts_;
+    std::vector<double> seconds_;  // of each diagnosis
     int nulls_ = 0, blamed_ = 0;
     std::vector<double> null_evidence_;                        // the largest of each null set, refitted or screened
     std::map<std::string, std::map<std::string, int>> named_;  // for what is hidden
