@@ -26,6 +26,7 @@
 #include "diagnosis/tally.h"
 #include "identify/diagnosis/diagnose.h"
 #include "identify/diagnosis/ladder/ladder.h"
+#include "identify/diagnosis/verdict/verdict.h"
 #include "identify/effects/catalogue.h"
 #include "identify/models/skeleton/skeleton_body.h"
 #include "identify/numerics/parallel.h"
@@ -130,16 +131,21 @@ std::string estimate(const identify::FittedExplanation& explained) {
     return text;
 }
 
-std::string estimate(const identify::Diagnosis& found) {
+std::string estimate(const identify::Diagnosis& found, const identify::DiagnoseOptions& how) {
     std::string text = "    screened:";
     for (const identify::Candidate& c : found.ranking) text += fmt::format(" {} {:.1f}", c.effect->name(), c.screened);
-    text += "\n";
+    const identify::Problem& problem = found.problem;
+    text +=
+        fmt::format("\n    displacement {:.0f} sigmas in all, error of the mesh {:.1f}\n",
+                    problem.displacement().cwiseQuotient(problem.sigma).norm(),
+                    problem.discretisation.size() > 0 ? problem.discretisation.cwiseQuotient(problem.sigma).norm() : 0);
     for (const identify::FittedExplanation& one : found.tried) {
-        text +=
-            fmt::format("    ln BF {:.1f}, {:.3f} left, {:.2f} held out, strain {:.1f} ({}), law {}, {} steps: {}{}\n",
-                        one.log_bayes_factor, one.fit.whitened_rms, one.held_out.whitened_rms, one.fit.nuisance_pull,
-                        one.fit.most_pulled_nuisance, one.fit.explanation.law, one.fit.steps, estimate(one),
-                        one.objection.empty() ? "" : " (" + one.objection + ")");
+        text += fmt::format(
+            "    ln BF {:.1f} (next to noise {:.0f}), {:.3f} left, {:.2f} held out, strain {:.1f} ({}), law {}, {} "
+            "steps: {}{}\n",
+            one.log_bayes_factor, identify::least_next_to_noise(one, problem, how), one.fit.whitened_rms,
+            one.held_out.whitened_rms, one.fit.nuisance_pull, one.fit.most_pulled_nuisance, one.fit.explanation.law,
+            one.fit.steps, estimate(one), one.objection.empty() ? "" : " (" + one.objection + ")");
     }
     return text;
 }
@@ -180,7 +186,7 @@ std::string diagnosed(const Truth& truth, const Options& options, Tally& tally) 
             found.best().whitened_rms, claimed ? fmt::format("{:.2f}", found.explained->held_out.whitened_rms) : "",
             body->laws()[static_cast<std::size_t>(claimed ? found.law : found.baseline.explanation.law)], seconds(),
             outcome_names[static_cast<std::size_t>(outcome)]);
-        if (options.tell) text += estimate(found);
+        if (options.tell) text += estimate(found, how);
         if (options.ladder && !found.explanation.empty()) {
             text += fmt::format("| | | | | {} | | | | | | | |\n", errors_of_steps(*body, set, found, options));
         }

@@ -182,7 +182,7 @@ void Search::confirm_single_effects() {
         // refits.
         constexpr double of_leader = 0.1, of_claim = 0.3;
         double least = std::max(options_.least_screen, of_leader * screened_[law].front().log_bayes_factor);
-        if (enough) least = std::max(least, of_claim * least_next_to_noise(*screened.effect, problem_, options_));
+        if (enough) least = std::max(least, of_claim * least_next_to_noise(options_));
         if (could_explain_anything(base, *screened.effect))
             candidate.objection = fmt::format(
                 "with {} independent readings it would explain whatever was measured. Read more markers, or load other "
@@ -224,8 +224,7 @@ void Search::confirm_single_effects() {
 bool Search::claims(const FittedExplanation& explained) const {
     if (!leaves_only_noise(explained.fit, options_) || !is_claimable(explained, options_)) return false;
     const bool is_noise = explained.effects.size() == 1 && leaves_only_noise(baselines_.best(), options_);
-    const double least = least_next_to_noise(*explained.effects.front(), problem_, options_);
-    if (is_noise && explained.log_bayes_factor < least) return false;
+    if (is_noise && explained.log_bayes_factor < least_next_to_noise(explained, problem_, options_)) return false;
     const Explanation& all = explained.fit.explanation;
     for (std::size_t e = 0; e < all.effects.size(); ++e) {
         if (!explained.has(all.effects[e]->name())) continue;

@@ -8,6 +8,7 @@
 
 #include "identify/diagnosis/fit/priors/fit_priors.h"
 #include "identify/diagnosis/statistics/chance.h"
+#include "identify/diagnosis/statistics/mesh_evidence.h"
 #include "identify/diagnosis/verdict/next_probe.h"
 #include "identify/effects/catalogue.h"
 
@@ -114,11 +115,11 @@ std::string objection_to(const Diagnosis& diagnosis, const FittedExplanation& ex
     if (std::string overfit = objection_of_overfit(diagnosis, explained, options); !overfit.empty()) return overfit;
     if (explained.effects.size() == 1 && is_claimable(explained, options) &&
         leaves_only_noise(diagnosis.baseline, options)) {
-        const double least = least_next_to_noise(*explained.effects.front(), diagnosis.problem, options);
+        const double least = least_next_to_noise(explained, diagnosis.problem, options);
         if (explained.log_bayes_factor < least) {
             return fmt::format(
                 "the residual without it is noise already, and its ln Bayes factor of {:.0f} is below the {:.0f} that "
-                "errors of mesh and rig can produce",
+                "noise and discretisation error can produce",
                 explained.log_bayes_factor, least);
         }
     }
@@ -189,8 +190,25 @@ bool leaves_only_noise(const Refit& fit, const DiagnoseOptions& options) {
     return fit.whitened_rms <= options.most_left(fit.error.size()) && fit.nuisance_pull <= most_pull;
 }
 
+double least_next_to_noise(const DiagnoseOptions& options) {
+    return 2 * options.least_evidence();  // the odds of a claim, squared
+}
+
+double least_next_to_noise(const FittedExplanation& explained, const Problem& problem, const DiagnoseOptions& options) {
+    const double least = least_next_to_noise(options);
+    const auto resembles = [](const auto& effect) { return effect->is_like_mesh_error(); };
+    if (std::ranges::none_of(explained.effects, resembles)) return least;
+    // Readings may come of a mesh as well, with elements as long as these: then its error is as large as what was taken
+    // off. Else halved edges leave a third of it.
+    constexpr double share = 1;
+    const double rarity = options.least_evidence();
+    const double of_mesh = evidence_of_mesh_error(problem, explained, share, rarity);
+    // Each is half the square of a vector's length: the lengths add up where both point the same way.
+    return std::max(least, std::pow(std::sqrt(rarity) + std::sqrt(of_mesh), 2));
+}
+
 double least_next_to_noise(const EffectHypothesis& effect, const Problem& problem, const DiagnoseOptions& options) {
-    const double least = 2 * options.least_evidence();  // the odds of a claim, squared
+    const double least = least_next_to_noise(options);
     if (!effect.is_like_mesh_error()) return least;
     // Halved edges leave a third of what they show, where errors fall with the square of the edge.
     constexpr double beyond_halved_edges = 1.0 / 3;

@@ -14,8 +14,15 @@ Eigen::Index free_numbers(const Refit& fit);
 /// Are the residuals of a fit noise, with no nuisance pulled beyond its prior?
 bool leaves_only_noise(const Refit& fit, const DiagnoseOptions& options);
 
-/// Least ln Bayes factor of an effect where the fit without it already leaves only noise: twice the usual one, and for
-/// an effect that resembles discretisation error more than such an error (a share of the displacement) can produce.
+/// Least ln Bayes factor of an effect where the fit without it already leaves only noise: twice the usual one.
+double least_next_to_noise(const DiagnoseOptions& options);
+
+/// The same of an explanation as it was fitted: of an effect that resembles discretisation error also more than noise
+/// and such an error together lend it, each with the probability of a false claim.
+double least_next_to_noise(const FittedExplanation& explained, const Problem& problem, const DiagnoseOptions& options);
+
+/// The same of what has no numbers in the fit: of what resembles discretisation error more than the whole of such an
+/// error (a share of the displacement, or what halved edges leave) can produce.
 double least_next_to_noise(const EffectHypothesis& effect, const Problem& problem, const DiagnoseOptions& options);
 
 /// The same beside effects that already leave only noise: also more than their own idealisation can produce.

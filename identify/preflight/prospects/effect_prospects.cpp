@@ -68,7 +68,7 @@ std::vector<EffectProspect> effect_prospects(const BodyModel& model, const Probl
         const auto factors =
             evidence.least_factors(e, cases,
                                    {.least_evidence = options.least_evidence(),
-                                    .least_next_to_noise = least_next_to_noise(effect, problem, options),
+                                    .least_next_to_noise = least_next_to_noise(options),
                                     .most_left = options.most_left(problem.rows()),
                                     .least_lead = options.least_lead});
         const auto count = static_cast<double>(factors.named.size());
