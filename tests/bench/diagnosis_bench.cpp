@@ -21,6 +21,7 @@
 #include <cmath>
 #include <ctime>
 #include <iostream>
+#include <map>
 #include <mutex>
 
 #include "diagnosis/tally.h"
@@ -120,8 +121,9 @@ std::string errors_of_steps(const identify::BodyModel& body, const identify::Mea
 
 std::string estimate(const identify::FittedExplanation& explained) {
     std::string text;
+    std::map<std::string, int> before;  // of the same name
     for (const auto& effect : explained.effects) {
-        const identify::EffectEstimate numbers = explained.estimate(effect->name());
+        const identify::EffectEstimate numbers = explained.estimate(effect->name(), before[effect->name()]++);
         text += (text.empty() ? "" : "; ") + effect->name();
         for (std::size_t p = 0; p < numbers.effect.parameters.size(); ++p) {
             const skeleton::EffectParameter& one = numbers.effect.parameters[p];

@@ -224,8 +224,9 @@ void Search::confirm_single_effects() {
 bool Search::claims(const FittedExplanation& explained) const {
     if (!leaves_only_noise(explained.fit, options_) || !is_claimable(explained, options_)) return false;
     const bool is_noise = explained.effects.size() == 1 && leaves_only_noise(baselines_.best(), options_);
-    if (is_noise && explained.log_bayes_factor < least_next_to_noise(explained, problem_, options_)) return false;
     const Explanation& all = explained.fit.explanation;
+    if (is_noise && explained.log_bayes_factor < least_next_to_noise(explained, problem_for(all), options_))
+        return false;
     for (std::size_t e = 0; e < all.effects.size(); ++e) {
         if (!explained.has(all.effects[e]->name())) continue;
         if (!all.effects[e]->objection(problem_, all.values[e]).empty()) return false;

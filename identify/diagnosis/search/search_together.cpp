@@ -78,8 +78,7 @@ bool Search::extend(std::size_t from, int most) {
     for (const ScreenedEffect& screened : screen_at(base.fit, not_again)) {
         if (refits_together_ >= options_.refits_together) break;
         if (base.log_bayes_factor + screened.at_most() < leads) continue;
-        const double least = noise_is_left ? least_next_to_effect(*screened.effect, base, problem_, options_)
-                                           : options_.least_evidence();
+        const double least = noise_is_left ? least_next_to_effect(base, options_) : options_.least_evidence();
         // A screen is a linearisation, and says somewhat too little at times; little of much explains nothing.
         // Design choices, which save refits.
         constexpr double of_claim = 0.5, of_excess = 0.05;
@@ -96,7 +95,11 @@ bool Search::extend(std::size_t from, int most) {
         ++refitted;
         ++refits_together_;
         auto found = refit_with(base.fit, screened);
-        const bool worth = found && found->log_bayes_factor >= base.log_bayes_factor + least &&
+        const auto asked = [&] {
+            if (!noise_is_left) return least;
+            return least_next_to_effect(*found, base, problem_for(found->fit.explanation), options_);
+        };
+        const bool worth = found && found->log_bayes_factor >= base.log_bayes_factor + asked() &&
                            last_lies_apart(found->fit.explanation);
         if (!worth) {
             rejected_.push_back(names);

@@ -7,14 +7,12 @@
 namespace palpate::identify {
 namespace {
 
-/// Which numbers of the fit the explanation adds (numbers).
-std::vector<char> added_numbers(const FittedExplanation& explained) {
-    const Explanation& all = explained.fit.explanation;
-    std::vector<char> added(static_cast<std::size_t>(all.theta.size()), 0);
-    for (std::size_t e = 0; e < all.effects.size(); ++e)
-        added.insert(added.end(), static_cast<std::size_t>(all.values[e].size()),
-                     explained.has(all.effects[e]->name()));
-    return added;
+/// How many of the fit's last numbers are of what the explanation adds: it follows what was there before.
+Eigen::Index count_added(const FittedExplanation& explained) {
+    const std::vector<Eigen::VectorXd>& values = explained.fit.explanation.values;
+    Eigen::Index count = 0;
+    for (auto own = values.end() - std::ssize(explained.effects); own != values.end(); ++own) count += own->size();
+    return count;
 }
 
 /// What was taken off for the mesh, probe by probe, over sigma (N x probes).
@@ -32,18 +30,16 @@ Eigen::MatrixXd corrections_of_probes(const Problem& problem) {
 double evidence_of_mesh_error(const Problem& problem, const FittedExplanation& explained, double share, double rarity) {
     if (problem.discretisation.size() == 0) return 0;
     const Refit& fit = explained.fit;
-    const std::vector<char> is_added = added_numbers(explained);
-    std::vector<Eigen::Index> added, others;
-    for (Eigen::Index c = 0; c < fit.columns.cols(); ++c) (is_added[c] ? added : others).push_back(c);
-    Eigen::MatrixXd unknown(fit.columns.rows(), fit.nuisances.columns.cols() + std::ssize(others));
-    unknown << fit.nuisances.columns, fit.columns(Eigen::all, others);
+    const Eigen::Index added = count_added(explained), others = fit.columns.cols() - added;
+    Eigen::MatrixXd unknown(fit.columns.rows(), fit.nuisances.columns.cols() + others);
+    unknown << fit.nuisances.columns, fit.columns.leftCols(others);
     Eigen::VectorXd precisions(unknown.cols());
-    precisions << fit.nuisances.precisions, fit.prior_sd(others).cwiseAbs2().cwiseInverse();
+    precisions << fit.nuisances.precisions, fit.prior_sd.head(others).cwiseAbs2().cwiseInverse();
     const Whitening V(fit.V->weights(), unknown, precisions);
 
-    const Eigen::MatrixXd S = fit.columns(Eigen::all, added), VS = V.apply(S);
+    const Eigen::MatrixXd S = fit.columns.rightCols(added), VS = V.apply(S);
     Eigen::MatrixXd M = S.transpose() * VS;
-    M.diagonal() += fit.prior_sd(added).cwiseAbs2().cwiseInverse();
+    M.diagonal() += fit.prior_sd.tail(added).cwiseAbs2().cwiseInverse();
     const Eigen::MatrixXd G = VS.transpose() * corrections_of_probes(problem);
     const Eigen::MatrixXd Q = G.transpose() * M.ldlt().solve(G);
     const double largest =

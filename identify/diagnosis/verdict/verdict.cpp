@@ -219,12 +219,20 @@ double least_next_to_noise(const EffectHypothesis& effect, const Problem& proble
     return std::max(least, 0.5 * in_sigmas * in_sigmas);
 }
 
-double least_next_to_effect(const EffectHypothesis& effect, const FittedExplanation& there, const Problem& problem,
-                            const DiagnoseOptions& options) {
+double least_next_to_effect(const FittedExplanation& there, const DiagnoseOptions& options) {
     double share = 0;
     for (const auto& one : there.effects) share = std::max(share, one->idealisation_share());
-    return std::max(
-        {options.idealisation_evidence, share * there.log_bayes_factor, least_next_to_noise(effect, problem, options)});
+    return std::max({options.idealisation_evidence, share * there.log_bayes_factor, least_next_to_noise(options)});
+}
+
+double least_next_to_effect(const FittedExplanation& explained, const FittedExplanation& there, const Problem& problem,
+                            const DiagnoseOptions& options) {
+    return std::max(least_next_to_effect(there, options), least_next_to_noise(explained, problem, options));
+}
+
+double least_next_to_effect(const EffectHypothesis& effect, const FittedExplanation& there, const Problem& problem,
+                            const DiagnoseOptions& options) {
+    return std::max(least_next_to_effect(there, options), least_next_to_noise(effect, problem, options));
 }
 
 void decide_verdict(const BodyModel& model, const DiagnoseOptions& options, Diagnosis& diagnosis) {

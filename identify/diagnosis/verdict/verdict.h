@@ -25,7 +25,14 @@ double least_next_to_noise(const FittedExplanation& explained, const Problem& pr
 /// error (a share of the displacement, or what halved edges leave) can produce.
 double least_next_to_noise(const EffectHypothesis& effect, const Problem& problem, const DiagnoseOptions& options);
 
-/// The same beside effects that already leave only noise: also more than their own idealisation can produce.
+/// Least ln Bayes factor of whatever is added to effects that already leave only noise: what they leave as
+/// idealisations themselves is less.
+double least_next_to_effect(const FittedExplanation& there, const DiagnoseOptions& options);
+
+/// The same of what an explanation adds, as it was fitted, and of what has no numbers in the fit: errors of the mesh
+/// and noise lend it less, too.
+double least_next_to_effect(const FittedExplanation& explained, const FittedExplanation& there, const Problem& problem,
+                            const DiagnoseOptions& options);
 double least_next_to_effect(const EffectHypothesis& effect, const FittedExplanation& there, const Problem& problem,
                             const DiagnoseOptions& options);
 

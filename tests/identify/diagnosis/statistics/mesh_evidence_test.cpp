@@ -87,6 +87,20 @@ TEST_F(MeshEvidence, IsNoneOfWhatTheBodyTakesUp) {
     EXPECT_EQ(evidence_of_mesh_error(problem_, explained_, 1, 7), 0);
 }
 
+TEST_F(MeshEvidence, OfAnEffectThatWasThereBeforeIsNone) {
+    // Three numbers are added to two; or two, to an effect of one number that was there, or to a body of three.
+    const double three = evidence_of_mesh_error(problem_, explained_, 1, 7);
+    Explanation& all = explained_.fit.explanation;
+    all.effects.insert(all.effects.begin(), find_effect("gravity"));
+    all.values = {Eigen::VectorXd::Zero(1), Eigen::VectorXd::Zero(of_effect - 1)};
+    const double beside_effect = evidence_of_mesh_error(problem_, explained_, 1, 7);
+    all.effects.erase(all.effects.begin());
+    all.values.erase(all.values.begin());
+    all.theta.setZero(of_body + 1);
+    EXPECT_EQ(beside_effect, evidence_of_mesh_error(problem_, explained_, 1, 7));
+    EXPECT_LT(beside_effect, three);
+}
+
 TEST_F(MeshEvidence, GrowsWithTheSquareOfTheError) {
     const double one = evidence_of_mesh_error(problem_, explained_, 1, 7);
     EXPECT_NEAR(evidence_of_mesh_error(problem_, explained_, 0.5, 7), one / 4, 1e-12 * one);

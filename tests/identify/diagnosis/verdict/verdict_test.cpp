@@ -32,10 +32,14 @@ TEST_F(Diagnosed, WhatErrorsOfTheMeshMayFeignIsNoClaim) {
     EXPECT_EQ(found.verdict, Verdict::adequate);
     EXPECT_GT(candidate(found, "compliant-support").log_bayes_factor, options.least_evidence());
     EXPECT_THAT(candidate(found, "compliant-support").objection, HasSubstr("noise and discretisation error"));
-    // An effect that is unlike such errors needs no more evidence for that.
-    EXPECT_GT(least_next_to_noise(found.tried.front(), found.problem, options), 2 * options.least_evidence());
-    found.tried.front().effects = {find_effect("gravity")};
-    EXPECT_EQ(least_next_to_noise(found.tried.front(), found.problem, options), 2 * options.least_evidence());
+    // Beside another effect no less is asked for. An effect that is unlike such errors needs no more for them.
+    FittedExplanation &feigned = found.tried.front(), there = feigned;
+    const double least = least_next_to_noise(feigned, found.problem, options);
+    EXPECT_GT(least, options.idealisation_evidence);
+    EXPECT_EQ(least_next_to_effect(feigned, there, found.problem, options), least);
+    feigned.effects = {find_effect("gravity")};
+    EXPECT_EQ(least_next_to_noise(feigned, found.problem, options), 2 * options.least_evidence());
+    EXPECT_EQ(least_next_to_effect(feigned, there, found.problem, options), options.idealisation_evidence);
 }
 
 TEST_F(Diagnosed, LittleNextToWhatErrorsOfTheMeshFeignIsNothing) {
