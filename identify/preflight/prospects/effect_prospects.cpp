@@ -65,12 +65,11 @@ std::vector<EffectProspect> effect_prospects(const BodyModel& model, const Probl
             prospect.why_not = "to first order it alters nothing of what is read in these states";
             continue;
         }
-        const auto factors =
-            evidence.least_factors(e, cases,
-                                   {.least_evidence = options.least_evidence(),
-                                    .least_next_to_noise = least_next_to_noise(options),
-                                    .most_left = options.most_left(problem.rows()),
-                                    .least_lead = options.least_lead});
+        const auto factors = evidence.least_factors(e, cases,
+                                                    {.least_evidence = options.least_evidence(),
+                                                     .least_next_to_noise = least_next_to_noise(options),
+                                                     .most_left = options.most_left(problem.rows()),
+                                                     .least_lead = options.least_lead});
         const auto count = static_cast<double>(factors.named.size());
         prospect.share =
             static_cast<double>(std::ranges::count_if(factors.named, [](double f) { return f <= 1; })) / count;
