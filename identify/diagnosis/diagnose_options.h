@@ -29,7 +29,7 @@ struct DiagnoseOptions {
     double least_outliers = 100;   // least ln Bayes factor of outliers: one reading of 15 sigma, say
     // The next three are design choices: with less, errors of meshes and of idealisations are named as effects; with
     // more, weak effects are not.
-    double mesh_error = 0.005;  // share of the displacement that its error may mimic as outliers or a second effect
+    double mesh_error = 0.005;  // share of the displacement that discretisation error may mimic as outliers
     double resolution = 0.01;   // of the displacement: noise that is not specified is no less, as of a mesh
     double idealisation_evidence =
         60;  // least ln Bayes factor beside an effect whose own idealisation leaves a residual

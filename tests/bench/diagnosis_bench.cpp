@@ -142,12 +142,16 @@ std::string estimate(const identify::Diagnosis& found, const identify::DiagnoseO
                     problem.displacement().cwiseQuotient(problem.sigma).norm(),
                     problem.discretisation.size() > 0 ? problem.discretisation.cwiseQuotient(problem.sigma).norm() : 0);
     for (const identify::FittedExplanation& one : found.tried) {
+        const std::string asked =
+            one.effects.size() == 1
+                ? fmt::format(" (next to noise {:.0f})", identify::least_next_to_noise(one, problem, how))
+                : "";
         text += fmt::format(
-            "    ln BF {:.1f} (next to noise {:.0f}), {:.3f} left, {:.2f} held out, strain {:.1f} ({}), law {}, {} "
+            "    ln BF {:.1f}{}, {:.3f} left, {:.2f} held out, strain {:.1f} ({}), law {}, {} "
             "steps: {}{}\n",
-            one.log_bayes_factor, identify::least_next_to_noise(one, problem, how), one.fit.whitened_rms,
-            one.held_out.whitened_rms, one.fit.nuisance_pull, one.fit.most_pulled_nuisance, one.fit.explanation.law,
-            one.fit.steps, estimate(one), one.objection.empty() ? "" : " (" + one.objection + ")");
+            one.log_bayes_factor, asked, one.fit.whitened_rms, one.held_out.whitened_rms, one.fit.nuisance_pull,
+            one.fit.most_pulled_nuisance, one.fit.explanation.law, one.fit.steps, estimate(one),
+            one.objection.empty() ? "" : " (" + one.objection + ")");
     }
     return text;
 }
