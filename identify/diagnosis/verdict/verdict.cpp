@@ -196,10 +196,10 @@ double least_next_to_noise(const DiagnoseOptions& options) {
 
 double least_next_to_noise(const FittedExplanation& explained, const Problem& problem, const DiagnoseOptions& options) {
     const double least = least_next_to_noise(options);
-    const auto resembles = [](const auto& effect) { return effect->is_like_mesh_error(); };
-    if (std::ranges::none_of(explained.effects, resembles)) return least;
-    // Readings may come of a mesh as well, with elements as long as these: then its error is as large as what was taken
-    // off. Else halved edges leave a third of it.
+    const auto like = std::ranges::find_if(explained.effects, [](const auto& e) { return e->is_like_mesh_error(); });
+    if (like == explained.effects.end()) return least;
+    if (problem.discretisation.size() == 0) return least_next_to_noise(**like, problem, options);
+    // Readings may come of a mesh as coarse: its error is then as large as what was taken off, else a third of it.
     constexpr double share = 1;
     const double rarity = options.least_evidence();
     const double of_mesh = evidence_of_mesh_error(problem, explained, share, rarity);

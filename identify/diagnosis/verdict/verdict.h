@@ -21,8 +21,9 @@ double least_next_to_noise(const DiagnoseOptions& options);
 /// and such an error together lend it, each with the probability of a false claim.
 double least_next_to_noise(const FittedExplanation& explained, const Problem& problem, const DiagnoseOptions& options);
 
-/// The same of what has no numbers in the fit: of what resembles discretisation error more than the whole of such an
-/// error (a share of the displacement, or what halved edges leave) can produce.
+/// The same of what has no numbers in the fit, or on a body that cannot tell of its error: of what resembles
+/// discretisation error more than the whole of such an error (a share of the displacement, or what halved edges leave)
+/// can produce.
 double least_next_to_noise(const EffectHypothesis& effect, const Problem& problem, const DiagnoseOptions& options);
 
 /// Least ln Bayes factor of whatever is added to effects that already leave only noise: what they leave as
