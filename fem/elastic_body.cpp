@@ -14,14 +14,16 @@
 #include <span>
 #include <utility>
 
+#include "fem/distributed/distributed_stiffness.h"
+#include "fem/distributed/processes.h"
 #include "fem/elements/assembly.h"
 #include "fem/elements/restraint.h"
 #include "fem/linear_algebra/cholesky/cholesky.h"
 #include "fem/linear_algebra/conjugate_gradients.h"
-#include "fem/linear_algebra/memory/free_memory.h"
 #include "fem/linear_algebra/memory/huge_pages.h"
 #include "fem/linear_algebra/multigrid/morton.h"
 #include "fem/linear_algebra/solver_choice.h"
+#include "mesh/errors.h"
 
 namespace palpate::fem {
 
@@ -47,13 +49,6 @@ std::vector<int> number_free_nodes(const std::vector<char>& held) {
     return number;
 }
 
-/// What factoring takes: the factor, and the lower half of the matrix, values and rows [GB].
-double factor_memory(const Supernodes& structure, const std::vector<std::vector<int>>& lower) {
-    double blocks = 0;
-    for (const auto& rows : lower) blocks += static_cast<double>(rows.size());
-    return 8e-9 * static_cast<double>(structure.first_value.back()) + 9 * 16e-9 * blocks;
-}
-
 Points numbered_positions(const mesh::VolumeMesh& mesh, const std::vector<int>& number) {
     Points positions(std::ranges::count_if(number, [](int k) { return k >= 0; }), 3);
     for (std::size_t i = 0; i < number.size(); ++i) {
@@ -72,12 +67,14 @@ struct ElasticBody::Impl {
     ElasticBodyStats stats;
     std::vector<int> number;  // of each node in K, -1: held
     std::unique_ptr<Cholesky> factor;
-    std::unique_ptr<Multigrid> multigrid;  // where there is no factor
+    std::unique_ptr<Multigrid> multigrid;               // where there is no factor
+    std::unique_ptr<DistributedStiffness> distributed;  // likewise
     mutable std::atomic<int> most_iterations = 0;
 
     void prepare();
     void make_factor(Elimination elimination);
     void make_multigrid();
+    void distribute();
     void solve_together(MultiVector& X) const;
     template <class Loads>
     void solve_some(const Loads& loads, std::span<const Eigen::Index> columns, MultiVector& X,
@@ -116,34 +113,47 @@ ElasticBody::ElasticBody(mesh::VolumeMesh mesh, Materials materials, const std::
     arena(options).execute([&] { impl_->prepare(); });
 }
 
-/// A factor where memory holds it and loads are worth it, else a multigrid.
+/// As the options ask for; else a factor where memory holds it and loads are worth it.
 void ElasticBody::Impl::prepare() {
     const auto start = std::chrono::steady_clock::now();
     number = number_free_nodes(held);
+    stats.free_dofs = 3 * static_cast<int>(std::ranges::count_if(number, [](int k) { return k >= 0; }));
+    if (options.solver == Solver::petsc) return distribute();
+    if (options.solver == Solver::multigrid) return make_multigrid();
     auto lower = neighbours(mesh, number, Half::lower);
     Elimination elimination = analyse(lower, 3);
-    const double needed = factor_memory(elimination.supernodes, std::exchange(lower, {}));
-    stats.free_dofs = elimination.supernodes.size();
+    const double needed = factor_gigabytes(elimination.supernodes, std::exchange(lower, {}));
     stats.factor_entries = static_cast<double>(elimination.supernodes.first_value.back());
     stats.seconds_analyse = stats.seconds_factor = seconds_since(start);
 
-    constexpr double share = 0.9;  // of the free memory
-    const double allowed = options.memory > 0 ? options.memory : share * free_memory();
+    const double allowed = options.memory > 0 ? options.memory : usable_memory();
+    const char* const instead = Processes::count() > 1 ? "PETSc" : "conjugate gradients with multigrid";
     if (needed > allowed) {
-        stats.note = fmt::format(
-            "A factor of the stiffness matrix ({} unknowns) would take {:.3g} GB of {:.3g} GB: conjugate gradients "
-            "with multigrid instead.",
-            stats.free_dofs, needed, allowed);
-    } else if (is_faster_without_factor(elimination.supernodes, options.loads)) {
+        stats.note =
+            fmt::format("A factor of the stiffness matrix ({} unknowns) would take {:.3g} GB of {:.3g} GB: {} instead.",
+                        stats.free_dofs, needed, allowed, instead);
+        if (options.solver == Solver::factor) throw SolverFailure(no_room_for_factor(stats.free_dofs, needed, allowed));
+    } else if (options.solver == Solver::automatic && is_faster_without_factor(elimination.supernodes, options.loads)) {
         stats.note = fmt::format(
             "A factor of the stiffness matrix ({} unknowns, {:.3g} GB) would take longer than {} load(s) without it: "
-            "conjugate gradients with multigrid instead.",
-            stats.free_dofs, needed, options.loads);
+            "{} instead.",
+            stats.free_dofs, needed, options.loads, instead);
     } else {
         return make_factor(std::move(elimination));
     }
     elimination = {};
+    if (Processes::count() > 1) return distribute();
     make_multigrid();
+}
+
+void ElasticBody::Impl::distribute() {
+    const auto start = std::chrono::steady_clock::now();
+    distributed = std::make_unique<DistributedStiffness>(mesh, materials, stats.dilatation, held);
+    number = distributed->number();
+    stats.solver = Solver::petsc;
+    stats.seconds_factor += seconds_since(start);
+    stats.note += fmt::format("{}{} unknowns are solved for by {}.", stats.note.empty() ? "" : " ", stats.free_dofs,
+                              distributed->description());
 }
 
 void ElasticBody::Impl::make_factor(Elimination elimination) {
@@ -174,6 +184,7 @@ void ElasticBody::Impl::make_multigrid() {
     stats.seconds_assemble = seconds_since(start);
     start = std::chrono::steady_clock::now();
     multigrid = std::make_unique<Multigrid>(std::move(K), rigid_modes(positions));
+    stats.solver = Solver::multigrid;
     stats.seconds_factor += seconds_since(start);
     stats.levels = multigrid->levels();
 }
@@ -223,7 +234,7 @@ void ElasticBody::Impl::fill(const Eigen::MatrixXd& loads, std::span<const Eigen
 
 void ElasticBody::Impl::solve_together(MultiVector& X) const {
     if (factor) return factor->solve(X);
-    const int iterations = conjugate_gradients(*multigrid, X);
+    const int iterations = distributed ? distributed->solve(X) : conjugate_gradients(*multigrid, X);
     int most = most_iterations;
     while (iterations > most && !most_iterations.compare_exchange_weak(most, iterations)) {
     }

@@ -36,7 +36,8 @@ void validate(const BodySetting& setting) {
 
 struct HyperelasticBody::Impl {
     BodyShape shape;
-    explicit Impl(BodyShape body) : shape(std::move(body)) {}
+    Solver solver;
+    Impl(BodyShape body, Solver chosen) : shape(std::move(body)), solver(chosen) {}
 
     /// Which unknowns there are, and what couples them beyond elements.
     struct Kind {
@@ -86,7 +87,7 @@ const EliminationOrder& HyperelasticBody::Impl::order(const Effects& effects) co
     ();
     return order.get([&] {
         return elimination_order(shape.mesh, own.released ? std::vector<char>(shape.held.size(), 0) : shape.held,
-                                 joined(own));
+                                 joined(own), solver);
     });
 }
 
@@ -106,8 +107,9 @@ const Unknowns& HyperelasticBody::Impl::all(const Effects& effects) const {
 }
 
 HyperelasticBody::HyperelasticBody(mesh::VolumeMesh mesh, std::vector<char> held, Dilatation dilatation,
-                                   ElementRegions regions)
-    : impl_(std::make_unique<Impl>(shape_of(std::move(mesh), std::move(held), dilatation, std::move(regions)))) {}
+                                   ElementRegions regions, Solver solver)
+    : impl_(
+          std::make_unique<Impl>(shape_of(std::move(mesh), std::move(held), dilatation, std::move(regions)), solver)) {}
 
 HyperelasticBody::~HyperelasticBody() = default;
 HyperelasticBody::HyperelasticBody(HyperelasticBody&&) noexcept = default;
@@ -251,7 +253,7 @@ BodyEquilibrium HyperelasticBody::equilibrium(const BodySetting& setting, const 
     options.validate();
     const EliminationOrder& order = impl_->order(setting.effects);
     const auto* nearby = dynamic_cast<const FactoredTangent*>(guide);
-    const Cholesky* factor = nearby && nearby->is_in(order) ? &nearby->factor() : nullptr;
+    const TangentSolver* factor = nearby && nearby->is_in(order) ? &nearby->solver() : nullptr;
     return find_equilibrium(impl_->shape, order, setting, f, options, start, before, factor);
 }
 

@@ -12,6 +12,7 @@
 #include "fem/large_deformation/body_tangent.h"
 #include "fem/rig/tendon_terms.h"
 #include "fem/rig/tool_potential.h"
+#include "fem/solver.h"
 #include "mesh/core/volume_mesh.h"
 
 namespace palpate::fem {
@@ -26,10 +27,11 @@ struct MaterialState;
 /// any number of them.
 class HyperelasticBody {
 public:
-    /// `held`: a flag per node (n). @throws InvalidInput when elements are not quadratic or turned inside out, or too
-    /// little is held to stop rigid motion.
+    /// `held`: a flag per node (n). `solver`: of tangents; automatic takes a factor where it fits into the memory that
+    /// is free when it is first asked for. @throws InvalidInput when elements are not quadratic or turned inside out,
+    /// or too little is held to stop rigid motion.
     HyperelasticBody(mesh::VolumeMesh mesh, std::vector<char> held, Dilatation dilatation = Dilatation::mean,
-                     ElementRegions regions = {});
+                     ElementRegions regions = {}, Solver solver = Solver::automatic);
     ~HyperelasticBody();
     HyperelasticBody(HyperelasticBody&&) noexcept;
 

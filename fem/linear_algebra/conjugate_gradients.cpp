@@ -41,8 +41,10 @@ int conjugate_gradients(const Multigrid& M, MultiVector& X, const ConjugateGradi
     MultiVector p = z, Ap(F.rows(), F.cols());
     Row rz = dots(r, z);
     const Row least = options.tolerance * options.tolerance * rz;
+    auto ended = (rz <= least).eval();
     int k = 0;
-    for (; !(rz <= least).all(); ++k) {
+    for (; !ended.all(); ++k) {
+        if (options.truncated && k == options.iterations) break;
         if (k == options.iterations || !rz.isFinite().all()) {
             fail(
                 fmt::format("Conjugate gradients stopped after {} iterations with an error of {:.1e} of the "
@@ -50,7 +52,13 @@ int conjugate_gradients(const Multigrid& M, MultiVector& X, const ConjugateGradi
                             k, std::sqrt(ratio(rz, least).maxCoeff()) * options.tolerance, options.tolerance));
         }
         multiply(M.matrix(), p, Ap);
-        const Row alpha = ratio((rz > least).select(rz, 0.0), dots(p, Ap));
+        const Row curvature = dots(p, Ap);
+        if (options.truncated) {
+            for (Eigen::Index j = 0; k == 0 && j < X.cols(); ++j)
+                if (!ended(j) && !(curvature(j) > 0)) X.col(j) = p.col(j);
+            ended = ended || !(curvature > 0);
+        }
+        const Row alpha = ratio(ended.select(0.0, rz), curvature);
         add_scaled(p, alpha, X);
         add_scaled(Ap, -alpha, r);
         spent = r;
@@ -58,7 +66,9 @@ int conjugate_gradients(const Multigrid& M, MultiVector& X, const ConjugateGradi
         const Row next = dots(r, z);
         scale_and_add(z, ratio(next, rz), p);
         rz = next;
+        ended = ended || rz <= least;
     }
+    if (options.truncated) return k;
     check(M.matrix(), X, F);
     return k;
 }

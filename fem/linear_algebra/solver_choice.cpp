@@ -1,5 +1,9 @@
 #include "fem/linear_algebra/solver_choice.h"
 
+#include <fmt/format.h>
+
+#include "fem/linear_algebra/memory/free_memory.h"
+
 namespace palpate::fem {
 namespace {
 
@@ -27,6 +31,24 @@ bool is_faster_without_factor(const Supernodes& structure, int loads) {
     const double nodes = structure.size() / 3.0;
     const double iterating = nodes * (multigrid_of_a_node + loads * load_on_a_node);
     return loads > 0 && iterating < worthwhile * factor_products(structure) / products_per_second;
+}
+
+double factor_gigabytes(const Supernodes& structure, const std::vector<std::vector<int>>& lower) {
+    double blocks = 0;
+    for (const auto& rows : lower) blocks += static_cast<double>(rows.size());
+    return 8e-9 * static_cast<double>(structure.first_value.back()) + 9 * 16e-9 * blocks;
+}
+
+double usable_memory() {
+    constexpr double share = 0.9;
+    return share * free_memory();
+}
+
+std::string no_room_for_factor(std::ptrdiff_t unknowns, double needed, double allowed) {
+    return fmt::format(
+        "a factor of the stiffness matrix ({} unknowns) would take {:.3g} GB of {:.3g} GB: choose another solver, "
+        "larger elements or more memory",
+        unknowns, needed, allowed);
 }
 
 }  // namespace palpate::fem

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "fem/solver.h"
 #include "identify/inference/problem/identify_options.h"
 #include "mesh/core/material_region.h"
 #include "mesh/core/region.h"
@@ -50,6 +51,7 @@ struct Case {
     double edge_length =
         0;  // of the tetrahedra [mm]; 0: 6 % of the longest side, less in a thin body; 7 % where effects are looked for
     bool linear_elements = false;
+    fem::Solver solver = fem::Solver::automatic;  // of the body that is probed
     skeleton::BuildOptions skeleton;
     bool sphere_curve = false;  // measure what more and fewer spheres would do
     ProbeOptions probing{.probes = 60, .held_out = 12};

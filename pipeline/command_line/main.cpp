@@ -3,8 +3,10 @@
 #include <tbb/global_control.h>
 
 #include <exception>
+#include <memory>
 #include <new>
 
+#include "fem/distributed/processes.h"
 #include "mesh/errors.h"
 #include "pipeline/command_line/command_line.h"
 #include "pipeline/command_line/commands.h"
@@ -41,12 +43,28 @@ commands::Outcome guarded(const std::function<commands::Outcome()>& command, int
     }
 }
 
+/// What this process is one of, where mpirun started several. @return null where it may not be one of them.
+std::unique_ptr<fem::Processes> processes() {
+    try {
+        return std::make_unique<fem::Processes>();
+    } catch (const std::exception& e) {
+        fmt::print(stderr, "palpate: {}\n", e.what());
+        return nullptr;
+    }
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
     // Matrices of some MB come and go in inner loops: kept by the allocator, not handed back to the system each time.
     mallopt(M_MMAP_THRESHOLD, 256 << 20);
     mallopt(M_TRIM_THRESHOLD, 512 << 20);
+    const std::unique_ptr<fem::Processes> all = processes();
+    if (!all) return commands::bad_input;
+    if (!all->lead()) {
+        all->serve();
+        return commands::done;
+    }
     CommandLine line;
     if (const auto answered = line.parse(argc, argv)) return *answered;
     Console::set_up(line.verbosity());

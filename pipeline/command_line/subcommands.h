@@ -15,6 +15,7 @@ struct Subcommands {
     std::function<commands::Outcome()> command;  // that was asked for
 
     commands::RunOptions run;
+    commands::BatchOptions batch;  // of several
     commands::CheckOptions check;
     commands::ImportCommandOptions importing;
     commands::MeshOptions mesh;

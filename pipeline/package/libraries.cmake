@@ -41,6 +41,13 @@ set(palpate_libraries
   "spdlog|${spdlog_VERSION}|MIT|the log"
   "OpenSSL|${OPENSSL_VERSION}|Apache-2.0|SHA-256"
   "zlib|${ZLIB_VERSION_STRING}|Zlib|compressed files")
+if(PALPATE_PETSC)
+  file(STRINGS "${METIS_INCLUDE_DIR}/metis.h" metis_lines REGEX "define METIS_VER_(MAJOR|MINOR|SUBMINOR)")
+  string(REGEX REPLACE "[^0-9]+" "." metis_VERSION "${metis_lines}")
+  string(REGEX MATCH "[0-9]+\\.[0-9]+\\.[0-9]+" metis_VERSION "${metis_VERSION}")
+  list(APPEND palpate_libraries "PETSc|${petsc_VERSION}|BSD-2-Clause|bodies over several processes"
+    "METIS|${metis_VERSION}|Apache-2.0|the processes' shares of a body")
+endif()
 if(PALPATE_CAD)
   list(INSERT palpate_libraries 4 "OpenCASCADE|${OpenCASCADE_VERSION}|LGPL-2.1-only WITH OCCT-exception-1.0|STEP and IGES")
 endif()

@@ -96,6 +96,7 @@ Specimen finite_element_specimen(const Subject& subject, const BlindSetOptions& 
         identify::ReferenceBodyOptions{.density = material.density,
                                        .young = material.young,
                                        .dilatation = dilatation_for(body.surface, edge > 0 ? edge : default_edge),
+                                       .solver = subject.settings.solver,
                                        .rig = driven.rig,
                                        .regions = with_surfaces(subject.regions, body.interfaces)});
     specimen.setting = {static_cast<int>(options.law.value_or(fem::MaterialLaw::neo_hookean)),

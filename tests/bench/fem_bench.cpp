@@ -7,8 +7,10 @@
 
 #include <CLI/CLI.hpp>
 #include <chrono>
+#include <map>
 
 #include "bench/fem/bars.h"
+#include "fem/distributed/processes.h"
 #include "fem/elastic_body.h"
 #include "mesh/errors.h"
 
@@ -31,7 +33,8 @@ double peak_gb() {
 
 struct Settings {
     int threads = 2, loads = 100;
-    double memory = 0;           // that a factor may take [GB]; 0: as the body decides
+    double memory = 0;  // that a factor may take [GB]; 0: as the body decides
+    fem::Solver solver = fem::Solver::automatic;
     std::string only, folder{};  // empty: all meshes; nothing is written
 };
 
@@ -44,9 +47,11 @@ void measure(const bench::Bar& bar, const Settings& settings) {
     Eigen::MatrixXd U;
     std::unique_ptr<fem::ElasticBody> body;
     const double make = seconds([&] {
-        body = std::make_unique<fem::ElasticBody>(
-            problem.mesh, problem.material, problem.held,
-            fem::ElasticBodyOptions{.threads = settings.threads, .memory = settings.memory, .loads = settings.loads});
+        body = std::make_unique<fem::ElasticBody>(problem.mesh, problem.material, problem.held,
+                                                  fem::ElasticBodyOptions{.threads = settings.threads,
+                                                                          .memory = settings.memory,
+                                                                          .loads = settings.loads,
+                                                                          .solver = settings.solver});
     });
     solve_1 = seconds([&] { body->solve(one); });
     solve_all = seconds([&] { U = body->solve(loads); });
@@ -54,8 +59,8 @@ void measure(const bench::Bar& bar, const Settings& settings) {
     fmt::print("{:<15} {:>7} {:>8} {:>8.3f} {:>8.3f} {:>8.3f} {:>9} {:>8.3f} {:>8.4f} {:>8.2f} {:>8.2f}\n", bar.name,
                stats.nodes, stats.elements, stats.seconds_assemble, stats.seconds_analyse,
                stats.seconds_factor - stats.seconds_analyse,
-               stats.levels > 0 ? fmt::format("CG {}", body->most_iterations())
-                                : fmt::format("{:.2f} GB", 8e-9 * stats.factor_entries),
+               stats.solver != fem::Solver::factor ? fmt::format("CG {}", body->most_iterations())
+                                                   : fmt::format("{:.2f} GB", 8e-9 * stats.factor_entries),
                solve_1, solve_all / static_cast<double>(loads.cols()), make + solve_all, peak_gb());
     std::fflush(stdout);
     if (!settings.folder.empty()) {
@@ -66,11 +71,22 @@ void measure(const bench::Bar& bar, const Settings& settings) {
 }  // namespace
 
 int main(int argc, char** argv) {
+    fem::Processes processes;
+    if (!processes.lead()) {
+        processes.serve();
+        return 0;
+    }
     CLI::App app{"How long the reference body takes"};
     Settings settings;
     app.add_option("--threads", settings.threads)->check(CLI::PositiveNumber);
     app.add_option("--loads", settings.loads)->check(CLI::PositiveNumber);
     app.add_option("--memory", settings.memory, "that a factor may take [GB]; 0: as the body decides");
+    const std::map<std::string, fem::Solver> solvers{{"automatic", fem::Solver::automatic},
+                                                     {"factor", fem::Solver::factor},
+                                                     {"multigrid", fem::Solver::multigrid},
+                                                     {"petsc", fem::Solver::petsc}};
+    app.add_option("--solver", settings.solver, "petsc: under mpirun, in as many processes")
+        ->transform(CLI::CheckedTransformer(solvers));
     app.add_option("--only", settings.only, "the mesh of this name, as 20k-quadratic; otherwise all up to 100k nodes");
     app.add_option("--folder", settings.folder, "where the meshes and the answers are written for other codes");
     CLI11_PARSE(app, argc, argv);
@@ -80,7 +96,8 @@ int main(int argc, char** argv) {
                "1 load", "a load", "all", "peak GB");
     try {
         for (const bench::Bar& bar : bench::bars()) {
-            const bool is_huge = bar.name.starts_with("300k") || bar.name.starts_with("1000k");
+            const bool is_huge =
+                bar.name.starts_with("300k") || bar.name.starts_with("1000k") || bar.name.starts_with("3000k");
             if (settings.only.empty() ? !is_huge : bar.name == settings.only) measure(bar, settings);
         }
     } catch (const std::runtime_error& error) {

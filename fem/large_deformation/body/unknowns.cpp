@@ -4,7 +4,11 @@
 
 #include <algorithm>
 
+#include "fem/distributed/processes.h"
 #include "fem/elements/assembly.h"
+#include "fem/linear_algebra/multigrid/morton.h"
+#include "fem/linear_algebra/solver_choice.h"
+#include "mesh/errors.h"
 
 namespace palpate::fem {
 
@@ -124,16 +128,32 @@ Eigen::VectorXd Unknowns::scatter(const Eigen::VectorXd& x) const {
 }
 
 EliminationOrder elimination_order(const mesh::VolumeMesh& mesh, const std::vector<char>& held,
-                                   const JoinedNodes& joined) {
-    std::vector<int> number(held.size());
-    int count = 0;
-    for (std::size_t i = 0; i < held.size(); ++i) number[i] = held[i] ? -1 : count++;
-    Elimination elimination = analyse(lower_neighbours(mesh, number, joined), 3);
-    for (int& k : number) {
-        if (k >= 0) k = elimination.position[k];
+                                   const JoinedNodes& joined, Solver solver) {
+    std::vector<int> number(held.size()), free;
+    for (std::size_t i = 0; i < held.size(); ++i) {
+        number[i] = held[i] ? -1 : static_cast<int>(free.size());
+        if (!held[i]) free.push_back(static_cast<int>(i));
     }
-    return {Unknowns(mesh, std::move(number), joined),
-            std::make_shared<const Supernodes>(std::move(elimination.supernodes))};
+    if (solver == Solver::automatic || solver == Solver::factor) {
+        auto lower = lower_neighbours(mesh, number, joined);
+        Elimination elimination = analyse(lower, 3);
+        const double needed = factor_gigabytes(elimination.supernodes, lower), allowed = usable_memory();
+        if (needed <= allowed) {
+            lower = {};
+            for (int& k : number) {
+                if (k >= 0) k = elimination.position[k];
+            }
+            return {Unknowns(mesh, std::move(number), joined),
+                    std::make_shared<const Supernodes>(std::move(elimination.supernodes))};
+        }
+        if (solver == Solver::factor) throw SolverFailure(no_room_for_factor(3 * std::ssize(free), needed, allowed));
+        solver = Processes::count() > 1 ? Solver::petsc : Solver::multigrid;
+    }
+    const Points positions = mesh.nodes(free, Eigen::all);
+    const std::vector<int> order = morton_order(positions);
+    for (std::size_t k = 0; k < order.size(); ++k)
+        number[static_cast<std::size_t>(free[static_cast<std::size_t>(order[k])])] = static_cast<int>(k);
+    return {Unknowns(mesh, std::move(number), joined), nullptr, solver, positions(order, Eigen::all)};
 }
 
 }  // namespace palpate::fem

@@ -6,6 +6,7 @@
 #include "fem/large_deformation/elements/element_kernel.h"
 #include "fem/linear_algebra/cholesky/cholesky.h"
 #include "fem/linear_algebra/cholesky/lower_matrix.h"
+#include "fem/solver.h"
 #include "mesh/core/volume_mesh.h"
 
 namespace palpate::fem {
@@ -42,14 +43,18 @@ private:
     std::vector<std::int64_t> place_;  // of each element's node pairs i <= j in the matrix' values, -1: none
 };
 
-/// Unknowns in an order with little fill, and the structure of their factor.
+/// Unknowns in an order with little fill, and the structure of their factor; or along a curve through the body, where
+/// iterations solve.
 struct EliminationOrder {
     Unknowns unknowns;
-    std::shared_ptr<const Supernodes> supernodes;
+    std::shared_ptr<const Supernodes> supernodes;  // null: there is no factor
+    Solver solver = Solver::factor;                // what solves
+    Points positions{};                            // of the unknowns' nodes, where iterations solve
 };
 
-/// @throws SolverFailure when memory does not suffice.
+/// `solver`, automatic: a factor if it fits into nine tenths of the free memory. @throws SolverFailure when memory does
+/// not suffice for the factor that is asked for.
 EliminationOrder elimination_order(const mesh::VolumeMesh& mesh, const std::vector<char>& held,
-                                   const JoinedNodes& joined = {});
+                                   const JoinedNodes& joined = {}, Solver solver = Solver::automatic);
 
 }  // namespace palpate::fem

@@ -107,7 +107,7 @@ std::string advice(const BodyShape& body, const BodySetting& setting, const Eige
 
 BodyEquilibrium find_equilibrium(const BodyShape& body, const EliminationOrder& order, const BodySetting& setting,
                                  const Eigen::VectorXd& f, const NewtonOptions& options, const Eigen::VectorXd* start,
-                                 const MaterialState* before, const Cholesky* guide) {
+                                 const MaterialState* before, const TangentSolver* guide) {
     const Unknowns& unknowns = order.unknowns;
     assert(f.size() == body.mesh.nodes.size());
     BodyEquilibrium result;

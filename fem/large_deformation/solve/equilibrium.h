@@ -2,6 +2,7 @@
 
 #include "fem/large_deformation/body/loaded_body.h"
 #include "fem/large_deformation/body_equilibrium.h"
+#include "fem/large_deformation/solve/tangent_solver.h"
 
 namespace palpate::fem {
 
@@ -11,6 +12,6 @@ namespace palpate::fem {
 /// @throws SolverFailure with iterations and residual when all fail.
 BodyEquilibrium find_equilibrium(const BodyShape& body, const EliminationOrder& order, const BodySetting& setting,
                                  const Eigen::VectorXd& f, const NewtonOptions& options, const Eigen::VectorXd* start,
-                                 const MaterialState* before, const Cholesky* guide = nullptr);
+                                 const MaterialState* before, const TangentSolver* guide = nullptr);
 
 }  // namespace palpate::fem

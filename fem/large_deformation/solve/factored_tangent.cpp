@@ -10,8 +10,8 @@ FactoredTangent::FactoredTangent(const EliminationOrder& order, const LowerMatri
     : structure_(order.supernodes),
       unknowns_(order.unknowns.size()),
       number_(order.unknowns.number()),
-      cholesky_(order.supernodes) {
-    if (!cholesky_.factor(K)) {
+      solver_(make_tangent_solver(order, Accuracy::answers)) {
+    if (!solver_->take(K)) {
         throw SolverFailure(
             "The body's tangent is not positive definite here: these displacements are no stable equilibrium. Take "
             "those of an equilibrium, or a smaller load.");
@@ -31,7 +31,7 @@ Eigen::MatrixXd FactoredTangent::solve(const Eigen::MatrixXd& B) const {
         const Eigen::Index count = std::min(together, B.cols() - first);
         MultiVector X(unknowns_, count);
         for_unknowns([&](auto node, auto row) { X.middleRows<3>(row) = B.block(node, first, 3, count); });
-        cholesky_.solve(X);
+        solver_->solve(X);
         for_unknowns([&](auto node, auto row) { result.block(node, first, 3, count) = X.middleRows<3>(row); });
     }
     return result;

@@ -54,7 +54,10 @@ private:
 };
 
 Newton::Newton(const EliminationOrder& order, int iterations)
-    : order_(order), allowed_(iterations), K_(order.unknowns.zero()), cholesky_(order.supernodes) {}
+    : order_(order),
+      allowed_(iterations),
+      K_(order.unknowns.zero()),
+      own_(make_tangent_solver(order, Accuracy::steps)) {}
 
 /// Factors the tangent, if it is positive definite.
 bool Newton::factor(const LoadedBody& body, const Eigen::VectorXd& u) {
@@ -62,9 +65,9 @@ bool Newton::factor(const LoadedBody& body, const Eigen::VectorXd& u) {
     std::fill_n(K_.valuePtr(), K_.nonZeros(), 0.0);
     body.add_tangent(u, order_.unknowns, K_);
     if (body.may_part()) active_.hold(body, order_.unknowns, body.near_points(u), K_);
-    in_use_ = &cholesky_;
+    in_use_ = own_.get();
     ++factorisations_;
-    return cholesky_.factor(K_);
+    return own_->take(K_);
 }
 
 /// Factors what `factor` could not, with `share` of the diagonal's mean size added to it.
@@ -76,7 +79,7 @@ bool Newton::factor_shifted(double share) {
     const double shift = share * sum / static_cast<double>(K_.cols());
     for (Eigen::Index k = 0; k < K_.cols(); ++k) diagonal(k) += shift;
     ++factorisations_;
-    return cholesky_.factor(K_);
+    return own_->take(K_);
 }
 
 /// Factors the tangent, shifted as little as makes it positive definite.
@@ -161,7 +164,7 @@ void Newton::remember(const LoadedBody& body, const State& from, const State& to
 }
 
 bool Newton::minimise(const LoadedBody& body, const NewtonTolerance& tolerance, Eigen::VectorXd& u,
-                      const Cholesky* guide) {
+                      const TangentSolver* guide) {
     State here(body, order_.unknowns, u), next = here;
     bool factored = guide != nullptr;
     int astray = 0;

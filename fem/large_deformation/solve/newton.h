@@ -4,6 +4,7 @@
 
 #include "fem/large_deformation/body/loaded_body.h"
 #include "fem/large_deformation/solve/active_set.h"
+#include "fem/large_deformation/solve/tangent_solver.h"
 
 namespace palpate::fem {
 
@@ -17,7 +18,9 @@ struct NewtonTolerance {
 ///
 /// Newton's method with line search. A factor of the tangent serves for further steps, mended by BFGS updates with the
 /// changes of force that they bring [Matthies & Strang 1979], as long as they bring enough. What tools touch may change
-/// within a step. A tangent that is not positive definite is shifted until it is.
+/// within a step. A tangent that is not positive definite is shifted until it is. Where there is no room for a factor
+/// conjugate gradients solve for the steps, as well as these are worth [Newton-Krylov: Dembo, Eisenstat & Steihaug
+/// 1982], or end where they meet negative curvature.
 class Newton {
 public:
     Newton(const EliminationOrder& order, int iterations);
@@ -27,7 +30,7 @@ public:
     /// unstable state to the next. `guide`: a factor over the same unknowns that the first steps are taken by, of the
     /// tangent in a state nearby. @pre no element is inside out at u.
     bool minimise(const LoadedBody& body, const NewtonTolerance& tolerance, Eigen::VectorXd& u,
-                  const Cholesky* guide = nullptr);
+                  const TangentSolver* guide = nullptr);
 
     int iterations() const { return iterations_; }          // in all
     int factorisations() const { return factorisations_; }  // in all
@@ -52,10 +55,10 @@ private:
     const EliminationOrder& order_;
     const int allowed_;
     LowerMatrix K_;
-    Cholesky cholesky_;
-    const Cholesky* in_use_ = nullptr;  // what steps are taken by
-    double shift_ = 0;                  // of the tangent's diagonal, as a share of its mean
-    double predicted_decrease_ = 0;     // decrease of the potential, by its slope along the last step [N mm]
+    std::unique_ptr<TangentSolver> own_;
+    const TangentSolver* in_use_ = nullptr;  // what steps are taken by
+    double shift_ = 0;                       // of the tangent's diagonal, as a share of its mean
+    double predicted_decrease_ = 0;          // decrease of the potential, by its slope along the last step [N mm]
     std::vector<Secant> secants_;
     ActiveSet active_;
     int iterations_ = 0, factorisations_ = 0;

@@ -106,4 +106,33 @@ template BlockMatrix<6, 6> product(const BlockMatrix<6, 6>&, const BlockMatrix<6
 template BlockMatrix<6, 3> transpose(const BlockMatrix<3, 6>&);
 template BlockMatrix<6, 6> transpose(const BlockMatrix<6, 6>&);
 
+BlockMatrix<3, 3> symmetric_blocks(const LowerMatrix& K) {
+    using Column = LowerMatrix::InnerIterator;
+    const auto nodes = static_cast<int>(K.cols() / 3);
+    std::vector<std::vector<int>> neighbours(static_cast<std::size_t>(nodes));
+    for (int column = 0; column < nodes; ++column) {
+        for (Column entry(K, Eigen::Index{3} * column); entry; ++entry) {
+            if (entry.row() % 3 != 0) continue;
+            const auto row = static_cast<int>(entry.row() / 3);
+            neighbours[column].push_back(row);
+            if (row != column) neighbours[row].push_back(column);
+        }
+    }
+    BlockMatrix<3, 3> A = with_pattern<3, 3>(neighbours, nodes);
+    std::vector<int> filled(static_cast<std::size_t>(nodes), 0);  // blocks of each row
+    for (int column = 0; column < nodes; ++column) {
+        Column first(K, Eigen::Index{3} * column), second(K, Eigen::Index{3} * column + 1),
+            third(K, Eigen::Index{3} * column + 2);
+        while (first) {
+            const auto row = static_cast<int>(first.row() / 3);
+            Eigen::Matrix3d block;
+            for (int r = 0; r < 3; ++r, ++first, ++second, ++third)
+                block.row(r) << first.value(), second.value(), third.value();
+            A.block(column, filled[column]++) = block.transpose();
+            if (row != column) A.block(row, filled[row]++) = block;
+        }
+    }
+    return A;
+}
+
 }  // namespace palpate::fem

@@ -56,6 +56,9 @@ BlockMatrix<R, C> product(const BlockMatrix<R, K>& A, const BlockMatrix<K, C>& B
 template <int R, int C>
 BlockMatrix<C, R> transpose(const BlockMatrix<R, C>& A);
 
+/// All blocks of a symmetric matrix whose lower half is given, with whole blocks.
+BlockMatrix<3, 3> symmetric_blocks(const LowerMatrix& K);
+
 /// The same in single precision.
 template <int R, int C>
 BlockMatrix<R, C, float> rounded(const BlockMatrix<R, C>& A) {

@@ -25,7 +25,8 @@ struct ReferenceBodyOptions {
     std::optional<double> young = {};    // a first guess [MPa]
     std::optional<double> poisson = {};  // as it is told, not to be fitted; absent: it is
     fem::Dilatation dilatation = fem::Dilatation::mean;
-    bool measured_on_mesh = false;  // what is measured was computed on this very mesh, and has its errors
+    fem::Solver solver = fem::Solver::automatic;  // of tangents
+    bool measured_on_mesh = false;                // what is measured was computed on this very mesh, and has its errors
     /// Quadratic tetrahedra of the same body that tell the error of the others; absent: those with halved edges.
     std::optional<mesh::VolumeMesh> finer = {};
     /// The same where tools that may part touch it in an action: one that is finer there; absent: none tells.

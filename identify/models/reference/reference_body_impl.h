@@ -49,7 +49,7 @@ struct ReferenceBody::Impl {
           markers(the_markers),
           options(the_options),
           regions(element_regions(mesh, options.regions, options.density)),
-          body(mesh, mesh::contains(supports, mesh.nodes), options.dilatation, regions),
+          body(mesh, mesh::contains(supports, mesh.nodes), options.dilatation, regions, options.solver),
           frames(mesh, markers),
           rig(options.rig),
           density(options.density) {

@@ -6,6 +6,7 @@
 #include <string>
 #include <utility>
 
+#include "fem/solver.h"
 #include "identify/inference/problem/identify_options.h"
 #include "mesh/errors.h"
 #include "pipeline/case/body_verdict.h"
@@ -29,6 +30,11 @@ inline constexpr Names<identify::Domain, 3> domains{{{"by-method", identify::Dom
 inline constexpr Names<identify::LawChoice, 3> law_choices{{{"automatic", identify::LawChoice::automatic},
                                                             {"linear", identify::LawChoice::linear},
                                                             {"large-rotation", identify::LawChoice::large_rotation}}};
+
+inline constexpr Names<fem::Solver, 4> solvers{{{"automatic", fem::Solver::automatic},
+                                                {"factor", fem::Solver::factor},
+                                                {"multigrid", fem::Solver::multigrid},
+                                                {"petsc", fem::Solver::petsc}}};
 
 inline constexpr Names<GravityKnown, 3> gravities{
     {{"automatic", GravityKnown::automatic}, {"earth", GravityKnown::earth}, {"unknown", GravityKnown::unknown}}};

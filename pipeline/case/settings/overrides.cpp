@@ -49,6 +49,18 @@ Case CaseOverrides::on_defaults() const {
     return c;
 }
 
+std::vector<std::string> CaseOverrides::flags() const {
+    std::vector<std::string> words;
+    for (const auto& [place, value] : overrides_) {
+        const CaseSetting& setting = setting_at(place);
+        if (setting.flag.empty()) throw std::logic_error(fmt::format("there is no flag for {}", place));
+        words.push_back(setting.flag);
+        if (setting.flag_value.empty()) words.push_back(value);
+    }
+    if (seed) words.insert(words.end(), {"--seed", fmt::format("{}", *seed)});
+    return words;
+}
+
 std::string objection_to_value(std::string_view place, const std::string& value) {
     Case c;
     return objection_on_reading(setting_at(place), value, c);

@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "pipeline/case/case.h"
 
@@ -24,6 +25,8 @@ public:
     void apply(Case& settings) const;
     /// Defaults, but for what is said.
     Case on_defaults() const;
+    /// The same as flags, for a process of its own. @throws std::logic_error for a setting that has none.
+    std::vector<std::string> flags() const;
 
 private:
     std::map<std::string, std::string, std::less<>> overrides_;

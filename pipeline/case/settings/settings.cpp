@@ -76,6 +76,13 @@ void add_body(std::vector<CaseSetting>& all) {
     body("mesh", yes_or_no(
                      "volume.linear_elements", "tetrahedra of four nodes in place of ten, several times less accurate",
                      [](auto& c) -> auto& { return c.linear_elements; }));
+    // Answers agree to far more digits than anything that depends on them.
+    body("", choice(
+                 "volume.solver",
+                 "what solves the equations of the body that is probed; automatic: a factor where it fits into memory "
+                 "and is worth "
+                 "it, else conjugate gradients with multigrid, or under mpirun with PETSc",
+                 solvers, [](auto& c) -> auto& { return c.solver; }));
 }
 
 void add_skeleton(std::vector<CaseSetting>& all) {

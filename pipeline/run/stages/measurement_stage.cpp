@@ -66,9 +66,10 @@ void measurement_stage(Job& job) {
         [&] {
             std::optional<fem::ElasticBody> elastic;
             const auto probe = [&](int loads) {
-                elastic.emplace(job.body, materials_of(job.subject, job.element_regions),
-                                mesh::contains(job.subject.supports, job.body.nodes),
-                                fem::ElasticBodyOptions{.threads = job.common.threads, .loads = loads});
+                elastic.emplace(
+                    job.body, materials_of(job.subject, job.element_regions),
+                    mesh::contains(job.subject.supports, job.body.nodes),
+                    fem::ElasticBodyOptions{.threads = job.common.threads, .loads = loads, .solver = c.solver});
                 if (!elastic->stats().note.empty()) Console::notice(elastic->stats().note);
                 return probe_body(*elastic, job.surface, job.subject.supports, p, c.identify.seed, Console::progress());
             };
@@ -76,7 +77,8 @@ void measurement_stage(Job& job) {
             try {
                 probed = probe(p.probes);
             } catch (const SolverFailure& failure) {  // iterations fail where a factor, slower, may not
-                if (!elastic || elastic->stats().levels == 0) throw;
+                if (!elastic || c.solver != fem::Solver::automatic || elastic->stats().solver == fem::Solver::factor)
+                    throw;
                 Console::notice(failure.what());
                 probed = probe(0);
             }

@@ -61,11 +61,11 @@ void write_deck(const std::filesystem::path& file, const Problem& problem) {
 }  // namespace
 
 std::vector<Bar> bars() {
-    return {{"5k-linear", {50, 10, 8}, false},       {"5k-quadratic", {25, 5, 4}, true},
-            {"20k-linear", {80, 15, 15}, false},     {"20k-quadratic", {40, 7, 8}, true},
-            {"100k-linear", {138, 27, 26}, false},   {"100k-quadratic", {70, 13, 13}, true},
-            {"300k-linear", {200, 38, 38}, false},   {"300k-quadratic", {101, 19, 19}, true},
-            {"1000k-quadratic", {150, 29, 29}, true}};
+    return {{"5k-linear", {50, 10, 8}, false},        {"5k-quadratic", {25, 5, 4}, true},
+            {"20k-linear", {80, 15, 15}, false},      {"20k-quadratic", {40, 7, 8}, true},
+            {"100k-linear", {138, 27, 26}, false},    {"100k-quadratic", {70, 13, 13}, true},
+            {"300k-linear", {200, 38, 38}, false},    {"300k-quadratic", {101, 19, 19}, true},
+            {"1000k-quadratic", {150, 29, 29}, true}, {"3000k-quadratic", {214, 42, 42}, true}};
 }
 
 Problem make_problem(const Bar& bar, int loads) {

@@ -61,6 +61,15 @@ TEST(BlockMatrix, IsTheStiffnessMatrix) {
     EXPECT_EQ(dense(bar.A), Eigen::MatrixXd(K));
 }
 
+TEST(BlockMatrix, OfALowerHalfIsWhole) {
+    const Bar bar({3, 1, 1}, {4, 2, 2});
+    const auto K = assemble<std::int64_t>(bar.mesh, {.body = {.young = 0.2, .poisson = 0.3}}, Dilatation::mean,
+                                          bar.number, Half::lower);
+    const BlockMatrix<3, 3> whole = symmetric_blocks(K);
+    EXPECT_EQ(whole.column, bar.A.column);
+    EXPECT_LT((dense(whole) - dense(bar.A)).norm(), 1e-15 * dense(bar.A).norm());
+}
+
 TEST(BlockMatrix, ProductsAreThoseOfDenseMatrices) {
     const Bar bar({3, 1, 1}, {4, 2, 2});
     const auto P = tentative_prolongator<3>(aggregate(bar.A, 0.03), rigid_modes(bar.free)).P;
@@ -241,6 +250,19 @@ TEST(ConjugateGradients, StopAloud) {
     MultiVector X = scattered(M.matrix().rows() * 3, 2);
     EXPECT_TRUE(says(message_of<SolverFailure>([&] { conjugate_gradients(M, X, {.iterations = 3}); }),
                      {"stopped after 3 iterations", "1e-11 asked for", "one edge or corner", "more memory"}));
+}
+
+TEST(ConjugateGradients, TruncatedTheyEndWithWhatTheyHave) {
+    const Bar bar({6, 2, 2}, {12, 4, 4});
+    const Multigrid M(bar.A, rigid_modes(bar.free));
+    const MultiVector F = scattered(M.matrix().rows() * 3, 2);
+    MultiVector whole = F, some = F;
+    conjugate_gradients(M, whole);
+    EXPECT_EQ(conjugate_gradients(M, some, {.iterations = 3, .truncated = true}), 3);
+    for (int j = 0; j < 2; ++j) {
+        EXPECT_GT(some.col(j).dot(F.col(j)), 0);
+        EXPECT_LT((some - whole).col(j).norm(), whole.col(j).norm());
+    }
 }
 
 TEST(ConjugateGradients, ColumnsAreSolvedForEachOnItsOwn) {
