@@ -17,7 +17,8 @@ struct Bar {
     bool is_quadratic;
 };
 
-/// About 5, 20, 100 and 300 thousand nodes, of linear and of quadratic elements, and one and three million of quadratic ones.
+/// About 5, 20, 100 and 300 thousand nodes, of linear and of quadratic elements, and one and three million of quadratic
+/// ones.
 std::vector<Bar> bars();
 
 /// What every code is given.
