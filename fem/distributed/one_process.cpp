@@ -39,7 +39,6 @@ Processes::~Processes() = default;
 bool Processes::lead() const { return true; }
 void Processes::serve() {}
 int Processes::count() { return 1; }
-bool Processes::have_petsc() { return false; }
 
 struct DistributedStiffness::Impl {
     std::vector<int> number;

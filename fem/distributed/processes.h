@@ -19,8 +19,6 @@ public:
 
     /// How many there are: 1 unless mpirun started more.
     static int count();
-    /// Was this program built with PETSc?
-    static bool have_petsc();
 };
 
 }  // namespace palpate::fem

@@ -49,7 +49,6 @@ Processes::~Processes() {
 
 bool Processes::lead() const { return !petsc_runs() || process_rank() == 0; }
 int Processes::count() { return petsc_runs() ? process_count() : 1; }
-bool Processes::have_petsc() { return true; }
 
 void Processes::serve() {
     std::map<int, std::unique_ptr<MatrixShare>> held;

@@ -83,14 +83,18 @@ void set_default_options(Eigen::Index own_nodes) {
         PetscBool is_set = PETSC_FALSE;
         check_petsc(PetscOptionsHasName(nullptr, nullptr, name, &is_set), "to read its options");
         if (!is_set) check_petsc(PetscOptionsSetValue(nullptr, name, value), "to set its options");
+        return !is_set;
     };
     option("-ksp_type", "cg");
     option("-ksp_norm_type", "natural");
     option("-pc_type", "gamg");
     option("-mg_levels_ksp_type", "chebyshev");
     option("-mg_levels_pc_type", "jacobi");
-    // In a seventh of the memory, and seven times the time.
-    if (!has_room_for_products(own_nodes)) option("-matptap_via", "allatonce");
+    // The first process of two takes 0.44 GB in place of 0.77, and seven times the time (tests/bench/fem/RESULTS.md).
+    // Options outlive a body: the next one may have room.
+    static bool is_ours = false;
+    if (is_ours) check_petsc(PetscOptionsClearValue(nullptr, "-matptap_via"), "to set its options");
+    is_ours = !has_room_for_products(own_nodes) && option("-matptap_via", "allatonce");
 }
 
 }  // namespace

@@ -20,6 +20,18 @@ ConjugateGradientsOptions options_of(Accuracy accuracy) {
     return {.tolerance = step_tolerance, .truncated = true};
 }
 
+/// Makes what solves in place of what solved before; false where the matrix is found not to be positive definite.
+template <class Made, class Make>
+bool renew(std::unique_ptr<Made>& made, Make&& make) {
+    made.reset();  // two would take twice the memory
+    try {
+        made = make();
+    } catch (const SolverFailure&) {
+        return false;
+    }
+    return true;
+}
+
 class ByFactor final : public TangentSolver {
 public:
     explicit ByFactor(std::shared_ptr<const Supernodes> structure) : cholesky_(std::move(structure)) {}
@@ -36,13 +48,7 @@ public:
     ByMultigrid(const Points& positions, Accuracy accuracy)
         : modes_(rigid_modes(positions)), options_(options_of(accuracy)) {}
     bool take(const LowerMatrix& K) override {
-        multigrid_.reset();
-        try {
-            multigrid_ = std::make_unique<Multigrid>(symmetric_blocks(K), modes_);
-        } catch (const SolverFailure&) {
-            return false;
-        }
-        return true;
+        return renew(multigrid_, [&] { return std::make_unique<Multigrid>(symmetric_blocks(K), modes_); });
     }
     void solve(MultiVector& X) const override {
         for (Eigen::Index first = 0; first < X.cols(); first += read_together) {
@@ -67,13 +73,7 @@ class ByProcesses final : public TangentSolver {
 public:
     ByProcesses(const Points& positions, Accuracy accuracy) : positions_(positions), options_(options_of(accuracy)) {}
     bool take(const LowerMatrix& K) override {
-        shared_.reset();
-        try {
-            shared_ = std::make_unique<DistributedStiffness>(symmetric_blocks(K), positions_);
-        } catch (const SolverFailure&) {
-            return false;
-        }
-        return true;
+        return renew(shared_, [&] { return std::make_unique<DistributedStiffness>(symmetric_blocks(K), positions_); });
     }
     void solve(MultiVector& X) const override { shared_->solve(X, options_); }
     double gigabytes() const override { return 0; }  // the other processes'

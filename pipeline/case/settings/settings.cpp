@@ -80,8 +80,7 @@ void add_body(std::vector<CaseSetting>& all) {
     body("", choice(
                  "volume.solver",
                  "what solves the equations of the body that is probed; automatic: a factor where it fits into memory "
-                 "and is worth "
-                 "it, else conjugate gradients with multigrid, or under mpirun with PETSc",
+                 "and is worth it, else conjugate gradients with multigrid, or under mpirun with PETSc",
                  solvers, [](auto& c) -> auto& { return c.solver; }));
 }
 

@@ -72,6 +72,12 @@ def on_this_machine(folder):
     changed = when_finished(folder / "runs")
     assert any(changed[path] > at for path, at in before.items() if "body 0" in str(path))
 
+    # Another body under a name: it alone.
+    shutil.copy(REPOSITORY / "samples/import/tentacle/tentacle.stl", meshes[0])
+    batch(meshes, folder / "runs", "local:2", flags=["--young", "0.2"])
+    moved = {Path(path).relative_to(folder / "runs").parts[0] for path, at in when_finished(folder / "runs").items() if at > changed.get(path, 0)}
+    assert moved == {"body 0"}, moved
+
     told = palpate("run", *meshes, code=3).stderr
     assert "--workers local:2" in told, told
     shutil.copytree(folder / "new", folder / "other/new")
@@ -79,11 +85,42 @@ def on_this_machine(folder):
     assert "both called" in told, told
 
 
+def interrupted(folder):
+    """Ctrl-C: the runs end with the command, and are taken up when it is started again."""
+    meshes = bodies(folder, 2)
+    runs = folder / "runs"
+    command = [PALPATE, "run", *meshes, "-o", runs, "--workers", "local:2", "-q", "--threads", "1", "--probes", "30"]
+    working = subprocess.Popen(list(map(str, command)), start_new_session=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    wait_for(lambda: any(runs.rglob("model.json")), runs)
+    os.killpg(working.pid, signal.SIGINT)
+    assert working.wait(60) != 0
+    wait_for(lambda: not any(str(runs).encode() in command_line(process) for process in Path("/proc").glob("[0-9]*")), runs)
+    assert not any(runs.glob("*/report.html"))
+    batch(meshes, runs, "local:2")
+
+
+def command_line(process):
+    try:
+        return (process / "cmdline").read_bytes()
+    except OSError:
+        return b""
+
+
+def wait_for(condition, runs, seconds=60):
+    end = time.time() + seconds
+    while not condition():
+        if time.time() > end:
+            seen = "squeue; sinfo; tail -n 30 workflow/snakemake.log; tail -n 5 ../slurm/*.log"
+            raise AssertionError("waited in vain\n" + subprocess.run(seen, shell=True, capture_output=True, text=True, cwd=runs).stdout)
+        time.sleep(0.2)
+
+
 class Slurm:
     """A cluster of two nodes of this machine's, each a process, in a folder of its own."""
 
     def __init__(self, folder):
         self.folder = folder
+        self.munged = None
         for name in ("state", "n1", "n2"):
             (folder / name).mkdir(parents=True)
         configuration = [
@@ -101,9 +138,12 @@ class Slurm:
 
     def begin(self):
         """Whether it could begin: it takes the network and a user of its own."""
-        Path("/run/munge").mkdir(exist_ok=True)
-        shutil.chown("/run/munge", "munge", "munge")
-        subprocess.run(["su", "munge", "-s", "/bin/sh", "-c", "/usr/sbin/munged --force"], check=False)
+        if not Path("/run/munge/munge.socket.2").exists():  # else one serves the machine already
+            Path("/run/munge").mkdir(exist_ok=True)
+            shutil.chown("/run/munge", "munge", "munge")
+            self.munged = subprocess.Popen(["su", "munge", "-s", "/bin/sh", "-c", "exec /usr/sbin/munged --force --foreground"],
+                                           stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+            time.sleep(1)
         if subprocess.run(["slurmctld", "-c"], check=False).returncode:
             return False
         for node in ("n1", "n2"):
@@ -125,25 +165,16 @@ class Slurm:
         assert jobs, "no job is on the node that is killed"
         for process in Path("/proc").glob("[0-9]*"):
             try:
-                command = (process / "cmdline").read_bytes()
                 environment = (process / "environ").read_bytes()
             except OSError:
                 continue
+            command = command_line(process)
             on_node = f"SLURMD_NODENAME={node}".encode() in environment or any(
                 command.startswith(b"slurmstepd: [" + job.encode()) for job in jobs)
             if on_node:
                 os.kill(int(process.name), signal.SIGKILL)
         os.kill(daemon, signal.SIGKILL)
         return jobs
-
-    @staticmethod
-    def wait(condition, runs, seconds=60):
-        end = time.time() + seconds
-        while not condition():
-            if time.time() > end:
-                seen = "squeue; sinfo; tail -n 30 workflow/snakemake.log; tail -n 5 ../slurm/*.log"
-                raise AssertionError("waited in vain\n" + subprocess.run(seen, shell=True, capture_output=True, text=True, cwd=runs).stdout)
-            time.sleep(0.2)
 
     def end(self):
         for name in ("n1", "n2", "controller"):
@@ -153,7 +184,9 @@ class Slurm:
                     os.kill(int(file.read_text()), signal.SIGTERM)
                 except OSError:
                     pass
-        subprocess.run(["pkill", "-x", "munged"], check=False)
+        if self.munged:
+            self.munged.terminate()
+            self.munged.wait()
 
 
 def on_a_cluster(folder, count):
@@ -166,8 +199,8 @@ def on_a_cluster(folder, count):
         command = [PALPATE, "run", *meshes, "-o", folder / "runs", "--workers", "slurm:memory=2,minutes=20", "--json", "-q", "--threads", "1", *FAST]
         working = subprocess.Popen(list(map(str, command)), stdout=subprocess.PIPE, text=True)
         # In the middle of the second node's work.
-        slurm.wait(lambda: len(list((folder / "runs").glob("*.json"))) >= 1
-                   and subprocess.run(["squeue", "-h", "-w", "n2", "-t", "R", "-o", "%A"], capture_output=True, text=True).stdout.split(), folder / "runs")
+        wait_for(lambda: len(list((folder / "runs").glob("*.json"))) >= 1
+                 and subprocess.run(["squeue", "-h", "-w", "n2", "-t", "R", "-o", "%A"], capture_output=True, text=True).stdout.split(), folder / "runs")
         lost = slurm.kill("n2")
         time.sleep(12)  # the controller gives a node up after SlurmdTimeout
         slurm.start("n2")
@@ -188,6 +221,8 @@ def main():
         return 77
     with tempfile.TemporaryDirectory() as folder:
         on_this_machine(Path(folder))
+    with tempfile.TemporaryDirectory() as folder:
+        interrupted(Path(folder))
     if os.geteuid() == 0 and all(map(shutil.which, ("slurmctld", "slurmd", "munged"))):
         with tempfile.TemporaryDirectory() as folder:
             on_a_cluster(Path(folder), int(os.environ.get("PALPATE_BATCH", "4")))
