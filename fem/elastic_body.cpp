@@ -122,8 +122,9 @@ void ElasticBody::Impl::prepare() {
     if (options.solver == Solver::multigrid) return make_multigrid();
     auto lower = neighbours(mesh, number, Half::lower);
     Elimination elimination = analyse(lower, 3);
-    const double needed = factor_gigabytes(elimination.supernodes, std::exchange(lower, {}));
-    stats.factor_entries = static_cast<double>(elimination.supernodes.first_value.back());
+    const FactorCost cost = cost_of_factor(elimination.supernodes, std::exchange(lower, {}));
+    const double needed = cost.gigabytes();
+    stats.factor_entries = cost.entries;
     stats.seconds_analyse = stats.seconds_factor = seconds_since(start);
 
     const double allowed = options.memory > 0 ? options.memory : usable_memory();
@@ -133,7 +134,7 @@ void ElasticBody::Impl::prepare() {
             fmt::format("A factor of the stiffness matrix ({} unknowns) would take {:.3g} GB of {:.3g} GB: {} instead.",
                         stats.free_dofs, needed, allowed, instead);
         if (options.solver == Solver::factor) throw SolverFailure(no_room_for_factor(stats.free_dofs, needed, allowed));
-    } else if (options.solver == Solver::automatic && is_faster_without_factor(elimination.supernodes, options.loads)) {
+    } else if (options.solver == Solver::automatic && is_faster_without_factor(cost, options.loads)) {
         stats.note = fmt::format(
             "A factor of the stiffness matrix ({} unknowns, {:.3g} GB) would take longer than {} load(s) without it: "
             "{} instead.",

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+
 #include "fem/linear_algebra/memory/free_memory.h"
 
 namespace palpate::fem {
@@ -11,6 +13,7 @@ namespace {
 constexpr double products_per_second = 4.8e10;
 constexpr double multigrid_of_a_node = 2.5e-5;  // [s]
 constexpr double load_on_a_node = 5e-6;         // [s]; 7e-6 before products prefetched, of which 0.68 is left
+constexpr double gigabytes_of_a_node = 7.9e-6;  // 2.5 GB of 314,847 nodes, 8.3 GB of 1,047,781
 constexpr double worthwhile = 0.4;              // of a factor's time: other meshes take more iterations
 
 /// Multiplications of a factorisation.
@@ -27,16 +30,28 @@ double factor_products(const Supernodes& structure) {
 
 }  // namespace
 
-bool is_faster_without_factor(const Supernodes& structure, int loads) {
-    const double nodes = structure.size() / 3.0;
-    const double iterating = nodes * (multigrid_of_a_node + loads * load_on_a_node);
-    return loads > 0 && iterating < worthwhile * factor_products(structure) / products_per_second;
+double FactorCost::seconds() const { return products / products_per_second; }
+
+FactorCost FactorCost::with_nodes(double other) const {
+    const double ratio = nodes > 0 ? other / nodes : 0;
+    return {other, std::pow(ratio, 4.0 / 3) * entries, ratio * matrix_gigabytes, ratio * ratio * products};
 }
 
-double factor_gigabytes(const Supernodes& structure, const std::vector<std::vector<int>>& lower) {
+FactorCost cost_of_factor(const Supernodes& structure, const std::vector<std::vector<int>>& lower) {
     double blocks = 0;
     for (const auto& rows : lower) blocks += static_cast<double>(rows.size());
-    return 8e-9 * static_cast<double>(structure.first_value.back()) + 9 * 16e-9 * blocks;
+    return {structure.size() / 3.0, static_cast<double>(structure.first_value.back()), 9 * 16e-9 * blocks,
+            factor_products(structure)};
+}
+
+double seconds_without_factor(double nodes, int loads) {
+    return nodes * (multigrid_of_a_node + loads * load_on_a_node);
+}
+
+double multigrid_gigabytes(double nodes) { return gigabytes_of_a_node * nodes; }
+
+bool is_faster_without_factor(const FactorCost& cost, int loads) {
+    return loads > 0 && seconds_without_factor(cost.nodes, loads) < worthwhile * cost.seconds();
 }
 
 double usable_memory() {

@@ -20,6 +20,7 @@ struct CheckOptions {
     std::filesystem::path input;
     std::filesystem::path output = {};       // a folder, or a page (.html); none: nothing is written
     std::vector<std::string> expected = {};  // effects that the set has to be able to show
+    bool cost = false;                       // tell what a run would take
     CaseOverrides overrides;
 };
 Outcome check(const CheckOptions& options, const Common& common);

@@ -5,6 +5,7 @@
 #include "fem/elastic_body.h"
 #include "fem/elements/patch_load.h"
 #include "fem/linear_algebra/solver_choice.h"
+#include "fem/solver_forecast.h"
 #include "tests/messages.h"
 
 namespace palpate::fem {
@@ -107,11 +108,34 @@ Supernodes supernodes_of(int unknowns, bool is_dense) {
 }
 
 TEST(LargeBody, AFactorIsLeftOutWhereItsProductsOutweighTheLoads) {
-    const Supernodes dense = supernodes_of(12000, true);  // 12000^3 / 6 products: some seconds
+    const FactorCost dense = cost_of_factor(supernodes_of(12000, true), {});  // 12000^3 / 6 products: some seconds
     EXPECT_TRUE(is_faster_without_factor(dense, 1));
     EXPECT_FALSE(is_faster_without_factor(dense, 1000));
     EXPECT_FALSE(is_faster_without_factor(dense, 0));  // nobody said how many
-    EXPECT_FALSE(is_faster_without_factor(supernodes_of(12000, false), 1));
+    EXPECT_FALSE(is_faster_without_factor(cost_of_factor(supernodes_of(12000, false), {}), 1));
+}
+
+TEST(LargeBody, AFactorOfMoreNodesIsForetoldByNestedDissection) {
+    const LoadedBar coarse(Kind::quadratic, {6, 6, 6}, {8, 8, 8}), fine(Kind::quadratic, {6, 6, 6}, {14, 14, 14});
+    const auto nodes = static_cast<double>(fine.mesh.nodes.rows());
+    const SolverForecast told = forecast_solver(coarse.mesh, coarse.held, nodes, 0, Solver::factor);
+    const double factor = 8e-9 * fine.body(0.3, {}).stats().factor_entries;
+    // The law is of large cubes: the faces are a part of these. The matrix is a tenth.
+    EXPECT_GT(told.gigabytes, 0.8 * factor);
+    EXPECT_LT(told.gigabytes, 1.4 * factor);
+    EXPECT_THAT(told.words, testing::HasSubstr("as was asked for"));
+}
+
+TEST(LargeBody, AForecastOfABodyItselfChoosesAsTheBodyDoes) {
+    const LoadedBar bar(Kind::quadratic, {6, 6, 6}, {12, 12, 12});
+    for (const int loads : {1, 500}) {
+        const ElasticBody body = bar.body(0.3, {.loads = loads});
+        const auto nodes = static_cast<double>(bar.mesh.nodes.rows());
+        const SolverForecast told = forecast_solver(bar.mesh, bar.held, nodes, loads, Solver::automatic);
+        EXPECT_EQ(told.solver, body.stats().solver) << loads;
+        EXPECT_TRUE(told.fits());
+        EXPECT_GT(told.seconds_to_make, 0);
+    }
 }
 
 TEST(LargeBody, PartsOnAHingeAreFound) {

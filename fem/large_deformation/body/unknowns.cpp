@@ -137,7 +137,7 @@ EliminationOrder elimination_order(const mesh::VolumeMesh& mesh, const std::vect
     if (solver == Solver::automatic || solver == Solver::factor) {
         auto lower = lower_neighbours(mesh, number, joined);
         Elimination elimination = analyse(lower, 3);
-        const double needed = factor_gigabytes(elimination.supernodes, lower), allowed = usable_memory();
+        const double needed = cost_of_factor(elimination.supernodes, lower).gigabytes(), allowed = usable_memory();
         if (needed <= allowed) {
             lower = {};
             for (int& k : number) {

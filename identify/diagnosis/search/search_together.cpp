@@ -79,9 +79,9 @@ bool Search::extend(std::size_t from, int most) {
         if (refits_together_ >= options_.refits_together) break;
         if (base.log_bayes_factor + screened.at_most() < leads) continue;
         const double least = noise_is_left ? least_next_to_effect(base, options_) : options_.least_evidence();
-        // A screen is a linearisation, and says somewhat too little at times; little of much explains nothing.
-        // Design choices, which save refits.
-        constexpr double of_claim = 0.5, of_excess = 0.05;
+        // A screen is a linearisation, which a refit may exceed severalfold where it says little; little of much
+        // explains nothing. Design choices, which save refits.
+        constexpr double of_claim = 0.25, of_excess = 0.05;
         // Once one is worth it, its rivals are fitted, too, before it is claimed.
         const double worth_a_fit =
             grew ? options_.least_evidence()

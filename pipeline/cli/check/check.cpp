@@ -10,6 +10,7 @@
 #include "mesh/errors.h"
 #include "mesh/text/atomic_file.h"
 #include "mesh/text/words.h"
+#include "pipeline/analysis/cost/machine_speed.h"
 #include "pipeline/analysis/preflight.h"
 #include "pipeline/case/settings/read_case.h"
 #include "pipeline/case/subject/subject.h"
@@ -21,6 +22,7 @@
 #include "pipeline/output/html/check/check_page.h"
 #include "pipeline/output/json/comparison.h"
 #include "pipeline/output/json/preflight.h"
+#include "pipeline/output/text/cost.h"
 #include "pipeline/output/text/describe/describe_rig.h"
 #include "pipeline/output/text/preflight.h"
 
@@ -87,6 +89,14 @@ void add_preflight(const Subject& subject, const Common& common, Outcome& outcom
     } else {
         outcome.text += preflight_in_words(outcome.json["preflight"]);
     }
+}
+
+/// What a run would take: counted and estimated, nothing is run.
+void add_cost(const CheckOptions& options, const Subject& subject, const Common& common, Outcome& outcome) {
+    const WorkSize size = size_of_run(subject, Console::progress());
+    outcome.json["cost"] = to_json(cost_of_run(size, common.threads, machine_speed()), size, common.threads);
+    Console::end_progress();
+    outcome.text += cost_in_words(outcome.json["cost"], options.input.string());
 }
 
 /// Effects that the set has to be able to show. @throws InvalidInput without a set.
@@ -173,6 +183,7 @@ Outcome check(const CheckOptions& options, const Common& common) {
         outcome.text += fmt::format("What it could show, and what to measure next: palpate check {} -o check.html\n",
                                     options.input.string());
     judge_expectations(options, outcome);
+    if (options.cost && is_fittable && !is_refused) add_cost(options, subject, common, outcome);
     if (is_refused) outcome.text = verdict;  // all else is of a body that there is not
     if (is_page(options.output)) {
         write_check_page(options.output, subject, outcome.json);
@@ -202,6 +213,7 @@ void Subcommands::add_check(CLI::App& app) {
         "  palpate check liver.stl\n"
         "  palpate check liver.stl -o liver-check          # a folder that shows where faults are\n"
         "  palpate check my-measurements/ -o check.html    # one page: what could be named, what to measure next\n"
+        "  palpate check liver.stl --cost --edge-length 2  # seconds and gigabytes of a run, before it is begun\n"
         "  palpate check my-measurements/ --expect gravity # exit code 5 where they cannot show it\n",
         [this] { return commands::check(check, common); });
     sub->add_option("INPUT", check.input, "A case.yaml, a measurement set, or a mesh")->required();
@@ -213,7 +225,11 @@ void Subcommands::add_check(CLI::App& app) {
            "repeatable, or separated by commas")
         ->delimiter(',')
         ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
-    add_flags_of(sub, check.overrides, "Body");
+    sub->add_flag("--cost", check.cost,
+                  "How long a run would take, how much memory, and what would solve its equations: the body is meshed, "
+                  "coarsely where it is large, and its skeleton is built");
+    for (const char* group : {"Body", "Skeleton", "Probing", "Identification"})
+        add_flags_of(sub, check.overrides, group);
 }
 
 }  // namespace palpate::pipeline

@@ -282,4 +282,8 @@ std::vector<Attachment> make_skin(const mesh::VolumeMesh& body, const fem::Mater
     return skin;
 }
 
+double nodes_for_skin(double corners, double quadratic_nodes) {
+    return corners > most_corners ? corners : quadratic_nodes;
+}
+
 }  // namespace palpate::skeleton

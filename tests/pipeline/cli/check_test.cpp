@@ -134,5 +134,41 @@ TEST(Preflight, SaysHowMuchStrongerAnEffectWouldHaveToBe) {
               "strong as its prior expects.");
 }
 
+TEST_F(CheckedSet, TellsWhatARunOfItWouldTake) {
+    commands::CheckOptions options = of_set();
+    options.cost = true;
+    const nlohmann::json cost = check(options).json["cost"];
+    std::vector<std::string> stages;
+    for (const nlohmann::json& stage : cost["stages"]) stages.push_back(stage["stage"]);
+    EXPECT_THAT(stages, testing::ElementsAre("mesh", "skeleton", "identify", "compare", "diagnose", "improve"));
+    EXPECT_GT(cost["most_seconds"], cost["seconds"]);
+    EXPECT_TRUE(cost["fits"]);
+    EXPECT_GT(cost["reference_nodes"], 100);
+}
+
+/// Of a body with such edges [mm].
+commands::Outcome cost_of_body(const std::filesystem::path& body, double edge) {
+    commands::CheckOptions options{.input = body, .cost = true, .overrides = {}};
+    options.overrides.set("volume.edge_length", edge);
+    return commands::check(options, {});
+}
+
+TEST_F(CheckedSet, ALargeBodyIsCountedFromACoarserOne) {
+    const std::filesystem::path body = folder() / "new/body.stl";
+    const nlohmann::json cost = cost_of_body(body, 1.5).json["cost"];
+    commands::MeshOptions meshed{.input = body, .output = folder() / "bar.vtu", .overrides = {}};
+    meshed.overrides.set("volume.edge_length", 1.5);
+    const double nodes = commands::mesh_body(meshed, {}).json["nodes"];
+    EXPECT_GT(nodes, 25000);  // else the bar was meshed as it is
+    EXPECT_NEAR(cost["nodes"].get<double>(), nodes, 0.15 * nodes);
+}
+
+TEST_F(CheckedSet, ABodyThatDoesNotFitIsToldWithWhatToDo) {
+    const commands::Outcome outcome = cost_of_body(folder() / "new/body.stl", 0.05);
+    EXPECT_FALSE(outcome.json["cost"]["fits"]);
+    EXPECT_GT(outcome.json["cost"]["nodes"], 1e8);
+    EXPECT_THAT(outcome.text, AllOf(HasSubstr("does not fit"), HasSubstr("multigrid"), HasSubstr("mpirun -n N")));
+}
+
 }  // namespace
 }  // namespace palpate::pipeline

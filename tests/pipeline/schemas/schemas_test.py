@@ -99,6 +99,9 @@ with tempfile.TemporaryDirectory() as scratch:
                        "set": "measurements/set.yaml"}.items():
         check(name, at / "run" / file)
 
+    (at / "check.json").write_text(palpate("check", at / "run/measurements", "--cost", "--json"))
+    check("check", at / "check.json")
+
     palpate("run", at / "case/case.yaml", "-o", at / "second", "--probes", 6, "--spheres", 8, "--parameters",
             "uniform", "--particles", 40, "--edge-length", 8, "--seed", 2)
     told = palpate("report", at / "run", at / "second", "-o", at / "runs.html", "--json")

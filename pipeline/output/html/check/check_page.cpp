@@ -14,6 +14,7 @@
 #include "pipeline/output/html/escape.h"
 #include "pipeline/output/html/page/page_parts.h"
 #include "pipeline/output/html/page_frame.h"
+#include "pipeline/output/text/cost.h"
 #include "pipeline/output/text/preflight.h"
 #include "pipeline/output/text/words.h"
 
@@ -217,6 +218,20 @@ std::string files_section(const json& check) {
     return html + items(words);
 }
 
+std::string cost_section(const json& cost) {
+    if (cost.is_null()) return "";
+    std::string rows;
+    for (const json& stage : cost["stages"])
+        rows += "<tr><th scope=\"row\">" + escape(stage["stage"].get<std::string>()) + "</th>" +
+                data_cell("time", duration_in_words(stage)) +
+                data_cell("memory", fmt::format("{:.2g} GB", stage["gigabytes"].get<double>())) +
+                data_cell("solver", stage["solver"].get<std::string>()) + "</tr>";
+    return "<h2 id=\"cost\">What a run would take</h2><p>" + prose(cost_lead(cost)) +
+           R"(</p><div class="scroll" tabindex="0"><table><thead><tr><th>stage</th><th>time</th><th>memory</th>)"
+           "<th>solver</th></tr></thead><tbody>" +
+           rows + "</tbody></table></div>";
+}
+
 }  // namespace
 
 void write_check_page(const std::filesystem::path& page, const Subject& subject, const json& check) {
@@ -227,7 +242,7 @@ void write_check_page(const std::filesystem::path& page, const Subject& subject,
     if (!preflight.is_null())
         sections = effects_section(preflight) + experiments_section(preflight) +
                    readings_section(preflight, *subject.set) + parameters_section(preflight);
-    sections += files_section(check);
+    sections += files_section(check) + cost_section(check.value("cost", json()));
     mesh::write_text(page, page_head(name, page_style) + "<body><main><h1>" + escape(name) + "</h1>" +
                                std::string(check_view) + "<script id=\"check-data\" type=\"application/json\">" +
                                as_script_data(check_picture(subject, preflight)) + "</script><script>" +

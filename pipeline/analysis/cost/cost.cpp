@@ -1,0 +1,104 @@
+#include "pipeline/analysis/cost/cost.h"
+
+#include <cmath>
+
+namespace palpate::pipeline {
+namespace {
+
+// Rates of one thread, fitted to runs of seventeen bodies and of 52 measurement sets: tests/bench/cost/RESULTS.md.
+constexpr double program_gigabytes = 0.065;
+constexpr double parallel = 0.6;  // of a stage's work, on average
+
+/// Of a stage that is partly parallel [Amdahl 1967].
+double on_threads(double seconds, int threads) { return seconds * (1 - parallel + parallel / threads); }
+
+/// Forecasts of solvers are for two cores.
+double to_solve(const fem::SolverForecast& solver, double loads, int threads) {
+    return (solver.seconds_to_make + loads * solver.seconds_of_load) * (threads > 1 ? 2.0 / threads : 2.0);
+}
+
+StageCost meshing(const WorkSize& size) {
+    constexpr double a_run = 0.03, a_tetrahedron = 1.1e-5, gigabytes_of_one = 5e-7;
+    const double seconds = a_run + a_tetrahedron * size.tetrahedra;
+    return {"mesh", seconds, seconds, program_gigabytes + gigabytes_of_one * size.tetrahedra};
+}
+
+StageCost building(const WorkSize& size, int threads) {
+    constexpr double a_run = 0.2, a_node_and_sphere = 1.5e-6, two_spheres = 2e-5;
+    const double seconds = on_threads(a_run + a_node_and_sphere * size.skeleton_nodes * size.spheres +
+                                          two_spheres * size.spheres * size.spheres,
+                                      threads) +
+                           to_solve(size.condensed, 0, threads);
+    constexpr double gigabytes_of_node_and_sphere = 1.5e-7, of_two_spheres = 3e-6;
+    return {"skeleton", seconds, seconds,
+            2 * program_gigabytes + size.condensed.gigabytes +
+                gigabytes_of_node_and_sphere * size.skeleton_nodes * size.spheres +
+                of_two_spheres * size.spheres * size.spheres,
+            size.condensed.words};
+}
+
+StageCost probing(const WorkSize& size, int threads) {
+    // The second mesh, with edges half as long again, has about 0.4 of the nodes, and the square of that to factor.
+    constexpr double with_second_mesh = 1.2, a_run = 0.2, a_node_and_state = 1.9e-6, fields = 2;
+    const double seconds = a_run + with_second_mesh * to_solve(size.probed, size.states, threads) +
+                           on_threads(a_node_and_state * size.nodes * size.states, threads);
+    return {"measurements", seconds, seconds,
+            program_gigabytes + size.probed.gigabytes + fields * 24e-9 * size.nodes * size.states, size.probed.words};
+}
+
+StageCost identifying(const WorkSize& size, int threads) {
+    // A power of each size; there is no theory behind them.
+    const double seconds = on_threads(
+        2e-3 * std::pow(size.parameters, 0.23) * std::pow(size.fitted, 1.2) * std::pow(size.markers, 0.58), threads);
+    constexpr double gigabytes_of_slope = 1.2e-11 * 1e3;
+    return {"identify", seconds, seconds,
+            2 * program_gigabytes + gigabytes_of_slope * 1e-3 * size.parameters * size.fitted * size.markers};
+}
+
+StageCost comparing(const WorkSize& size, int threads) {
+    constexpr double a_run = 0.6, a_vertex_and_state = 4.2e-5, a_link_and_state = 1.1e-4;
+    const double states = size.is_simulated ? size.states : 0;  // of measurements only markers are compared
+    const double seconds =
+        on_threads(a_run + states * (a_vertex_and_state * size.skin + a_link_and_state * size.links), threads);
+    constexpr double gigabytes_of_node_and_state = 2.5e-8;
+    return {"compare", seconds, seconds, 2.5 * program_gigabytes + gigabytes_of_node_and_state * size.nodes * states};
+}
+
+/// What a diagnosis takes depends on what it finds: nothing is soon said.
+StageCost diagnosing(const WorkSize& size, int threads) {
+    constexpr double a_node_and_state = 1.4e-3, most = 2.5, gigabytes_of_node_and_state = 4e-6;
+    const double seconds = on_threads(a_node_and_state * size.reference_nodes * size.loaded, threads);
+    return {"diagnose", seconds, most * seconds,
+            3 * program_gigabytes + gigabytes_of_node_and_state * size.reference_nodes * size.loaded};
+}
+
+StageCost improving(const WorkSize& size, int threads) {
+    StageCost cost = diagnosing(size, threads);
+    constexpr double of_diagnosis = 0.6;
+    cost.stage = "improve";
+    cost.seconds *= of_diagnosis;
+    cost.most_seconds *= of_diagnosis;
+    return cost;
+}
+
+}  // namespace
+
+std::vector<StageCost> cost_of_run(const WorkSize& size, int threads, double speed) {
+    std::vector<StageCost> stages;
+    stages.push_back(meshing(size));
+    stages.push_back(building(size, threads));
+    if (size.is_simulated) stages.push_back(probing(size, threads));
+    stages.push_back(identifying(size, threads));
+    stages.push_back(comparing(size, threads));
+    if (size.reference_nodes > 0) {
+        stages.push_back(diagnosing(size, threads));
+        stages.push_back(improving(size, threads));
+    }
+    for (StageCost& one : stages) {
+        one.seconds /= speed;
+        one.most_seconds /= speed;
+    }
+    return stages;
+}
+
+}  // namespace palpate::pipeline
