@@ -9,6 +9,7 @@
 #include "identify/effects/catalogue.h"
 #include "mesh/errors.h"
 #include "pipeline/output/html/run_files.h"
+#include "pipeline/output/text/comparison/population.h"
 
 namespace palpate::pipeline {
 namespace {
@@ -182,24 +183,29 @@ std::vector<std::string> names_of(const std::vector<fs::path>& runs) {
 
 }  // namespace
 
-std::vector<SharedNumber> shared_numbers(const std::vector<fs::path>& runs) {
+SharedBySpecimens shared_by_specimens(const std::vector<fs::path>& runs) {
     if (runs.size() < 2)
         throw InvalidInput(fmt::format(
             "a population has two specimens at least, and {} run is told; name more run folders", runs.size()));
     const std::vector<std::string> names = names_of(runs);
     Numbers numbers;
+    std::vector<SpecimenModel> models;
     for (std::size_t r = 0; r < runs.size(); ++r) {
         const RunFiles files = read_run(runs[r]);
+        models.push_back({names[r], files.model});
         add_material(files, names[r], numbers);
         add_effects(files, names[r], numbers);
         add_skeleton(files, names[r], numbers);
     }
-    std::vector<SharedNumber> shared = numbers.shared(names);
-    if (shared.empty())
+    SharedBySpecimens shared{numbers.shared(names), mean_specimen(models)};
+    if (!shared.mean.model)
+        shared.left_out = std::erase_if(shared.numbers, [](const auto& one) { return is_of_single_link(one.name); });
+    if (shared.numbers.empty())
         throw InvalidInput(
             "no two of these runs tell the same number: no stiffness in finite elements, no effect with the same name, "
             "and no stiffness of the skeleton that measurements inform; identify them with --parameters uniform, which "
-            "all skeletons have in common");
+            "all skeletons have in common" +
+            (shared.mean.model ? std::string() : "; single links do not correspond: " + shared.mean.why_none));
     return shared;
 }
 

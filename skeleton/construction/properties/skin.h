@@ -22,7 +22,8 @@ namespace palpate::skeleton {
 std::vector<Attachment> make_skin(const mesh::VolumeMesh& body, const fem::Material& material, const TetGraph& graph,
                                   const std::vector<int>& owner, const Model& model);
 
-/// Nodes of the finite elements that `make_skin` takes of a body: all of a quadratic one, or of a large one its corners.
+/// Nodes of the finite elements that `make_skin` takes of a body: all of a quadratic one, or of a large one its
+/// corners.
 double nodes_for_skin(double corners, double quadratic_nodes);
 
 }  // namespace palpate::skeleton

@@ -11,6 +11,8 @@
 #include "pipeline/case/population_prior.h"
 #include "pipeline/command_line/commands.h"
 #include "pipeline/output/csv/posterior.h"
+#include "pipeline/output/vtk/population_map.h"
+#include "skeleton/model/io/model_io.h"
 #include "tests/messages.h"
 #include "tests/temporary_folder.h"
 
@@ -178,6 +180,54 @@ TEST_F(Pool, AModulusThatIsPoorlyKnownIsPositiveAllTheSame) {
     EXPECT_EQ(young["name"], "young");
     EXPECT_EQ(young["scale"], "logarithmic");
     EXPECT_GT(young["specimens"][1]["own"]["low"], 0);
+}
+
+/// A run whose links are identified one by one, of a skeleton with so many spheres.
+fs::path run_of_links(const fs::path& scratch, int spheres, double young) {
+    const fs::path output = scratch / ("links_" + std::to_string(spheres) + "_" + std::to_string(young));
+    commands::RunOptions options{.input = scratch / "beam.stl", .output = output, .overrides = {}};
+    options.overrides.set("volume.edge_length", 12);
+    options.overrides.set("skeleton.spheres", spheres);
+    options.overrides.set("probing.probes", 10);
+    options.overrides.set("identify.particles", 40);
+    options.overrides.set("material.young", young);
+    commands::run(options, {});
+    return output;
+}
+
+TEST_F(Pool, MapsLinksOverTheMeanBodyWhereSkeletonsCorrespond) {
+    const std::vector<fs::path> runs{run_of_links(scratch_->path(), 4, 0.1), run_of_links(scratch_->path(), 4, 0.2)};
+    const fs::path output = *scratch_ / "mapped";
+    const commands::Outcome outcome = commands::pool({runs, output}, {});
+    EXPECT_TRUE(outcome.json["no_map"].is_null());
+    EXPECT_THAT(outcome.text, HasSubstr("mean_skeleton.vtp"));
+    EXPECT_THAT(mesh::read_text(output / "population.html"), HasSubstr("Map"));
+
+    // In small strain all is in proportion to the modulus: the mean of the logarithms lies in the middle.
+    const skeleton::Model first = skeleton::read_model(runs[0] / "identify/model.json");
+    const std::vector<LinkMap> maps = maps_of_links(outcome.json, first.links.size());
+    const auto flexion = std::ranges::find(maps, "flexion", &LinkMap::kind);
+    ASSERT_NE(flexion, maps.end());
+    ASSERT_GT(flexion->known(), 0);
+    for (std::size_t l = 0; l < first.links.size(); ++l) {
+        const double mean = flexion->mean[static_cast<Eigen::Index>(l)];
+        if (std::isnan(mean)) continue;
+        EXPECT_NEAR(mean / first.links[l].stiffness[1], std::sqrt(2.0), 0.15);
+        EXPECT_GT(flexion->spread[static_cast<Eigen::Index>(l)], 0.2);  // ln 2 apart
+    }
+    const std::string body = mesh::read_text(output / "mean_body.vtp");
+    EXPECT_THAT(body, AllOf(HasSubstr("mean flexion [N*mm/rad]"), HasSubstr("spread of ln flexion [-]")));
+}
+
+TEST_F(Pool, LeavesOutLinksOfSkeletonsThatDoNotCorrespond) {
+    const std::vector<fs::path> runs{run_of_links(scratch_->path(), 4, 0.1), run_of_links(scratch_->path(), 6, 0.1),
+                                     specimen("same", 0.3, 0.01), specimen("other", 0.3, 0.01)};
+    const commands::Outcome outcome = commands::pool({runs, *scratch_ / "unmapped"}, {});
+    EXPECT_THAT(outcome.json["no_map"].get<std::string>(), HasSubstr("spheres"));
+    for (const json& number : outcome.json["numbers"])
+        EXPECT_THAT(number["name"].get<std::string>(), testing::Not(HasSubstr(":link")));
+    EXPECT_THAT(outcome.text, HasSubstr("they do not correspond: links_4_"));
+    EXPECT_FALSE(fs::exists(*scratch_ / "unmapped/mean_body.vtp"));
 }
 
 TEST_F(Pool, RefusesWhatIsNoPopulation) {

@@ -139,35 +139,73 @@ Points all_points(const skeleton::Model& model) {
     return centers;
 }
 
+/// From which value to which colours go: the outermost fiftieths share the last ones.
+class ColourRange {
+public:
+    ColourRange(const Eigen::VectorXd& values, bool is_logarithmic) : is_logarithmic_(is_logarithmic) {
+        std::vector<double> known;
+        for (const double value : values)
+            if (!std::isnan(value)) known.push_back(on_scale(value));
+        std::sort(known.begin(), known.end());
+        if (known.empty()) return;
+        low_ = known[known.size() / 50];
+        high_ = known[known.size() - 1 - known.size() / 50];
+    }
+    double share(double value) const { return (on_scale(value) - low_) / std::max(high_ - low_, 1e-9); }
+    std::string bar(const View& view, const std::string& words) const {
+        return colour_bar(view, is_logarithmic_ ? std::pow(10, low_) : low_,
+                          is_logarithmic_ ? std::pow(10, high_) : high_, words);
+    }
+
+private:
+    double on_scale(double value) const { return is_logarithmic_ ? std::log10(value) : value; }
+
+    bool is_logarithmic_;
+    double low_ = 0, high_ = 1;
+};
+
+std::string links_svg(const skeleton::Model& model, const View& view, const Eigen::VectorXd& values,
+                      const ColourRange& range) {
+    std::string svg;
+    for (std::size_t l = 0; l < model.links.size(); ++l) {
+        const double value = values[static_cast<Eigen::Index>(l)];
+        const bool is_known = !std::isnan(value);
+        const Vec3 a = view(model.spheres[model.links[l].a].center), b = view(model.spheres[model.links[l].b].center);
+        svg += fmt::format(R"(<line x1="{:.1f}" y1="{:.1f}" x2="{:.1f}" y2="{:.1f}" stroke="{}" stroke-width="{}"/>)",
+                           a.x(), a.y(), b.x(), b.y(), is_known ? colour(range.share(value)) : prior_grey,
+                           is_known ? 2.2 : 0.6);
+    }
+    return svg;
+}
+
 }  // namespace
+
+std::string link_picture(const skeleton::Model& model, const LinkValues& values, bool is_first) {
+    View view(all_points(model));
+    for (const auto& sphere : model.spheres) view.hold(sphere.center);
+    const ColourRange range(values.values, values.is_logarithmic);
+    return view.open(values.words) + R"(<g opacity=".35">)" +
+           (is_first ? surface_svg(model, view) : R"(<use href="#body"/>)") + "</g>" +
+           links_svg(model, view, values.values, range) + range.bar(view, values.words) + "</svg>";
+}
 
 std::string skeleton_picture(const skeleton::Model& model) {
     View view(all_points(model));
     for (const auto& sphere : model.spheres) view.hold(sphere.center, sphere.radius);
     std::string svg = view.open("Spheres and links of the model in its surface") + R"(<g opacity=".35">)" +
                       surface_svg(model, view) + "</g>";
-    std::vector<double> logs;
-    for (const auto& link : model.links) logs.push_back(std::log10(std::max(link.stiffness[0], 1e-30)));
-    std::sort(logs.begin(), logs.end());
-    const double low = logs.empty() ? 0 : logs[logs.size() / 50],
-                 high = logs.empty() ? 1 : logs[logs.size() - 1 - logs.size() / 50];
-    const double range = std::max(high - low, 1e-9);
-    for (const auto& link : model.links) {
-        const Vec3 a = view(model.spheres[link.a].center), b = view(model.spheres[link.b].center);
-        svg += fmt::format(R"(<line x1="{:.1f}" y1="{:.1f}" x2="{:.1f}" y2="{:.1f}" stroke="{}" stroke-width="2.2"/>)",
-                           a.x(), a.y(), b.x(), b.y(),
-                           colour((std::log10(std::max(link.stiffness[0], 1e-30)) - low) / range));
-    }
+    Eigen::VectorXd stiffness(static_cast<Eigen::Index>(model.links.size()));
+    for (std::size_t l = 0; l < model.links.size(); ++l)
+        stiffness[static_cast<Eigen::Index>(l)] = std::max(model.links[l].stiffness[0], 1e-30);
+    const ColourRange range(stiffness, true);
+    svg += links_svg(model, view, stiffness, range);
     for (const auto& sphere : model.spheres) {
         const Vec3 c = view(sphere.center);
         svg += fmt::format(R"(<circle cx="{:.1f}" cy="{:.1f}" r="{:.1f}" class="{}"/>)", c.x(), c.y(),
                            view.scale() * sphere.radius, sphere.held ? "held" : "sphere");
         svg += fmt::format(R"(<circle cx="{:.1f}" cy="{:.1f}" r="2.4" class="center"/>)", c.x(), c.y());
     }
-    return svg +
-           colour_bar(view, std::pow(10, low), std::pow(10, high),
-                      "elongation stiffness of links [N/mm], logarithmic") +
-           "</svg>";
+    return svg + range.bar(view, "elongation stiffness of links [N/mm], logarithmic") + "</svg>";
 }
 
 std::string dot_picture(const skeleton::Model& model, const std::vector<Dot>& dots, double highest,

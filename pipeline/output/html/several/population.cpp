@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "mesh/text/atomic_file.h"
+#include "pipeline/output/html/charts/picture.h"
 #include "pipeline/output/html/charts/svg.h"
 #include "pipeline/output/html/escape.h"
 #include "pipeline/output/html/page/page_parts.h"
@@ -86,17 +87,35 @@ std::string forest_plot(const json& number) {
     return svg + "</svg>";
 }
 
+/// Mean and spread over the mean body, of the kind of stiffness that is known of most links.
+std::string maps_section(const skeleton::Model& mean, const LinkMap& map) {
+    const std::string name = escape(printed_stiffness(map.kind));
+    const LinkValues means{map.mean, true,
+                           fmt::format("mean {} [{}], logarithmic", name, escape(printed_unit(map.unit)))};
+    const LinkValues spreads{100 * map.spread, false, fmt::format("spread of {} [%]", name)};
+    return fmt::format(
+               "<h2>Map</h2><p>Links of the mean body whose {} two specimens or more determine: {} of {}; thin "
+               "grey ones are not determined. Other stiffnesses are in mean_skeleton.vtp.</p>",
+               name, map.known(), map.mean.size()) +
+           "<div class=\"pair\"><figure>" + link_picture(mean, means, true) +
+           "<figcaption class=\"soft\">The mean of the population.</figcaption></figure><figure>" +
+           link_picture(mean, spreads, false) +
+           "<figcaption class=\"soft\">How specimens differ: one standard deviation.</figcaption></figure></div>";
+}
+
 }  // namespace
 
-void write_population_page(const std::filesystem::path& page, const json& population) {
+void write_population_page(const std::filesystem::path& page, const json& population, const skeleton::Model* mean,
+                           const std::vector<LinkMap>& maps) {
     std::string sections;
     for (const json& number : population["numbers"]) {
-        if (is_of_single_link(number)) continue;
+        if (is_of_single_link(number["name"])) continue;
         sections += "<h2>" + escape(title_of_number(number)) + "</h2><p>" + escape(population_in_words(number)) +
                     "</p><figure>" + forest_plot(number) +
                     "<figcaption>Medians and 95 % of each specimen by itself (grey) and among the others (blue), by " +
                     escape(number["of"].get<std::string>()) + "; ✱ unlike the others.</figcaption></figure>";
     }
+    if (mean && !maps.empty()) sections += maps_section(*mean, maps.front());
     if (const std::string links = single_links_in_words(population); !links.empty())
         sections += "<p>" + escape(links) + "</p>";
     mesh::write_text(page, page_head("Population", page_style) + "<body><main><h1>Population</h1>" + sections +

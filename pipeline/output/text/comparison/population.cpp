@@ -56,21 +56,24 @@ std::string population_in_words(const json& number) {
     return words;
 }
 
-bool is_of_single_link(const json& number) {
-    return number["name"].get<std::string>().find(":link") != std::string::npos;
-}
+bool is_of_single_link(const std::string& name) { return name.find(":link") != std::string::npos; }
 
 std::string single_links_in_words(const json& population) {
-    const auto links = std::ranges::count_if(population["numbers"], is_of_single_link);
-    if (links == 0) return {};
-    return fmt::format("{} stiffnesses of single links, of skeletons that name them alike, are in population.json.",
-                       links);
+    const auto links = std::ranges::count_if(population["numbers"],
+                                             [](const json& number) { return is_of_single_link(number["name"]); });
+    if (links == 0)
+        return population["no_map"].is_null()
+                   ? std::string()
+                   : fmt::format("Single links are not pooled, as they do not correspond: {}.",
+                                 population["no_map"].get<std::string>());
+    return fmt::format(
+        "{} stiffnesses of single links, at corresponding places of all skeletons, are in population.json.", links);
 }
 
 std::string population_tables(const json& population) {
     std::string text;
     for (const json& number : population["numbers"]) {
-        if (is_of_single_link(number)) continue;
+        if (is_of_single_link(number["name"])) continue;
         std::size_t width = 8;
         for (const json& one : number["specimens"]) width = std::max(width, one["run"].get<std::string>().size());
         text += fmt::format("{}, by {}\n{}\n", title_of_number(number), number["of"].get<std::string>(),
