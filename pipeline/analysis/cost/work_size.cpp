@@ -1,6 +1,7 @@
 #include "pipeline/analysis/cost/work_size.h"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 
 #include "identify/inference/problem/parameters.h"
@@ -24,6 +25,11 @@ constexpr int most_spheres = 300;
 struct Sample {
     MeshedBody body;
     double refinement = 1;
+
+    /// How many there will be of what the sample has so many of, `on_surface` of them on its surface.
+    double refined(double count, double on_surface) const {
+        return refinement * refinement * (on_surface + refinement * (count - on_surface));
+    }
 };
 
 Sample sample_of(const Subject& subject, const Progress& progress) {
@@ -52,22 +58,22 @@ double corners_of(const mesh::VolumeMesh& volume) {
 
 void count_body(const Subject& subject, const Sample& sample, WorkSize& size) {
     const mesh::VolumeMesh& volume = sample.body.volume;
-    const double r = sample.refinement, corners = static_cast<double>(sample.body.surface.vertices.rows());
+    const double corners_of_skin = static_cast<double>(sample.body.surface.vertices.rows());
     const double all = static_cast<double>(volume.nodes.rows());
-    const double surface = std::min(all, on_surface(corners, volume.is_quadratic()));
-    size.nodes = surface * r * r + (all - surface) * r * r * r;
-    size.tetrahedra = static_cast<double>(volume.tetrahedra.rows()) * r * r * r;
-    size.skin = corners * r * r;
+    size.nodes = sample.refined(all, std::min(all, on_surface(corners_of_skin, volume.is_quadratic())));
+    size.sample_tetrahedra = static_cast<double>(volume.tetrahedra.rows());
+    size.tetrahedra = sample.refined(size.sample_tetrahedra, 0);
+    size.skin = sample.refined(corners_of_skin, corners_of_skin);
 
     const std::vector<char> held = mesh::contains(subject.supports, volume.nodes);
     if (size.is_simulated)
         size.probed =
             fem::forecast_solver(volume, held, size.nodes, subject.settings.probing.probes, subject.settings.solver);
     if (subject.settings.model) return;
-    const double share = volume.is_quadratic() ? corners_of(volume) / all : 1;
+    const double corners = corners_of(volume);
     constexpr double quadratic = 7.4;  // nodes for a corner, of linear elements that midside nodes are put into
-    size.skeleton_nodes =
-        skeleton::nodes_for_skin(share * size.nodes, volume.is_quadratic() ? size.nodes : quadratic * size.nodes);
+    size.skeleton_nodes = skeleton::nodes_for_skin(sample.refined(corners, std::min(corners, corners_of_skin)),
+                                                   volume.is_quadratic() ? size.nodes : quadratic * size.nodes);
     size.condensed = fem::forecast_solver(volume, held, size.skeleton_nodes, 0, fem::Solver::automatic);
 }
 
@@ -120,7 +126,9 @@ void count_diagnosis(const Subject& subject, WorkSize& size) {
 WorkSize size_of_run(const Subject& subject, const Progress& progress) {
     WorkSize size;
     count_measurements(subject, size);
+    const auto start = std::chrono::steady_clock::now();
     const Sample sample = sample_of(subject, progress);
+    size.seconds_to_mesh = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     count_body(subject, sample, size);
     count_skeleton(subject, sample, size);
     count_diagnosis(subject, size);

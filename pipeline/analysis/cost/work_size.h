@@ -8,8 +8,9 @@ namespace palpate::pipeline {
 
 /// How much a run has to do.
 struct WorkSize {
-    double nodes = 0, tetrahedra = 0, skin = 0;  // of the body; corners of its surface
-    double skeleton_nodes = 0;                   // that the skeleton's skin is found with: fewer in a large body
+    double nodes = 0, tetrahedra = 0, skin = 0;         // of the body; corners of its surface
+    double sample_tetrahedra = 0, seconds_to_mesh = 0;  // of what was meshed to count them, repair included
+    double skeleton_nodes = 0;                          // that the skeleton's skin is found with: fewer in a large body
     double spheres = 0, links = 0, parameters = 0;
     double states = 0, fitted = 0, markers = 0;  // of the measurements; states that the skeleton is fitted to
     double reference_nodes = 0, loaded = 0;      // of the body that is diagnosed, and its loaded states; 0: none is

@@ -66,8 +66,8 @@ void bind_commands(py::module_& module) {
         return told(at_work(call, [&] { return commands::run(options, call.common); }));
     });
     module.def("check", [](const fs::path& input, const fs::path& output, const std::vector<std::string>& expect,
-                           const Overrides& settings, const Call& call) {
-        const commands::CheckOptions options{input, output, expect, overrides_of(settings, call)};
+                           bool cost, const Overrides& settings, const Call& call) {
+        const commands::CheckOptions options{input, output, expect, cost, overrides_of(settings, call)};
         return told(at_work(call, [&] { return commands::check(options, call.common); }));
     });
     module.def("probe", [](const fs::path& input, const fs::path& output, const Overrides& settings,

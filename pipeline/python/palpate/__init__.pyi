@@ -331,6 +331,7 @@ def check(
     output: _Path | None = ...,
     *,
     expect: str | Sequence[str] = ...,
+    cost: bool = ...,
     threads: int | None = ...,
     force: bool = ...,
     **settings: Any,

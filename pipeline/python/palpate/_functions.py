@@ -55,15 +55,16 @@ def run(input, output=None, *, threads=None, seed=None, force=False, progress=No
     return Run(output, result, text, code)
 
 
-def check(input, output=None, *, expect=(), threads=None, force=False, **settings):
+def check(input, output=None, *, expect=(), cost=False, threads=None, force=False, **settings):
     """Reads everything, repairs nothing, says what is wrong and how to mend it, and what a set could show.
 
     `output`: a folder, or a page (.html). `expect`: names of effects that the set has to be able to show; the answer is
-    false where it cannot.
+    false where it cannot. `cost`: also how long a run would take, and how much memory, as `result["cost"]`.
     """
-    pairs, expect = settings_of(("Body",), settings), words_of(expect, "expect")
+    pairs = settings_of(("Body", "Skeleton", "Probing", "Identification"), settings)
+    expect = words_of(expect, "expect")
     with calling(threads, None, force) as call, as_path(input, _INPUTS) as path:
-        text, result, code = _core.check(path, output or "", expect, pairs, call)
+        text, result, code = _core.check(path, output or "", expect, bool(cost), pairs, call)
     return Check(text, result, code == 0)
 
 

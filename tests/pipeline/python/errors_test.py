@@ -76,6 +76,12 @@ class Errors(unittest.TestCase):
     def test_counts_of_numpy_are_counts(self):
         self.assertTrue(palpate.check(set_folder(), threads=np.int64(1)).usable)
 
+    def test_a_check_tells_what_a_run_would_take(self):
+        coarse, fine = (palpate.check(bar_file(), cost=True, edge_length=edge, spheres=4)["cost"] for edge in (8, 2))
+        self.assertGreater(fine["nodes"], 10 * coarse["nodes"])
+        self.assertGreater(fine["gigabytes"], coarse["gigabytes"])
+        self.assertNotIn("cost", palpate.check(bar_file()).json)
+
     def test_nothing_of_yours_is_overwritten(self):
         (self.folder / "mine.json").write_text("mine")
         (self.folder / "mine").mkdir()
