@@ -6,7 +6,7 @@
 namespace palpate::pipeline {
 namespace {
 
-// Rates of one thread, fitted to runs of seventeen bodies and of 52 measurement sets: tests/bench/cost/RESULTS.md.
+// Rates of one thread, fitted to runs like those of tests/bench/cost/RESULTS.md.
 constexpr double program_gigabytes = 0.065;
 constexpr double parallel = 0.6;  // of a stage's work, on average
 
@@ -76,7 +76,7 @@ StageCost comparing(const WorkSize& size, int threads) {
 
 /// What a diagnosis takes depends on what it finds: nothing is soon said.
 StageCost diagnosing(const WorkSize& size, int threads) {
-    constexpr double a_node_and_state = 1.4e-3, most = 2.5, gigabytes_of_node_and_state = 4e-6;
+    constexpr double a_node_and_state = 1.4e-3, most = 2.5, gigabytes_of_node_and_state = 8e-6;
     const double seconds = on_threads(a_node_and_state * size.reference_nodes * size.loaded, threads);
     return {"diagnose", seconds, most * seconds,
             3 * program_gigabytes + gigabytes_of_node_and_state * size.reference_nodes * size.loaded};

@@ -7,7 +7,7 @@
 
 namespace palpate::pipeline {
 
-/// What a stage of a run takes, about; of four in five runs, the seconds are within a factor of two of what was told
+/// What a stage of a run takes, about: of three runs in four, the seconds are within a factor of two of what was told
 /// (tests/bench/cost/RESULTS.md). Where it depends on what is found, `most_seconds` are those of nine runs in ten.
 struct StageCost {
     std::string stage;        // as in run.json
