@@ -39,13 +39,13 @@ void refuse_what_cannot_show(const EffectHypothesis& effect, const BodyModel& bo
     const bool spread = effect.has_memory() && !problem.by_stage;
     const bool is_fitted = !effect.sets_readings_aside();
     if (!is_fitted || !effect.numbers(body, spread ? problem.stage_by_stage() : problem).empty()) return;
-    throw InvalidInput(
-        effect.is_of_links()
-            ? fmt::format("The effect '{}' cannot show in a solid: links alone have it. Judge it on the skeleton.",
-                          effect.name())
-            : fmt::format("The effect '{}' cannot show in this body and this set. Leave it out, or measure what shows "
-                          "it: {}.",
-                          effect.name(), effect.description().reveals));
+    if (effect.is_of_links())
+        throw InvalidInput(fmt::format(
+            "The effect '{}' cannot show in a solid: links alone have it. Judge it on the skeleton.", effect.name()));
+    const EffectDescription& text = effect.description();
+    throw InvalidInput(fmt::format(
+        "The effect '{}' cannot show in this body and this set{}. Leave it out, or measure what shows it: {}.",
+        effect.name(), text.why_unshown.empty() ? "" : ": " + text.why_unshown, text.reveals));
 }
 
 }  // namespace palpate::identify

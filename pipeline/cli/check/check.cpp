@@ -96,7 +96,9 @@ void add_cost(const CheckOptions& options, const Subject& subject, const Common&
     const WorkSize size = size_of_run(subject, Console::progress());
     outcome.json["cost"] = to_json(cost_of_run(size, common.threads, machine_speed()), size, common.threads);
     Console::end_progress();
-    outcome.text += cost_in_words(outcome.json["cost"], options.input.string());
+    std::string input = options.input.string();
+    for (const std::string& flag : options.overrides.flags()) input += " " + flag;
+    outcome.text += cost_in_words(outcome.json["cost"], input);
 }
 
 /// Effects that the set has to be able to show. @throws InvalidInput without a set.

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "fem/linear_algebra/memory/free_memory.h"
+#include "pipeline/output/html/charts/svg.h"
 
 namespace palpate::pipeline {
 namespace {
@@ -28,11 +29,10 @@ std::string duration_in_words(const json& stage) {
 }
 
 std::string cost_lead(const json& cost) {
-    return fmt::format(
-        "A run would take about {} and {:.2g} GB on {} thread{}: {:.3g} nodes, {:.3g} spheres, {:.3g} links.",
-        duration_in_words(cost), cost["gigabytes"].get<double>(), cost["threads"].get<int>(),
-        cost["threads"] == 1 ? "" : "s", cost["nodes"].get<double>(), cost["spheres"].get<double>(),
-        cost["links"].get<double>());
+    const auto count = [&](const char* what) { return plain_number(cost[what]); };
+    return fmt::format("A run would take about {} and {:.2g} GB on {} thread{}: {} nodes, {} spheres, {} links.",
+                       duration_in_words(cost), cost["gigabytes"].get<double>(), cost["threads"].get<int>(),
+                       cost["threads"] == 1 ? "" : "s", count("nodes"), count("spheres"), count("links"));
 }
 
 json to_json(const std::vector<StageCost>& stages, const WorkSize& size, int threads) {

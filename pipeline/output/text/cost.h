@@ -16,7 +16,7 @@ std::string duration_in_words(const nlohmann::json& stage);
 /// All of it in a sentence: time, memory, size.
 std::string cost_lead(const nlohmann::json& cost);
 
-/// The same as a table, with what to do where memory does not suffice. `input`: as the user gave it.
+/// The same as a table, with what to do where memory does not suffice. `input`: with its flags, as the user gave them.
 std::string cost_in_words(const nlohmann::json& cost, const std::string& input);
 
 }  // namespace palpate::pipeline
