@@ -11,7 +11,7 @@
 namespace palpate::pipeline {
 namespace {
 
-// Of an Intel Xeon (Sapphire Rapids), one thread, as tests/bench/cost/RESULTS.md has it.
+// Of the machine of tests/bench/cost/RESULTS.md.
 constexpr double seconds_to_factor = 0.0103, seconds_to_sort = 0.061;
 
 template <class Work>
