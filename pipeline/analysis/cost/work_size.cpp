@@ -4,11 +4,11 @@
 #include <chrono>
 #include <cmath>
 
+#include "identify/diagnosis/problem.h"
 #include "identify/inference/problem/parameters.h"
 #include "pipeline/body/body.h"
 #include "pipeline/body/reference_body.h"
 #include "pipeline/case/subject/subject_body.h"
-#include "pipeline/output/text/describe/describe_rig.h"
 #include "pipeline/synthesis/probing/probing.h"
 #include "skeleton/construction/build.h"
 #include "skeleton/construction/properties/skin.h"
@@ -118,7 +118,8 @@ void count_diagnosis(const Subject& subject, WorkSize& size) {
     const Reference reference = make_reference(*subject.set, subject.settings.edge_length);
     if (!reference.body) return;
     size.reference_nodes = static_cast<double>(reference.body->body().mesh().nodes.rows());
-    size.loaded = static_cast<double>(loaded_states(*subject.set));
+    const identify::Problem problem = identify::make_problem(*subject.set, 1);  // no noise is asked of it
+    for (int k = 0; k < static_cast<int>(problem.actions.size()); ++k) size.loaded += problem.loaded(k) ? 1 : 0;
 }
 
 }  // namespace
