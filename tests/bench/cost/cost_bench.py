@@ -40,7 +40,7 @@ def main():
     seconds, gigabytes, whole = [], [], []
     for number, (case, flags) in enumerate(CASES):
         stages, cost = measured(number, case, flags), told(case, flags)
-        name = " ".join([case.name if case.suffix != ".stl" or case.name != "rest.stl" else case.parent.name.split("-")[0], flags]).strip()
+        name = " ".join([case.name if case.name != "rest.stl" else case.parent.name.split("-")[0], flags]).strip()
         for stage in cost["stages"]:
             took = stages.get(stage["stage"])
             if took is None:
