@@ -15,8 +15,10 @@ struct ToolApproach {
     bool likely = false;
 };
 
-/// `surface`: (n, 3), points of the body's surface at rest [mm]; `held`: (m, 3), those that do not move. None where
-/// nothing of the surface lies within the tool, or where it does not come free within its way from rest.
-std::optional<ToolApproach> from_off_the_body(const ToolPotential& tool, const Points& surface, const Points& held);
+/// `surface`: (n, 3), points of the body's surface at rest [mm]; `normals`: (n, 3), outward there, of any length;
+/// `held`: (m, 3), points that do not move. None where nothing of the surface lies within the tool, or where it does
+/// not come free of the body, outside of it, within its way from rest.
+std::optional<ToolApproach> from_off_the_body(const ToolPotential& tool, const Points& surface, const Points& normals,
+                                              const Points& held);
 
 }  // namespace palpate::fem

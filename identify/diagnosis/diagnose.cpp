@@ -9,9 +9,9 @@
 #include "identify/diagnosis/locate/locate.h"
 #include "identify/diagnosis/locate/residual.h"
 #include "identify/diagnosis/search/baselines.h"
-#include "identify/diagnosis/search/crushing.h"
 #include "identify/diagnosis/search/mesh_correction.h"
 #include "identify/diagnosis/search/search.h"
+#include "identify/diagnosis/search/states_without_equilibrium.h"
 #include "identify/diagnosis/statistics/discretisation.h"
 #include "identify/diagnosis/statistics/independent_readings.h"
 #include "identify/diagnosis/statistics/outliers/noise_estimate.h"
@@ -42,10 +42,8 @@ public:
     }
 
     Diagnosis run() {
-        if (!options_.law || *options_.law != 0)
-            result_.problem = without_crushing_probes(model_, result_.problem, options_.refit.threads, result_.notes);
         const bool is_corrected = take_correction_of_neighbour();
-        baselines_.fit(result_.problem, result_.notes, progress_);
+        fit_baselines();
         if (!is_corrected && options_.refit.correct_for_mesh) {
             tell("error of the mesh", 0.35);
             correct_baselines_for_mesh(model_, result_.problem, baselines_, options_.refit.threads);
@@ -84,6 +82,35 @@ private:
     const Refit& baseline() const { return baselines_.best(); }
 
     void tell(const std::string& what, double share) const { report(progress_, what, share); }
+
+    /// States without equilibrium are left out where it is known why.
+    void fit_baselines() {
+        const int threads = options_.refit.threads;
+        const auto fit = [&](std::vector<std::string>& notes) {
+            if (!options_.law || *options_.law != 0)
+                result_.problem = without_crushing_probes(model_, result_.problem, threads, notes);
+            baselines_.fit(result_.problem, notes, progress_);
+        };
+        std::string failure;
+        std::vector<std::string> notes;
+        try {
+            fit(notes);
+        } catch (const SolverFailure& e) {
+            failure = e.what();
+        }
+        if (!failure.empty() || baselines_.large_deformation_failed()) {
+            std::vector<std::string> left_out;
+            Problem reached = without_unreached_tools(model_, result_.problem, threads, left_out);
+            if (!left_out.empty()) {
+                result_.problem = std::move(reached);
+                notes = std::move(left_out);
+                fit(notes);
+            } else if (!failure.empty()) {
+                throw SolverFailure(failure);
+            }
+        }
+        result_.notes.insert(result_.notes.end(), notes.begin(), notes.end());
+    }
 
     /// The mesh's error as a neighbouring fit tells it.
     bool take_correction_of_neighbour() {

@@ -37,6 +37,15 @@ int steps_of_tools(const Effects& effects) {
     return static_cast<int>(std::ceil(std::min(most, limit)));
 }
 
+/// Outward at the nodes of the surface, of any length; zero within (n x 3).
+Points outward_at_nodes(const mesh::VolumeMesh& mesh) {
+    const Points areas = mesh::area_vectors({mesh.nodes, mesh.faces.leftCols(3)});
+    Points normals = Points::Zero(mesh.nodes.rows(), 3);
+    for (Eigen::Index f = 0; f < mesh.faces.rows(); ++f)
+        for (const int node : mesh.faces.row(f)) normals.row(node) += areas.row(f);
+    return normals;
+}
+
 struct Approach {
     BodySetting setting;
     bool likely = true;  // that all tools have come so
@@ -45,6 +54,7 @@ struct Approach {
 /// With tools that come from off the body, those that part from it; none where that is no other way.
 std::optional<Approach> find_approach(const BodyShape& body, const BodySetting& setting) {
     std::optional<Approach> result;
+    Points normals;  // made for the first tool that needs them
     std::vector<Eigen::Index> held;
     for (std::size_t node = 0; node < body.held.size(); ++node)
         if (body.held[node]) held.push_back(static_cast<Eigen::Index>(node));
@@ -52,8 +62,9 @@ std::optional<Approach> find_approach(const BodyShape& body, const BodySetting& 
         const ToolPotential& tool = *setting.effects.tools[t];
         if (!(tool.way() > tool.reach())) continue;  // in one step from rest
         const NodeWeights at = body.points(tool.acts_on(), setting.material.density);
-        const auto approach =
-            from_off_the_body(tool, body.mesh.nodes(at.nodes, Eigen::all), body.mesh.nodes(held, Eigen::all));
+        if (normals.rows() == 0) normals = outward_at_nodes(body.mesh);
+        const auto approach = from_off_the_body(tool, body.mesh.nodes(at.nodes, Eigen::all),
+                                                normals(at.nodes, Eigen::all), body.mesh.nodes(held, Eigen::all));
         if (!approach) continue;
         if (!result) result = Approach{setting};
         result->setting.effects.tools[t] = approach->tool;

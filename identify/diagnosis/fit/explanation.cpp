@@ -1,7 +1,9 @@
 #include "identify/diagnosis/fit/explanation.h"
 
 #include <algorithm>
+#include <map>
 
+#include "identify/models/tool_path.h"
 #include "identify/numerics/parallel.h"
 #include "mesh/errors.h"
 
@@ -98,6 +100,25 @@ bool has_equilibrium(const BodyModel& model, const ModelSetting& setting, const 
     }
 }
 
+namespace {
+
+/// What is solved one after the other, each sequence on its own: the life of a body that remembers; where it is not
+/// known where states are about to be, those of a probe in which tools move on from one to the next.
+std::vector<std::vector<int>> sequences(const Problem& problem, bool remembers, bool is_known) {
+    std::map<int, std::vector<int>> result;
+    for (int k = 0; k < static_cast<int>(problem.actions.size()); ++k) {
+        const bool follows = !is_known && !problem.actions[k].motions.empty();
+        const int alone = -2 - k;  // no probe's number
+        result[remembers ? 0 : follows ? problem.probe[k] : alone].push_back(k);
+    }
+    std::vector<std::vector<int>> all;
+    all.reserve(result.size());
+    for (auto& [_, sequence] : result) all.push_back(std::move(sequence));
+    return all;
+}
+
+}  // namespace
+
 ForwardSolution solve_forward(const BodyModel& model, const Problem& problem, const Explanation& explanation,
                               int threads, const std::vector<Eigen::VectorXd>* start, const TangentCache* guides) {
     const ModelSetting setting = explanation.setting();
@@ -111,22 +132,34 @@ ForwardSolution solve_forward(const BodyModel& model, const Problem& problem, co
     if (!model.is_nonlinear(setting)) linear = model.tangent(rest, setting, {});
     const bool remembers = setting.effects.remember();
     std::vector<std::shared_ptr<const Memory>> after(count);
-    for_each_in_parallel(count, remembers ? 1 : threads, [&](int k) {
+    const auto solve = [&](int k, int previous) {
         Action& action = result.actions[k];
         action = explanation.act(problem, k);
         if (remembers && problem.before(k) >= 0) action.memory = after[problem.before(k)];
+        const Eigen::VectorXd* near = start && (*start)[k].size() > 0 ? &(*start)[k] : nullptr;
         if (at_rest(setting, action)) {
             result.q[k] = rest;
         } else if (linear) {
             result.q[k] = model.advance(rest, linear->solve(model.residual(rest, setting, action)), setting);
+        } else if (!near && previous >= 0 && problem.probe[previous] == problem.probe[k] &&
+                   is_reached_from(result.actions[previous], action)) {
+            result.q[k] = equilibrium_after(model, PreparedRig(*problem.rig), setting, result.actions[previous],
+                                            result.q[previous], action);
         } else {
-            const bool is_begun = start && (*start)[k].size() > 0;
-            result.q[k] = model.equilibrium(setting, action, is_begun ? &(*start)[k] : nullptr,
-                                            guides ? guides->kept(k) : nullptr);
+            result.q[k] = model.equilibrium(setting, action, near, guides ? guides->kept(k) : nullptr);
         }
         if (remembers) after[k] = model.remember(result.q[k], setting, action);
         result.channels[k] = channels_of(model, problem, setting, action, result.q[k]);
         result.markers[k] = explanation.read(problem, result.channels[k]);
+    };
+    const bool is_known = start && std::ranges::none_of(*start, [](const auto& q) { return q.size() == 0; });
+    const std::vector<std::vector<int>> all = sequences(problem, remembers, is_known);
+    for_each_in_parallel(static_cast<int>(all.size()), threads, [&](int s) {
+        int previous = -1;
+        for (const int k : all[s]) {
+            solve(k, previous);
+            previous = k;
+        }
     });
     return result;
 }

@@ -70,6 +70,8 @@ std::vector<int> Baselines::order() const {
 
 void Baselines::fit(const Problem& problem, std::vector<std::string>& notes, const Progress& progress) {
     std::string failure;
+    std::ranges::fill(fits_, std::nullopt);
+    large_deformation_failed_ = false;
     std::optional<Refit> neighbour;  // of another law of large deformation
     for (const int law : order()) {
         if (options_->law && *options_->law != law) continue;

@@ -6,6 +6,7 @@
 
 #include "identify/effects/catalogue.h"
 #include "identify/loading/history/lagged_load.h"
+#include "identify/models/tool_path.h"
 #include "identify/numerics/parallel.h"
 #include "mesh/errors.h"
 
@@ -26,7 +27,10 @@ struct BodyHistory {
 class Statics {
 public:
     Statics(const Specimen& specimen, const TrueConditions& conditions, bool is_patient)
-        : model_(*specimen.model), conditions_(conditions), is_patient_(is_patient) {
+        : model_(*specimen.model),
+          rig_({specimen.set.tools, specimen.set.actuators}),
+          conditions_(conditions),
+          is_patient_(is_patient) {
         rest_ = model_.rest(conditions.setting);
         // One-sided contact is in force as it stands, whatever the law.
         const bool one_sided = std::ranges::any_of(conditions.setting.effects.points,
@@ -73,13 +77,18 @@ public:
                          const EquilibriumPath* near) const {
         EquilibriumPath path;
         BodyHistory now = body_history;
+        Action before;  // of the row before
         try {
             for (std::size_t row = 0; row < history.rows.size(); ++row) {
                 Action action = this->action(history, row);
                 action.memory = now.memory;
                 const Eigen::VectorXd* beside = near && !near->empty() ? &(*near)[row] : nullptr;
                 const Eigen::VectorXd start = guess(now, beside);
-                path.push_back(equilibrium(action, start.size() > 0 ? &start : nullptr));
+                const bool goes_on = !beside && row > 0 && identify::is_reached_from(before, action);
+                path.push_back(goes_on ? identify::equilibrium_after(model_, rig_, conditions_.setting, before,
+                                                                     path.back(), action)
+                                       : equilibrium(action, start.size() > 0 ? &start : nullptr));
+                before = action;
                 now.memory = model_.remember(path.back(), conditions_.setting, action);
                 now.last = path.back();
                 if (beside) now.beside = *beside;
@@ -101,6 +110,7 @@ private:
     }
 
     const identify::BodyModel& model_;
+    const identify::PreparedRig rig_;
     const TrueConditions& conditions_;
     const bool is_patient_;
     Eigen::VectorXd rest_;

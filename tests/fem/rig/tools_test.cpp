@@ -220,7 +220,8 @@ TEST(Tool, ThatRestsOnTheOtherSideComesFromOffTheBody) {
     EXPECT_LT((near.u - far.u).norm(), 1e-6 * near.u.norm());
     EXPECT_LT(far.factorisations, 2 * near.factorisations);
     // It is the tool in its pose, and off the body a little more than it is pressed in.
-    const auto approach = from_off_the_body(*from_below, rig.beam.mesh.nodes, Points::Zero(1, 3));
+    const mesh::Surface skin = mesh::boundary_surface(rig.beam.mesh);
+    const auto approach = from_off_the_body(*from_below, skin.vertices, mesh::vertex_normals(skin), Points::Zero(1, 3));
     ASSERT_TRUE(approach);
     EXPECT_TRUE(approach->likely);
     EXPECT_EQ(approach->tool->origin(), from_below->origin());
@@ -240,9 +241,36 @@ TEST(Tool, PushesABeamByMoreThanItsThickness) {
     EXPECT_LT(u.reshaped(3, u.size() / 3).row(2).minCoeff(), -3);
     EXPECT_LT(body.wrench(u, pushed).z(), 0);
     // On its far side the ball could stand as well.
-    const auto approach = from_off_the_body(*pushed, beam.mesh.nodes, Points::Zero(1, 3));
+    const mesh::Surface skin = mesh::boundary_surface(beam.mesh);
+    const auto approach = from_off_the_body(*pushed, skin.vertices, mesh::vertex_normals(skin), Points::Zero(1, 3));
     ASSERT_TRUE(approach);
     EXPECT_FALSE(approach->likely);
+}
+
+TEST(Tool, PressedInByMoreThanItsRadiusComesFromOutside) {
+    // Its centre is within the block: the surface that is nearest to it would leave it outwards.
+    const Beam block{{10, 10, 8}, {6, 6, 5}};
+    const auto at = [&](double depth) {
+        return moved(sphere_tool(Vec3(6, 5, -20), 2), Vec3(0, 0, 30 - depth), Vec3::Zero(), 0.3);
+    };
+    const HyperelasticBody body = block.body();
+    const Eigen::VectorXd none = Eigen::VectorXd::Zero(block.mesh.nodes.size());
+    const auto found = [&](double depth, const Eigen::VectorXd* start) {
+        const BodySetting setting{MaterialLaw::neo_hookean, {.young = 0.3, .poisson = 0.4}, {.tools = {at(depth)}}};
+        return body.equilibrium(setting, none, {}, start).u;
+    };
+    const Eigen::VectorXd u = found(2.6, nullptr);
+    EXPECT_LT(body.wrench(u, at(2.6)).z(), 0);
+    Eigen::VectorXd followed = Eigen::VectorXd::Zero(u.size());
+    for (const double depth : {0.4, 0.8, 1.2, 1.6, 2.0, 2.3, 2.6}) followed = found(depth, &followed);
+    EXPECT_LT((u - followed).norm(), 1e-4 * followed.norm());
+
+    const mesh::Surface skin = mesh::boundary_surface(block.mesh);
+    const auto approach = from_off_the_body(*at(2.6), skin.vertices, mesh::vertex_normals(skin), Points::Zero(1, 3));
+    ASSERT_TRUE(approach);
+    EXPECT_TRUE(approach->likely);
+    EXPECT_NEAR(approach->tool->way(), 2.6, 0.2);
+    EXPECT_GT(approach->tool->part_way(0)->origin().z(), 9.9);
 }
 
 TEST(Tool, MessagesSayWhatToDo) {
