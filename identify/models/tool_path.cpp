@@ -2,12 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
-#include "mesh/core/scaled_motion.h"
 #include "mesh/errors.h"
 
 namespace palpate::identify {
 namespace {
+
+constexpr double any_young = 1;  // [MPa]: no way, and no reach, depends on it
 
 const mesh::ToolMotion* motion_of(const Action& action, int tool) {
     const auto found = std::ranges::find(action.motions, tool, &mesh::ToolMotion::tool);
@@ -35,8 +37,7 @@ std::vector<mesh::ToolMotion> steps_to(const Action& before, const Action& actio
 int parts_of(const PreparedRig& rig, const std::vector<mesh::ToolMotion>& steps) {
     double most = 1;
     for (const mesh::ToolMotion& step : steps) {
-        constexpr double any = 1;  // Young's modulus, on which neither depends
-        const auto tool = rig.tool(step, any);
+        const auto tool = rig.tool(step, any_young);
         most = std::max(most, tool->way() / tool->reach());
     }
     constexpr double limit = 1000;
@@ -51,26 +52,57 @@ bool is_reached_from(const Action& before, const Action& action) {
     });
 }
 
+namespace {
+
+/// Does some tool that only pushes push the other way than before? Over a small step that tells of a body that has
+/// leapt to another of its equilibria.
+bool has_turned(const PreparedRig& rig, const std::vector<mesh::ToolMotion>& motions, const Eigen::VectorXd& before,
+                const Eigen::VectorXd& now) {
+    for (std::size_t t = 0; t < motions.size(); ++t) {
+        const auto at = static_cast<Eigen::Index>(6 * t);
+        if (before.segment<3>(at).dot(now.segment<3>(at)) < 0 && rig.tool(motions[t], any_young)->parts()) return true;
+    }
+    return false;
+}
+
+/// Where the body comes to when the tools have gone their steps in so many parts, from a configuration; nothing where
+/// it leaps on the way.
+std::optional<Eigen::VectorXd> follow(const BodyStatics& body, const PreparedRig& rig, const ModelSetting& setting,
+                                      const Action& action, const std::vector<mesh::ToolMotion>& steps, int parts,
+                                      Eigen::VectorXd q) {
+    const auto before_the_end = [&](double left) {
+        Action there = action;
+        for (std::size_t t = 0; t < steps.size(); ++t) {
+            there.motions[t].translation -= left * steps[t].translation;
+            there.motions[t].rotation -= left * steps[t].rotation;
+        }
+        return there;
+    };
+    Eigen::VectorXd forces = body.reactions(q, setting, before_the_end(1));
+    for (int part = 1; part <= parts; ++part) {
+        const Action there = before_the_end(1 - static_cast<double>(part) / parts);
+        try {
+            q = body.equilibrium(setting, there, &q);
+        } catch (const SolverFailure&) {
+            return std::nullopt;
+        }
+        const Eigen::VectorXd now = body.reactions(q, setting, there);
+        if (has_turned(rig, there.motions, forces, now)) return std::nullopt;
+        forces = now;
+    }
+    return q;
+}
+
+}  // namespace
+
 Eigen::VectorXd equilibrium_after(const BodyStatics& body, const PreparedRig& rig, const ModelSetting& setting,
                                   const Action& before, const Eigen::VectorXd& q, const Action& action) {
     const std::vector<mesh::ToolMotion> steps = steps_to(before, action);
     const int parts = parts_of(rig, steps);
-    try {
-        Eigen::VectorXd at = q;
-        Action on_the_way = action;
-        for (int part = 1; part <= parts; ++part) {
-            const double left = 1 - static_cast<double>(part) / parts;
-            for (std::size_t t = 0; t < steps.size(); ++t) {
-                const mesh::ToolMotion rest = mesh::scaled(steps[t], left);
-                on_the_way.motions[t].translation = action.motions[t].translation - rest.translation;
-                on_the_way.motions[t].rotation = action.motions[t].rotation - rest.rotation;
-            }
-            at = body.equilibrium(setting, on_the_way, &at);
-        }
-        return at;
-    } catch (const SolverFailure&) {
-        return body.equilibrium(setting, action);
+    for (const int finer : {1, 4}) {
+        if (const auto found = follow(body, rig, setting, action, steps, finer * parts, q)) return *found;
     }
+    return body.equilibrium(setting, action);
 }
 
 }  // namespace palpate::identify

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
 #include "identify/effects/catalogue.h"
 #include "mesh/errors.h"
@@ -125,14 +124,14 @@ const Refit& Baselines::best() const {
 
 namespace {
 
-/// In small strain, which is quick; but a skeleton's linear law knows no tools that may part from it.
+/// In small strain, which is quick; but a skeleton's linear law knows no tools that may part from it, and a body's bears
+/// none that press deep.
 ForwardSolution roughly_solved(const BodyModel& model, const Problem& problem, Explanation explanation, int threads) {
-    const int law = std::exchange(explanation.law, 0);
+    explanation.law = 0;
     try {
         return solve_forward(model, problem, explanation, threads);
     } catch (const SolverFailure&) {
-        if (law == 0) throw;
-        explanation.law = law;
+        explanation.law = static_cast<int>(model.laws().size()) - 1;
         return solve_forward(model, problem, explanation, threads);
     }
 }

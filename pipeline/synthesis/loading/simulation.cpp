@@ -59,16 +59,19 @@ public:
         return action;
     }
 
-    Eigen::VectorXd equilibrium(const Action& action, const Eigen::VectorXd* near) const {
+    /// `near`: of a similar state, or empty; `before`: the last row's, from where tools move on, or none, in `last`.
+    Eigen::VectorXd equilibrium(const Action& action, const Eigen::VectorXd& near, const Action* before,
+                                const Eigen::VectorXd& last) const {
         const identify::ModelSetting& setting = conditions_.setting;
         if (linear_) return model_.advance(rest_, linear_->solve(model_.residual(rest_, setting, action)), setting);
-        if (near) {
+        if (near.size() > 0) {
             try {
-                return model_.equilibrium(setting, action, near);
-            } catch (const SolverFailure&) {  // too far off: from rest, load by load
+                return model_.equilibrium(setting, action, &near);
+            } catch (const SolverFailure&) {  // too far off: by the tool's path, or from rest, load by load
                 if (!is_patient_) throw;
             }
         }
+        if (before) return identify::equilibrium_after(model_, rig_, setting, *before, last, action);
         return model_.equilibrium(setting, action, nullptr);
     }
 
@@ -83,11 +86,9 @@ public:
                 Action action = this->action(history, row);
                 action.memory = now.memory;
                 const Eigen::VectorXd* beside = near && !near->empty() ? &(*near)[row] : nullptr;
-                const Eigen::VectorXd start = guess(now, beside);
-                const bool goes_on = !beside && row > 0 && identify::is_reached_from(before, action);
-                path.push_back(goes_on ? identify::equilibrium_after(model_, rig_, conditions_.setting, before,
-                                                                     path.back(), action)
-                                       : equilibrium(action, start.size() > 0 ? &start : nullptr));
+                const bool goes_on = row > 0 && identify::is_reached_from(before, action);
+                const Eigen::VectorXd near_by = goes_on && !beside ? Eigen::VectorXd() : guess(now, beside);
+                path.push_back(equilibrium(action, near_by, goes_on ? &before : nullptr, now.last));
                 before = action;
                 now.memory = model_.remember(path.back(), conditions_.setting, action);
                 now.last = path.back();

@@ -5,6 +5,11 @@
 namespace palpate::identify {
 namespace {
 
+using testing::AllOf;
+using testing::Contains;
+using testing::HasSubstr;
+using testing::Not;
+
 /// The bar gripped at its free end and moved, as a robot or a tester does, by up to a fifth of its length.
 class MovedByAGrip : public Diagnosed {
 protected:
@@ -84,6 +89,19 @@ TEST_F(MovedByAGrip, AHiddenWeightIsNamed) {
     EXPECT_EQ(found.verdict, Verdict::missing_effect);
     ASSERT_EQ(found.explanation, std::vector<std::string>{"gravity"});
     EXPECT_NEAR(estimate(candidate(found, "gravity"), "gz"), 9810 * half_g.z(), 0.1 * 9810 * 0.5);
+}
+
+TEST_F(MovedByAGrip, AStateThatTheGripCannotBeInIsLeftOut) {
+    MeasurementSet set = moved(truth("gravity", half_g));
+    LoadState beyond = set.states.back();
+    beyond.probe = 20;
+    beyond.motions.front().translation = Vec3(-60, 0, 0);  // through the support
+    set.states.push_back(beyond);
+    const Diagnosis found = diagnose(set);
+    EXPECT_EQ(found.explanation, std::vector<std::string>{"gravity"});
+    EXPECT_EQ(std::ranges::count(found.problem.probe, 20), 0);
+    EXPECT_THAT(found.notes, Contains(AllOf(HasSubstr("\"grip\""), HasSubstr("probe 20"), HasSubstr("is left out"))));
+    EXPECT_THAT(found.notes, Not(Contains(HasSubstr("has no equilibrium"))));
 }
 
 TEST_F(MovedByAGrip, DisplacementsSinceALoadedStateAreDifferences) {

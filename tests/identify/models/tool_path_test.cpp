@@ -1,0 +1,112 @@
+#include "identify/models/tool_path.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/identify/small_body.h"
+
+namespace palpate::identify {
+namespace {
+
+/// A ball, which is told from a place below the bar, presses it down from above, in the end by more than its thickness.
+class PressedDeep : public testing::TestWithParam<bool> {
+protected:
+    static constexpr double radius = 8;
+    static constexpr double top = 10;  // of the bar [mm]
+    static Rig rig() {
+        return {{{.name = "ball", .shape = mesh::SphereShape{radius}, .bonded = false, .origin = Vec3(30, 5, -60)}},
+                {}};
+    }
+    static Action pressed(double depth) {
+        Action action;
+        action.motions = {{.tool = 0, .translation = Vec3(0, 0, 60 + top + radius - depth)}};
+        return action;
+    }
+    PressedDeep() {
+        body_.mesh = mesh::to_quadratic(mesh::make_bar(Vec3::Zero(), Vec3(40, 10, 10), {8, 2, 2}));
+        if (GetParam())
+            model_ = std::make_unique<SkeletonBody>(body_.chain(), body_.markers, SmallBody::young, rig());
+        else
+            model_ = std::make_unique<ReferenceBody>(
+                body_.mesh, body_.supports, body_.markers,
+                ReferenceBodyOptions{.young = 0.1, .measured_on_mesh = true, .rig = rig()});
+    }
+    /// Of the marker in the middle of the upper side, above the ball [mm].
+    double height(const Points& markers) const {
+        Eigen::Index nearest = 0;
+        const Eigen::RowVector3d under(30, 5, top);
+        const Points rest = model_->observe(model_->rest(truth_.setting()), truth_.setting());
+        (rest.rowwise() - under).rowwise().norm().minCoeff(&nearest);
+        return markers(nearest, 2) - rest(nearest, 2);
+    }
+
+    SmallBody body_;
+    std::unique_ptr<BodyModel> model_;
+    Explanation truth_;
+};
+
+TEST_P(PressedDeep, StatesOfAProbeFollowTheTool) {
+    truth_ = bare_truth(*model_, static_cast<int>(model_->laws().size()) - 1);
+    std::vector<LoadState> states{LoadState{.probe = 0}};
+    for (const double depth : {5.0, 10.0, 14.0, 18.5})
+        states.push_back({.probe = 1, .time = depth, .motions = pressed(depth).motions});
+    MeasurementSet set = body_.set(std::move(states));
+    set.tools = rig().tools;
+    const Problem problem = make_problem(set, 1);
+    const ForwardSolution forward = solve_forward(*model_, problem, truth_, 1);
+    ASSERT_EQ(forward.q.size(), 5);
+    double before = 0;
+    for (int k = 1; k < 5; ++k) {
+        const double now = height(forward.channels[k]);
+        EXPECT_LT(now, before - 2) << k;
+        EXPECT_LT(forward.channels[k](problem.markers, 2), 0) << k;  // the force on the body
+        before = now;
+    }
+    // On its own the last of them tells of a ball that lifts the bar from below, where it is less far in.
+    const Eigen::VectorXd alone = model_->equilibrium(truth_.setting(), pressed(18.5));
+    EXPECT_GT(height(model_->observe(alone, truth_.setting())), 1);
+}
+
+class BodyPressedDeep : public PressedDeep {};
+
+TEST_P(BodyPressedDeep, WhereItEndsDoesNotDependOnHowFarApartStatesAre) {
+    truth_ = bare_truth(*model_, static_cast<int>(model_->laws().size()) - 1);
+    const ModelSetting setting = truth_.setting();
+    const PreparedRig prepared(rig());
+    const Eigen::VectorXd begun = model_->equilibrium(setting, pressed(2));
+    const Eigen::VectorXd at_once = equilibrium_after(*model_, prepared, setting, pressed(2), begun, pressed(10));
+    Eigen::VectorXd in_steps = begun;
+    for (double depth = 3; depth <= 10; ++depth)
+        in_steps = equilibrium_after(*model_, prepared, setting, pressed(depth - 1), in_steps, pressed(depth));
+    EXPECT_LT((at_once - in_steps).norm(), 1e-4 * in_steps.norm());
+    EXPECT_LT(height(model_->observe(at_once, setting)), -5);
+}
+
+TEST(ToolPath, IsKnownWhereEveryToolWasBefore) {
+    Action none, one, both;
+    one.motions = {{.tool = 1}};
+    both.motions = {{.tool = 0}, {.tool = 1}};
+    EXPECT_TRUE(is_reached_from(both, one));
+    EXPECT_TRUE(is_reached_from(one, one));
+    EXPECT_FALSE(is_reached_from(one, both));
+    EXPECT_FALSE(is_reached_from(none, one));
+    EXPECT_FALSE(is_reached_from(one, none));
+}
+
+TEST_P(PressedDeep, AFreeCoordinateStaysFreeOnTheWay) {
+    truth_ = bare_truth(*model_, static_cast<int>(model_->laws().size()) - 1);
+    const ModelSetting setting = truth_.setting();
+    Action from = pressed(2), to = pressed(9);
+    from.motions[0].rotation.setConstant(missing);  // a ball may turn: nothing resists
+    to.motions[0].rotation.setConstant(missing);
+    const Eigen::VectorXd begun = model_->equilibrium(setting, from);
+    const Eigen::VectorXd turned = equilibrium_after(*model_, PreparedRig(rig()), setting, from, begun, to),
+                          held = equilibrium_after(*model_, PreparedRig(rig()), setting, pressed(2), begun, pressed(9));
+    EXPECT_LT((turned - held).norm(), 1e-4 * held.norm());
+}
+
+INSTANTIATE_TEST_SUITE_P(Model, BodyPressedDeep, testing::Values(false));
+INSTANTIATE_TEST_SUITE_P(Models, PressedDeep, testing::Bool(),
+                         [](const auto& which) { return which.param ? "skeleton" : "body"; });
+
+}  // namespace
+}  // namespace palpate::identify
