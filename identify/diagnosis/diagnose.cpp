@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <exception>
 #include <functional>
 
 #include "identify/diagnosis/diagnosis_notes.h"
@@ -83,33 +84,32 @@ private:
 
     void tell(const std::string& what, double share) const { report(progress_, what, share); }
 
-    /// States without equilibrium are left out where it is known why.
+    /// Without the states that tools cannot be in, where with them no law, or none of large deformation, has
+    /// equilibria.
     void fit_baselines() {
-        const int threads = options_.refit.threads;
-        const auto fit = [&](std::vector<std::string>& notes) {
+        std::exception_ptr failure;
+        std::vector<std::string> of_laws;
+        const auto fit = [&] {
+            const int threads = options_.refit.threads;
             if (!options_.law || *options_.law != 0)
-                result_.problem = without_crushing_probes(model_, result_.problem, threads, notes);
-            baselines_.fit(result_.problem, notes, progress_);
+                result_.problem = without_crushing_probes(model_, result_.problem, threads, result_.notes);
+            of_laws.clear();
+            baselines_.fit(result_.problem, of_laws, progress_);
         };
-        std::string failure;
-        std::vector<std::string> notes;
         try {
-            fit(notes);
-        } catch (const SolverFailure& e) {
-            failure = e.what();
+            fit();
+        } catch (const SolverFailure&) {
+            failure = std::current_exception();
         }
-        if (!failure.empty() || baselines_.large_deformation_failed()) {
-            std::vector<std::string> left_out;
-            Problem reached = without_unreached_tools(model_, result_.problem, threads, left_out);
-            if (!left_out.empty()) {
-                result_.problem = std::move(reached);
-                notes = std::move(left_out);
-                fit(notes);
-            } else if (!failure.empty()) {
-                throw SolverFailure(failure);
-            }
+        if (failure || baselines_.large_deformation_failed()) {
+            const std::size_t before = result_.notes.size();
+            result_.problem = without_unreached_tools(model_, result_.problem, options_.refit.threads, result_.notes);
+            if (result_.notes.size() > before)
+                fit();
+            else if (failure)
+                std::rethrow_exception(failure);
         }
-        result_.notes.insert(result_.notes.end(), notes.begin(), notes.end());
+        result_.notes.insert(result_.notes.end(), of_laws.begin(), of_laws.end());
     }
 
     /// The mesh's error as a neighbouring fit tells it.

@@ -52,6 +52,16 @@ bool is_reached_from(const Action& before, const Action& action) {
     });
 }
 
+Action on_the_way(const Action& before, const Action& action, double share) {
+    const std::vector<mesh::ToolMotion> steps = steps_to(before, action);
+    Action there = action;
+    for (std::size_t t = 0; t < steps.size(); ++t) {
+        there.motions[t].translation -= (1 - share) * steps[t].translation;
+        there.motions[t].rotation -= (1 - share) * steps[t].rotation;
+    }
+    return there;
+}
+
 namespace {
 
 /// Does some tool that only pushes push the other way than before? Over a small step that tells of a body that has
@@ -68,19 +78,10 @@ bool has_turned(const PreparedRig& rig, const std::vector<mesh::ToolMotion>& mot
 /// Where the body comes to when the tools have gone their steps in so many parts, from a configuration; nothing where
 /// it leaps on the way.
 std::optional<Eigen::VectorXd> follow(const BodyStatics& body, const PreparedRig& rig, const ModelSetting& setting,
-                                      const Action& action, const std::vector<mesh::ToolMotion>& steps, int parts,
-                                      Eigen::VectorXd q) {
-    const auto before_the_end = [&](double left) {
-        Action there = action;
-        for (std::size_t t = 0; t < steps.size(); ++t) {
-            there.motions[t].translation -= left * steps[t].translation;
-            there.motions[t].rotation -= left * steps[t].rotation;
-        }
-        return there;
-    };
-    Eigen::VectorXd forces = body.reactions(q, setting, before_the_end(1));
+                                      const Action& before, const Action& action, int parts, Eigen::VectorXd q) {
+    Eigen::VectorXd forces = body.reactions(q, setting, on_the_way(before, action, 0));
     for (int part = 1; part <= parts; ++part) {
-        const Action there = before_the_end(1 - static_cast<double>(part) / parts);
+        const Action there = on_the_way(before, action, static_cast<double>(part) / parts);
         try {
             q = body.equilibrium(setting, there, &q);
         } catch (const SolverFailure&) {
@@ -97,10 +98,9 @@ std::optional<Eigen::VectorXd> follow(const BodyStatics& body, const PreparedRig
 
 Eigen::VectorXd equilibrium_after(const BodyStatics& body, const PreparedRig& rig, const ModelSetting& setting,
                                   const Action& before, const Eigen::VectorXd& q, const Action& action) {
-    const std::vector<mesh::ToolMotion> steps = steps_to(before, action);
-    const int parts = parts_of(rig, steps);
+    const int parts = parts_of(rig, steps_to(before, action));
     for (const int finer : {1, 4}) {
-        if (const auto found = follow(body, rig, setting, action, steps, finer * parts, q)) return *found;
+        if (const auto found = follow(body, rig, setting, before, action, finer * parts, q)) return *found;
     }
     return body.equilibrium(setting, action);
 }

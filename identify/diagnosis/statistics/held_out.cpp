@@ -5,6 +5,7 @@
 
 #include "identify/diagnosis/likelihood/reading_weights.h"
 #include "identify/diagnosis/statistics/discretisation.h"
+#include "identify/models/tool_path.h"
 #include "identify/numerics/load_reduction.h"
 #include "mesh/core/scaled_motion.h"
 #include "mesh/errors.h"
@@ -90,7 +91,10 @@ Problem with_reduced_loads(const BodyModel& model, const Problem& problem, const
         for (int reductions = 0; reductions < most_load_reductions; ++reductions) {
             if (has_equilibrium(model, setting, explanation.act(eased, k))) break;
             for (mesh::Contact& contact : action.contacts) contact.force *= load_reduction;
-            for (mesh::ToolMotion& motion : action.motions) motion = mesh::scaled(motion, load_reduction);
+            if (k > 0 && eased.probe[k - 1] == eased.probe[k] && is_reached_from(eased.actions[k - 1], action))
+                action = on_the_way(eased.actions[k - 1], action, load_reduction);
+            else
+                for (mesh::ToolMotion& motion : action.motions) motion = mesh::scaled(motion, load_reduction);
             for (mesh::ActuatorSetting& one : action.settings) one.scale(load_reduction);
         }
     }

@@ -92,6 +92,21 @@ TEST(ToolPath, IsKnownWhereEveryToolWasBefore) {
     EXPECT_FALSE(is_reached_from(one, none));
 }
 
+TEST(ToolPath, IsStraightAndLeavesFreeCoordinatesFree) {
+    Action from, to;
+    from.motions = {{.tool = 1, .translation = Vec3(9, 9, 9)},
+                    {.tool = 0, .translation = Vec3(50, missing, 4), .rotation = Vec3(0, 0.1, 0)}};
+    to.motions = {{.tool = 0, .translation = Vec3(54, 3, missing), .rotation = Vec3(0, 0.3, 0)}};
+    const Action there = on_the_way(from, to, 0.75);
+    ASSERT_EQ(there.motions.size(), 1);
+    const mesh::ToolMotion& at = there.motions.front();
+    EXPECT_EQ(at.tool, 0);
+    EXPECT_DOUBLE_EQ(at.translation.x(), 53);
+    EXPECT_EQ(at.translation.y(), 3);  // it was free before: where it came from is not known
+    EXPECT_TRUE(std::isnan(at.translation.z()));
+    EXPECT_DOUBLE_EQ(at.rotation.y(), 0.25);
+}
+
 TEST_P(PressedDeep, AFreeCoordinateStaysFreeOnTheWay) {
     truth_ = bare_truth(*model_, static_cast<int>(model_->laws().size()) - 1);
     const ModelSetting setting = truth_.setting();
