@@ -124,8 +124,8 @@ const Refit& Baselines::best() const {
 
 namespace {
 
-/// In small strain, which is quick; but a skeleton's linear law knows no tools that may part from it, and a body's bears
-/// none that press deep.
+/// In small strain, which is quick; but a skeleton's linear law knows no tools that may part from it, and a body's
+/// bears none that press deep.
 ForwardSolution roughly_solved(const BodyModel& model, const Problem& problem, Explanation explanation, int threads) {
     explanation.law = 0;
     try {
