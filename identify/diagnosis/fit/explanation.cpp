@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <map>
+#include <optional>
 
 #include "identify/models/tool_path.h"
 #include "identify/numerics/parallel.h"
@@ -131,6 +132,9 @@ ForwardSolution solve_forward(const BodyModel& model, const Problem& problem, co
     std::shared_ptr<const Tangent> linear;
     if (!model.is_nonlinear(setting)) linear = model.tangent(rest, setting, {});
     const bool remembers = setting.effects.remember();
+    const bool is_known = start && std::ranges::none_of(*start, [](const auto& q) { return q.size() == 0; });
+    std::optional<PreparedRig> rig;  // of tools whose paths are followed
+    if (!is_known && problem.rig) rig.emplace(*problem.rig);
     std::vector<std::shared_ptr<const Memory>> after(count);
     const auto solve = [&](int k, int previous) {
         Action& action = result.actions[k];
@@ -143,8 +147,7 @@ ForwardSolution solve_forward(const BodyModel& model, const Problem& problem, co
             result.q[k] = model.advance(rest, linear->solve(model.residual(rest, setting, action)), setting);
         } else if (!near && previous >= 0 && problem.probe[previous] == problem.probe[k] &&
                    is_reached_from(result.actions[previous], action)) {
-            result.q[k] = equilibrium_after(model, PreparedRig(*problem.rig), setting, result.actions[previous],
-                                            result.q[previous], action);
+            result.q[k] = equilibrium_after(model, *rig, setting, result.actions[previous], result.q[previous], action);
         } else {
             result.q[k] = model.equilibrium(setting, action, near, guides ? guides->kept(k) : nullptr);
         }
@@ -152,7 +155,6 @@ ForwardSolution solve_forward(const BodyModel& model, const Problem& problem, co
         result.channels[k] = channels_of(model, problem, setting, action, result.q[k]);
         result.markers[k] = explanation.read(problem, result.channels[k]);
     };
-    const bool is_known = start && std::ranges::none_of(*start, [](const auto& q) { return q.size() == 0; });
     const std::vector<std::vector<int>> all = sequences(problem, remembers, is_known);
     for_each_in_parallel(static_cast<int>(all.size()), threads, [&](int s) {
         int previous = -1;

@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "identify/diagnosis/fit/descent.h"
+#include "identify/diagnosis/fit/measured_branch.h"
 #include "identify/diagnosis/fit/priors/fit_priors.h"
 #include "identify/diagnosis/fit/priors/known_magnitude.h"
 #include "identify/diagnosis/fit/scatter.h"
@@ -20,6 +21,7 @@ namespace {
 void begin(const BodyModel& model, const Problem& problem, int threads, const Refit* start, Refit& at) {
     const auto stands = [&](const std::vector<Eigen::VectorXd>* from) {
         at.forward = solve_forward(model, problem, at.explanation, threads, from);
+        if (!from) at.forward = nearest_to_measured(model, problem, at.explanation, std::move(at.forward), threads);
         at.error = error_of(problem, at.forward);
     };
     // Configurations are the model's own, and another law may ask for others.
