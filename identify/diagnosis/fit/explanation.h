@@ -45,7 +45,8 @@ Points channels_of(const BodyModel& model, const Problem& problem, const ModelSe
 
 /// @pre the problem is stage by stage where the explanation has a memory.
 /// @throws SolverFailure where an action has no equilibrium. `start`, `guides`: configurations and tangents of a
-/// neighbouring explanation; an empty configuration: that action begins at rest.
+/// neighbouring explanation; an empty configuration: that action begins at rest, or where its tools stood in the
+/// probe's action before it.
 ForwardSolution solve_forward(const BodyModel& model, const Problem& problem, const Explanation& explanation,
                               int threads, const std::vector<Eigen::VectorXd>* start = nullptr,
                               const TangentCache* guides = nullptr);
