@@ -40,7 +40,7 @@ int parts_of(const PreparedRig& rig, const std::vector<mesh::ToolMotion>& steps)
         const auto tool = rig.tool(step, any_young);
         most = std::max(most, tool->way() / tool->reach());
     }
-    constexpr double limit = 1000;
+    constexpr double limit = 1000;  // against a slip in the unit, as on the way from rest
     return static_cast<int>(std::ceil(std::min(most, limit)));
 }
 
