@@ -23,6 +23,9 @@ public:
     /// slow to play.
     void run(int most_steps, bool to_the_end);
 
+    /// To be told when the states have been replaced between two runs: slopes are taken anew.
+    void states_replaced() { has_slopes_ = false; }
+
 private:
     bool cannot_catch_up(double now, double promised) const;
     bool advance(const Eigen::VectorXd& move, double& now);

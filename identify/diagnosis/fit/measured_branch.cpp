@@ -1,5 +1,6 @@
 #include "identify/diagnosis/fit/measured_branch.h"
 
+#include <atomic>
 #include <cmath>
 
 #include "identify/numerics/parallel.h"
@@ -11,8 +12,8 @@ namespace {
 // Of the displacement: two equilibria under one tool differ by about as far as it moves the body. The less, the more
 // states are sought again in vain.
 constexpr double far = 0.2;
-constexpr double beyond_noise = 3;  // times sigma: equilibria that differ by less are alike to the readings
-constexpr double nearer = 0.5;      // of the misfit: another equilibrium, not the same one found again
+constexpr double beyond_noise = 3;   // times sigma: equilibria that differ by less are alike to the readings
+constexpr double much_nearer = 0.5;  // of the misfit: another equilibrium, not the same one found again
 
 /// What the markers show in one action.
 class MarkersInAction {
@@ -73,23 +74,26 @@ Eigen::VectorXd step_towards(const Eigen::VectorXd& error, const Tangent& J, con
 
 }  // namespace
 
-ForwardSolution nearest_to_measured(const BodyModel& model, const Problem& problem, const Explanation& explanation,
-                                    ForwardSolution forward, int threads) {
+std::optional<ForwardSolution> nearer_to_measured(const BodyModel& model, const Problem& problem,
+                                                  const Explanation& explanation, const ForwardSolution& forward,
+                                                  int threads) {
     const ModelSetting setting = explanation.setting();
-    if (setting.effects.remember() || !model.is_nonlinear(setting)) return forward;
+    if (setting.effects.remember() || !model.is_nonlinear(setting)) return std::nullopt;
     std::vector<int> off;
     for (int k = 0; k < static_cast<int>(problem.actions.size()); ++k) {
         if (problem.actions[k].motions.empty()) continue;
         const MarkersInAction markers(problem, k);
         if (markers.is_far_off(markers.error(forward.markers[k]))) off.push_back(k);
     }
-    if (off.empty()) return forward;
+    if (off.empty()) return std::nullopt;
     std::shared_ptr<const Tangent> at_rest;
     try {
         at_rest = model.tangent(model.rest(setting), setting, {});
     } catch (const SolverFailure&) {  // it is the tools that hold the body
-        return forward;
+        return std::nullopt;
     }
+    ForwardSolution nearer = forward;
+    std::atomic<bool> is_nearer = false;
     for_each_in_parallel(static_cast<int>(off.size()), threads, [&](int o) {
         const int k = off[o];
         const Action& action = forward.actions[k];
@@ -101,15 +105,17 @@ ForwardSolution nearest_to_measured(const BodyModel& model, const Problem& probl
             const Eigen::VectorXd q = model.equilibrium(setting, action, &near);
             const Points channels = channels_of(model, problem, setting, action, q);
             const Points read = explanation.read(problem, channels);
-            if (!(markers.error(read).norm() < nearer * error.norm())) return;
-            forward.q[k] = q;
-            forward.channels[k] = channels;
-            forward.markers[k] = read;
+            if (!(markers.error(read).norm() < much_nearer * error.norm())) return;
+            nearer.q[k] = q;
+            nearer.channels[k] = channels;
+            nearer.markers[k] = read;
+            is_nearer = true;
         } catch (const SolverFailure&) {  // there is none about there
         }
     });
-    forward.tangents = std::make_shared<TangentCache>(static_cast<int>(problem.actions.size()));
-    return forward;
+    if (!is_nearer) return std::nullopt;
+    nearer.tangents = std::make_shared<TangentCache>(static_cast<int>(problem.actions.size()));
+    return nearer;
 }
 
 }  // namespace palpate::identify

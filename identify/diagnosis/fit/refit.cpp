@@ -16,13 +16,22 @@
 namespace palpate::identify {
 namespace {
 
+/// Takes equilibria that are much nearer to the measurements; false: there are none.
+bool take_nearer_states(const BodyModel& model, const Problem& problem, int threads, Refit& at) {
+    auto nearer = nearer_to_measured(model, problem, at.explanation, at.forward, threads);
+    if (!nearer) return false;
+    at.forward = *std::move(nearer);
+    at.error = error_of(problem, at.forward);
+    return true;
+}
+
 /// Equilibria at the start, from the neighbour's configurations, else from rest; where there are none the body is made
 /// stiffer.
 void begin(const BodyModel& model, const Problem& problem, int threads, const Refit* start, Refit& at) {
     const auto stands = [&](const std::vector<Eigen::VectorXd>* from) {
         at.forward = solve_forward(model, problem, at.explanation, threads, from);
-        if (!from) at.forward = nearest_to_measured(model, problem, at.explanation, std::move(at.forward), threads);
         at.error = error_of(problem, at.forward);
+        if (!from) take_nearer_states(model, problem, threads, at);
     };
     // Configurations are the model's own, and another law may ask for others.
     const bool alike = start && start->forward.q.front().size() == model.rest(at.explanation.setting()).size();
@@ -157,6 +166,11 @@ Refit refit(const BodyModel& model, const Problem& problem, const Explanation& e
     }
     Descent descent(model, problem, priors, options, at);
     descent.run(options.steps, false);
+    // With other numbers there may be equilibria that there were not where it began.
+    if (take_nearer_states(model, problem, options.threads, at)) {
+        descent.states_replaced();
+        descent.run(options.steps, false);
+    }
     constexpr double hopeless = 2;  // rms left, whitened: a second round would hardly make it noise, and is saved
     if (!(start && start->V) || at.V->rms(at.error) < hopeless) {
         take_nuisances(model, problem, options, at);

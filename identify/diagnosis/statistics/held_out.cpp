@@ -124,7 +124,8 @@ HeldOutPrediction predict_response(const BodyModel& model, const Problem& unseen
 HeldOut predict(const BodyModel& model, const Problem& merged, const Refit& fit, const RefitOptions& options) {
     auto [explanation, covariance, unseen, forward] = predict_response(model, merged, fit, options);
     // Which of several equilibria the body is in cannot be predicted, and is not what is judged.
-    forward = nearest_to_measured(model, unseen, explanation, std::move(forward), options.threads);
+    if (auto nearer = nearer_to_measured(model, unseen, explanation, forward, options.threads))
+        forward = *std::move(nearer);
     if (options.correct_for_mesh)
         unseen.correct_for(discretisation_error(model, unseen, explanation, forward, options.threads));
     const Eigen::VectorXd error = (unseen.measured - unseen.pick(forward.markers)).cwiseQuotient(unseen.sigma);

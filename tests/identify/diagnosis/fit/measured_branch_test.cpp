@@ -60,15 +60,28 @@ TEST_F(PressedOutOfSight, TheMeasurementTellsWhichEquilibriumItIs) {
     const Problem seen = problem(pressed_);
     const ForwardSolution lifted = solve_forward(*model_, seen, truth_, 1);
     ASSERT_GT(misfit(seen, lifted), 5);
-    const ForwardSolution found = nearest_to_measured(*model_, seen, truth_, lifted, 1);
-    EXPECT_LT(misfit(seen, found), 1.2 * noise);
-    EXPECT_LT((found.q[1] - pressed_).norm(), 1e-4 * pressed_.norm());
-    EXPECT_LT(found.channels[1](seen.markers, 2), 0);  // pressed down
+    const auto found = nearer_to_measured(*model_, seen, truth_, lifted, 1);
+    ASSERT_TRUE(found);
+    EXPECT_LT(misfit(seen, *found), 1.2 * noise);
+    EXPECT_LT((found->q[1] - pressed_).norm(), 1e-4 * pressed_.norm());
+    EXPECT_LT(found->channels[1](seen.markers, 2), 0);  // pressed down
+    EXPECT_FALSE(nearer_to_measured(*model_, seen, truth_, *found, 1));
 }
 
 TEST_F(PressedOutOfSight, AFitBeginsThere) {
     const Problem seen = problem(pressed_);
     const Refit fit = refit(*model_, seen, truth_, {});
+    EXPECT_LT(misfit(seen, fit.forward), 1.2 * noise);
+}
+
+TEST_F(PressedOutOfSight, AFitFromANeighbourThatStandsElsewhereComesThere) {
+    const Problem seen = problem(pressed_);
+    Refit lifted;
+    lifted.explanation = truth_;
+    lifted.explanation.theta[0] += std::log(1.2);
+    lifted.forward = solve_forward(*model_, seen, lifted.explanation, 1);
+    ASSERT_GT(misfit(seen, lifted.forward), 5);
+    const Refit fit = refit(*model_, seen, lifted.explanation, {}, &lifted);
     EXPECT_LT(misfit(seen, fit.forward), 1.2 * noise);
 }
 
@@ -79,9 +92,9 @@ TEST_F(PressedOutOfSight, WhatReadingsAskForBesidesIsNotFitted) {
     for (Eigen::Index n = 0; n < seen.rows(); ++n)
         if (seen.action[n] == 1 && seen.coordinate[n] % 3 == 1)
             seen.measured[n] += 0.001 * std::pow(markers(seen.channel(n), 0), 2);
-    const ForwardSolution found =
-        nearest_to_measured(*model_, seen, truth_, solve_forward(*model_, seen, truth_, 1), 1);
-    const Points at = found.channels[1].topRows(seen.markers);
+    const auto found = nearer_to_measured(*model_, seen, truth_, solve_forward(*model_, seen, truth_, 1), 1);
+    ASSERT_TRUE(found);
+    const Points at = found->channels[1].topRows(seen.markers);
     EXPECT_LT((at - markers).rowwise().norm().maxCoeff(), 0.1);  // the same as without
 }
 
