@@ -134,12 +134,15 @@ struct ReferenceBody::Impl::FinerUnderTools {
     FinerUnderTools(const Impl& coarse, std::shared_ptr<const mesh::VolumeMesh> its_mesh)
         : mesh(std::move(its_mesh)), body(coarse, {*mesh, fem::interpolation(coarse.body.mesh(), mesh->nodes)}) {}
 
-    /// Where a known equilibrium of the same motions stands, else what the coarse one comes to.
-    Eigen::VectorXd start(const std::vector<double>& motions, const Eigen::VectorXd& coarse) {
-        const std::scoped_lock lock(mutex);
-        if (const auto found = last.find(motions); found != last.end()) return found->second;
+    /// What the coarse equilibrium comes to.
+    Eigen::VectorXd interpolated(const Eigen::VectorXd& coarse) const {
         const Points u = body.interpolation * Eigen::Map<const Points>(coarse.data(), coarse.size() / 3, 3);
         return Eigen::Map<const Eigen::VectorXd>(u.data(), u.size());
+    }
+    std::optional<Eigen::VectorXd> last_equilibrium(const std::vector<double>& motions) {
+        const std::scoped_lock lock(mutex);
+        const auto found = last.find(motions);
+        return found == last.end() ? std::nullopt : std::optional(found->second);
     }
     void keep(const std::vector<double>& motions, const Eigen::VectorXd& u) {
         const std::scoped_lock lock(mutex);
