@@ -10,37 +10,14 @@
 namespace palpate::identify {
 namespace {
 
-/// Of the displacement: a finer mesh that moves the body by more stands in another of its equilibria. Where it did not,
-/// the mesh would be too coarse to correct for.
-constexpr double another_equilibrium = 0.5;
-
+/// Is this another equilibrium than that on the coarse mesh? A finer mesh alters how far a body moves, even by several
+/// times where few elements meet a tool, and hardly how: of what it moves, less than a tenth is not in proportion. In
+/// another equilibrium more than half of it is not.
 bool stands_elsewhere(const Eigen::VectorXd& u, const Eigen::VectorXd& coarse) {
-    return (u - coarse).norm() > another_equilibrium * coarse.norm();
-}
-
-// From there alone: a path from rest may lead to another equilibrium.
-constexpr fem::NewtonOptions from_the_start{.tolerance = 1e-6, .load_steps = 0};
-
-/// The equilibrium that a configuration out of balance relaxes to: forces that hold it there are taken away in parts.
-/// @throws SolverFailure where it slips off.
-Eigen::VectorXd relaxed(const fem::HyperelasticBody& body, const fem::BodySetting& setting, const Eigen::VectorXd& load,
-                        Eigen::VectorXd u) {
-    Eigen::VectorXd holding = -body.residual(u, setting, load);
-    for (std::size_t n = 0; n < body.held().size(); ++n)
-        if (body.held()[n]) holding.segment<3>(static_cast<Eigen::Index>(3 * n)).setZero();
-    constexpr double first = 0.25, least = 1.0 / 64;  // parts of the forces: beyond, it is at the end of its branch
-    for (double share = 1, part = first; share > 0;) {
-        const double next = std::max(share - part, 0.0);
-        try {
-            u = body.equilibrium(setting, load + next * holding, from_the_start, &u).u;
-            share = next;
-            part *= 2;
-        } catch (const SolverFailure&) {
-            part /= 2;
-            if (part < least) throw;
-        }
-    }
-    return u;
+    constexpr double out_of_proportion = 0.3;
+    if (coarse.norm() == 0) return false;
+    const Eigen::VectorXd along = u.dot(coarse) / coarse.squaredNorm() * coarse;
+    return u.dot(coarse) <= 0 || (u - along).norm() > out_of_proportion * u.norm();
 }
 
 }  // namespace
@@ -104,14 +81,8 @@ std::optional<MeshError> ReferenceBody::error_under_tools(const Eigen::VectorXd&
     const fem::BodySetting loading = own.setting(setting, action);
     const Eigen::VectorXd load = own.load(action), coarse = finer->interpolated(q);
     const auto last = finer->last_equilibrium(motions);
-    const Eigen::VectorXd& start = last ? *last : coarse;
-    std::optional<Eigen::VectorXd> at_once;
-    try {
-        at_once = own.body.equilibrium(loading, load, from_the_start, &start).u;
-    } catch (const SolverFailure&) {  // too far from there
-    }
-    const Eigen::VectorXd u =
-        at_once && !stands_elsewhere(*at_once, coarse) ? *at_once : relaxed(own.body, loading, load, coarse);
+    const Eigen::VectorXd& start = last && !stands_elsewhere(*last, coarse) ? *last : coarse;
+    const Eigen::VectorXd u = own.body.equilibrium(loading, load, {.tolerance = 1e-6}, &start).u;
     if (stands_elsewhere(u, coarse))
         throw SolverFailure("A finer mesh knows no equilibrium under the tool next to that of this one.");
     finer->keep(motions, u);

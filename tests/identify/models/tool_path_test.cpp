@@ -2,33 +2,18 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/identify/small_body.h"
+#include "tests/identify/bar_under_ball.h"
 
 namespace palpate::identify {
 namespace {
 
-/// A ball, which is told from a place below the bar, presses it down from above, in the end by more than its thickness.
-class PressedDeep : public testing::TestWithParam<bool> {
+class PressedDeep : public testing::TestWithParam<bool>, public BarUnderBall {
 protected:
-    static constexpr double radius = 8;
-    static constexpr double top = 10;  // of the bar [mm]
-    static Rig rig() {
-        return {{{.name = "ball", .shape = mesh::SphereShape{radius}, .bonded = false, .origin = Vec3(30, 5, -60)}},
-                {}};
-    }
-    static Action pressed(double depth) {
-        Action action;
-        action.motions = {{.tool = 0, .translation = Vec3(0, 0, 60 + top + radius - depth)}};
-        return action;
-    }
     PressedDeep() {
-        body_.mesh = mesh::to_quadratic(mesh::make_bar(Vec3::Zero(), Vec3(40, 10, 10), {8, 2, 2}));
         if (GetParam())
-            model_ = std::make_unique<SkeletonBody>(body_.chain(), body_.markers, SmallBody::young, rig());
+            model_ = std::make_unique<SkeletonBody>(body.chain(), body.markers, SmallBody::young, rig());
         else
-            model_ = std::make_unique<ReferenceBody>(
-                body_.mesh, body_.supports, body_.markers,
-                ReferenceBodyOptions{.young = 0.1, .measured_on_mesh = true, .rig = rig()});
+            model_ = reference();
     }
     /// Of the marker in the middle of the upper side, above the ball [mm].
     double height(const Points& markers) const {
@@ -39,7 +24,6 @@ protected:
         return markers(nearest, 2) - rest(nearest, 2);
     }
 
-    SmallBody body_;
     std::unique_ptr<BodyModel> model_;
     Explanation truth_;
 };
@@ -49,7 +33,7 @@ TEST_P(PressedDeep, StatesOfAProbeFollowTheTool) {
     std::vector<LoadState> states{LoadState{.probe = 0}};
     for (const double depth : {5.0, 10.0, 14.0, 18.5})
         states.push_back({.probe = 1, .time = depth, .motions = pressed(depth).motions});
-    MeasurementSet set = body_.set(std::move(states));
+    MeasurementSet set = body.set(std::move(states));
     set.tools = rig().tools;
     const Problem problem = make_problem(set, 1);
     const ForwardSolution forward = solve_forward(*model_, problem, truth_, 1);

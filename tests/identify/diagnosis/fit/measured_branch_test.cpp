@@ -3,40 +3,25 @@
 #include <gtest/gtest.h>
 
 #include "identify/diagnosis/fit/refit.h"
-#include "identify/models/tool_path.h"
-#include "tests/identify/small_body.h"
+#include "tests/identify/bar_under_ball.h"
 
 namespace palpate::identify {
 namespace {
 
-/// A ball that has pressed the bar down by more than its thickness, of which only the last pose is told: it might as
-/// well have lifted the bar from below.
-class PressedOutOfSight : public testing::Test {
+/// A bar that a ball has pressed down by more than its thickness, of which only the last pose is told.
+class PressedOutOfSight : public testing::Test, public BarUnderBall {
 protected:
     static constexpr double noise = 0.02;  // [mm]
-    static Rig rig() {
-        return {{{.name = "ball", .shape = mesh::SphereShape{8}, .bonded = false, .origin = Vec3(30, 5, -60)}}, {}};
-    }
-    static Action pressed(double depth) {
-        Action action;
-        action.motions = {{.tool = 0, .translation = Vec3(0, 0, 78 - depth)}};
-        return action;
-    }
+    static constexpr double depth = 18.5;  // [mm]
     PressedOutOfSight() {
-        body_.mesh = mesh::to_quadratic(mesh::make_bar(Vec3::Zero(), Vec3(40, 10, 10), {8, 2, 2}));
-        model_ =
-            std::make_unique<ReferenceBody>(body_.mesh, body_.supports, body_.markers,
-                                            ReferenceBodyOptions{.young = 0.1, .measured_on_mesh = true, .rig = rig()});
+        model_ = reference();
         truth_ = bare_truth(*model_, 2);
-        const ModelSetting setting = truth_.setting();
-        pressed_ = model_->equilibrium(setting, pressed(5));
-        for (const auto& [from, to] : {std::pair{5.0, 10.0}, {10.0, 14.0}, {14.0, depth_}})
-            pressed_ = equilibrium_after(*model_, PreparedRig(rig()), setting, pressed(from), pressed_, pressed(to));
+        pressed_ = brought_to(*model_, truth_.setting(), depth);
     }
     /// Its readings where the bar stands so.
     Problem problem(const Eigen::VectorXd& q) const {
         MeasurementSet set =
-            body_.set({LoadState{.probe = 0}, {.probe = 1, .time = 1, .motions = pressed(depth_).motions}});
+            body.set({LoadState{.probe = 0}, {.probe = 1, .time = 1, .motions = pressed(depth).motions}});
         set.tools = rig().tools;
         set.position_noise = noise;
         RandomStream random(1, 0, 0);
@@ -49,8 +34,6 @@ protected:
         return problem.rms_mm(problem.measured - problem.pick(forward.markers));
     }
 
-    double depth_ = 18.5;
-    SmallBody body_;
     std::unique_ptr<BodyModel> model_;
     Explanation truth_;
     Eigen::VectorXd pressed_;
