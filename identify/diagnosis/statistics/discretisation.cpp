@@ -54,9 +54,12 @@ public:
           threads_(threads),
           seen_(problem.actions.size()),
           is_worth_(problem.actions.size(), problem.discretisation.size() == 0) {
-        // What could not be told elsewhere, or is none as nothing acts, is not tried again: it takes longest.
+        // What could not be told with other numbers, or is none as nothing acts, is not tried again: it takes longest.
         for (Eigen::Index n = 0; n < problem.discretisation.size(); ++n)
             if (problem.discretisation[n] != 0) is_worth_[problem.action[n]] = 1;
+        // But under a tool: with these numbers the body may stand in an equilibrium that a finer mesh has, too.
+        for (std::size_t k = 0; k < problem.actions.size(); ++k)
+            if (!problem.actions[k].motions.empty()) is_worth_[k] = 1;
     }
 
     void compute(const std::vector<int>& actions) {
