@@ -145,7 +145,7 @@ TEST_F(Discretisation, OfWhatAGripFeelsIsToldToo) {
 TEST_F(Discretisation, UnderAToolThatMayPartIsToldByAMeshThatIsFinerThere) {
     Rig rig;
     rig.tools.push_back({.name = "ball", .shape = mesh::SphereShape{6}, .origin = Vec3(20, 20, 10)});
-    const auto finer = std::make_shared<const mesh::VolumeMesh>(plate({24, 16, 3}));
+    const auto finer = std::make_shared<const mesh::VolumeMesh>(plate({15, 10, 2}));
     ReferenceBodyOptions options{.rig = rig};
     const auto offered = [&](double times) {
         options.finer_under_tools = [=](const std::vector<mesh::ToolMotion>& motions) -> FinerMesh {
