@@ -47,7 +47,7 @@ TEST_F(ErrorUnderTools, OfABodyThatStandsElsewhereIsNone) {
     const ReferenceBody model = offered(mesh::to_quadratic(mesh::make_bar(Vec3::Zero(), Vec3(15, 10, 10), {6, 3, 3})));
     const ModelSetting setting = bare_truth(model, 2).setting();
     const Eigen::VectorXd q = brought_to(model, setting, depth);
-    EXPECT_THROW(told(model, setting, q), SolverFailure);
+    EXPECT_FALSE(told(model, setting, q));
 }
 
 /// A body that cannot tell the first time that it is asked of forces, or of tools.
